@@ -1,0 +1,80 @@
+#include "command.h"
+
+#include <cctype>
+#include <cstdio>
+#include <iostream>
+
+namespace ostraka::app {
+
+CLI::App* Session::add(CLI::App& parent, const std::string& name, const std::string& help, std::function<int()> run) {
+    CLI::App* command = parent.add_subcommand(name, help);
+    command->add_flag("--json", json, "print a report for machines instead of a table");
+    command->add_flag("--quiet", quiet, "no notes and no progress bar");
+    command->add_option("--threads", threads, "number of threads, 0 for all cores; results do not depend on it")->check(CLI::Range(0, 1024));
+    command->callback([this, run = std::move(run)] { action = run; });
+    return command;
+}
+
+void Session::note(const std::string& text) const {
+    if (!quiet) std::cerr << text << '\n';
+}
+
+void Session::print_report(const Provenance& provenance, Json& document, JsonValue& result, JsonValue* run) const {
+    auto& allocator = document.GetAllocator();
+    JsonValue report(rapidjson::kObjectType);
+    add_member(report, "format", "ostraka-report", allocator);
+    add_member(report, "command", provenance.command, allocator);
+    add_member(report, "result", std::move(result), allocator);
+    add_member(report, "provenance", provenance.to_json(allocator), allocator);
+    if (run != nullptr) add_member(report, "run", std::move(*run), allocator);
+    std::cout << to_text(report);
+}
+
+namespace {
+/// Columns on a terminal, not bytes: continuation bytes of UTF-8 take no room.
+std::size_t width(const std::string& text) {
+    std::size_t count = 0;
+    for (const char c : text) count += (static_cast<unsigned char>(c) & 0xC0) != 0x80;
+    return count;
+}
+bool is_number(const std::string& text) {
+    return !text.empty() && (std::isdigit(static_cast<unsigned char>(text.front())) != 0 || text.front() == '-') &&
+           text.find_first_of("0123456789") != std::string::npos;
+}
+}  // namespace
+
+std::string table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows) {
+    std::vector<std::size_t> widths(header.size());
+    for (std::size_t c = 0; c < header.size(); ++c) {
+        widths[c] = width(header[c]);
+        for (const auto& row : rows) widths[c] = std::max(widths[c], c < row.size() ? width(row[c]) : 0);
+    }
+    std::string text;
+    const auto line = [&](const std::vector<std::string>& cells, bool is_header) {
+        std::string out;
+        for (std::size_t c = 0; c < header.size(); ++c) {
+            const std::string cell = c < cells.size() ? cells[c] : "";
+            const std::string gap(widths[c] - width(cell), ' ');
+            bool right = is_number(cell);
+            if (is_header) {
+                right = !rows.empty();
+                for (const auto& row : rows) right = right && (c >= row.size() || row[c].empty() || row[c] == "-" || is_number(row[c]));
+            }
+            out += right ? gap + cell : cell + gap;
+            if (c + 1 < header.size()) out += "  ";
+        }
+        out.erase(out.find_last_not_of(' ') + 1);
+        text += out + "\n";
+    };
+    line(header, true);
+    for (const auto& row : rows) line(row, false);
+    return text;
+}
+
+std::string number(double value, int digits) {
+    char buffer[64];
+    std::snprintf(buffer, sizeof buffer, "%.*g", digits, value);
+    return buffer;
+}
+
+}  // namespace ostraka::app

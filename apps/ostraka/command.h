@@ -1,0 +1,69 @@
+// What every command of the tool shares: the flags, the report, the exit code.
+#pragma once
+
+#include "ostraka/core/options.h"
+#include "ostraka/core/provenance.h"
+
+#include <CLI/CLI.hpp>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace ostraka::app {
+
+/// Exit codes of the tool: 0 done, 1 failed, 2 wrong usage, 3 done but the answer is "no".
+inline constexpr int done = 0, failed = 1, wrong_usage = 2, answer_is_no = 3;
+
+/// The state of one run of the tool: the flags common to all commands, and the action that the parsed command wants run.
+struct Session {
+    bool json = false;   ///< --json: one report on standard output instead of a table
+    bool quiet = false;  ///< --quiet: no notes and no progress on standard error
+    int threads = 0;     ///< --threads
+    std::function<int()> action;
+
+    /// Adds a command with the common flags; `run` is called after parsing, its result is the exit code.
+    CLI::App* add(CLI::App& parent, const std::string& name, const std::string& help, std::function<int()> run);
+
+    /// A line on standard error, unless --quiet.
+    void note(const std::string& text) const;
+
+    /// Prints {"format": "ostraka-report", "command", "result", "provenance"} on standard output. `document` lends its
+    /// allocator, `result` is consumed. Members that may differ between two runs of the same work go into `run`.
+    void print_report(const Provenance& provenance, Json& document, JsonValue& result, JsonValue* run = nullptr) const;
+};
+
+/// Adds one flag per field of an options struct (see core/options.h).
+struct FlagVisitor {
+    CLI::App* app;
+    void operator()(const char* name, bool& value, const char* help, Anything) const { app->add_flag("--" + std::string(name), value, help); }
+    template <class T> void operator()(const char* name, T& value, const char* help, Range range) const {
+        app->add_option("--" + std::string(name), value, help)->check(CLI::Range(range.min, range.max))->capture_default_str();
+    }
+    void operator()(const char* name, std::string& value, const char* help, const Choices& choices) const {
+        app->add_option("--" + std::string(name), value, help)->check(CLI::IsMember(choices.names))->capture_default_str();
+    }
+    template <class T> void operator()(const char* name, T& value, const char* help, Anything) const {
+        app->add_option("--" + std::string(name), value, help)->capture_default_str();
+    }
+};
+template <class Options> void add_flags(CLI::App* app, Options& options) {
+    FlagVisitor visitor{app};
+    options.describe(visitor);
+}
+
+/// A table for people: columns padded, numbers right-aligned.
+std::string table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows);
+/// A number for people: `digits` significant digits.
+std::string number(double value, int digits = 5);
+
+// One registration function a file; each adds its commands to the tool.
+void add_mesh_info(CLI::App& mesh, Session& session);      // mesh_info.cpp: info, convert
+void add_mesh_repair(CLI::App& mesh, Session& session);    // mesh_repair.cpp
+void add_mesh_resize(CLI::App& mesh, Session& session);    // mesh_resize.cpp: simplify, refine, remesh
+void add_mesh_make(CLI::App& mesh, Session& session);      // mesh_make.cpp
+void add_annotation(CLI::App& annotation, Session& session);           // annotation.cpp: apply, list, check
+void add_annotation_transfer(CLI::App& annotation, Session& session);  // annotation_transfer.cpp
+void add_render(CLI::App& tool, Session& session);                     // render.cpp
+
+}  // namespace ostraka::app

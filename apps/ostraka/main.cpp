@@ -1,0 +1,46 @@
+#include "command.h"
+
+#include "ostraka/core/parallel.h"
+#include "ostraka/core/progress.h"
+
+#include <iostream>
+#include <new>
+
+int main(int argc, char** argv) {
+    using namespace ostraka;
+    app::Session session;
+    CLI::App tool("Semantics-aware modelling of 3D shapes", "ostraka");
+    tool.set_version_flag("--version", version());
+    tool.require_subcommand(1);
+    CLI::App* mesh = tool.add_subcommand("mesh", "examine, repair, convert, resize and make meshes");
+    mesh->require_subcommand(1);
+    CLI::App* annotation = tool.add_subcommand("annotation", "annotate meshes and carry annotations between them");
+    annotation->require_subcommand(1);
+    app::add_mesh_info(*mesh, session);
+    app::add_mesh_repair(*mesh, session);
+    app::add_mesh_resize(*mesh, session);
+    app::add_mesh_make(*mesh, session);
+    app::add_annotation(*annotation, session);
+    app::add_annotation_transfer(*annotation, session);
+    app::add_render(tool, session);
+    try {
+        tool.parse(argc, argv);
+        set_threads(session.threads);
+        if (session.quiet) Progress::switch_off();
+        const int code = session.action ? session.action() : app::done;
+        std::cout.flush();
+        if (!std::cout) throw Error(ErrorKind::failure, "standard output", "cannot be written", "free some space or mend the pipe");
+        return code;
+    } catch (const CLI::ParseError& error) {
+        return tool.exit(error) == 0 ? app::done : app::wrong_usage;
+    } catch (const Error& error) {
+        std::cerr << "ostraka: " << error.what() << '\n';
+        return error.kind() == ErrorKind::usage ? app::wrong_usage : app::failed;
+    } catch (const std::bad_alloc&) {
+        std::cerr << "ostraka: out of memory (close other programs or use a smaller mesh)\n";
+        return app::failed;
+    } catch (const std::exception& error) {
+        std::cerr << "ostraka: internal error: " << error.what() << " (please report it with the command that caused it)\n";
+        return app::failed;
+    }
+}

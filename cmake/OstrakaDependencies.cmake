@@ -1,0 +1,12 @@
+# What the library links against; used by the build and by the installed package.
+find_package(CGAL 5.5 REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(OpenMP REQUIRED COMPONENTS CXX)
+find_package(OpenSSL REQUIRED COMPONENTS Crypto)
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo)
+find_library(EMBREE_LIBRARY NAMES embree3 REQUIRED)
+find_path(RAPIDJSON_INCLUDE rapidjson/document.h REQUIRED)
+if(NOT OSTRAKA_INSTALLED)
+  find_package(CLI11 REQUIRED)
+endif()

@@ -1,0 +1,79 @@
+// Annotations: what is said of which part of a mesh (thesis, section 2.2: A = (I, S, P)).
+#pragma once
+
+#include "ostraka/core/json.h"
+#include "ostraka/core/mesh.h"
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace ostraka {
+
+/// A place on the surface that need not be a vertex.
+struct Location {
+    Index face = no_index;
+    std::array<double, 3> barycentric{1, 0, 0};  ///< weights of corners(mesh, face), summing to one
+};
+
+/// A measure with the pins that define it (Appendix B.1).
+struct Measure {
+    std::string tool;                                ///< "ruler", "tape" or "bounding"
+    std::vector<Index> points;                       ///< vertices: two for a ruler, two or more for a tape, the two extremes for a bounding
+    std::vector<Location> locations;                 ///< empty, or one per point: where the pin really is
+    std::optional<std::array<double, 3>> direction;  ///< of a bounding measure
+    std::optional<double> value;                     ///< in `unit`
+    std::string unit;
+    bool stale = false;                              ///< the mesh or the pins changed and the value was not recomputed
+};
+
+/// A quantity that is not a measure: area, curvature map, thickness ...
+struct Descriptor {
+    std::vector<double> values;
+    bool is_list = false;  ///< a list in the file, even if of one value
+    std::string file;      ///< a .npy array instead of values
+    std::string unit;
+    bool stale = false;
+};
+
+enum class AttributeType { semantic, measure, descriptor };
+
+struct Attribute {
+    int id = 0;
+    std::string name;
+    AttributeType type = AttributeType::semantic;
+    std::string note;       ///< semantic
+    Measure measure;        ///< measure
+    Descriptor descriptor;  ///< descriptor
+};
+
+enum class AnnotationType { point, line, region };
+
+/// Selections are plain indices of the mesh they belong to. Exactly one of `points`, `polylines`, `faces` is used.
+struct Annotation {
+    int id = 0;
+    std::string tag;
+    std::array<int, 3> colour{128, 128, 128};  ///< red, green, blue, 0 to 255
+    AnnotationType type = AnnotationType::region;
+    std::vector<Index> points;                  ///< vertices, in the order given
+    std::vector<std::vector<Index>> polylines;  ///< successive vertices joined by edges; closed when first = last
+    std::vector<Index> faces;                   ///< the region's faces, ascending, without repeats
+    bool all = false;                           ///< a region that is the whole mesh: `faces` lists every face
+    std::vector<Attribute> attributes;
+    std::string note;                           ///< what a transfer or a simplification had to do to it, if anything
+};
+
+struct AnnotationSet {
+    std::string object_class;  ///< "class" in the file
+    std::string unit;
+    std::optional<std::array<double, 3>> up;
+    std::vector<Annotation> annotations;
+    Json provenance;  ///< as read; null if none
+
+    [[nodiscard]] const Annotation* find(int id) const;
+};
+
+std::string to_string(AnnotationType type);
+
+}  // namespace ostraka

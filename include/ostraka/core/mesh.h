@@ -1,0 +1,86 @@
+// The one kernel, the one mesh type and the small questions every module asks of a mesh.
+#pragma once
+
+#include <CGAL/Bbox_3.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Surface_mesh.h>
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace ostraka {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Point = Kernel::Point_3;
+using Vector = Kernel::Vector_3;
+using Mesh = CGAL::Surface_mesh<Point>;
+using Vertex = Mesh::Vertex_index;
+using Halfedge = Mesh::Halfedge_index;
+using Edge = Mesh::Edge_index;
+using Face = Mesh::Face_index;
+
+/// Index of a vertex or of a face in a file or a plain array.
+using Index = std::uint32_t;
+inline constexpr Index no_index = static_cast<Index>(-1);
+
+/// Triangles over indexed points, as a file gives them: nothing is promised of their topology.
+struct TriangleSoup {
+    std::vector<std::array<double, 3>> points;   ///< in the unit of the file
+    std::vector<std::array<Index, 3>> triangles; ///< counter-clockwise seen from outside
+};
+
+/// What keeps a soup from being an oriented 2-manifold (with or without border).
+struct ManifoldDefects {
+    std::size_t repeated_corners = 0;      ///< triangles that name a vertex twice
+    std::size_t nonmanifold_edges = 0;     ///< edges with more than two triangles
+    std::size_t misoriented_edges = 0;     ///< edges that two triangles run through in the same direction
+    std::size_t nonmanifold_vertices = 0;  ///< vertices with more than one fan; counted only if the edges are sound
+    Index example_triangle = no_index;     ///< a triangle at which the first defect was met
+    [[nodiscard]] bool any() const {
+        return repeated_corners + nonmanifold_edges + misoriented_edges + nonmanifold_vertices > 0;
+    }
+};
+
+/// Builds the halfedge mesh in time linear in its size, keeping the order of vertices and triangles;
+/// isolated vertices stay. Returns the defects found; `mesh` is left empty unless there are none.
+/// Throws Error if a triangle's index is out of range.
+ManifoldDefects try_build_mesh(const TriangleSoup& soup, Mesh& mesh);
+
+/// As above, and throws Error that names the defects.
+Mesh build_mesh(const TriangleSoup& soup);
+
+/// The points and triangles of a mesh without garbage, in index order.
+TriangleSoup to_soup(const Mesh& mesh);
+
+/// The corners of a triangle, starting at the target of its stored halfedge's predecessor so that a mesh
+/// built from a soup gives back the soup's corner order.
+std::array<Vertex, 3> corners(const Mesh& mesh, Face face);
+
+/// Area vector: half the cross product of two edges (length = area, direction = outward normal).
+Vector area_vector(const Mesh& mesh, Face face);
+double face_area(const Mesh& mesh, Face face);
+double surface_area(const Mesh& mesh);
+Point centroid(const Mesh& mesh, Face face);
+
+/// Sum of the adjacent faces' area vectors weighted by the corner angle, normalised (Thuermer and Wuethrich 1998);
+/// the null vector where all of them vanish.
+Vector vertex_normal(const Mesh& mesh, Vertex vertex);
+
+/// Axis-aligned box of the vertices that have a face (of all vertices if none has).
+CGAL::Bbox_3 bounding_box(const Mesh& mesh);
+/// Length of the box's diagonal; every relative tolerance refers to it.
+double box_diagonal(const Mesh& mesh);
+/// Mean length of the edges, 0 without edges.
+double mean_edge_length(const Mesh& mesh);
+
+/// The halfedge from `a` to `b`, or the null halfedge; walks the ring of `a`.
+Halfedge find_halfedge(const Mesh& mesh, Vertex a, Vertex b);
+
+/// SHA-256 (hexadecimal) over the indexed geometry: vertex and face counts as uint64, coordinates as float64
+/// (negative zero as zero), triangle indices as uint32, all little-endian. Files of any format that hold the same
+/// mesh agree.
+std::string mesh_checksum(const Mesh& mesh);
+
+}  // namespace ostraka

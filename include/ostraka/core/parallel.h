@@ -1,0 +1,25 @@
+// Loops over cores whose results do not depend on the number of cores.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+namespace ostraka {
+
+/// Number of threads used from here on; 0 = all the machine has. Throws Error (usage) below 0 or above 1024.
+void set_threads(int threads);
+int threads();
+
+/// Calls body(begin, end) over blocks of fixed size that cover [0, count); which thread runs a block does not matter
+/// as long as the body writes only to its own elements. The first exception (lowest block) is rethrown.
+void parallel_blocks(std::size_t count, std::size_t block, const std::function<void(std::size_t, std::size_t)>& body);
+
+/// Calls body(i) for each i in [0, count).
+template <class Body>
+void parallel_for(std::size_t count, Body&& body, std::size_t block = 256) {
+    parallel_blocks(count, block, [&body](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) body(i);
+    });
+}
+
+}  // namespace ostraka

@@ -1,0 +1,185 @@
+#include "ostraka/core/file.h"
+
+#include "ostraka/core/error.h"
+
+#include <fcntl.h>
+#include <openssl/evp.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <memory>
+#include <new>
+
+namespace ostraka {
+
+namespace {
+std::string reason() { return std::strerror(errno); }
+
+struct Descriptor {
+    int number;
+    ~Descriptor() { ::close(number); }
+};
+}  // namespace
+
+std::string read_file(const Path& file) {
+    const Descriptor descriptor{::open(file.c_str(), O_RDONLY | O_CLOEXEC)};
+    if (descriptor.number < 0) fail_input(file.string(), "cannot be opened: " + reason(), "check the path and its rights");
+    struct stat status {};
+    if (::fstat(descriptor.number, &status) != 0) fail_input(file.string(), "cannot be examined: " + reason());
+    if (S_ISDIR(status.st_mode)) fail_input(file.string(), "is a folder", "name a file");
+    std::string bytes;
+    try {
+        if (S_ISREG(status.st_mode)) bytes.resize(static_cast<std::size_t>(status.st_size));
+        std::size_t used = 0;
+        for (;;) {
+            if (used == bytes.size()) {
+                char extra[4096];
+                const ssize_t more = ::read(descriptor.number, extra, sizeof extra);
+                if (more == 0) break;
+                if (more < 0 && errno == EINTR) continue;
+                if (more < 0) fail_input(file.string(), "cannot be read: " + reason());
+                bytes.append(extra, static_cast<std::size_t>(more));
+                used = bytes.size();
+                continue;
+            }
+            const ssize_t more = ::read(descriptor.number, bytes.data() + used, bytes.size() - used);
+            if (more < 0 && errno == EINTR) continue;
+            if (more < 0) fail_input(file.string(), "cannot be read: " + reason());
+            if (more == 0) break;
+            used += static_cast<std::size_t>(more);
+        }
+        bytes.resize(used);
+    } catch (const std::bad_alloc&) {
+        throw Error(ErrorKind::failure, file.string(), "does not fit into memory");
+    }
+    return bytes;
+}
+
+AtomicFile::AtomicFile(Path file) : file_(std::move(file)) {
+    std::error_code code;
+    if (std::filesystem::is_directory(file_, code))
+        throw Error(ErrorKind::failure, file_.string(), "is a folder", "name a file to write");
+    // A link keeps pointing where it points: what is replaced is the file behind it.
+    if (std::filesystem::is_symlink(file_, code)) {
+        const Path target = std::filesystem::weakly_canonical(file_, code);
+        if (!code) file_ = target;
+    }
+    std::string pattern = file_.string() + ".XXXXXX";
+    const int descriptor = ::mkstemp(pattern.data());
+    if (descriptor < 0) {
+        const std::string why = reason();
+        throw Error(ErrorKind::failure, file_.string(), "cannot be written: " + why,
+                    "check that its folder exists and may be written to");
+    }
+    temporary_ = pattern;
+    const mode_t mask = ::umask(0);
+    ::umask(mask);
+    ::fchmod(descriptor, 0666 & ~mask);
+    stream_ = ::fdopen(descriptor, "wb");
+    if (stream_ == nullptr) {
+        ::close(descriptor);
+        ::unlink(temporary_.c_str());
+        throw Error(ErrorKind::failure, file_.string(), "cannot be written: " + reason());
+    }
+}
+
+AtomicFile::~AtomicFile() {
+    if (stream_ != nullptr) {
+        std::fclose(stream_);
+        ::unlink(temporary_.c_str());
+    }
+}
+
+void AtomicFile::write(std::string_view bytes) {
+    if (std::fwrite(bytes.data(), 1, bytes.size(), stream_) != bytes.size())
+        throw Error(ErrorKind::failure, file_.string(), "cannot be written: " + reason(), "free some space; an earlier file of that name is untouched");
+}
+
+void AtomicFile::commit() {
+    const bool flushed = std::fflush(stream_) == 0 && ::fsync(::fileno(stream_)) == 0;
+    const std::string why = flushed ? "" : reason();
+    const bool closed = std::fclose(stream_) == 0;
+    stream_ = nullptr;
+    if (!flushed || !closed || ::rename(temporary_.c_str(), file_.c_str()) != 0) {
+        const std::string cause = flushed ? reason() : why;
+        ::unlink(temporary_.c_str());
+        throw Error(ErrorKind::failure, file_.string(), "cannot be written: " + cause, "free some space; an earlier file of that name is untouched");
+    }
+}
+
+void write_file(const Path& file, std::string_view bytes) {
+    AtomicFile output(file);
+    output.write(bytes);
+    output.commit();
+}
+
+void check_outputs(const std::vector<Path>& inputs, const std::vector<Path>& outputs) {
+    std::error_code code;
+    for (std::size_t i = 0; i < outputs.size(); ++i) {
+        const Path& output = outputs[i];
+        if (output.empty()) continue;
+        const Path place = std::filesystem::weakly_canonical(output, code);
+        for (const Path& input : inputs) {
+            if (input.empty()) continue;
+            if (std::filesystem::equivalent(output, input, code) || (!place.empty() && place == std::filesystem::weakly_canonical(input, code)))
+                fail_usage("output " + output.string() + " is also an input", "choose another name for the output");
+        }
+        for (std::size_t j = 0; j < i; ++j)
+            if (!outputs[j].empty() && place == std::filesystem::weakly_canonical(outputs[j], code))
+                fail_usage("two outputs have the name " + output.string(), "give each output its own name");
+        const Path folder = output.has_parent_path() ? output.parent_path() : Path(".");
+        if (!std::filesystem::is_directory(folder, code))
+            throw Error(ErrorKind::failure, output.string(), "its folder does not exist", "make the folder " + folder.string() + " first");
+        if (std::filesystem::is_directory(output, code))
+            throw Error(ErrorKind::failure, output.string(), "is a folder", "name a file to write");
+    }
+}
+
+std::string extension(const Path& file) {
+    std::string text = file.extension().string();
+    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return text;
+}
+
+Sha256::Sha256() : context_(EVP_MD_CTX_new()) {
+    if (context_ == nullptr || EVP_DigestInit_ex(static_cast<EVP_MD_CTX*>(context_), EVP_sha256(), nullptr) != 1)
+        throw Error(ErrorKind::failure, "SHA-256", "cannot be started");
+}
+
+Sha256::~Sha256() { EVP_MD_CTX_free(static_cast<EVP_MD_CTX*>(context_)); }
+
+void Sha256::update(const void* data, std::size_t size) { EVP_DigestUpdate(static_cast<EVP_MD_CTX*>(context_), data, size); }
+
+std::string Sha256::hexadecimal() {
+    unsigned char digest[EVP_MAX_MD_SIZE];
+    unsigned int length = 0;
+    EVP_DigestFinal_ex(static_cast<EVP_MD_CTX*>(context_), digest, &length);
+    std::string text;
+    for (unsigned int i = 0; i < length; ++i) {
+        text += "0123456789abcdef"[digest[i] >> 4];
+        text += "0123456789abcdef"[digest[i] & 15];
+    }
+    return text;
+}
+
+std::string sha256(std::string_view bytes) {
+    Sha256 hash;
+    hash.update(bytes.data(), bytes.size());
+    return hash.hexadecimal();
+}
+
+std::string sha256_of_file(const Path& file) {
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"), &std::fclose);
+    if (!stream) fail_input(file.string(), "cannot be opened: " + reason(), "check the path and its rights");
+    Sha256 hash;
+    std::vector<char> buffer(1 << 20);
+    while (const std::size_t size = std::fread(buffer.data(), 1, buffer.size(), stream.get())) hash.update(buffer.data(), size);
+    if (std::ferror(stream.get()) != 0) fail_input(file.string(), "cannot be read: " + reason());
+    return hash.hexadecimal();
+}
+
+}  // namespace ostraka

@@ -1,0 +1,187 @@
+#include "ostraka/core/json.h"
+
+#include "ostraka/core/error.h"
+
+#include <rapidjson/error/en.h>
+#include <rapidjson/reader.h>
+#include <rapidjson/schema.h>
+#include <rapidjson/stringbuffer.h>
+#include <rapidjson/writer.h>
+
+#include <cmath>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <stdexcept>
+
+namespace ostraka {
+
+/// Made by the build from doc/schema: name and text of each schema.
+const std::map<std::string, std::string_view>& schema_texts();
+
+namespace {
+
+std::string place(std::string_view text, std::size_t offset) {
+    std::size_t line = 1, column = 1;
+    for (std::size_t i = 0; i < std::min(offset, text.size()); ++i) {
+        if (text[i] == '\n') {
+            ++line;
+            column = 1;
+        } else {
+            ++column;
+        }
+    }
+    return "line " + std::to_string(line) + ", column " + std::to_string(column);
+}
+
+bool nested_too_deep(std::string_view text) {
+    int depth = 0;
+    bool in_string = false;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (in_string) {
+            if (c == '\\') ++i;
+            else if (c == '"') in_string = false;
+        } else if (c == '"') in_string = true;
+        else if (c == '[' || c == '{') {
+            if (++depth > 200) return true;
+        } else if (c == ']' || c == '}') --depth;
+    }
+    return false;
+}
+
+/// Arrays of plain numbers and strings go on one line, everything else on lines of its own.
+class Printer {
+public:
+    std::string text;
+    void value(const JsonValue& v, int indent) {
+        if (v.IsObject()) object(v, indent);
+        else if (v.IsArray()) array(v, indent);
+        else plain(v);
+    }
+
+private:
+    void line(int indent) { text += '\n', text.append(static_cast<std::size_t>(2 * indent), ' '); }
+    void plain(const JsonValue& v) {
+        if (v.IsDouble() && !std::isfinite(v.GetDouble()))
+            throw Error(ErrorKind::failure, "JSON output", "a number is not finite", "report this as a defect");
+        rapidjson::StringBuffer buffer;
+        rapidjson::Writer<rapidjson::StringBuffer> writer(buffer);
+        v.Accept(writer);
+        text.append(buffer.GetString(), buffer.GetSize());
+    }
+    static bool is_short(const JsonValue& v) {
+        for (const auto& element : v.GetArray())
+            if (element.IsObject() || (element.IsArray() && !element.Empty())) return false;
+        return true;
+    }
+    void array(const JsonValue& v, int indent) {
+        const bool one_line = is_short(v);
+        text += '[';
+        bool first = true;
+        for (const auto& element : v.GetArray()) {
+            if (!first) text += one_line ? ", " : ",";
+            first = false;
+            if (!one_line) line(indent + 1);
+            value(element, indent + 1);
+        }
+        if (!one_line && !v.Empty()) line(indent);
+        text += ']';
+    }
+    void object(const JsonValue& v, int indent) {
+        text += '{';
+        bool first = true;
+        for (const auto& member : v.GetObject()) {
+            if (!first) text += ',';
+            first = false;
+            line(indent + 1);
+            plain(member.name);
+            text += ": ";
+            value(member.value, indent + 1);
+        }
+        if (v.MemberCount() > 0) line(indent);
+        text += '}';
+    }
+};
+
+}  // namespace
+
+Json parse_json(std::string_view text, const std::string& where) {
+    if (text.size() >= 3 && text.substr(0, 3) == "\xEF\xBB\xBF") text.remove_prefix(3);
+    if (nested_too_deep(text)) fail_input(where, "the JSON is nested deeper than 200 levels", "flatten it");
+    Json document;
+    document.Parse<rapidjson::kParseFullPrecisionFlag | rapidjson::kParseValidateEncodingFlag>(text.data(), text.size());
+    if (document.HasParseError())
+        fail_input(where + ", " + place(text, document.GetErrorOffset()),
+                   std::string("not valid JSON: ") + rapidjson::GetParseError_En(document.GetParseError()), "mend or regenerate the file");
+    return document;
+}
+
+Json read_json(const Path& file) { return parse_json(read_file(file), file.string()); }
+
+std::string to_text(const JsonValue& value) {
+    Printer printer;
+    printer.value(value, 0);
+    printer.text += '\n';
+    return std::move(printer.text);
+}
+
+void write_json(const Path& file, const JsonValue& value) { write_file(file, to_text(value)); }
+
+void validate(const JsonValue& value, const std::string& schema, const std::string& where) {
+    static std::mutex mutex;
+    static std::map<std::string, std::unique_ptr<rapidjson::SchemaDocument>> compiled;
+    const std::lock_guard lock(mutex);
+    auto& entry = compiled[schema];
+    if (!entry) {
+        const auto found = schema_texts().find(schema);
+        if (found == schema_texts().end()) throw std::logic_error("no schema named " + schema);
+        entry = std::make_unique<rapidjson::SchemaDocument>(parse_json(found->second, schema + ".schema.json"));
+    }
+    rapidjson::SchemaValidator validator(*entry);
+    if (value.Accept(validator)) return;
+    const auto text_of = [](const rapidjson::Pointer& pointer) {
+        rapidjson::StringBuffer buffer;
+        pointer.Stringify(buffer);
+        return std::string(buffer.GetString(), buffer.GetSize());
+    };
+    const rapidjson::Pointer pointer = validator.GetInvalidDocumentPointer();
+    const std::string keyword = validator.GetInvalidSchemaKeyword();
+    std::string expected = keyword;
+    // The rule itself, from the schema's text, says best what was expected.
+    const Json schema_document = parse_json(schema_texts().at(schema), schema + ".schema.json");
+    if (const JsonValue* rules = validator.GetInvalidSchemaPointer().Get(schema_document); rules != nullptr && rules->IsObject()) {
+        if (const JsonValue* rule = find_member(*rules, keyword)) {
+            rapidjson::StringBuffer buffer;
+            rapidjson::Writer<rapidjson::StringBuffer> writer(buffer);
+            rule->Accept(writer);
+            std::string rule_text(buffer.GetString(), buffer.GetSize());
+            if (rule_text.size() > 200) rule_text = rule_text.substr(0, 197) + "...";
+            expected += " " + rule_text;
+        }
+    }
+    const std::string at = text_of(pointer);
+    fail_input(where, "at " + (at.empty() ? std::string("the root") : at) + ": does not fit the format, which asks for " + expected,
+               "see doc/schema/" + schema + ".schema.json");
+}
+
+JsonValue json_string(std::string_view text, JsonAllocator& allocator) {
+    return JsonValue(text.data(), static_cast<rapidjson::SizeType>(text.size()), allocator);
+}
+
+void add_member(JsonValue& object, std::string_view name, JsonValue value, JsonAllocator& allocator) {
+    object.AddMember(json_string(name, allocator), value, allocator);
+}
+
+void add_member(JsonValue& object, std::string_view name, std::string_view text, JsonAllocator& allocator) {
+    add_member(object, name, json_string(text, allocator), allocator);
+}
+
+const JsonValue* find_member(const JsonValue& object, std::string_view name) {
+    if (!object.IsObject()) return nullptr;
+    const JsonValue key(rapidjson::StringRef(name.data(), static_cast<rapidjson::SizeType>(name.size())));
+    const auto found = object.FindMember(key);
+    return found == object.MemberEnd() ? nullptr : &found->value;
+}
+
+}  // namespace ostraka

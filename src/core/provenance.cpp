@@ -1,0 +1,36 @@
+#include "ostraka/core/provenance.h"
+
+namespace ostraka {
+
+std::string version() { return OSTRAKA_VERSION; }
+
+void Provenance::add_input(const Path& file) { inputs.emplace_back(file.filename().string(), sha256_of_file(file)); }
+
+JsonValue Provenance::to_json(JsonAllocator& allocator) const {
+    JsonValue result(rapidjson::kObjectType);
+    add_member(result, "tool", "ostraka " + version(), allocator);
+    add_member(result, "command", command, allocator);
+    JsonValue option_values(rapidjson::kObjectType);
+    for (const auto& [name, value] : options) add_member(option_values, name, value, allocator);
+    add_member(result, "options", std::move(option_values), allocator);
+    JsonValue input_values(rapidjson::kArrayType);
+    for (const auto& [name, hash] : inputs) {
+        JsonValue input(rapidjson::kObjectType);
+        add_member(input, "file", name, allocator);
+        add_member(input, "sha256", hash, allocator);
+        input_values.PushBack(input, allocator);
+    }
+    add_member(result, "inputs", std::move(input_values), allocator);
+    return result;
+}
+
+std::string Provenance::to_line() const {
+    std::string line = "ostraka " + version() + " " + command;
+    for (const auto& [name, value] : options) line += " --" + name + "=" + value;
+    for (const auto& [name, hash] : inputs) line += "; " + name + " sha256:" + hash;
+    for (char& c : line)
+        if (static_cast<unsigned char>(c) < 32) c = ' ';
+    return line;
+}
+
+}  // namespace ostraka
