@@ -10,7 +10,8 @@ CLI::App* Session::add(CLI::App& parent, const std::string& name, const std::str
     CLI::App* command = parent.add_subcommand(name, help);
     command->add_flag("--json", json, "print a report for machines instead of a table");
     command->add_flag("--quiet", quiet, "no notes and no progress bar");
-    command->add_option("--threads", threads, "number of threads, 0 for all cores; results do not depend on it")->check(CLI::Range(0, 1024));
+    command->add_option("--threads", threads, "number of threads, 0 for all cores; results do not depend on it")
+        ->check(CLI::Range(0, 1024));
     command->callback([this, run = std::move(run)] { action = run; });
     return command;
 }
@@ -58,7 +59,8 @@ std::string table(const std::vector<std::string>& header, const std::vector<std:
             bool right = is_number(cell);
             if (is_header) {
                 right = !rows.empty();
-                for (const auto& row : rows) right = right && (c >= row.size() || row[c].empty() || row[c] == "-" || is_number(row[c]));
+                for (const auto& row : rows)
+                    right = right && (c >= row.size() || row[c].empty() || row[c] == "-" || is_number(row[c]));
             }
             out += right ? gap + cell : cell + gap;
             if (c + 1 < header.size()) out += "  ";

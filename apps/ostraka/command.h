@@ -36,18 +36,23 @@ struct Session {
 /// Adds one flag per field of an options struct (see core/options.h).
 struct FlagVisitor {
     CLI::App* app;
-    void operator()(const char* name, bool& value, const char* help, Anything) const { app->add_flag("--" + std::string(name), value, help); }
-    template <class T> void operator()(const char* name, T& value, const char* help, Range range) const {
+    void operator()(const char* name, bool& value, const char* help, Anything) const {
+        app->add_flag("--" + std::string(name), value, help);
+    }
+    template <class T>
+    void operator()(const char* name, T& value, const char* help, Range range) const {
         app->add_option("--" + std::string(name), value, help)->check(CLI::Range(range.min, range.max))->capture_default_str();
     }
     void operator()(const char* name, std::string& value, const char* help, const Choices& choices) const {
         app->add_option("--" + std::string(name), value, help)->check(CLI::IsMember(choices.names))->capture_default_str();
     }
-    template <class T> void operator()(const char* name, T& value, const char* help, Anything) const {
+    template <class T>
+    void operator()(const char* name, T& value, const char* help, Anything) const {
         app->add_option("--" + std::string(name), value, help)->capture_default_str();
     }
 };
-template <class Options> void add_flags(CLI::App* app, Options& options) {
+template <class Options>
+void add_flags(CLI::App* app, Options& options) {
     FlagVisitor visitor{app};
     options.describe(visitor);
 }
@@ -58,10 +63,10 @@ std::string table(const std::vector<std::string>& header, const std::vector<std:
 std::string number(double value, int digits = 5);
 
 // One registration function a file; each adds its commands to the tool.
-void add_mesh_info(CLI::App& mesh, Session& session);      // mesh_info.cpp: info, convert
-void add_mesh_repair(CLI::App& mesh, Session& session);    // mesh_repair.cpp
-void add_mesh_resize(CLI::App& mesh, Session& session);    // mesh_resize.cpp: simplify, refine, remesh
-void add_mesh_make(CLI::App& mesh, Session& session);      // mesh_make.cpp
+void add_mesh_info(CLI::App& mesh, Session& session);                  // mesh_info.cpp: info, convert
+void add_mesh_repair(CLI::App& mesh, Session& session);                // mesh_repair.cpp
+void add_mesh_resize(CLI::App& mesh, Session& session);                // mesh_resize.cpp: simplify, refine, remesh
+void add_mesh_make(CLI::App& mesh, Session& session);                  // mesh_make.cpp
 void add_annotation(CLI::App& annotation, Session& session);           // annotation.cpp: apply, list, check
 void add_annotation_transfer(CLI::App& annotation, Session& session);  // annotation_transfer.cpp
 void add_render(CLI::App& tool, Session& session);                     // render.cpp

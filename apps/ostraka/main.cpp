@@ -29,7 +29,8 @@ int main(int argc, char** argv) {
         if (session.quiet) Progress::switch_off();
         const int code = session.action ? session.action() : app::done;
         std::cout.flush();
-        if (!std::cout) throw Error(ErrorKind::failure, "standard output", "cannot be written", "free some space or mend the pipe");
+        if (!std::cout)
+            throw Error(ErrorKind::failure, "standard output", "cannot be written", "free some space or mend the pipe");
         return code;
     } catch (const CLI::ParseError& error) {
         return tool.exit(error) == 0 ? app::done : app::wrong_usage;

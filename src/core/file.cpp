@@ -96,7 +96,8 @@ AtomicFile::~AtomicFile() {
 
 void AtomicFile::write(std::string_view bytes) {
     if (std::fwrite(bytes.data(), 1, bytes.size(), stream_) != bytes.size())
-        throw Error(ErrorKind::failure, file_.string(), "cannot be written: " + reason(), "free some space; an earlier file of that name is untouched");
+        throw Error(ErrorKind::failure, file_.string(), "cannot be written: " + reason(),
+                    "free some space; an earlier file of that name is untouched");
 }
 
 void AtomicFile::commit() {
@@ -107,7 +108,8 @@ void AtomicFile::commit() {
     if (!flushed || !closed || ::rename(temporary_.c_str(), file_.c_str()) != 0) {
         const std::string cause = flushed ? reason() : why;
         ::unlink(temporary_.c_str());
-        throw Error(ErrorKind::failure, file_.string(), "cannot be written: " + cause, "free some space; an earlier file of that name is untouched");
+        throw Error(ErrorKind::failure, file_.string(), "cannot be written: " + cause,
+                    "free some space; an earlier file of that name is untouched");
     }
 }
 
@@ -125,7 +127,8 @@ void check_outputs(const std::vector<Path>& inputs, const std::vector<Path>& out
         const Path place = std::filesystem::weakly_canonical(output, code);
         for (const Path& input : inputs) {
             if (input.empty()) continue;
-            if (std::filesystem::equivalent(output, input, code) || (!place.empty() && place == std::filesystem::weakly_canonical(input, code)))
+            if (std::filesystem::equivalent(output, input, code) ||
+                (!place.empty() && place == std::filesystem::weakly_canonical(input, code)))
                 fail_usage("output " + output.string() + " is also an input", "choose another name for the output");
         }
         for (std::size_t j = 0; j < i; ++j)
@@ -133,7 +136,8 @@ void check_outputs(const std::vector<Path>& inputs, const std::vector<Path>& out
                 fail_usage("two outputs have the name " + output.string(), "give each output its own name");
         const Path folder = output.has_parent_path() ? output.parent_path() : Path(".");
         if (!std::filesystem::is_directory(folder, code))
-            throw Error(ErrorKind::failure, output.string(), "its folder does not exist", "make the folder " + folder.string() + " first");
+            throw Error(ErrorKind::failure, output.string(), "its folder does not exist",
+                        "make the folder " + folder.string() + " first");
         if (std::filesystem::is_directory(output, code))
             throw Error(ErrorKind::failure, output.string(), "is a folder", "name a file to write");
     }

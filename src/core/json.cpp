@@ -113,7 +113,8 @@ Json parse_json(std::string_view text, const std::string& where) {
     document.Parse<rapidjson::kParseFullPrecisionFlag | rapidjson::kParseValidateEncodingFlag>(text.data(), text.size());
     if (document.HasParseError())
         fail_input(where + ", " + place(text, document.GetErrorOffset()),
-                   std::string("not valid JSON: ") + rapidjson::GetParseError_En(document.GetParseError()), "mend or regenerate the file");
+                   std::string("not valid JSON: ") + rapidjson::GetParseError_En(document.GetParseError()),
+                   "mend or regenerate the file");
     return document;
 }
 
@@ -150,7 +151,8 @@ void validate(const JsonValue& value, const std::string& schema, const std::stri
     std::string expected = keyword;
     // The rule itself, from the schema's text, says best what was expected.
     const Json schema_document = parse_json(schema_texts().at(schema), schema + ".schema.json");
-    if (const JsonValue* rules = validator.GetInvalidSchemaPointer().Get(schema_document); rules != nullptr && rules->IsObject()) {
+    if (const JsonValue* rules = validator.GetInvalidSchemaPointer().Get(schema_document);
+        rules != nullptr && rules->IsObject()) {
         if (const JsonValue* rule = find_member(*rules, keyword)) {
             rapidjson::StringBuffer buffer;
             rapidjson::Writer<rapidjson::StringBuffer> writer(buffer);
@@ -161,7 +163,8 @@ void validate(const JsonValue& value, const std::string& schema, const std::stri
         }
     }
     const std::string at = text_of(pointer);
-    fail_input(where, "at " + (at.empty() ? std::string("the root") : at) + ": does not fit the format, which asks for " + expected,
+    fail_input(where,
+               "at " + (at.empty() ? std::string("the root") : at) + ": does not fit the format, which asks for " + expected,
                "see doc/schema/" + schema + ".schema.json");
 }
 

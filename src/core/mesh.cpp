@@ -110,7 +110,8 @@ ManifoldDefects try_build_mesh(const TriangleSoup& soup, Mesh& mesh) {
     for (std::size_t t = 0; t < face_count; ++t) {
         const auto& [a, b, c] = soup.triangles[t];
         if (a >= vertex_count || b >= vertex_count || c >= vertex_count)
-            fail_input("triangle " + std::to_string(t), "names vertex " + std::to_string(std::max({a, b, c})) + " of " + std::to_string(vertex_count));
+            fail_input("triangle " + std::to_string(t),
+                       "names vertex " + std::to_string(std::max({a, b, c})) + " of " + std::to_string(vertex_count));
         if (a == b || b == c || c == a) {
             ++repeated.repeated_corners;
             if (repeated.example_triangle == no_index) repeated.example_triangle = static_cast<Index>(t);
@@ -175,7 +176,8 @@ Mesh build_mesh(const TriangleSoup& soup) {
         add(defects.misoriented_edges, "edges with inconsistent orientation");
         add(defects.nonmanifold_vertices, "non-manifold vertices");
         text.back() = ';';
-        fail_input("mesh", text + " the first at triangle " + std::to_string(defects.example_triangle), "run: ostraka mesh repair");
+        fail_input("mesh", text + " the first at triangle " + std::to_string(defects.example_triangle),
+                   "run: ostraka mesh repair");
     }
     return mesh;
 }
@@ -248,7 +250,8 @@ double box_diagonal(const Mesh& mesh) {
 double mean_edge_length(const Mesh& mesh) {
     if (mesh.number_of_edges() == 0) return 0;
     double sum = 0;
-    for (const Edge e : mesh.edges()) sum += std::sqrt(CGAL::squared_distance(mesh.point(mesh.vertex(e, 0)), mesh.point(mesh.vertex(e, 1))));
+    for (const Edge e : mesh.edges())
+        sum += std::sqrt(CGAL::squared_distance(mesh.point(mesh.vertex(e, 0)), mesh.point(mesh.vertex(e, 1))));
     return sum / static_cast<double>(mesh.number_of_edges());
 }
 
@@ -269,7 +272,8 @@ std::string mesh_checksum(const Mesh& mesh) {
     for (const Vertex v : mesh.vertices()) {
         const Point& p = mesh.point(v);
         for (const double x : {p.x(), p.y(), p.z()}) coordinates.push_back(x + 0.0);  // -0 becomes 0
-        if (coordinates.size() >= block) hash.update(coordinates.data(), coordinates.size() * sizeof(double)), coordinates.clear();
+        if (coordinates.size() >= block)
+            hash.update(coordinates.data(), coordinates.size() * sizeof(double)), coordinates.clear();
     }
     hash.update(coordinates.data(), coordinates.size() * sizeof(double));
     for (const Face f : mesh.faces()) {

@@ -1,5 +1,5 @@
-#include "ostraka/core/error.h"
 #include "ostraka/core/json.h"
+#include "ostraka/core/error.h"
 
 #include <gtest/gtest.h>
 

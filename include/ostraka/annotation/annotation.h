@@ -19,13 +19,13 @@ struct Location {
 
 /// A measure with the pins that define it (Appendix B.1).
 struct Measure {
-    std::string tool;                                ///< "ruler", "tape" or "bounding"
-    std::vector<Index> points;                       ///< vertices: two for a ruler, two or more for a tape, the two extremes for a bounding
-    std::vector<Location> locations;                 ///< empty, or one per point: where the pin really is
+    std::string tool;                 ///< "ruler", "tape" or "bounding"
+    std::vector<Index> points;        ///< vertices: two for a ruler, two or more for a tape, the two extremes for a bounding
+    std::vector<Location> locations;  ///< empty, or one per point: where the pin really is
     std::optional<std::array<double, 3>> direction;  ///< of a bounding measure
     std::optional<double> value;                     ///< in `unit`
     std::string unit;
-    bool stale = false;                              ///< the mesh or the pins changed and the value was not recomputed
+    bool stale = false;  ///< the mesh or the pins changed and the value was not recomputed
 };
 
 /// A quantity that is not a measure: area, curvature map, thickness ...
@@ -61,7 +61,7 @@ struct Annotation {
     std::vector<Index> faces;                   ///< the region's faces, ascending, without repeats
     bool all = false;                           ///< a region that is the whole mesh: `faces` lists every face
     std::vector<Attribute> attributes;
-    std::string note;                           ///< what a transfer or a simplification had to do to it, if anything
+    std::string note;  ///< what a transfer or a simplification had to do to it, if anything
 };
 
 struct AnnotationSet {

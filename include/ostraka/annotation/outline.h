@@ -32,7 +32,9 @@ Filling fill_outlines(const Mesh& mesh, const std::vector<Outline>& outlines);
 struct RegionMeasures {
     double area = 0;       ///< sum of the faces' areas
     double perimeter = 0;  ///< sum of the lengths of the outline edges
-    [[nodiscard]] double circularity() const { return area > 0 ? perimeter * perimeter / area : 0; }  ///< P^2 / A, 4 pi for a disc
+    [[nodiscard]] double circularity() const {
+        return area > 0 ? perimeter * perimeter / area : 0;
+    }  ///< P^2 / A, 4 pi for a disc
 };
 RegionMeasures measure_region(const Mesh& mesh, const std::vector<Index>& faces);
 

@@ -37,7 +37,8 @@ private:
 void write_file(const Path& file, std::string_view bytes);
 
 /// Throws Error (usage) if an output names the same file as an input (links and relative spellings seen through),
-/// or the same file as another output, and Error (failure) if the folder of an output does not exist. To be called before any work.
+/// or the same file as another output, and Error (failure) if the folder of an output does not exist. To be called before any
+/// work.
 void check_outputs(const std::vector<Path>& inputs, const std::vector<Path>& outputs);
 
 /// Lower-case extension with the dot.

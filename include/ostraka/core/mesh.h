@@ -27,8 +27,8 @@ inline constexpr Index no_index = static_cast<Index>(-1);
 
 /// Triangles over indexed points, as a file gives them: nothing is promised of their topology.
 struct TriangleSoup {
-    std::vector<std::array<double, 3>> points;   ///< in the unit of the file
-    std::vector<std::array<Index, 3>> triangles; ///< counter-clockwise seen from outside
+    std::vector<std::array<double, 3>> points;    ///< in the unit of the file
+    std::vector<std::array<Index, 3>> triangles;  ///< counter-clockwise seen from outside
 };
 
 /// What keeps a soup from being an oriented 2-manifold (with or without border).
@@ -38,9 +38,7 @@ struct ManifoldDefects {
     std::size_t misoriented_edges = 0;     ///< edges that two triangles run through in the same direction
     std::size_t nonmanifold_vertices = 0;  ///< vertices with more than one fan; counted only if the edges are sound
     Index example_triangle = no_index;     ///< a triangle at which the first defect was met
-    [[nodiscard]] bool any() const {
-        return repeated_corners + nonmanifold_edges + misoriented_edges + nonmanifold_vertices > 0;
-    }
+    [[nodiscard]] bool any() const { return repeated_corners + nonmanifold_edges + misoriented_edges + nonmanifold_vertices > 0; }
 };
 
 /// Builds the halfedge mesh in time linear in its size, keeping the order of vertices and triangles;

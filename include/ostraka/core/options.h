@@ -49,7 +49,8 @@ struct CheckVisitor {
         for (const auto& choice : choices.names) list += (list.empty() ? "" : ", ") + choice;
         throw Error(ErrorKind::usage, where, "option " + std::string(name) + " is '" + value + "'", "use one of: " + list);
     }
-    template <class T> void operator()(const char*, const T&, const char*, Anything) const {}
+    template <class T>
+    void operator()(const char*, const T&, const char*, Anything) const {}
 
 private:
     void out_of_range(const char* name, const std::string& value, Range range) const {
@@ -61,7 +62,8 @@ private:
 
 struct ListVisitor {
     std::vector<std::pair<std::string, std::string>> list;
-    template <class T, class Rule> void operator()(const char* name, const T& value, const char*, const Rule&) {
+    template <class T, class Rule>
+    void operator()(const char* name, const T& value, const char*, const Rule&) {
         std::ostringstream text;
         text.precision(17);
         text << std::boolalpha << value;
@@ -71,13 +73,15 @@ struct ListVisitor {
 }  // namespace detail
 
 /// Throws Error (usage) that names the option, its value and what is allowed.
-template <class Options> void check_options(const Options& options, const std::string& where) {
+template <class Options>
+void check_options(const Options& options, const std::string& where) {
     detail::CheckVisitor visitor{where};
     const_cast<Options&>(options).describe(visitor);
 }
 
 /// Names and values as text, for provenance.
-template <class Options> std::vector<std::pair<std::string, std::string>> list_options(const Options& options) {
+template <class Options>
+std::vector<std::pair<std::string, std::string>> list_options(const Options& options) {
     detail::ListVisitor visitor;
     const_cast<Options&>(options).describe(visitor);
     return std::move(visitor.list);

@@ -71,7 +71,8 @@ struct WriteOptions {
 /// Writes OBJ, PLY, OFF, STL or GLB by extension, atomically. Coordinates as shortest round-trip text or float64
 /// (float32 in STL and GLB). Returns notes on what the format cannot hold. Throws Error (usage) for an unknown extension
 /// (before writing), Error (failure) if the file cannot be written.
-std::vector<std::string> write_mesh(const Path& file, const Mesh& mesh, const MeshExtras& extras = {}, const WriteOptions& options = {});
+std::vector<std::string> write_mesh(const Path& file, const Mesh& mesh, const MeshExtras& extras = {},
+                                    const WriteOptions& options = {});
 
 /// Throws Error (usage) unless `write_mesh` knows the extension.
 void check_mesh_extension(const Path& file);

@@ -1,0 +1,56 @@
+// Nearest-point and ray queries on a mesh (CGAL AABB tree).
+#pragma once
+
+#include "ostraka/core/mesh.h"
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace ostraka {
+
+/// A place on the surface found by a query.
+struct SurfaceHit {
+    Index face = no_index;
+    Point point{0, 0, 0};
+    std::array<double, 3> barycentric{1, 0, 0};  ///< weights of corners(mesh, face)
+    double distance = 0;                         ///< to the query point; signed along the direction for line hits
+};
+
+/// A search tree over the faces of a mesh, which must outlive it. Queries may run in parallel and give the same answers
+/// for any number of threads. Faces without area are left out. Building costs O(n log n), a query O(log n) typically.
+class SurfaceSearch {
+public:
+    /// `closest` prepares nearest-point queries as well (a quarter of the time and half of the memory on top).
+    explicit SurfaceSearch(const Mesh& mesh, bool closest = true);
+    ~SurfaceSearch();
+    SurfaceSearch(SurfaceSearch&&) noexcept;
+
+    [[nodiscard]] const Mesh& mesh() const;
+    /// Unit normal of a face.
+    [[nodiscard]] Vector normal(Index face) const;
+
+    /// All faces met by the segment from origin - reach * direction to origin + reach * direction, nearest first
+    /// (ties by face index). `direction` is a unit vector.
+    [[nodiscard]] std::vector<SurfaceHit> line_hits(const Point& origin, const Vector& direction, double reach) const;
+
+    /// The nearest point of the surface; needs at least one face.
+    [[nodiscard]] SurfaceHit closest(const Point& query) const;
+
+    /// The nearest point within `reach` on a face whose unit normal has a scalar product of at least `min_cosine` with
+    /// `normal`.
+    [[nodiscard]] std::optional<SurfaceHit> closest_compatible(const Point& query, const Vector& normal, double min_cosine,
+                                                               double reach) const;
+
+private:
+    struct Tree;
+    std::unique_ptr<Tree> tree_;
+};
+
+/// Barycentric coordinates of the point of triangle abc nearest to p (Ericson 2005, section 5.1.5), clamped to it.
+std::array<double, 3> nearest_barycentric(const Point& a, const Point& b, const Point& c, const Point& p);
+
+/// The point with the given barycentric coordinates.
+Point point_at(const Mesh& mesh, Index face, const std::array<double, 3>& barycentric);
+
+}  // namespace ostraka

@@ -1,0 +1,134 @@
+#include "ostraka/annotation/outline.h"
+
+#include "ostraka/core/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace ostraka {
+
+namespace {
+
+bool inside(const Mesh& mesh, const std::vector<bool>& selected, Halfedge h) {
+    return !mesh.is_border(h) && selected[mesh.face(h)];
+}
+
+/// The outline halfedge that follows `h` in the same fan of selected faces around its target.
+Halfedge following(const Mesh& mesh, const std::vector<bool>& selected, Halfedge h) {
+    Halfedge g = mesh.next(h);
+    while (inside(mesh, selected, mesh.opposite(g))) g = mesh.next(mesh.opposite(g));
+    return g;
+}
+
+template <class Faces>
+std::vector<Outline> outlines_of(const Mesh& mesh, const std::vector<bool>& selected, const Faces& faces) {
+    std::vector<Outline> outlines;
+    std::vector<Halfedge> start;
+    for (const Face f : faces) {
+        if (!selected[f]) continue;
+        for (const Halfedge h : CGAL::halfedges_around_face(mesh.halfedge(f), mesh))
+            if (!inside(mesh, selected, mesh.opposite(h))) start.push_back(h);
+    }
+    std::sort(start.begin(), start.end());
+    // Outlines are short beside the mesh: a sorted list with flags is smaller than a flag per halfedge.
+    std::vector<bool> used(start.size(), false);
+    const auto position = [&](Halfedge h) {
+        return static_cast<std::size_t>(std::lower_bound(start.begin(), start.end(), h) - start.begin());
+    };
+    for (std::size_t i = 0; i < start.size(); ++i) {
+        if (used[i]) continue;
+        Outline outline;
+        for (std::size_t at = i; !used[at];) {
+            used[at] = true;
+            outline.push_back(mesh.source(start[at]));
+            at = position(following(mesh, selected, start[at]));
+        }
+        std::rotate(outline.begin(), std::min_element(outline.begin(), outline.end()), outline.end());
+        outlines.push_back(std::move(outline));
+    }
+    return outlines;
+}
+
+}  // namespace
+
+std::vector<Outline> extract_outlines(const Mesh& mesh, const std::vector<bool>& selected) {
+    return outlines_of(mesh, selected, mesh.faces());
+}
+
+std::vector<Outline> extract_outlines(const Mesh& mesh, const std::vector<Index>& faces) {
+    std::vector<bool> selected(mesh.number_of_faces(), false);
+    std::vector<Face> list;
+    list.reserve(faces.size());
+    for (const Index f : faces) {
+        if (f >= mesh.number_of_faces())
+            fail_input("face " + std::to_string(f),
+                       "does not exist; the mesh has " + std::to_string(mesh.number_of_faces()) + " faces");
+        selected[f] = true;
+        list.emplace_back(f);
+    }
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    return outlines_of(mesh, selected, list);
+}
+
+Filling fill_outlines(const Mesh& mesh, const std::vector<Outline>& outlines) {
+    // Net number of times an edge is run through along its first halfedge.
+    std::map<Edge, int> net;
+    for (std::size_t o = 0; o < outlines.size(); ++o) {
+        const Outline& outline = outlines[o];
+        const auto where = [&](std::size_t i) { return "outline " + std::to_string(o) + ", vertex " + std::to_string(i); };
+        if (outline.size() < 3) fail_input("outline " + std::to_string(o), "has fewer than three vertices");
+        for (std::size_t i = 0; i < outline.size(); ++i)
+            if (outline[i] >= mesh.number_of_vertices())
+                fail_input(where(i),
+                           "names vertex " + std::to_string(outline[i]) + " of " + std::to_string(mesh.number_of_vertices()),
+                           "is the annotation of another mesh?");
+        for (std::size_t i = 0; i < outline.size(); ++i) {
+            const Index a = outline[i], b = outline[(i + 1) % outline.size()];
+            const Halfedge h = find_halfedge(mesh, Vertex(a), Vertex(b));
+            if (h == Mesh::null_halfedge())
+                fail_input(where(i), "the mesh has no edge from " + std::to_string(a) + " to " + std::to_string(b),
+                           "is the annotation of another mesh?");
+            net[mesh.edge(h)] += mesh.halfedge(mesh.edge(h)) == h ? 1 : -1;
+        }
+    }
+    Filling filling;
+    filling.selected.assign(mesh.number_of_faces(), false);
+    std::vector<Face> stack;
+    const auto take = [&](Halfedge h) {
+        if (mesh.is_border(h) || filling.selected[mesh.face(h)]) return;
+        filling.selected[mesh.face(h)] = true;
+        stack.push_back(mesh.face(h));
+    };
+    for (const auto& [edge, count] : net)
+        if (count != 0) take(mesh.halfedge(edge, count > 0 ? 0 : 1));
+    while (!stack.empty()) {
+        const Face f = stack.back();
+        stack.pop_back();
+        for (const Halfedge h : CGAL::halfedges_around_face(mesh.halfedge(f), mesh)) {
+            const auto found = net.find(mesh.edge(h));
+            if (found == net.end() || found->second == 0) take(mesh.opposite(h));
+        }
+    }
+    std::vector<Face> right;
+    for (const auto& [edge, count] : net) {
+        const Halfedge h = mesh.halfedge(edge, count > 0 ? 1 : 0);
+        if (count != 0 && !mesh.is_border(h) && filling.selected[mesh.face(h)]) right.push_back(mesh.face(h));
+    }
+    std::sort(right.begin(), right.end());
+    filling.conflicts = static_cast<std::size_t>(std::unique(right.begin(), right.end()) - right.begin());
+    return filling;
+}
+
+RegionMeasures measure_region(const Mesh& mesh, const std::vector<Index>& faces) {
+    RegionMeasures measures;
+    for (const Index f : faces) measures.area += face_area(mesh, Face(f));
+    for (const Outline& outline : extract_outlines(mesh, faces))
+        for (std::size_t i = 0; i < outline.size(); ++i)
+            measures.perimeter += std::sqrt(
+                CGAL::squared_distance(mesh.point(Vertex(outline[i])), mesh.point(Vertex(outline[(i + 1) % outline.size()]))));
+    return measures;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,83 @@
+#include "ostraka/geom/shortest_path.h"
+
+#include "ostraka/core/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <queue>
+#include <tuple>
+
+namespace ostraka {
+
+PathMetric path_metric(const std::string& name) {
+    if (name == "euclidean") return PathMetric::euclidean;
+    if (name == "segment") return PathMetric::segment;
+    if (name == "combined") return PathMetric::combined;
+    fail_usage("path metric '" + name + "' is unknown", "use euclidean, segment or combined");
+}
+
+double distance_to_segment(const Point& p, const Point& a, const Point& b) {
+    const Vector ab = b - a, ap = p - a;
+    const double length2 = ab.squared_length();
+    const double t = length2 > 0 ? std::clamp((ap * ab) / length2, 0.0, 1.0) : 0.0;
+    return std::sqrt((ap - t * ab).squared_length());
+}
+
+double distance_to_polyline(const Point& p, const std::vector<Point>& polyline) {
+    if (polyline.size() == 1) return std::sqrt(CGAL::squared_distance(p, polyline.front()));
+    double best = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i + 1 < polyline.size(); ++i)
+        best = std::min(best, distance_to_segment(p, polyline[i], polyline[i + 1]));
+    return best;
+}
+
+PathSearch::PathSearch(const Mesh& mesh) : mesh_(mesh), records_(mesh.number_of_vertices()) {}
+
+std::vector<Index> PathSearch::find(Vertex from, Vertex to, const Query& query) {
+    if (from == to) return {static_cast<Index>(from)};
+    if (mesh_.is_isolated(from) || mesh_.is_isolated(to)) return {};
+    if (++stamp_ == 0) {
+        std::fill(records_.begin(), records_.end(), Record{});
+        stamp_ = 1;
+    }
+    const std::vector<Point> guide = query.guide.empty() ? std::vector<Point>{mesh_.point(from), mesh_.point(to)} : query.guide;
+    const double limit = query.limit > 0 ? query.limit : std::numeric_limits<double>::infinity();
+    // Straight-line distance bounds the Euclidean part of the remaining cost from below: A* where it applies.
+    const Point goal = mesh_.point(to);
+    const bool has_length = query.metric != PathMetric::segment;
+    const auto bound = [&](Vertex v) { return has_length ? std::sqrt(CGAL::squared_distance(mesh_.point(v), goal)) : 0.0; };
+    using Entry = std::tuple<double, Index>;
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+    records_[from] = {stamp_, false, no_index, 0, 0};
+    queue.emplace(bound(from), from);
+    while (!queue.empty()) {
+        const Vertex v(std::get<1>(queue.top()));
+        queue.pop();
+        if (records_[v].settled) continue;
+        records_[v].settled = true;
+        if (v == to) break;
+        for (const Halfedge h : CGAL::halfedges_around_source(v, mesh_)) {
+            const Vertex w = mesh_.target(h);
+            Record& record = records_[w];
+            if (record.stamp == stamp_ && record.settled) continue;
+            if (w != to && query.blocked && query.blocked(w)) continue;
+            const double edge = std::sqrt(CGAL::squared_distance(mesh_.point(v), mesh_.point(w)));
+            const double length = records_[v].length + edge;
+            if (length > limit) continue;
+            double step = has_length ? edge : 0;
+            if (query.metric != PathMetric::euclidean) step += distance_to_polyline(mesh_.point(w), guide);
+            const double cost = records_[v].cost + step;
+            if (record.stamp == stamp_ && record.cost <= cost) continue;
+            record = {stamp_, false, static_cast<Index>(v), cost, length};
+            queue.emplace(cost + bound(w), w);
+        }
+    }
+    if (records_[to].stamp != stamp_ || !records_[to].settled) return {};
+    std::vector<Index> path;
+    for (Index v = to; v != no_index; v = records_[Vertex(v)].previous) path.push_back(v);
+    std::reverse(path.begin(), path.end());
+    return path;
+}
+
+}  // namespace ostraka

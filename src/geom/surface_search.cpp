@@ -1,0 +1,165 @@
+#include "ostraka/geom/surface_search.h"
+
+#include "ostraka/core/error.h"
+
+#include <CGAL/AABB_face_graph_triangle_primitive.h>
+#include <CGAL/AABB_traits.h>
+#include <CGAL/AABB_tree.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace ostraka {
+
+namespace {
+using Primitive = CGAL::AABB_face_graph_triangle_primitive<Mesh>;
+using Traits = CGAL::AABB_traits<Kernel, Primitive>;
+using AabbTree = CGAL::AABB_tree<Traits>;
+}  // namespace
+
+struct SurfaceSearch::Tree {
+    const Mesh* mesh;
+    AabbTree aabb;
+    double typical_edge = 0;
+};
+
+SurfaceSearch::SurfaceSearch(const Mesh& mesh, bool closest) : tree_(std::make_unique<Tree>()) {
+    tree_->mesh = &mesh;
+    // Triangles without area meet no line and stop none; the exact predicates would answer for them as for segments.
+    std::vector<Face> faces;
+    faces.reserve(mesh.number_of_faces());
+    for (const Face f : mesh.faces())
+        if (area_vector(mesh, f).squared_length() > 0) faces.push_back(f);
+    if (faces.empty()) fail_input("mesh", "has no face with an area", "check its scale or repair it");
+    tree_->aabb.insert(faces.begin(), faces.end(), mesh);
+    tree_->aabb.build();
+    if (closest) tree_->aabb.accelerate_distance_queries();
+    else tree_->aabb.do_not_accelerate_distance_queries();
+    const double mean_area = surface_area(mesh) / static_cast<double>(faces.size());
+    tree_->typical_edge = std::sqrt(mean_area * 4 / std::sqrt(3.0));
+}
+
+SurfaceSearch::~SurfaceSearch() = default;
+SurfaceSearch::SurfaceSearch(SurfaceSearch&&) noexcept = default;
+
+const Mesh& SurfaceSearch::mesh() const { return *tree_->mesh; }
+
+Vector SurfaceSearch::normal(Index face) const {
+    const Vector a = area_vector(*tree_->mesh, Face(face));
+    const double length = std::sqrt(a.squared_length());
+    return length > 0 ? a / length : Vector(0, 0, 0);
+}
+
+std::vector<SurfaceHit> SurfaceSearch::line_hits(const Point& origin, const Vector& direction, double reach) const {
+    const Mesh& mesh = *tree_->mesh;
+    std::vector<Face> faces;
+    tree_->aabb.all_intersected_primitives(Kernel::Segment_3(origin - reach * direction, origin + reach * direction),
+                                           std::back_inserter(faces));
+    std::vector<SurfaceHit> hits;
+    hits.reserve(faces.size());
+    for (const Face f : faces) {
+        const auto [a, b, c] = corners(mesh, f);
+        const Point &pa = mesh.point(a), &pb = mesh.point(b), &pc = mesh.point(c);
+        const Vector n = CGAL::cross_product(pb - pa, pc - pa);
+        const double along = n * direction;
+        SurfaceHit hit;
+        hit.face = f;
+        // A line within the triangle's plane meets it in a segment: its point nearest to the origin stands for it.
+        Point p = origin;
+        if (along * along > 1e-24 * n.squared_length()) {
+            const double t = (n * (pa - origin)) / along;
+            p = origin + std::clamp(t, -reach, reach) * direction;
+        }
+        hit.barycentric = nearest_barycentric(pa, pb, pc, p);
+        hit.point = point_at(mesh, hit.face, hit.barycentric);
+        hit.distance = (hit.point - origin) * direction;
+        hits.push_back(hit);
+    }
+    std::sort(hits.begin(), hits.end(), [](const SurfaceHit& x, const SurfaceHit& y) {
+        return std::make_pair(std::abs(x.distance), x.face) < std::make_pair(std::abs(y.distance), y.face);
+    });
+    return hits;
+}
+
+SurfaceHit SurfaceSearch::closest(const Point& query) const {
+    const auto [point, face] = tree_->aabb.closest_point_and_primitive(query);
+    const Mesh& mesh = *tree_->mesh;
+    const auto [a, b, c] = corners(mesh, face);
+    SurfaceHit hit;
+    hit.face = face;
+    hit.barycentric = nearest_barycentric(mesh.point(a), mesh.point(b), mesh.point(c), query);
+    hit.point = point_at(mesh, hit.face, hit.barycentric);
+    hit.distance = std::sqrt(CGAL::squared_distance(hit.point, query));
+    return hit;
+}
+
+std::optional<SurfaceHit> SurfaceSearch::closest_compatible(const Point& query, const Vector& normal, double min_cosine,
+                                                            double reach) const {
+    const SurfaceHit nearest = closest(query);
+    if (nearest.distance > reach) return std::nullopt;
+    if (this->normal(nearest.face) * normal >= min_cosine) return nearest;
+    const Mesh& mesh = *tree_->mesh;
+    // Widening boxes: the first that holds a compatible face within its inscribed sphere has the answer.
+    for (double radius = std::min(reach, 1.5 * nearest.distance + tree_->typical_edge);; radius = std::min(reach, 2 * radius)) {
+        const CGAL::Bbox_3 box(query.x() - radius, query.y() - radius, query.z() - radius, query.x() + radius, query.y() + radius,
+                               query.z() + radius);
+        std::vector<Face> faces;
+        tree_->aabb.all_intersected_primitives(Kernel::Iso_cuboid_3(box), std::back_inserter(faces));
+        std::optional<SurfaceHit> best;
+        for (const Face f : faces) {
+            if (this->normal(f) * normal < min_cosine) continue;
+            const auto [a, b, c] = corners(mesh, f);
+            SurfaceHit hit;
+            hit.face = f;
+            hit.barycentric = nearest_barycentric(mesh.point(a), mesh.point(b), mesh.point(c), query);
+            hit.point = point_at(mesh, hit.face, hit.barycentric);
+            hit.distance = std::sqrt(CGAL::squared_distance(hit.point, query));
+            if (hit.distance > radius) continue;
+            if (!best || std::make_pair(hit.distance, hit.face) < std::make_pair(best->distance, best->face)) best = hit;
+        }
+        if (best || radius >= reach) return best;
+    }
+}
+
+std::array<double, 3> nearest_barycentric(const Point& a, const Point& b, const Point& c, const Point& p) {
+    const Vector ab = b - a, ac = c - a, ap = p - a;
+    const double d1 = ab * ap, d2 = ac * ap;
+    if (d1 <= 0 && d2 <= 0) return {1, 0, 0};
+    const Vector bp = p - b;
+    const double d3 = ab * bp, d4 = ac * bp;
+    if (d3 >= 0 && d4 <= d3) return {0, 1, 0};
+    const double vc = d1 * d4 - d3 * d2;
+    if (vc <= 0 && d1 >= 0 && d3 <= 0) {
+        const double t = d1 / (d1 - d3);
+        return {1 - t, t, 0};
+    }
+    const Vector cp = p - c;
+    const double d5 = ab * cp, d6 = ac * cp;
+    if (d6 >= 0 && d5 <= d6) return {0, 0, 1};
+    const double vb = d5 * d2 - d1 * d6;
+    if (vb <= 0 && d2 >= 0 && d6 <= 0) {
+        const double t = d2 / (d2 - d6);
+        return {1 - t, 0, t};
+    }
+    const double va = d3 * d6 - d5 * d4;
+    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+        const double t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+        return {0, 1 - t, t};
+    }
+    const double sum = va + vb + vc;
+    if (!(sum > 0)) return {1, 0, 0};
+    const double v = vb / sum, w = vc / sum;
+    return {1 - v - w, v, w};
+}
+
+Point point_at(const Mesh& mesh, Index face, const std::array<double, 3>& barycentric) {
+    const auto [a, b, c] = corners(mesh, Face(face));
+    const Point &pa = mesh.point(a), &pb = mesh.point(b), &pc = mesh.point(c);
+    const auto& [u, v, w] = barycentric;
+    if (u == 1) return pa;
+    if (v == 1) return pb;
+    if (w == 1) return pc;
+    return {u * pa.x() + v * pb.x() + w * pc.x(), u * pa.y() + v * pb.y() + w * pc.y(), u * pa.z() + v * pb.z() + w * pc.z()};
+}
+
+}  // namespace ostraka
