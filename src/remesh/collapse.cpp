@@ -1,0 +1,104 @@
+#include "collapse.h"
+
+namespace ostraka {
+
+namespace {
+
+/// The edges at the corner opposite to h both lie on the border: the collapse would leave them hanging in the air.
+bool is_ear(const Mesh& mesh, Halfedge h) {
+    return mesh.is_border(mesh.opposite(mesh.next(h))) && mesh.is_border(mesh.opposite(mesh.prev(h)));
+}
+
+}  // namespace
+
+bool may_collapse(const Mesh& mesh, Halfedge h) {
+    const Halfedge o = mesh.opposite(h);
+    const Vertex u = mesh.source(h), v = mesh.target(h);
+    const bool left = !mesh.is_border(h), right = !mesh.is_border(o);
+    if (!left && !right) return false;
+    if (left && is_ear(mesh, h)) return false;
+    if (right && is_ear(mesh, o)) return false;
+    if (left && right && mesh.is_border(u) && mesh.is_border(v)) return false;
+    const Vertex w = left ? mesh.target(mesh.next(h)) : Mesh::null_vertex();
+    const Vertex x = right ? mesh.target(mesh.next(o)) : Mesh::null_vertex();
+    if (w == x) return false;
+
+    // Common neighbours: rings have about six vertices, so comparing all pairs is the fastest way; a hub with a large ring is
+    // compared once against the smaller one through find_halfedge of the neighbour's own ring.
+    std::size_t degree_u = 0, degree_v = 0;
+    for_each_incoming(mesh, u, [&](Halfedge) { ++degree_u; });
+    for_each_incoming(mesh, v, [&](Halfedge) { ++degree_v; });
+    const Vertex small = degree_u <= degree_v ? u : v, other = small == u ? v : u;
+    const std::size_t limit = degree_u <= degree_v ? degree_v : degree_u;
+    std::size_t common = 0;
+    for_each_incoming(mesh, small, [&](Halfedge g) {
+        const Vertex y = mesh.source(g);
+        if (y == other) return;
+        if (y == w || y == x) {
+            ++common;
+            return;
+        }
+        if (limit <= 16) {
+            for_each_incoming(mesh, other, [&](Halfedge k) { common += mesh.source(k) == y; });
+        } else {
+            for_each_incoming(mesh, y, [&](Halfedge k) { common += mesh.source(k) == other; });
+        }
+    });
+    if (common != static_cast<std::size_t>(left) + static_cast<std::size_t>(right)) return false;
+    // Both opposite corners joined by an edge that closes the link: the component is a tetrahedron.
+    return !(left && right && degree_u == 3 && degree_v == 3);
+}
+
+namespace {
+
+/// Lets `kept` take the place of `outer` beside the face (or the border) beyond a removed face.
+void replace(Mesh& mesh, Halfedge outer, Halfedge kept) {
+    const Face beyond = mesh.face(outer);
+    mesh.set_face(kept, beyond);
+    mesh.set_next(mesh.prev(outer), kept);
+    mesh.set_next(kept, mesh.next(outer));
+    if (beyond.is_valid() && mesh.halfedge(beyond) == outer) mesh.set_halfedge(beyond, kept);
+}
+
+}  // namespace
+
+void collapse(Mesh& mesh, Halfedge h, CollapseVisitor* visitor) {
+    const Halfedge o = mesh.opposite(h);
+    const Vertex u = mesh.source(h), v = mesh.target(h);
+    if (visitor != nullptr) visitor->merge_vertices(mesh, v, u);
+    for_each_incoming(mesh, u, [&](Halfedge g) { mesh.set_target(g, v); });
+    const bool left = !mesh.is_border(h), right = !mesh.is_border(o);
+    const Halfedge stays = left ? mesh.opposite(mesh.next(h)) : mesh.prev(o);  // ends in v
+    if (left) {
+        const Halfedge kept = mesh.next(h), gone = mesh.prev(h), outer = mesh.opposite(gone);  // v -> w, w -> u, u -> w
+        const Vertex w = mesh.target(kept);
+        if (visitor != nullptr) visitor->merge_edges(mesh, mesh.edge(kept), mesh.edge(gone));
+        mesh.remove_face(mesh.face(h));
+        replace(mesh, outer, kept);
+        if (mesh.halfedge(w) == outer) mesh.set_halfedge(w, kept);
+        mesh.remove_edge(mesh.edge(gone));
+    } else {
+        mesh.set_next(mesh.prev(h), mesh.next(h));
+    }
+    if (right) {
+        const Halfedge kept = mesh.prev(o), gone = mesh.next(o), outer = mesh.opposite(gone);  // x -> v, u -> x, x -> u
+        const Vertex x = mesh.source(kept);
+        if (visitor != nullptr) visitor->merge_edges(mesh, mesh.edge(kept), mesh.edge(gone));
+        mesh.remove_face(mesh.face(o));
+        replace(mesh, outer, kept);
+        if (mesh.halfedge(x) == gone) mesh.set_halfedge(x, mesh.opposite(kept));
+        mesh.remove_edge(mesh.edge(gone));
+    } else {
+        mesh.set_next(mesh.prev(o), mesh.next(o));
+    }
+    mesh.remove_edge(mesh.edge(h));
+    mesh.remove_vertex(u);
+    // Surface_mesh wants a border halfedge at a border vertex.
+    Halfedge at_v = stays;
+    for_each_incoming(mesh, stays, [&](Halfedge g) {
+        if (mesh.is_border(g)) at_v = g;
+    });
+    mesh.set_halfedge(v, at_v);
+}
+
+}  // namespace ostraka

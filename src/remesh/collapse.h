@@ -1,0 +1,30 @@
+// The topological side of an edge collapse.
+#pragma once
+
+#include "ostraka/remesh/simplify.h"
+
+namespace ostraka {
+
+/// Whether merging the ends of the halfedge keeps a triangle mesh manifold and its topology: the ends have no common neighbours
+/// but the corners opposite the edge (Dey et al. 1999), no border is pinched, and neither a tetrahedron nor a lone triangle is
+/// flattened.
+bool may_collapse(const Mesh& mesh, Halfedge h);
+
+/// Merges source(h) into target(h), which keeps its point. Edges of the target survive; the caller has asked may_collapse.
+void collapse(Mesh& mesh, Halfedge h, CollapseVisitor* visitor);
+
+/// Calls action(halfedge) for each halfedge that ends where `first` ends.
+template <class Action>
+void for_each_incoming(const Mesh& mesh, Halfedge first, Action&& action) {
+    Halfedge h = first;
+    do {
+        action(h);
+        h = mesh.opposite(mesh.next(h));
+    } while (h != first);
+}
+template <class Action>
+void for_each_incoming(const Mesh& mesh, Vertex vertex, Action&& action) {
+    for_each_incoming(mesh, mesh.halfedge(vertex), action);
+}
+
+}  // namespace ostraka

@@ -1,0 +1,49 @@
+// What a collapse costs and where its vertex goes.
+#pragma once
+
+#include "ostraka/remesh/simplify.h"
+
+#include <memory>
+#include <optional>
+
+namespace ostraka {
+
+/// Coordinates in which the box of the mesh is centred and its diagonal has length one, so that neither the unit nor the place of
+/// the object matters.
+struct Frame {
+    Vector centre{0, 0, 0};
+    double size = 1;
+    [[nodiscard]] Vector local(const Point& p) const { return (p - CGAL::ORIGIN - centre) / size; }
+    [[nodiscard]] Point world(const Vector& x) const { return CGAL::ORIGIN + centre + size * x; }
+};
+Frame make_frame(const Mesh& mesh);
+
+/// Marks that hold during the work; indices never change before the garbage is collected.
+struct Marks {
+    std::vector<bool> edges;     ///< outlines and poly-lines
+    std::vector<bool> vertices;  ///< annotated points
+};
+
+struct Placement {
+    Vector position{0, 0, 0};  ///< in the frame
+    double cost = 0;
+};
+
+class CollapseMetric {
+public:
+    virtual ~CollapseMetric() = default;
+    /// The best place for the vertex that replaces the ends of h, if there is one.
+    [[nodiscard]] virtual std::optional<Placement> best(const Mesh& mesh, Halfedge h) const = 0;
+    /// The cost of a given place.
+    [[nodiscard]] virtual double cost(const Mesh& mesh, Halfedge h, const Vector& position) const = 0;
+    /// To be called when `removed` has been merged into `kept`.
+    virtual void merged(Vertex kept, Vertex removed) = 0;
+    /// Whether moving a vertex changes the cost of edges that do not touch it (but touch a neighbour).
+    [[nodiscard]] virtual bool reaches_second_ring() const = 0;
+};
+
+std::unique_ptr<CollapseMetric> make_quadric_metric(const Mesh& mesh, const Frame& frame, const Marks& marks,
+                                                    const SimplifyOptions& options);
+std::unique_ptr<CollapseMetric> make_lindstrom_turk_metric(const Frame& frame);
+
+}  // namespace ostraka

@@ -1,0 +1,270 @@
+#include "ostraka/remesh/simplify.h"
+
+#include "collapse.h"
+#include "collapse_rules.h"
+#include "indexed_heap.h"
+#include "metric.h"
+#include "ostraka/core/error.h"
+#include "ostraka/core/progress.h"
+
+#include <cmath>
+
+namespace ostraka {
+
+namespace {
+
+/// What is asked of a collapse; asked less from stage to stage as long as the number is not reached.
+struct Stage {
+    double max_normal_change;  ///< degrees
+    bool good_shapes;          ///< no face gets thinner than `thinnest` unless it was
+    bool keep_outlines;
+};
+
+class Simplifier {
+public:
+    Simplifier(Mesh& mesh, const SimplifyOptions& options, Marks marks, CollapseVisitor* visitor)
+        : mesh_(mesh),
+          options_(options),
+          visitor_(visitor),
+          frame_(make_frame(mesh)),
+          marks_(std::move(marks)),
+          rules_(mesh, marks_, options.outlines == "protect"),
+          metric_(options.method == "qem" ? make_quadric_metric(mesh, frame_, marks_, options)
+                                          : make_lindstrom_turk_metric(frame_)),
+          heap_(mesh.number_of_edges()),
+          parent_(mesh.number_of_vertices()),
+          remaining_(mesh.number_of_vertices()) {
+        for (std::size_t v = 0; v < parent_.size(); ++v) parent_[v] = static_cast<Index>(v);
+    }
+
+    void run(std::size_t wanted, SimplifyResult& result) {
+        const bool can_break = options_.outlines == "follow" && rules_.any_marks();
+        std::vector<Stage> stages{{options_.max_normal_change, true, true}, {90, false, true}};
+        if (can_break) stages.insert(stages.end(), {{options_.max_normal_change, true, false}, {90, false, false}});
+        Progress progress("simplify", remaining_ - std::min(remaining_, wanted));
+        for (const Stage& stage : stages) {
+            stage_ = stage;
+            rules_.keep_outlines(stage.keep_outlines);
+            // What was refused may be possible now that the surroundings have changed: again, as long as that helps.
+            std::size_t before;
+            do {
+                before = remaining_;
+                sweep(wanted, progress);
+            } while (remaining_ > wanted && before > remaining_ + remaining_ / 100);
+            if (remaining_ <= wanted) break;
+        }
+        result.collapses = collapses_;
+        result.outlines_broken = rules_.broken();
+        result.reached = remaining_ == wanted;
+        result.stop_reason = result.reached ? "the wanted number of vertices was reached" : explain(wanted);
+        result.vertex_map.resize(parent_.size());
+        for (std::size_t v = 0; v < parent_.size(); ++v) result.vertex_map[v] = root(static_cast<Index>(v));
+    }
+
+private:
+    /// Collapses in the order of cost until the number is reached or no edge is left that may collapse.
+    void sweep(std::size_t wanted, Progress& progress) {
+        refused_topology_ = refused_shape_ = 0;
+        for (const Edge e : mesh_.edges()) evaluate(e);
+        while (remaining_ > wanted && !heap_.empty()) {
+            const Edge e(heap_.top());
+            heap_.remove(e);
+            if (try_collapse(e)) progress.advance();
+        }
+    }
+
+    /// Puts the edge into the heap under its cost, or takes it out.
+    void evaluate(Edge e) {
+        const std::optional<CollapsePlan> plan = rules_.plan(mesh_, e);
+        if (!plan) return heap_.remove(e);
+        heap_.set(e, places(*plan).front().cost);
+    }
+
+    /// The places to try, the best first.
+    struct Places {
+        std::array<Placement, 4> list;
+        std::size_t count = 0;
+        [[nodiscard]] const Placement& front() const { return list[0]; }
+        void add(const Placement& p) { list[count++] = p; }
+    };
+    [[nodiscard]] Places places(const CollapsePlan& plan) const {
+        Places result;
+        const Vector v = frame_.local(mesh_.point(mesh_.target(plan.halfedge)));
+        if (plan.pinned) {
+            result.add({v, metric_->cost(mesh_, plan.halfedge, v)});
+            return result;
+        }
+        const Vector u = frame_.local(mesh_.point(mesh_.source(plan.halfedge)));
+        const Vector middle = u + (v - u) / 2;
+        const std::optional<Placement> best = metric_->best(mesh_, plan.halfedge);
+        // An ill-determined place far away would only be refused later.
+        if (best && (best->position - middle).squared_length() <= 4 * (v - u).squared_length()) {
+            result.add(*best);
+            return result;
+        }
+        for (const Vector& x : {middle, u, v}) result.add({x, metric_->cost(mesh_, plan.halfedge, x)});
+        std::stable_sort(result.list.begin(), result.list.begin() + 3,
+                         [](const Placement& a, const Placement& b) { return a.cost < b.cost; });
+        return result;
+    }
+
+    bool try_collapse(Edge e) {
+        const std::optional<CollapsePlan> plan = rules_.plan(mesh_, e);
+        if (!plan) return false;
+        const Halfedge h = plan->halfedge;
+        if (!may_collapse(mesh_, h)) return ++refused_topology_, false;
+        const Vertex u = mesh_.source(h), v = mesh_.target(h);
+        Places candidates = places(*plan);
+        if (!plan->pinned && candidates.count == 1) {
+            const Vector a = frame_.local(mesh_.point(u)), b = frame_.local(mesh_.point(v));
+            for (const Vector& x : {Vector(a + (b - a) / 2), a, b}) candidates.add({x, 0});
+        }
+        const Placement* chosen = nullptr;
+        for (std::size_t i = 0; i < candidates.count && chosen == nullptr; ++i)
+            if (keeps_shape(h, candidates.list[i].position)) chosen = &candidates.list[i];
+        if (chosen == nullptr) return ++refused_shape_, false;
+        if (!plan->pinned) mesh_.point(v) = frame_.world(chosen->position);
+        merge(h);
+        return true;
+    }
+
+    void merge(Halfedge h) {
+        const Vertex u = mesh_.source(h), v = mesh_.target(h);
+        for (const Halfedge side : {h, mesh_.opposite(h)})
+            if (!mesh_.is_border(side)) heap_.remove(mesh_.edge(mesh_.source(side) == u ? mesh_.prev(side) : mesh_.next(side)));
+        heap_.remove(mesh_.edge(h));
+        rules_.before_collapse(mesh_, h);
+        collapse(mesh_, h, visitor_);
+        metric_->merged(v, u);
+        parent_[u] = v;
+        --remaining_;
+        ++collapses_;
+        rules_.after_collapse(mesh_, v);
+        for_each_incoming(mesh_, v, [&](Halfedge g) { evaluate(mesh_.edge(g)); });
+        if (!metric_->reaches_second_ring()) return;
+        for_each_incoming(mesh_, v, [&](Halfedge g) {
+            for_each_incoming(mesh_, mesh_.source(g), [&](Halfedge k) {
+                if (mesh_.source(k) != v) evaluate(mesh_.edge(k));
+            });
+        });
+    }
+
+    /// No face around the ends of h is turned over, turned too far or squeezed flat when both ends move to x.
+    [[nodiscard]] bool keeps_shape(Halfedge h, const Vector& x) const {
+        constexpr double thinnest = 0.02;  // area over sum of squared edge lengths, twice; 0.29 for an equilateral triangle
+        constexpr double flat = 1e-9;
+        const double least_cosine = std::max(1e-3, std::cos(stage_.max_normal_change * M_PI / 180));
+        bool fine = true;
+        const auto check = [&](Halfedge g) {  // g ends in the vertex that moves
+            if (!fine || mesh_.is_border(g) || mesh_.face(g) == mesh_.face(h) || mesh_.face(g) == mesh_.face(mesh_.opposite(h)))
+                return;
+            const Vector old = frame_.local(mesh_.point(mesh_.target(g)));
+            const Vector p = frame_.local(mesh_.point(mesh_.source(g))),
+                         q = frame_.local(mesh_.point(mesh_.target(mesh_.next(g))));
+            const Vector n_old = CGAL::cross_product(q - old, p - old), n_new = CGAL::cross_product(q - x, p - x);
+            const double side = (p - q).squared_length();
+            const double sides_old = (q - old).squared_length() + (p - old).squared_length() + side;
+            const double sides_new = (q - x).squared_length() + (p - x).squared_length() + side;
+            const double length_old = std::sqrt(n_old.squared_length()), length_new = std::sqrt(n_new.squared_length());
+            fine = length_new > flat * sides_new;
+            if (!fine || !(length_old > flat * sides_old)) return;  // a face that was flat has no direction to keep
+            fine = n_old * n_new >= least_cosine * length_old * length_new;
+            if (fine && stage_.good_shapes)
+                fine = length_new >= thinnest * sides_new || length_new * sides_old >= length_old * sides_new;
+        };
+        for_each_incoming(mesh_, mesh_.source(h), check);
+        if (fine) for_each_incoming(mesh_, mesh_.target(h), check);
+        return fine;
+    }
+
+    Index root(Index v) {
+        Index r = v;
+        while (parent_[r] != r) r = parent_[r];
+        while (parent_[v] != r) v = std::exchange(parent_[v], r);
+        return r;
+    }
+
+    [[nodiscard]] std::string explain(std::size_t wanted) const {
+        std::string text = "stopped at " + std::to_string(remaining_) + " vertices instead of " + std::to_string(wanted) +
+                           ": of the remaining " + std::to_string(mesh_.number_of_edges()) + " edges ";
+        const std::size_t bound =
+            mesh_.number_of_edges() - std::min<std::size_t>(mesh_.number_of_edges(), refused_topology_ + refused_shape_);
+        text += std::to_string(refused_topology_) + " would change the topology, " + std::to_string(refused_shape_) +
+                " would turn a face over or flatten it";
+        if (bound > 0) text += ", " + std::to_string(bound) + " belong to protected parts or to the border";
+        return text;
+    }
+
+    Mesh& mesh_;
+    const SimplifyOptions& options_;
+    CollapseVisitor* visitor_;
+    Frame frame_;
+    Marks marks_;
+    CollapseRules rules_;
+    std::unique_ptr<CollapseMetric> metric_;
+    IndexedHeap heap_;
+    std::vector<Index> parent_;
+    std::size_t remaining_;
+    std::size_t collapses_ = 0;
+    std::size_t refused_topology_ = 0, refused_shape_ = 0;
+    Stage stage_{};
+};
+
+struct GarbageMaps {
+    std::vector<Index>* vertex_map;
+    std::vector<Index>* face_map;
+    template <class VertexMap, class HalfedgeMap, class FaceMap>
+    void operator()(const VertexMap& vertices, const HalfedgeMap&, const FaceMap& faces) {
+        for (Index& v : *vertex_map)
+            if (v != no_index) v = vertices[Vertex(v)];
+        for (Index& f : *face_map)
+            if (f != no_index) f = faces[Face(f)];
+    }
+};
+
+}  // namespace
+
+SimplifyResult simplify(Mesh& mesh, const SimplifyOptions& options, const MarkedParts& marked, CollapseVisitor* visitor) {
+    check_options(options, "simplify");
+    if (mesh.has_garbage()) throw std::logic_error("simplify: collect the garbage first");
+    if (!marked.edges.empty() && marked.edges.size() != mesh.number_of_edges())
+        fail_usage("simplify: " + std::to_string(marked.edges.size()) + " edge flags for " +
+                   std::to_string(mesh.number_of_edges()) + " edges");
+    if (!marked.vertices.empty() && marked.vertices.size() != mesh.number_of_vertices())
+        fail_usage("simplify: " + std::to_string(marked.vertices.size()) + " vertex flags for " +
+                   std::to_string(mesh.number_of_vertices()) + " vertices");
+    for (const Face f : mesh.faces())
+        if (mesh.next(mesh.next(mesh.next(mesh.halfedge(f)))) != mesh.halfedge(f))
+            fail_input("face " + std::to_string(Index(f)), "is not a triangle");
+
+    SimplifyResult result;
+    std::vector<Vertex> isolated;
+    for (const Vertex v : mesh.vertices())
+        if (mesh.is_isolated(v)) isolated.push_back(v);
+    const std::size_t count = mesh.number_of_vertices() - isolated.size();
+    if (options.vertices > count)
+        fail_usage("the mesh has " + std::to_string(count) + " vertices, fewer than the " + std::to_string(options.vertices) +
+                       " asked for",
+                   "use: ostraka mesh refine");
+    Marks marks{marked.edges, marked.vertices};
+    if (marks.edges.empty() || options.outlines == "ignore") marks.edges.assign(mesh.number_of_edges(), false);
+    if (marks.vertices.empty() || options.outlines == "ignore") marks.vertices.assign(mesh.number_of_vertices(), false);
+
+    const std::size_t face_count = mesh.number_of_faces();
+    {
+        Simplifier simplifier(mesh, options, std::move(marks), visitor);
+        simplifier.run(options.vertices + isolated.size(), result);
+    }
+    for (const Vertex v : isolated) {
+        mesh.remove_vertex(v);
+        result.vertex_map[v] = no_index;
+    }
+    result.isolated_dropped = isolated.size();
+    result.face_map.resize(face_count);
+    for (Index f = 0; f < face_count; ++f) result.face_map[f] = mesh.is_removed(Face(f)) ? no_index : f;
+    GarbageMaps maps{&result.vertex_map, &result.face_map};
+    mesh.collect_garbage(maps);
+    return result;
+}
+
+}  // namespace ostraka
