@@ -69,11 +69,30 @@ struct AnnotationSet {
     std::string unit;
     std::optional<std::array<double, 3>> up;
     std::vector<Annotation> annotations;
-    Json provenance;  ///< as read; null if none
+    Json provenance;                 ///< as read; null if none
+    std::vector<std::string> notes;  ///< what reading or following a change of the mesh had to say, in words
 
     [[nodiscard]] const Annotation* find(int id) const;
+    [[nodiscard]] Annotation* find(int id);
 };
 
 std::string to_string(AnnotationType type);
+
+/// The annotation that stands for the whole object: a region with `all`. Made in front of the others if there is none, with
+/// the class as its tag ("object" if the class is not known), and a free id. The object's own attributes (total height, site of
+/// excavation ...) belong to it.
+Annotation& ensure_root(AnnotationSet& set, const Mesh& mesh);
+
+/// A fresh id: one more than the largest, 0 in an empty set.
+int free_id(const AnnotationSet& set);
+
+/// The vertices an annotation touches, ascending, without repeats: its points, the vertices of its poly-lines or the corners
+/// of its faces.
+std::vector<Index> touched_vertices(const Mesh& mesh, const Annotation& annotation);
+
+/// One flag per face of a region.
+std::vector<bool> face_flags(const Mesh& mesh, const std::vector<Index>& faces);
+/// The faces whose flag is set, ascending.
+std::vector<Index> flagged(const std::vector<bool>& flags);
 
 }  // namespace ostraka

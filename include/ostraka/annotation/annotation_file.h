@@ -1,0 +1,42 @@
+// Annotation files (*.ant.json): the thesis's Appendix B.1 exactly, with optional additions (doc/annotations.md).
+#pragma once
+
+#include "ostraka/annotation/annotation.h"
+#include "ostraka/core/options.h"
+#include "ostraka/core/provenance.h"
+
+namespace ostraka {
+
+struct ReadAnnotationsOptions {
+    bool force_mesh = false;  ///< take the file although it was made for another mesh; indices and edges are checked all the same
+
+    template <class Visitor>
+    void describe(Visitor& visit) {
+        visit("force-mesh", force_mesh, "use annotations made for another mesh if their indices and edges fit", Anything{});
+    }
+};
+
+/// Reads the annotations of `mesh`: our files, the thesis's (no format and no mesh member) and, as well as may be and with
+/// notes, the prototype's (.ant). Checks the schema, indices, edges, ids, and that the mesh is the one the file was made for.
+/// Throws Error (input) that names the file, the JSON pointer and the remedy. Linear in the size of file and selections.
+AnnotationSet read_annotations(const Path& file, const Mesh& mesh, const ReadAnnotationsOptions& options = {});
+
+/// The same for a document in memory; `where` stands for the file's name in errors.
+AnnotationSet annotations_from_json(const JsonValue& document, const Mesh& mesh, const std::string& where,
+                                    const ReadAnnotationsOptions& options = {});
+
+/// Writes the set atomically; the same set, mesh, name and provenance give the same bytes. `mesh_file` is stored without its
+/// folder. Throws Error if a selection does not fit the mesh.
+void write_annotations(const Path& file, const AnnotationSet& set, const Mesh& mesh, const std::string& mesh_file,
+                       const Provenance& provenance);
+Json annotations_to_json(const AnnotationSet& set, const Mesh& mesh, const std::string& mesh_file, const Provenance& provenance);
+
+/// Attributes alone, as recipes hold them too; `list` must have passed a schema, pins are not checked. `pointer` is the place of
+/// the list in the document.
+std::vector<Attribute> attributes_from_json(const JsonValue& list, const std::string& where, const std::string& pointer);
+
+/// Checks a set in memory as reading checks a file: ids, colours, indices, edges, pins. Throws Error (input); `where` is named
+/// first.
+void check_annotations(const AnnotationSet& set, const Mesh& mesh, const std::string& where);
+
+}  // namespace ostraka

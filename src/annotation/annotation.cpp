@@ -1,0 +1,83 @@
+#include "ostraka/annotation/annotation.h"
+
+#include "ostraka/core/error.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <set>
+
+namespace ostraka {
+
+const Annotation* AnnotationSet::find(int id) const {
+    const auto found = std::find_if(annotations.begin(), annotations.end(), [id](const Annotation& a) { return a.id == id; });
+    return found == annotations.end() ? nullptr : &*found;
+}
+
+Annotation* AnnotationSet::find(int id) { return const_cast<Annotation*>(std::as_const(*this).find(id)); }
+
+std::string to_string(AnnotationType type) {
+    switch (type) {
+        case AnnotationType::point:
+            return "point";
+        case AnnotationType::line:
+            return "line";
+        case AnnotationType::region:
+            break;
+    }
+    return "region";
+}
+
+int free_id(const AnnotationSet& set) {
+    std::set<int> used;
+    for (const auto& annotation : set.annotations) used.insert(annotation.id);
+    if (used.empty()) return 0;
+    if (*used.rbegin() < std::numeric_limits<int>::max()) return std::max(0, *used.rbegin() + 1);
+    int id = 0;  // the largest integer is taken: the first gap
+    for (const int taken : used)
+        if (taken == id) ++id;
+    return id;
+}
+
+Annotation& ensure_root(AnnotationSet& set, const Mesh& mesh) {
+    auto root = std::find_if(set.annotations.begin(), set.annotations.end(), [](const Annotation& a) { return a.all; });
+    if (root == set.annotations.end()) {
+        Annotation made;
+        made.id = free_id(set);
+        made.tag = set.object_class.empty() ? "object" : set.object_class;
+        made.all = true;
+        root = set.annotations.insert(set.annotations.begin(), std::move(made));
+    }
+    root->faces.resize(mesh.number_of_faces());
+    std::iota(root->faces.begin(), root->faces.end(), Index{0});
+    return *root;
+}
+
+std::vector<bool> face_flags(const Mesh& mesh, const std::vector<Index>& faces) {
+    std::vector<bool> flags(mesh.number_of_faces(), false);
+    for (const Index face : faces) {
+        if (face >= flags.size())
+            fail_input("face " + std::to_string(face), "the mesh has " + std::to_string(flags.size()) + " faces");
+        flags[face] = true;
+    }
+    return flags;
+}
+
+std::vector<Index> flagged(const std::vector<bool>& flags) {
+    std::vector<Index> list;
+    for (std::size_t i = 0; i < flags.size(); ++i)
+        if (flags[i]) list.push_back(static_cast<Index>(i));
+    return list;
+}
+
+std::vector<Index> touched_vertices(const Mesh& mesh, const Annotation& annotation) {
+    std::vector<Index> vertices = annotation.points;
+    for (const auto& polyline : annotation.polylines) vertices.insert(vertices.end(), polyline.begin(), polyline.end());
+    for (const Index face : annotation.faces)
+        for (const Vertex corner : corners(mesh, Face(face))) vertices.push_back(corner);
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    return vertices;
+}
+
+}  // namespace ostraka

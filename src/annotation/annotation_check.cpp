@@ -1,0 +1,141 @@
+// What must hold of every annotation, wherever it comes from.
+#include "annotation_places.h"
+#include "ostraka/annotation/annotation_file.h"
+
+#include "ostraka/core/error.h"
+
+#include <cmath>
+#include <set>
+
+namespace ostraka {
+
+namespace places {
+
+void fail(const std::string& where, const std::string& pointer, const std::string& what, const std::string& remedy) {
+    fail_input(where, "at " + pointer + ": " + what, remedy);
+}
+
+void check_vertex(const Mesh& mesh, Index vertex, const std::string& where, const std::string& pointer) {
+    if (vertex < mesh.number_of_vertices()) return;
+    fail(where, pointer,
+         "vertex " + std::to_string(vertex) + " of a mesh with " + std::to_string(mesh.number_of_vertices()) + " vertices",
+         "give the mesh the annotations were made for");
+}
+
+void check_face(const Mesh& mesh, Index face, const std::string& where, const std::string& pointer) {
+    if (face < mesh.number_of_faces()) return;
+    fail(where, pointer, "face " + std::to_string(face) + " of a mesh with " + std::to_string(mesh.number_of_faces()) + " faces",
+         "give the mesh the annotations were made for");
+}
+
+void check_edge(const Mesh& mesh, Index a, Index b, const std::string& where, const std::string& pointer) {
+    if (find_halfedge(mesh, Vertex(a), Vertex(b)).is_valid()) return;
+    fail(where, pointer,
+         a == b ? "vertex " + std::to_string(a) + " follows itself"
+                : "the mesh has no edge from vertex " + std::to_string(a) + " to vertex " + std::to_string(b),
+         "successive vertices must be joined by an edge: give the mesh the annotations were made for, or mend the list");
+}
+
+}  // namespace places
+
+namespace {
+
+using places::fail;
+using std::to_string;
+
+void check_measure(const Measure& measure, const Mesh& mesh, const std::string& where, const std::string& at) {
+    if (measure.tool != "ruler" && measure.tool != "tape" && measure.tool != "bounding")
+        fail(where, at + "/tool", "the tool '" + measure.tool + "' is not known", "use ruler, tape or bounding");
+    if (measure.points.size() < 2)
+        fail(where, at + "/points", "a " + measure.tool + " needs two points or more, not " + to_string(measure.points.size()),
+             "add its pins");
+    for (std::size_t i = 0; i < measure.points.size(); ++i)
+        places::check_vertex(mesh, measure.points[i], where, at + "/points/" + to_string(i));
+    if (!measure.locations.empty() && measure.locations.size() != measure.points.size())
+        fail(where, at + "/locations",
+             to_string(measure.locations.size()) + " locations for " + to_string(measure.points.size()) + " points",
+             "give one location for each point, or none");
+    for (std::size_t i = 0; i < measure.locations.size(); ++i) {
+        const std::string here = at + "/locations/" + to_string(i);
+        const auto& [face, weights] = measure.locations[i];
+        places::check_face(mesh, face, where, here + "/face");
+        if (!(std::abs(weights[0] + weights[1] + weights[2] - 1) <= 1e-6))
+            fail(where, here + "/barycentric", "the weights do not sum to one", "mend them");
+    }
+    if (measure.tool == "bounding") {
+        if (!measure.direction) fail(where, at, "a bounding measure without a direction", "add the member \"direction\"");
+        const auto& d = *measure.direction;
+        const double length = std::hypot(d[0], d[1], d[2]);
+        if (!(length > 0 && std::isfinite(length)))
+            fail(where, at + "/direction", "the direction has no length", "give a vector that is not zero");
+    }
+    if (measure.value && !std::isfinite(*measure.value)) fail(where, at + "/value", "the value is not finite", "leave it out");
+}
+
+void check_attributes(const Annotation& annotation, const Mesh& mesh, const std::string& where, const std::string& at) {
+    std::set<int> ids;
+    for (std::size_t i = 0; i < annotation.attributes.size(); ++i) {
+        const Attribute& attribute = annotation.attributes[i];
+        const std::string here = at + "/attributes/" + to_string(i);
+        if (!ids.insert(attribute.id).second)
+            fail(where, here + "/id", "the attribute id " + to_string(attribute.id) + " is taken within its annotation",
+                 "give each attribute its own id");
+        if (attribute.type == AttributeType::measure) check_measure(attribute.measure, mesh, where, here + "/measure");
+        for (const double value : attribute.descriptor.values)
+            if (!std::isfinite(value)) fail(where, here + "/value", "a value is not finite", "mend or remove it");
+    }
+}
+
+void check_selection(const Annotation& annotation, const Mesh& mesh, const std::string& where, const std::string& at) {
+    const auto misplaced = [&](const char* member, const char* type) {
+        fail(where, at, "an annotation of type " + to_string(annotation.type) + " has " + member,
+             std::string("use it with the type ") + type);
+    };
+    if (annotation.type != AnnotationType::point && !annotation.points.empty()) misplaced("points", "point");
+    if (annotation.type != AnnotationType::line && !annotation.polylines.empty()) misplaced("polylines", "line");
+    if (annotation.type != AnnotationType::region && (!annotation.faces.empty() || annotation.all)) misplaced("faces", "region");
+    for (std::size_t i = 0; i < annotation.points.size(); ++i)
+        places::check_vertex(mesh, annotation.points[i], where, at + "/points/" + to_string(i));
+    for (std::size_t i = 0; i < annotation.polylines.size(); ++i) {
+        const auto& polyline = annotation.polylines[i];
+        const std::string here = at + "/polylines/" + to_string(i);
+        if (polyline.size() < 2)
+            fail(where, here, "a poly-line of " + to_string(polyline.size()) + (polyline.size() == 1 ? " vertex" : " vertices"),
+                 "give two vertices or more, or use the type point");
+        for (std::size_t k = 0; k < polyline.size(); ++k)
+            places::check_vertex(mesh, polyline[k], where, here + '/' + to_string(k));
+        for (std::size_t k = 0; k + 1 < polyline.size(); ++k)
+            places::check_edge(mesh, polyline[k], polyline[k + 1], where, here + '/' + to_string(k + 1));
+    }
+    for (std::size_t i = 0; i < annotation.faces.size(); ++i) {
+        places::check_face(mesh, annotation.faces[i], where, at + "/faces/" + to_string(i));
+        if (i > 0 && annotation.faces[i] <= annotation.faces[i - 1])
+            fail(where, at + "/faces/" + to_string(i), "the faces are not in ascending order without repeats", "sort them");
+    }
+    if (annotation.all && annotation.faces.size() != mesh.number_of_faces())
+        fail(where, at,
+             "a region that is the whole mesh lists " + to_string(annotation.faces.size()) + " of " +
+                 to_string(mesh.number_of_faces()) + " faces",
+             "list all or drop the mark \"all\"");
+}
+
+}  // namespace
+
+void check_annotations(const AnnotationSet& set, const Mesh& mesh, const std::string& where) {
+    if (mesh.has_garbage())
+        throw Error(ErrorKind::failure, where, "the mesh has removed elements", "collect the mesh's garbage first");
+    std::set<int> ids;
+    for (std::size_t i = 0; i < set.annotations.size(); ++i) {
+        const Annotation& annotation = set.annotations[i];
+        const std::string at = "/annotations/" + to_string(i);
+        if (!ids.insert(annotation.id).second)
+            fail(where, at + "/id", "the id " + to_string(annotation.id) + " is taken", "give each annotation its own id");
+        for (const int part : annotation.colour)
+            if (part < 0 || part > 255)
+                fail(where, at + "/colour", "the colour part " + to_string(part) + " is not within 0 to 255", "mend it");
+        check_selection(annotation, mesh, where, at);
+        check_attributes(annotation, mesh, where, at);
+    }
+}
+
+}  // namespace ostraka

@@ -1,0 +1,307 @@
+#include "ostraka/annotation/annotation_maps.h"
+
+#include "edge_chains.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/geom/shortest_path.h"
+
+#include <algorithm>
+#include <optional>
+#include <set>
+
+namespace ostraka {
+
+namespace {
+
+/// Ids per element, gathered in the order of the annotations, then interned: equal sets are looked up once per run of elements.
+template <class Index_type>
+void store(Mesh& mesh, const char* name, std::vector<std::pair<Index, int>>& entries, AnnotationTable& table) {
+    auto map = mesh.add_property_map<Index_type, std::uint32_t>(name, 0).first;
+    std::fill(map.begin(), map.end(), 0U);
+    std::sort(entries.begin(), entries.end());
+    entries.erase(std::unique(entries.begin(), entries.end()), entries.end());
+    std::vector<int> ids, last_ids;
+    std::uint32_t last = 0;
+    for (std::size_t i = 0; i < entries.size();) {
+        const Index element = entries[i].first;
+        ids.clear();
+        for (; i < entries.size() && entries[i].first == element; ++i) ids.push_back(entries[i].second);
+        if (last == 0 || ids != last_ids) {
+            last = table.intern(ids);
+            last_ids = ids;
+        }
+        map[Index_type(element)] = last;
+    }
+}
+
+template <class Index_type>
+auto stored(const Mesh& mesh, const char* name) {
+    const auto [map, found] = mesh.property_map<Index_type, std::uint32_t>(name);
+    if (!found)
+        throw Error(ErrorKind::failure, "mesh", std::string("has no property map ") + name, "attach the annotations first");
+    return map;
+}
+
+/// Where the annotations' elements are now.
+class Collector {
+public:
+    Collector(const Mesh& mesh, const AnnotationTable& table, const AnnotationSet& before, const std::vector<Index>& vertex_map)
+        : mesh_(mesh), table_(table), vertex_map_(vertex_map), search_(mesh), edge_sets_(stored<Edge>(mesh, edge_annotations)) {
+        // One pass over the mesh gives every annotation its elements.
+        for (const auto& annotation : before.annotations) faces_[annotation.id], edges_[annotation.id], vertices_[annotation.id];
+        const auto face_sets = stored<Face>(mesh, face_annotations);
+        for (const Face face : mesh.faces()) hand_out(face_sets[face], face, faces_);
+        for (const Edge edge : mesh.edges()) hand_out(edge_sets_[edge], edge, edges_);
+        const auto vertex_sets = stored<Vertex>(mesh, vertex_annotations);
+        for (const Vertex vertex : mesh.vertices()) hand_out(vertex_sets[vertex], vertex, vertices_);
+    }
+
+    Annotation follow(const Annotation& before) {
+        Annotation now = before;
+        switch (before.type) {
+            case AnnotationType::point:
+                points(now);
+                break;
+            case AnnotationType::line:
+                line(now);
+                break;
+            case AnnotationType::region:
+                region(now);
+                break;
+        }
+        return now;
+    }
+
+private:
+    template <class Element>
+    void hand_out(std::uint32_t set, Element element, std::map<int, std::vector<Index>>& lists) {
+        if (set == 0) return;
+        for (const int id : table_.ids(set))
+            if (const auto list = lists.find(id); list != lists.end()) list->second.push_back(static_cast<Index>(element));
+    }
+
+    [[nodiscard]] Index now(Index before) const { return before < vertex_map_.size() ? vertex_map_[before] : no_index; }
+
+    void points(Annotation& annotation) {
+        if (vertex_map_.empty()) {
+            annotation.points = vertices_.at(annotation.id);
+        } else {
+            std::vector<Index> kept;
+            for (const Index vertex : annotation.points)
+                if (now(vertex) != no_index && std::find(kept.begin(), kept.end(), now(vertex)) == kept.end())
+                    kept.push_back(now(vertex));
+            annotation.points = std::move(kept);
+        }
+        if (annotation.points.empty()) add_note(annotation, "all its points are gone");
+    }
+
+    void line(Annotation& annotation) {
+        if (vertex_map_.empty()) {
+            annotation.polylines = chains(edges_.at(annotation.id));
+        } else {
+            std::vector<std::vector<Index>> polylines;
+            for (const auto& polyline : annotation.polylines) follow(polyline, annotation, polylines);
+            if (polylines.empty()) degrade(annotation, annotation.polylines);
+            else annotation.polylines = std::move(polylines);
+        }
+        if (annotation.type == AnnotationType::line && annotation.polylines.empty())
+            add_note(annotation, "all its poly-lines are gone");
+    }
+
+    void region(Annotation& annotation) {
+        const auto outlines = table_.outlines.find(annotation.id);
+        annotation.faces = faces_.at(annotation.id);
+        if (annotation.all && annotation.faces.size() != mesh_.number_of_faces()) {
+            annotation.faces.resize(mesh_.number_of_faces());  // faces that an edit added belong to the whole as well
+            for (Index face = 0; face < annotation.faces.size(); ++face) annotation.faces[face] = face;
+        }
+        if (!annotation.faces.empty()) return;
+        annotation.all = false;
+        std::vector<std::vector<Index>> walks;
+        if (outlines != table_.outlines.end())
+            for (Outline walk : outlines->second) {
+                walk.push_back(walk.front());
+                walks.push_back(std::move(walk));
+            }
+        degrade(annotation, walks);
+    }
+
+    std::vector<std::vector<Index>> chains(const std::vector<Index>& edges) const {
+        std::vector<std::pair<Index, Index>> pairs;
+        for (const Index edge : edges) {
+            const Halfedge h = mesh_.halfedge(Edge(edge));
+            pairs.emplace_back(mesh_.source(h), mesh_.target(h));
+        }
+        return chain_edges(pairs);
+    }
+
+    /// What remains of walks over the mesh before: a line along their edges, or one point.
+    void degrade(Annotation& annotation, const std::vector<std::vector<Index>>& walks) {
+        const std::string was = to_string(annotation.type);
+        std::set<std::pair<Index, Index>> edges;
+        std::set<Index> vertices;
+        for (const auto& walk : walks) {
+            Index last = no_index;
+            for (const Index vertex : walk) {
+                const Index here = vertex_map_.empty() ? vertex : now(vertex);
+                if (here == no_index || here >= mesh_.number_of_vertices()) continue;
+                vertices.insert(here);
+                if (last != no_index && last != here && find_halfedge(mesh_, Vertex(last), Vertex(here)).is_valid())
+                    edges.insert(std::minmax(last, here));
+                last = here;
+            }
+        }
+        annotation.polylines.clear();
+        if (!edges.empty()) {
+            annotation.type = AnnotationType::line;
+            annotation.polylines = chain_edges({edges.begin(), edges.end()});
+        } else {
+            annotation.type = AnnotationType::point;
+            annotation.points.assign(vertices.begin(), vertices.end());
+        }
+        if (vertices.empty()) add_note(annotation, "the " + was + " is gone: none of its elements is left");
+        else add_note(annotation, "the " + was + " is too small for this resolution and became a " + to_string(annotation.type));
+    }
+
+    /// One poly-line by the vertex map. Equal neighbours merge; a link that is no edge any more is followed along the edges that
+    /// carry the annotation; where there is none the poly-line is cut and the annotation says so.
+    void follow(const std::vector<Index>& polyline, Annotation& annotation, std::vector<std::vector<Index>>& result) {
+        std::vector<Index> current;
+        const auto finish = [&] {
+            if (current.size() > 1) result.push_back(current);
+            current.clear();
+        };
+        for (const Index vertex : polyline) {
+            const Index here = now(vertex);
+            if (here == no_index || here >= mesh_.number_of_vertices()) {
+                add_note(annotation, "a part of a poly-line is gone");
+                finish();
+                continue;
+            }
+            if (current.empty()) {
+                current.push_back(here);
+            } else if (current.back() != here) {
+                const std::vector<Index> link = joined(current.back(), here, annotation.id);
+                if (link.empty()) {
+                    add_note(annotation, "a poly-line was cut: two of its vertices are not joined any more");
+                    finish();
+                    current.push_back(here);
+                } else {
+                    current.insert(current.end(), link.begin() + 1, link.end());
+                }
+            }
+        }
+        finish();
+    }
+
+    std::vector<Index> joined(Index a, Index b, int id) {
+        if (find_halfedge(mesh_, Vertex(a), Vertex(b)).is_valid()) return {a, b};
+        if (on_line_.first != id) {
+            on_line_ = {id, std::vector<bool>(mesh_.number_of_vertices(), false)};
+            for (const Index edge : edges_.at(id)) {
+                const Halfedge h = mesh_.halfedge(Edge(edge));
+                on_line_.second[mesh_.source(h)] = on_line_.second[mesh_.target(h)] = true;
+            }
+        }
+        PathSearch::Query query;
+        query.blocked = [this](Vertex v) { return !on_line_.second[v]; };
+        return search_.find(Vertex(a), Vertex(b), query);
+    }
+
+    static void add_note(Annotation& annotation, const std::string& text) {
+        if (annotation.note.find(text) != std::string::npos) return;
+        annotation.note += (annotation.note.empty() ? "" : "; ") + text;
+    }
+
+    const Mesh& mesh_;
+    const AnnotationTable& table_;
+    const std::vector<Index>& vertex_map_;
+    PathSearch search_;
+    Mesh::Property_map<Edge, std::uint32_t> edge_sets_;
+    std::map<int, std::vector<Index>> faces_, edges_, vertices_;
+    std::pair<std::optional<int>, std::vector<bool>> on_line_;
+};
+
+}  // namespace
+
+AnnotationTable::AnnotationTable() { intern({}); }
+
+std::uint32_t AnnotationTable::intern(const std::vector<int>& ids) {
+    const auto [entry, added] = numbers_.emplace(ids, static_cast<std::uint32_t>(sets_.size()));
+    if (added) sets_.push_back(ids);
+    return entry->second;
+}
+
+bool AnnotationTable::contains(std::uint32_t set, int id) const {
+    const auto& list = ids(set);
+    return std::binary_search(list.begin(), list.end(), id);
+}
+
+AnnotationTable attach_annotations(Mesh& mesh, const AnnotationSet& set) {
+    if (mesh.has_garbage())
+        throw Error(ErrorKind::failure, "mesh", "has removed elements", "collect its garbage before attaching annotations");
+    AnnotationTable table;
+    std::vector<std::pair<Index, int>> vertices, edges, faces;
+    for (const auto& annotation : set.annotations) {
+        for (const Index vertex : annotation.points) vertices.emplace_back(vertex, annotation.id);
+        for (const auto& polyline : annotation.polylines)
+            for (std::size_t k = 0; k + 1 < polyline.size(); ++k)
+                edges.emplace_back(mesh.edge(find_halfedge(mesh, Vertex(polyline[k]), Vertex(polyline[k + 1]))), annotation.id);
+        for (const Index face : annotation.faces) faces.emplace_back(face, annotation.id);
+        if (annotation.type == AnnotationType::region && !annotation.all)
+            table.outlines[annotation.id] = extract_outlines(mesh, annotation.faces);
+    }
+    store<Vertex>(mesh, vertex_annotations, vertices, table);
+    store<Edge>(mesh, edge_annotations, edges, table);
+    store<Face>(mesh, face_annotations, faces, table);
+    return table;
+}
+
+AnnotationSet collect_annotations(const Mesh& mesh, const AnnotationTable& table, const AnnotationSet& before,
+                                  const std::vector<Index>& vertex_map) {
+    if (mesh.has_garbage())
+        throw Error(ErrorKind::failure, "mesh", "has removed elements", "collect its garbage before reading annotations back");
+    Collector collector(mesh, table, before, vertex_map);
+    AnnotationSet set;
+    set.object_class = before.object_class;
+    set.unit = before.unit;
+    set.up = before.up;
+    set.provenance.CopyFrom(before.provenance, set.provenance.GetAllocator());
+    set.notes = before.notes;
+    for (const auto& annotation : before.annotations) {
+        set.annotations.push_back(collector.follow(annotation));
+        move_pins(set.annotations.back(), vertex_map, mesh.number_of_vertices());
+    }
+    return set;
+}
+
+void detach_annotations(Mesh& mesh) {
+    if (auto [map, found] = mesh.property_map<Vertex, std::uint32_t>(vertex_annotations); found) mesh.remove_property_map(map);
+    if (auto [map, found] = mesh.property_map<Edge, std::uint32_t>(edge_annotations); found) mesh.remove_property_map(map);
+    if (auto [map, found] = mesh.property_map<Face, std::uint32_t>(face_annotations); found) mesh.remove_property_map(map);
+}
+
+void move_pins(Annotation& annotation, const std::vector<Index>& vertex_map, std::size_t vertex_count) {
+    for (auto& attribute : annotation.attributes) {
+        if (attribute.type == AttributeType::descriptor) attribute.descriptor.stale = true;
+        if (attribute.type != AttributeType::measure) continue;
+        Measure& measure = attribute.measure;
+        bool lost = false;
+        for (Index& pin : measure.points) {
+            if (!vertex_map.empty()) pin = pin < vertex_map.size() ? vertex_map[pin] : no_index;
+            lost = lost || pin >= vertex_count;
+        }
+        measure.locations.clear();
+        measure.stale = true;
+        if (!lost) continue;
+        // A measure without its pins cannot be taken again: what is left is a figure.
+        attribute.type = AttributeType::descriptor;
+        attribute.descriptor = {};
+        if (measure.value) attribute.descriptor.values.push_back(*measure.value);
+        attribute.descriptor.unit = measure.unit;
+        attribute.descriptor.stale = true;
+        attribute.measure = {};
+    }
+}
+
+}  // namespace ostraka

@@ -1,0 +1,325 @@
+// JSON -> annotations.
+#include "annotation_places.h"
+
+#include "ostraka/annotation/annotation_file.h"
+#include "ostraka/annotation/outline.h"
+#include "ostraka/core/error.h"
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+
+namespace ostraka {
+
+namespace {
+
+using places::fail;
+using std::to_string;
+
+using Chains = std::vector<std::vector<Index>>;
+
+std::string text_of(const JsonValue& object, const char* name) {
+    const JsonValue* value = find_member(object, name);
+    return value == nullptr ? std::string() : std::string(value->GetString(), value->GetStringLength());
+}
+
+bool flag_of(const JsonValue& object, const char* name) {
+    const JsonValue* value = find_member(object, name);
+    return value != nullptr && value->GetBool();
+}
+
+std::vector<Index> indices_of(const JsonValue& list) {
+    std::vector<Index> indices;
+    indices.reserve(list.Size());
+    for (const auto& value : list.GetArray()) indices.push_back(value.GetUint());
+    return indices;
+}
+
+std::vector<Index> indices_of(const JsonValue& object, const char* name) {
+    const JsonValue* value = find_member(object, name);
+    return value == nullptr ? std::vector<Index>() : indices_of(*value);
+}
+
+Chains chains_of(const JsonValue& object, const char* name) {
+    Chains chains;
+    if (const JsonValue* value = find_member(object, name))
+        for (const auto& chain : value->GetArray()) chains.push_back(indices_of(chain));
+    return chains;
+}
+
+std::array<double, 3> vector_of(const JsonValue& list) { return {list[0].GetDouble(), list[1].GetDouble(), list[2].GetDouble()}; }
+
+/// Members that the format does not have are named in a note: they are lost when the set is written again.
+void note_unknown(const JsonValue& object, const std::set<std::string>& known, const std::string& pointer,
+                  std::vector<std::string>& notes) {
+    for (const auto& member : object.GetObject()) {
+        const std::string name(member.name.GetString(), member.name.GetStringLength());
+        if (!known.contains(name)) notes.push_back("at " + pointer + '/' + name + ": an unknown member, not kept");
+    }
+}
+
+Measure measure_of(const JsonValue& object) {
+    Measure measure;
+    measure.tool = text_of(object, "tool");
+    measure.points = indices_of(object, "points");
+    if (const JsonValue* locations = find_member(object, "locations"))
+        for (const auto& location : locations->GetArray())
+            measure.locations.push_back({location["face"].GetUint(), vector_of(location["barycentric"])});
+    if (const JsonValue* direction = find_member(object, "direction")) measure.direction = vector_of(*direction);
+    if (const JsonValue* value = find_member(object, "value")) measure.value = value->GetDouble();
+    measure.unit = text_of(object, "unit");
+    measure.stale = flag_of(object, "stale");
+    return measure;
+}
+
+Attribute attribute_of(const JsonValue& object, const std::string& where, const std::string& at,
+                       std::vector<std::string>& notes) {
+    Attribute attribute;
+    attribute.id = object["id"].GetInt();
+    attribute.name = text_of(object, "name");
+    const std::string type = text_of(object, "type");
+    if (type == "semantic") {
+        note_unknown(object, {"id", "name", "type", "note"}, at, notes);
+        if (find_member(object, "note") == nullptr)
+            fail(where, at, "a semantic attribute without a note", "add the member \"note\"");
+        attribute.note = text_of(object, "note");
+    } else if (type == "measure") {
+        note_unknown(object, {"id", "name", "type", "measure"}, at, notes);
+        attribute.type = AttributeType::measure;
+        const JsonValue* measure = find_member(object, "measure");
+        if (measure == nullptr) fail(where, at, "an attribute of type measure without a measure", "add the member \"measure\"");
+        note_unknown(*measure, {"tool", "points", "locations", "direction", "value", "unit", "stale"}, at + "/measure", notes);
+        attribute.measure = measure_of(*measure);
+    } else {
+        note_unknown(object, {"id", "name", "type", "value", "file", "unit", "stale"}, at, notes);
+        attribute.type = AttributeType::descriptor;
+        Descriptor& descriptor = attribute.descriptor;
+        if (const JsonValue* value = find_member(object, "value")) {
+            descriptor.is_list = value->IsArray();
+            if (descriptor.is_list)
+                for (const auto& element : value->GetArray()) descriptor.values.push_back(element.GetDouble());
+            else descriptor.values.push_back(value->GetDouble());
+        }
+        descriptor.file = text_of(object, "file");
+        descriptor.unit = text_of(object, "unit");
+        descriptor.stale = flag_of(object, "stale");
+        if (find_member(object, "value") != nullptr && !descriptor.file.empty())
+            fail(where, at, "a descriptor with a value and a file", "keep one of them");
+    }
+    return attribute;
+}
+
+/// Outlines as they stand, checked vertex by vertex and edge by edge. The prototype repeats the first vertex at the end.
+std::vector<Outline> outlines_of(const JsonValue& object, const Mesh& mesh, const std::string& where, const std::string& at) {
+    std::vector<Outline> outlines = chains_of(object, "boundaries");
+    for (std::size_t i = 0; i < outlines.size(); ++i) {
+        Outline& outline = outlines[i];
+        const std::string here = at + "/boundaries/" + to_string(i);
+        for (std::size_t k = 0; k < outline.size(); ++k) places::check_vertex(mesh, outline[k], where, here + '/' + to_string(k));
+        if (outline.size() > 3 && outline.front() == outline.back()) outline.pop_back();
+        if (outline.size() < 3)
+            fail(where, here, "an outline of " + to_string(outline.size()) + (outline.size() == 1 ? " vertex" : " vertices"),
+                 "an outline needs three or more");
+        for (std::size_t k = 0; k < outline.size(); ++k) {
+            const std::size_t next = (k + 1) % outline.size();
+            places::check_edge(mesh, outline[k], outline[next], where, here + '/' + to_string(next));
+        }
+    }
+    return outlines;
+}
+
+/// The directed edges of outlines, sorted: two sets of outlines bound the same faces from the same side if these agree.
+std::vector<std::pair<Index, Index>> directed_edges(const std::vector<Outline>& outlines) {
+    std::vector<std::pair<Index, Index>> edges;
+    for (const Outline& outline : outlines)
+        for (std::size_t k = 0; k < outline.size(); ++k) edges.emplace_back(outline[k], outline[(k + 1) % outline.size()]);
+    std::sort(edges.begin(), edges.end());
+    return edges;
+}
+
+/// Adds the closed component of each seed. No outline may pass through such a component.
+void fill_seeds(const std::vector<Index>& seeds, const std::vector<Outline>& outlines, const Mesh& mesh,
+                std::vector<bool>& selected, const std::string& where, const std::string& at) {
+    if (seeds.empty()) return;
+    std::vector<bool> outlined(mesh.number_of_edges(), false);
+    for (const auto& [a, b] : directed_edges(outlines)) outlined[mesh.edge(find_halfedge(mesh, Vertex(a), Vertex(b)))] = true;
+    for (std::size_t i = 0; i < seeds.size(); ++i) {
+        const std::string here = at + "/seeds/" + to_string(i);
+        places::check_face(mesh, seeds[i], where, here);
+        if (selected[seeds[i]])
+            fail(where, here, "the seed lies in a part that is selected already", "give one seed for each whole component");
+        std::vector<Index> front{seeds[i]};
+        selected[seeds[i]] = true;
+        while (!front.empty()) {
+            const Face face(front.back());
+            front.pop_back();
+            for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(face))) {
+                if (outlined[mesh.edge(h)])
+                    fail(where, here, "the seed's component is cut by an outline",
+                         "outlines say what they enclose; a seed stands for a whole closed component");
+                const Face next = mesh.face(mesh.opposite(h));
+                if (next == Mesh::null_face() || selected[next]) continue;
+                selected[next] = true;
+                front.push_back(next);
+            }
+        }
+    }
+}
+
+std::vector<Index> faces_of(const JsonValue& object, const Mesh& mesh, bool all, const std::string& where,
+                            const std::string& at) {
+    const std::vector<Outline> outlines = outlines_of(object, mesh, where, at);
+    const std::vector<Index> seeds = indices_of(object, "seeds");
+    const JsonValue* listed = find_member(object, "faces");
+    if (!all && listed == nullptr) {
+        if (find_member(object, "boundaries") == nullptr && seeds.empty())
+            fail(where, at, "a region without boundaries", "add \"boundaries\", \"faces\", \"seeds\" or \"all\": true");
+        Filling filling = fill_outlines(mesh, outlines);
+        if (filling.conflicts > 0)
+            fail(where, at + "/boundaries",
+                 to_string(filling.conflicts) + " faces lie to the left of one outline and to the right of another",
+                 "the interior lies to the left of each edge: turn the outlines that run the wrong way, and let them not cross");
+        fill_seeds(seeds, outlines, mesh, filling.selected, where, at);
+        return flagged(filling.selected);
+    }
+    std::vector<Index> faces;
+    if (all) {
+        faces.resize(mesh.number_of_faces());
+        std::iota(faces.begin(), faces.end(), Index{0});
+    } else {
+        faces = indices_of(*listed);
+        for (std::size_t i = 0; i < faces.size(); ++i) places::check_face(mesh, faces[i], where, at + "/faces/" + to_string(i));
+        std::sort(faces.begin(), faces.end());
+        faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+    }
+    if (!outlines.empty() && directed_edges(outlines) != directed_edges(extract_outlines(mesh, faces)))
+        fail(where, at + "/boundaries",
+             std::string("the boundaries are not those of ") + (all ? "the whole mesh" : "the faces listed"),
+             "keep one of the two");
+    return faces;
+}
+
+Annotation annotation_of(const JsonValue& object, const Mesh& mesh, const std::string& where, const std::string& at,
+                         std::vector<std::string>& notes) {
+    note_unknown(
+        object,
+        {"id", "tag", "colour", "type", "points", "polylines", "boundaries", "faces", "seeds", "all", "note", "attributes"}, at,
+        notes);
+    Annotation annotation;
+    annotation.id = object["id"].GetInt();
+    annotation.tag = text_of(object, "tag");
+    if (const JsonValue* colour = find_member(object, "colour"))
+        annotation.colour = {(*colour)[0].GetInt(), (*colour)[1].GetInt(), (*colour)[2].GetInt()};
+    const std::string type = text_of(object, "type");
+    const auto require = [&](const char* member) {
+        if (find_member(object, member) == nullptr)
+            fail(where, at, "an annotation of type " + type + " without " + member,
+                 std::string("add the member \"") + member + '"');
+    };
+    const auto refuse = [&](std::initializer_list<const char*> members) {
+        for (const char* member : members)
+            if (find_member(object, member) != nullptr)
+                fail(where, at + '/' + member, "does not belong to an annotation of type " + type, "remove it or mend the type");
+    };
+    if (type == "point") {
+        annotation.type = AnnotationType::point;
+        refuse({"polylines", "boundaries", "faces", "seeds", "all"});
+        require("points");
+        annotation.points = indices_of(object, "points");
+    } else if (type == "line") {
+        annotation.type = AnnotationType::line;
+        refuse({"points", "boundaries", "faces", "seeds", "all"});
+        require("polylines");
+        annotation.polylines = chains_of(object, "polylines");
+    } else {
+        refuse({"points", "polylines"});
+        annotation.all = flag_of(object, "all");
+        annotation.faces = faces_of(object, mesh, annotation.all, where, at);
+    }
+    annotation.note = text_of(object, "note");
+    if (const JsonValue* attributes = find_member(object, "attributes"))
+        for (rapidjson::SizeType i = 0; i < attributes->Size(); ++i)
+            annotation.attributes.push_back(attribute_of((*attributes)[i], where, at + "/attributes/" + to_string(i), notes));
+    return annotation;
+}
+
+/// Is this the mesh the file was made for?
+void check_mesh(const JsonValue& document, const Mesh& mesh, const std::string& where, bool force,
+                std::vector<std::string>& notes) {
+    const JsonValue* made_for = find_member(document, "mesh");
+    if (made_for == nullptr) {
+        notes.emplace_back("the file does not say which mesh it was made for: only indices and edges could be checked");
+        return;
+    }
+    note_unknown(*made_for, {"file", "vertices", "faces", "sha256"}, "/mesh", notes);
+    std::string differences;
+    const auto differ = [&](const std::string& text) { differences += (differences.empty() ? "" : ", ") + text; };
+    const auto count = [&](const char* name, std::size_t here) {
+        const JsonValue* value = find_member(*made_for, name);
+        if (value != nullptr && (!value->IsUint64() || value->GetUint64() != here)) {
+            const std::string there = value->IsUint64() ? to_string(value->GetUint64()) : "a number of";
+            differ(there + " " + name + " instead of " + to_string(here));
+        }
+    };
+    count("vertices", mesh.number_of_vertices());
+    count("faces", mesh.number_of_faces());
+    const std::string checksum = text_of(*made_for, "sha256");
+    if (differences.empty() && !checksum.empty() && checksum != mesh_checksum(mesh))
+        differ("other coordinates or triangles (the checksum differs, the counts agree)");
+    if (differences.empty()) return;
+    const std::string name = text_of(*made_for, "file");
+    const std::string what = "made for another mesh" + (name.empty() ? std::string() : " ('" + name + "')") + ": " + differences;
+    if (!force)
+        fail(where, "/mesh", what,
+             "give that mesh, carry the annotations over with 'ostraka annotation transfer', or override with --force-mesh");
+    notes.push_back(what + "; used all the same, as asked");
+}
+
+}  // namespace
+
+std::vector<Attribute> attributes_from_json(const JsonValue& list, const std::string& where, const std::string& pointer) {
+    std::vector<Attribute> attributes;
+    std::vector<std::string> notes;
+    for (rapidjson::SizeType i = 0; i < list.Size(); ++i)
+        attributes.push_back(attribute_of(list[i], where, pointer + '/' + to_string(i), notes));
+    return attributes;
+}
+
+AnnotationSet annotations_from_json(const JsonValue& document, const Mesh& mesh, const std::string& where,
+                                    const ReadAnnotationsOptions& options) {
+    if (const JsonValue* format = find_member(document, "format");
+        format != nullptr && format->IsString() && text_of(document, "format") != "ostraka-annotations")
+        fail(where, "/format", "the format is '" + text_of(document, "format") + "'",
+             "give an annotation file ('ostraka-annotations')");
+    AnnotationSet set;
+    if (is_prototype(document)) {
+        std::vector<std::string> notes;
+        const Json converted = convert_prototype(document, where, notes);
+        set = annotations_from_json(converted, mesh, where, options);
+        notes.insert(notes.end(), set.notes.begin(), set.notes.end());
+        set.notes = std::move(notes);
+        return set;
+    }
+    validate(document, "annotations", where);
+    if (const JsonValue* version = find_member(document, "version");
+        version != nullptr && (!version->IsInt() || version->GetInt() > 1))
+        fail(where, "/version", "the file is of a newer version than 1", "use a newer ostraka");
+    note_unknown(document, {"format", "version", "mesh", "unit", "class", "up", "annotations", "provenance"}, "", set.notes);
+    check_mesh(document, mesh, where, options.force_mesh, set.notes);
+    set.object_class = text_of(document, "class");
+    set.unit = text_of(document, "unit");
+    if (const JsonValue* up = find_member(document, "up")) set.up = vector_of(*up);
+    if (const JsonValue* provenance = find_member(document, "provenance"))
+        set.provenance.CopyFrom(*provenance, set.provenance.GetAllocator());
+    const JsonValue& list = document["annotations"];
+    for (rapidjson::SizeType i = 0; i < list.Size(); ++i)
+        set.annotations.push_back(annotation_of(list[i], mesh, where, "/annotations/" + to_string(i), set.notes));
+    check_annotations(set, mesh, where);
+    return set;
+}
+
+AnnotationSet read_annotations(const Path& file, const Mesh& mesh, const ReadAnnotationsOptions& options) {
+    return annotations_from_json(read_json(file), mesh, file.string(), options);
+}
+
+}  // namespace ostraka

@@ -1,0 +1,52 @@
+#include "edge_chains.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace ostraka {
+
+std::vector<std::vector<Index>> chain_edges(const std::vector<std::pair<Index, Index>>& edges) {
+    struct Link {
+        Index from, to;
+        std::size_t edge;
+        bool operator<(const Link& other) const { return std::tie(from, to) < std::tie(other.from, other.to); }
+    };
+    std::vector<Link> links;
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        links.push_back({edges[e].first, edges[e].second, e});
+        links.push_back({edges[e].second, edges[e].first, e});
+    }
+    std::sort(links.begin(), links.end());
+    std::vector<bool> used(edges.size(), false);
+    const auto around = [&](Index vertex) {
+        return std::equal_range(links.begin(), links.end(), Link{vertex, 0, 0},
+                                [](const Link& a, const Link& b) { return a.from < b.from; });
+    };
+    const auto unused = [&](Index vertex) {
+        const auto [first, last] = around(vertex);
+        return std::find_if(first, last, [&](const Link& link) { return !used[link.edge]; }) != last;
+    };
+    const auto degree = [&](Index vertex) {
+        const auto [first, last] = around(vertex);
+        return last - first;
+    };
+    std::vector<std::vector<Index>> chains;
+    const auto walk = [&](const Link& start) {
+        std::vector<Index> chain{start.from, start.to};
+        used[start.edge] = true;
+        while (chain.back() != chain.front() && degree(chain.back()) == 2 && unused(chain.back())) {
+            const auto [first, last] = around(chain.back());
+            const auto next = std::find_if(first, last, [&](const Link& link) { return !used[link.edge]; });
+            used[next->edge] = true;
+            chain.push_back(next->to);
+        }
+        chains.push_back(std::move(chain));
+    };
+    for (const Link& link : links)
+        if (!used[link.edge] && degree(link.from) != 2) walk(link);
+    for (const Link& link : links)
+        if (!used[link.edge]) walk(link);
+    return chains;
+}
+
+}  // namespace ostraka
