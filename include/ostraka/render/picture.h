@@ -1,0 +1,39 @@
+// Pictures: pixels in memory, PNG files.
+#pragma once
+
+#include "ostraka/core/file.h"
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ostraka {
+
+/// An opaque colour, sRGB, 0 to 255.
+struct Rgb {
+    std::uint8_t red = 0, green = 0, blue = 0;
+    friend bool operator==(const Rgb&, const Rgb&) = default;
+};
+
+/// Rows from the top, each pixel 0xAARRGGBB with the colour premultiplied by alpha.
+struct Picture {
+    int width = 0, height = 0;
+    std::vector<std::uint32_t> argb;
+
+    [[nodiscard]] std::uint32_t at(int column, int row) const {
+        return argb[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column)];
+    }
+};
+
+/// "#rrggbb", "white", "black" or "grey". Throws Error (usage) for anything else.
+Rgb parse_colour(const std::string& text);
+
+/// The picture as a PNG file's bytes. Throws Error (failure) if memory runs out.
+std::string png_bytes(const Picture& picture);
+/// Writes a PNG file atomically.
+void write_png(const Path& file, const Picture& picture);
+/// Reads a PNG file. Throws Error (input) if it is none.
+Picture read_png(const Path& file);
+
+}  // namespace ostraka

@@ -1,0 +1,80 @@
+// Pictures of meshes, without a window and without a graphics card.
+#pragma once
+
+#include "ostraka/core/options.h"
+#include "ostraka/render/colour_scale.h"
+#include "ostraka/render/scene.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace ostraka {
+
+struct RenderOptions {
+    std::string size = "1200x900";
+    std::string view = "30,20";
+    std::string views;
+    std::string up = "auto";
+    std::string projection = "orthographic";
+    double zoom = 1;
+    std::string fit = "all";
+    std::string shading = "smooth";
+    double crease = 40;
+    int ambient_occlusion = 0;
+    int samples = 8;
+    bool edges = false;
+    std::string background = "white";
+    bool transparent = false;
+    bool no_scale_bar = false;
+    bool no_legend = false;
+    std::optional<ColourScale> scale;  ///< colours of values, and the bar beside the picture
+
+    template <class Visitor>
+    void describe(Visitor& visit) {
+        visit("size", size, "width and height of the picture in pixels", Anything{});
+        visit("view", view, "front, back, left, right, top, bottom, iso, or azimuth,elevation in degrees", Anything{});
+        visit("views", views, "'six': front, right, back, left, top and bottom on one sheet", Choices{"", "six"});
+        visit("up", up, "the object's upward axis: x, y, z, -x, -y, -z or three numbers; auto: as the annotations say, else z",
+              Anything{});
+        visit("projection", projection, "orthographic or perspective", Choices{"orthographic", "perspective"});
+        visit("zoom", zoom, "magnification about the middle, 1 shows the whole object", Range{0.01, 1000});
+        visit("fit", fit, "several objects: all at one scale, or each as large as fits", Choices{"all", "each"});
+        visit("shading", shading, "smooth or flat", Choices{"smooth", "flat"});
+        visit("crease", crease, "smooth shading: edges sharper than this many degrees stay sharp", Range{0, 180});
+        visit("ambient-occlusion", ambient_occlusion, "rays a pixel that darken hollows, 0 for none", Range{0, 1024});
+        visit("samples", samples, "rays a pixel where colours change, 1 for none extra", Range{1, 64});
+        visit("edges", edges, "draw the edges of the mesh", Anything{});
+        visit("background", background, "#rrggbb, white, black or grey", Anything{});
+        visit("transparent", transparent, "no background", Anything{});
+        visit("no-scale-bar", no_scale_bar, "leave out the scale bar", Anything{});
+        visit("no-legend", no_legend, "leave out the legend and the colour bar", Anything{});
+    }
+};
+
+/// Where things stand in a picture, for tests and for those who draw on.
+struct Pane {
+    std::size_t scene = 0;
+    std::string view;
+    int left = 0, top = 0, width = 0, height = 0;  ///< pixels
+    double pixels_per_unit = 0;                    ///< scale, in perspective that of the object's middle
+    double bar_length = 0;                         ///< of the scale bar in the mesh's unit, 0 if there is none
+    double bar_pixels = 0;
+    std::size_t markers_shown = 0;  ///< markers that are in sight
+};
+
+struct Rendering {
+    Picture picture;
+    std::vector<Pane> panes;
+    double build_seconds = 0;  ///< spent on the search tree
+    double draw_seconds = 0;   ///< spent on the rest
+};
+
+/// Draws the scenes side by side: rays through a bounding volume hierarchy (Embree), the first hit shaded by a light near the
+/// viewer's head and a soft sky, more rays where neighbouring pixels differ; lines and markers where a ray to the viewer is
+/// free, with a tolerance of 0.2 % of the largest side of the box. The picture is the same to the bit for any number of threads.
+/// O((n + pixels) log n). Throws Error (usage) for bad options; Error (input) for an index out of range, a coordinate
+/// that is not finite or a list of the wrong length.
+Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options = {});
+
+}  // namespace ostraka

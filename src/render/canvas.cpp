@@ -1,0 +1,197 @@
+#include "canvas.h"
+
+#include "ostraka/core/error.h"
+
+#include <cstring>
+#include <numbers>
+
+namespace ostraka::detail {
+
+namespace {
+/// Length of the well-formed UTF-8 sequence at `place` (RFC 3629), 0 if there is none; `code` gets the character.
+std::size_t decode(const std::string& text, std::size_t place, char32_t& code) {
+    const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
+    const unsigned first = byte(place);
+    if (first < 0x80) {
+        code = first;
+        return 1;
+    }
+    const std::size_t length = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
+    if (first < 0xC2 || first > 0xF4 || place + length > text.size()) return 0;
+    code = first & (0xFFU >> (length + 1));
+    for (std::size_t i = 1; i < length; ++i) {
+        if ((byte(place + i) & 0xC0U) != 0x80) return 0;
+        code = code << 6 | (byte(place + i) & 0x3FU);
+    }
+    const char32_t smallest = length == 4 ? 0x10000 : length == 3 ? 0x800 : 0x80;
+    if (code < smallest || code > 0x10FFFF || (code >= 0xD800 && code <= 0xDFFF)) return 0;
+    return length;
+}
+
+bool invisible(char32_t code) {
+    return code < 0x20 || (code >= 0x7F && code < 0xA0) || (code >= 0x200B && code <= 0x200F) ||
+           (code >= 0x2028 && code <= 0x202E) || (code >= 0x2060 && code <= 0x206F) || code == 0xFEFF;
+}
+}  // namespace
+
+std::string clean_text(const std::string& text) {
+    std::string clean;
+    for (std::size_t i = 0; i < text.size();) {
+        char32_t code = 0;
+        const std::size_t length = decode(text, i, code);
+        if (length == 0) {
+            clean += "\xEF\xBF\xBD";
+            ++i;
+            continue;
+        }
+        if (code == '\t' || code == '\n') {
+            clean += ' ';
+        } else if (!invisible(code)) {
+            clean.append(text, i, length);
+        }
+        i += length;
+    }
+    return clean;
+}
+
+Canvas::Canvas(int width, int height)
+    : surface_(cairo_image_surface_create(CAIRO_FORMAT_ARGB32, width, height), &cairo_surface_destroy),
+      context_(cairo_create(surface_.get()), &cairo_destroy) {
+    check();
+    cairo_t* context = context_.get();
+    cairo_select_font_face(context, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+    cairo_font_options_t* font = cairo_font_options_create();
+    cairo_font_options_set_antialias(font, CAIRO_ANTIALIAS_GRAY);
+    cairo_font_options_set_hint_style(font, CAIRO_HINT_STYLE_NONE);
+    cairo_font_options_set_hint_metrics(font, CAIRO_HINT_METRICS_OFF);
+    cairo_set_font_options(context, font);
+    cairo_font_options_destroy(font);
+    cairo_set_line_join(context, CAIRO_LINE_JOIN_ROUND);
+    cairo_set_line_cap(context, CAIRO_LINE_CAP_ROUND);
+}
+
+void Canvas::check() const {
+    auto status = cairo_surface_status(surface_.get());
+    if (status == CAIRO_STATUS_SUCCESS) status = cairo_status(context_.get());
+    if (status == CAIRO_STATUS_NO_MEMORY) throw std::bad_alloc();
+    if (status != CAIRO_STATUS_SUCCESS)
+        throw Error(ErrorKind::failure, "picture", std::string("drawing failed: ") + cairo_status_to_string(status));
+}
+
+void Canvas::colour(const Rgb& value) {
+    cairo_set_source_rgb(context_.get(), value.red / 255.0, value.green / 255.0, value.blue / 255.0);
+}
+
+void Canvas::fill(const Rgb& value) {
+    colour(value);
+    cairo_paint(context_.get());
+}
+
+void Canvas::paint(const std::vector<std::uint32_t>& pixels, int left, int top, int width, int height) {
+    const std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)> image(
+        cairo_image_surface_create(CAIRO_FORMAT_ARGB32, width, height), &cairo_surface_destroy);
+    if (cairo_surface_status(image.get()) != CAIRO_STATUS_SUCCESS) throw std::bad_alloc();
+    unsigned char* rows = cairo_image_surface_get_data(image.get());
+    const auto stride = static_cast<std::size_t>(cairo_image_surface_get_stride(image.get()));
+    const auto columns = static_cast<std::size_t>(width);
+    for (std::size_t row = 0; row < static_cast<std::size_t>(height); ++row)
+        std::memcpy(rows + row * stride, pixels.data() + row * columns, columns * sizeof(std::uint32_t));
+    cairo_surface_mark_dirty(image.get());
+    cairo_set_source_surface(context_.get(), image.get(), left, top);
+    cairo_paint(context_.get());
+}
+
+void Canvas::clip(double left, double top, double width, double height) {
+    cairo_save(context_.get());
+    cairo_rectangle(context_.get(), left, top, width, height);
+    cairo_clip(context_.get());
+}
+
+void Canvas::unclip() { cairo_restore(context_.get()); }
+
+void Canvas::polyline(const std::vector<Place>& places, const Rgb& value, double width) {
+    if (places.empty()) return;
+    cairo_move_to(context_.get(), places.front().x, places.front().y);
+    for (const Place& place : places) cairo_line_to(context_.get(), place.x, place.y);
+    colour(value);
+    cairo_set_line_width(context_.get(), width);
+    cairo_stroke(context_.get());
+}
+
+void Canvas::disc(Place centre, double radius, const Rgb& value) {
+    cairo_new_path(context_.get());
+    cairo_arc(context_.get(), centre.x, centre.y, radius, 0, 2 * std::numbers::pi);
+    colour(value);
+    cairo_fill(context_.get());
+}
+
+void Canvas::rectangle(double left, double top, double width, double height, const Rgb& value) {
+    cairo_rectangle(context_.get(), left, top, width, height);
+    colour(value);
+    cairo_fill(context_.get());
+}
+
+double Canvas::text_width(const std::string& words, double size) {
+    cairo_text_extents_t extents;
+    cairo_set_font_size(context_.get(), size);
+    cairo_text_extents(context_.get(), words.c_str(), &extents);
+    return extents.x_advance;
+}
+
+void Canvas::text(const std::string& words, double x, double y, double size, const Rgb& value, Align align, const Rgb* halo) {
+    const double width = text_width(words, size);
+    const double start = align == Align::left ? x : align == Align::centre ? x - width / 2 : x - width;
+    if (halo != nullptr) {
+        cairo_move_to(context_.get(), start, y);
+        cairo_text_path(context_.get(), words.c_str());
+        colour(*halo);
+        cairo_set_line_width(context_.get(), size / 4);
+        cairo_stroke(context_.get());
+    }
+    cairo_move_to(context_.get(), start, y);
+    colour(value);
+    cairo_show_text(context_.get(), words.c_str());
+}
+
+void Canvas::upward_text(const std::string& words, double x, double y, double size, const Rgb& value) {
+    cairo_save(context_.get());
+    cairo_translate(context_.get(), x, y);
+    cairo_rotate(context_.get(), -std::numbers::pi / 2);
+    text(words, 0, 0, size, value, Align::centre);
+    cairo_restore(context_.get());
+}
+
+std::string Canvas::elide(const std::string& words, double size, double width) {
+    // Bounded, so that a text of megabytes costs no more than one of a line.
+    std::vector<std::size_t> ends;
+    for (std::size_t i = 0; i < words.size() && ends.size() < 500;) {
+        ++i;
+        while (i < words.size() && (static_cast<unsigned char>(words[i]) & 0xC0U) == 0x80) ++i;
+        ends.push_back(i);
+    }
+    if (ends.empty() || (ends.back() == words.size() && text_width(words, size) <= width)) return words;
+    std::size_t low = 0, high = ends.size();  // characters kept
+    const auto shortened = [&](std::size_t count) { return words.substr(0, count == 0 ? 0 : ends[count - 1]) + "\xE2\x80\xA6"; };
+    while (low + 1 < high) {
+        const std::size_t middle = (low + high) / 2;
+        (text_width(shortened(middle), size) <= width ? low : high) = middle;
+    }
+    return shortened(low);
+}
+
+Picture Canvas::picture() {
+    check();
+    cairo_surface_flush(surface_.get());
+    Picture result;
+    result.width = cairo_image_surface_get_width(surface_.get());
+    result.height = cairo_image_surface_get_height(surface_.get());
+    const auto columns = static_cast<std::size_t>(result.width), rows = static_cast<std::size_t>(result.height);
+    result.argb.resize(columns * rows);
+    const unsigned char* data = cairo_image_surface_get_data(surface_.get());
+    const auto stride = static_cast<std::size_t>(cairo_image_surface_get_stride(surface_.get()));
+    for (std::size_t row = 0; row < rows; ++row)
+        std::memcpy(result.argb.data() + row * columns, data + row * stride, columns * sizeof(std::uint32_t));
+    return result;
+}
+
+}  // namespace ostraka::detail

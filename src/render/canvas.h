@@ -1,0 +1,56 @@
+// Drawing and text, through cairo.
+#pragma once
+
+#include "ostraka/render/picture.h"
+
+#include <cairo.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace ostraka::detail {
+
+/// Text fit for drawing: control characters and marks that turn the writing direction are left out, bytes that are not UTF-8
+/// become U+FFFD.
+std::string clean_text(const std::string& text);
+
+class Canvas {
+public:
+    Canvas(int width, int height);
+
+    void fill(const Rgb& colour);
+    /// Lays pixels (0xAARRGGBB, premultiplied) over the canvas.
+    void paint(const std::vector<std::uint32_t>& pixels, int left, int top, int width, int height);
+
+    void clip(double left, double top, double width, double height);
+    void unclip();
+
+    struct Place {
+        double x, y;
+    };
+    void polyline(const std::vector<Place>& places, const Rgb& colour, double width);
+    void disc(Place centre, double radius, const Rgb& colour);
+    void rectangle(double left, double top, double width, double height, const Rgb& colour);
+
+    enum class Align { left, centre, right };
+    /// Text on the base line `y`; with a `halo` of that colour around the letters if given.
+    void text(const std::string& words, double x, double y, double size, const Rgb& colour, Align align = Align::left,
+              const Rgb* halo = nullptr);
+    /// Upward text, centred at (x, y).
+    void upward_text(const std::string& words, double x, double y, double size, const Rgb& colour);
+    double text_width(const std::string& words, double size);
+    /// The text, or as much of it as fits into `width` with an ellipsis behind.
+    std::string elide(const std::string& words, double size, double width);
+
+    /// The finished picture. Throws Error (failure) if cairo failed at some step.
+    Picture picture();
+
+private:
+    void check() const;
+    void colour(const Rgb& value);
+    std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)> surface_;
+    std::unique_ptr<cairo_t, decltype(&cairo_destroy)> context_;
+};
+
+}  // namespace ostraka::detail

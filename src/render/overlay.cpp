@@ -1,0 +1,196 @@
+#include "overlay.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ostraka::detail {
+
+namespace {
+/// How far in front of the surface a ray to the viewer starts, in units of half the box's largest side: what lies on the surface
+/// is then not hidden by the surface itself.
+constexpr double sight_tolerance = 4e-3;
+
+bool in_sight(const Surface& surface, const Camera& camera, const Eigen::Vector3d& point) {
+    return !surface.blocked(point, camera.to_viewer(point), sight_tolerance, camera.distance_to_viewer(point));
+}
+
+Rgb darker(const Rgb& colour) {
+    const auto part = [](std::uint8_t c) { return static_cast<std::uint8_t>(c * 2 / 5); };
+    return {part(colour.red), part(colour.green), part(colour.blue)};
+}
+
+struct Stroke {
+    std::vector<Canvas::Place> places;
+    const SceneLine* line;
+};
+
+/// A point of a line about every pixel and a half.
+struct Step {
+    Eigen::Vector3d point;
+    Canvas::Place place;
+    bool shown = false;
+};
+
+std::vector<Step> steps_along(const SceneLine& line, const Surface& surface, const Camera& camera) {
+    constexpr double spacing = 1.5;
+    constexpr double most = 4096;  // of one segment: enough for any that lies within the picture
+    std::vector<Step> steps;
+    const auto add = [&](const Eigen::Vector3d& point) {
+        Step step{point, {}, false};
+        if (camera.project(point, step.place.x, step.place.y)) steps.push_back(step);
+    };
+    for (std::size_t i = 0; i < line.points.size(); ++i) {
+        for (const double c : line.points[i])
+            if (!std::isfinite(c)) fail_input("picture", "a line has a coordinate that is not finite");
+        const Eigen::Vector3d point = surface.to_local(line.points[i]);
+        if (i > 0) {
+            const Eigen::Vector3d before = surface.to_local(line.points[i - 1]);
+            double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+            double count = most;
+            if (camera.project(before, x0, y0) && camera.project(point, x1, y1))
+                count = std::clamp(std::ceil(std::hypot(x1 - x0, y1 - y0) / spacing), 1.0, most);
+            for (double k = 1; k < count; ++k) add(before + (k / count) * (point - before));
+        }
+        add(point);
+    }
+    return steps;
+}
+}  // namespace
+
+void draw_lines(Canvas& canvas, const Scene& scene, const Surface& surface, const Camera& camera, double size) {
+    std::vector<Stroke> strokes;
+    for (const SceneLine& line : scene.lines) {
+        auto steps = steps_along(line, surface, camera);
+        parallel_for(steps.size(), [&](std::size_t i) { steps[i].shown = in_sight(surface, camera, steps[i].point); });
+        bool open = false;
+        for (const Step& step : steps) {
+            if (step.shown && !open) strokes.push_back({{}, &line});
+            open = step.shown;
+            if (open) strokes.back().places.push_back(step.place);
+        }
+    }
+    for (const Stroke& stroke : strokes)
+        if (stroke.line->cased) canvas.polyline(stroke.places, darker(stroke.line->colour), (stroke.line->width + 2) * size);
+    for (const Stroke& stroke : strokes) canvas.polyline(stroke.places, stroke.line->colour, stroke.line->width * size);
+}
+
+std::size_t draw_markers(Canvas& canvas, const Scene& scene, const Surface& surface, const Camera& camera, const Style& style) {
+    std::size_t shown = 0;
+    for (const SceneMarker& marker : scene.markers) {
+        for (const double c : marker.point)
+            if (!std::isfinite(c)) fail_input("picture", "a marker has a coordinate that is not finite");
+        const Eigen::Vector3d point = surface.to_local(marker.point);
+        Canvas::Place place{};
+        if (!camera.project(point, place.x, place.y) || !in_sight(surface, camera, point)) continue;
+        ++shown;
+        canvas.disc(place, (marker.radius + 1.5) * style.size, darker(marker.colour));
+        canvas.disc(place, (marker.radius + 0.5) * style.size, {255, 255, 255});
+        canvas.disc(place, (marker.radius - 1) * style.size, marker.colour);
+        if (!marker.label.empty())
+            canvas.text(canvas.elide(clean_text(marker.label), 14 * style.size, 240 * style.size),
+                        place.x + (marker.radius + 5) * style.size, place.y + 5 * style.size, 14 * style.size, style.ink,
+                        Canvas::Align::left, &style.background);
+    }
+    return shown;
+}
+
+void draw_scale_bar(Canvas& canvas, double x, double y, double pixels, const std::string& text, const Style& style) {
+    const double thick = std::max(2.0, 3 * style.size), cap = 4 * style.size;
+    canvas.rectangle(x, y - thick, pixels, thick, style.ink);
+    canvas.rectangle(x, y - thick - cap, std::max(1.0, thick / 2), thick + cap, style.ink);
+    canvas.rectangle(x + pixels - std::max(1.0, thick / 2), y - thick - cap, std::max(1.0, thick / 2), thick + cap, style.ink);
+    canvas.text(text, x + pixels / 2, y - thick - cap - 4 * style.size, 14 * style.size, style.ink, Canvas::Align::centre);
+}
+
+SideColumn::SideColumn(Canvas& canvas, std::vector<LegendEntry> legend, std::optional<ColourScale> scale, double width_limit,
+                       double height, const Style& style)
+    : canvas_(canvas), legend_(std::move(legend)), scale_(std::move(scale)), style_(style), height_(height) {
+    const double size = style.size;
+    font_ = 15 * size;
+    if (!legend_.empty()) {
+        const double room = scale_ ? height * 0.45 : height;
+        const double wanted = 1.65 * font_ * static_cast<double>(legend_.size());
+        if (wanted > room) font_ = std::max(0.62 * font_, font_ * room / wanted);
+        const auto rows = static_cast<std::size_t>(std::max(1.0, room / (1.65 * font_)));
+        if (legend_.size() > rows) {
+            left_out_ = legend_.size() - rows + 1;
+            legend_.resize(rows - 1);
+        }
+        for (LegendEntry& entry : legend_) {
+            entry.text = canvas.elide(clean_text(entry.text), font_, width_limit - 3.2 * font_);
+            width_ = std::max(width_, canvas.text_width(entry.text, font_) + 3.2 * font_);
+        }
+        width_ = std::max(width_, 9 * font_);
+        legend_height_ = 1.65 * font_ * static_cast<double>(legend_.size() + (left_out_ > 0 ? 1 : 0));
+    }
+    if (scale_) {
+        ticks_ = ticks(*scale_, 7);
+        const double step = ticks_.size() > 1 ? ticks_[1] - ticks_[0] : 0;
+        for (const double tick : ticks_) {
+            tick_texts_.push_back(tick_text(tick, step));
+            tick_width_ = std::max(tick_width_, canvas.text_width(tick_texts_.back(), 14 * size));
+        }
+        width_ = std::max(width_, (20 + 10 + 12 + 22 + 12) * size + tick_width_);
+    }
+}
+
+void SideColumn::draw(double left, double top) const {
+    if (!legend_.empty() || left_out_ > 0) draw_legend(left, top);
+    if (scale_) draw_colour_bar(left, top + legend_height_);
+}
+
+void SideColumn::draw_legend(double left, double top) const {
+    const double row = 1.65 * font_, box = 1.05 * font_;
+    double y = top;
+    for (const LegendEntry& entry : legend_) {
+        const double middle = y + row / 2;
+        switch (entry.mark) {
+            case LegendMark::area:
+                canvas_.rectangle(left, middle - box / 2, box, box, darker(entry.colour));
+                canvas_.rectangle(left + style_.size, middle - box / 2 + style_.size, box - 2 * style_.size,
+                                  box - 2 * style_.size, entry.colour);
+                break;
+            case LegendMark::line:
+                canvas_.polyline({{left + 2, middle}, {left + box - 2, middle}}, darker(entry.colour), 0.34 * font_);
+                canvas_.polyline({{left + 2, middle}, {left + box - 2, middle}}, entry.colour, 0.22 * font_);
+                break;
+            case LegendMark::point:
+                canvas_.disc({left + box / 2, middle}, 0.42 * font_, darker(entry.colour));
+                canvas_.disc({left + box / 2, middle}, 0.34 * font_, entry.colour);
+                break;
+        }
+        canvas_.text(entry.text, left + 1.6 * font_, middle + 0.36 * font_, font_, style_.ink);
+        y += row;
+    }
+    if (left_out_ > 0)
+        canvas_.text("and " + std::to_string(left_out_) + " more", left + 1.6 * font_, y + row / 2 + 0.36 * font_, font_,
+                     style_.ink);
+}
+
+void SideColumn::draw_colour_bar(double left, double top) const {
+    const double size = style_.size, room = height_ - legend_height_;
+    const double bar_height = std::max(40 * size, std::min(0.62 * room, 460 * size)), bar_width = 20 * size;
+    const double bar_top = top + std::max(0.0, (room - bar_height) / 2);
+    const int bands = static_cast<int>(bar_height);
+    for (int i = 0; i < bands; ++i) {
+        const double share = 1 - (i + 0.5) / bands;
+        const double value = scale_->minimum * (1 - share) + scale_->maximum * share;
+        canvas_.rectangle(left, bar_top + i, bar_width, 1.5, colour_of(*scale_, value));
+    }
+    const double width = scale_->maximum / 2 - scale_->minimum / 2;
+    for (std::size_t i = 0; i < ticks_.size(); ++i) {
+        const double share = width > 0 ? (ticks_[i] / 2 - scale_->minimum / 2) / width : 0.5;
+        const double y = bar_top + (1 - share) * bar_height;
+        canvas_.rectangle(left + bar_width, y - 0.5, 5 * size, std::max(1.0, size), style_.ink);
+        canvas_.text(tick_texts_[i], left + bar_width + 10 * size + tick_width_, y + 5 * size, 14 * size, style_.ink,
+                     Canvas::Align::right);
+    }
+    const std::string label = canvas_.elide(clean_text(scale_->label), 15 * size, std::max(60.0, room - 20 * size));
+    canvas_.upward_text(label, left + bar_width + 10 * size + tick_width_ + 24 * size, bar_top + bar_height / 2, 15 * size,
+                        style_.ink);
+}
+
+}  // namespace ostraka::detail

@@ -1,0 +1,258 @@
+#include "ostraka/render/render.h"
+
+#include "ostraka/core/error.h"
+#include "overlay.h"
+#include "shading.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numbers>
+
+namespace ostraka {
+
+namespace {
+using detail::Camera;
+using detail::Canvas;
+using detail::Surface;
+
+struct Size {
+    int width, height;
+};
+
+Size parse_size(const std::string& text) {
+    constexpr int least = 16, most = 16384;
+    constexpr double most_pixels = 1 << 26;
+    Size size{};
+    char cross = 0, rest = 0;
+    const bool good =
+        text.size() < 16 && std::sscanf(text.c_str(), "%d%c%d%c", &size.width, &cross, &size.height, &rest) == 3 && cross == 'x';
+    if (!good || size.width < least || size.height < least || size.width > most || size.height > most ||
+        double(size.width) * size.height > most_pixels)
+        fail_usage("size '" + text + "' is not possible",
+                   "use WIDTHxHEIGHT such as 1200x900, each 16 to 16384, at most 67 million pixels");
+    return size;
+}
+
+/// Where a scene's view goes and through which camera.
+struct Plan {
+    Pane pane;
+    View view;
+    std::string caption;
+    Camera camera;
+};
+
+Eigen::Vector3d vector(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
+
+/// Tangent of half the angle under which the smaller side of a pane is seen in perspective: 30 degrees in all.
+const double half_view = std::tan(15 * std::numbers::pi / 180);
+
+/// Places the camera so that the whole surface fills the pane but for a margin.
+Camera fit_camera(const Surface& surface, const View& view, const std::array<double, 3>& up, const Pane& pane, bool perspective) {
+    const ViewAxes axes = view_axes(view, up);
+    Camera camera;
+    camera.right = vector(axes.right);
+    camera.up = vector(axes.up);
+    camera.toward = vector(axes.toward);
+    camera.middle_x = pane.width / 2.0;
+    camera.middle_y = pane.height / 2.0;
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    Eigen::Array3d low(infinity, infinity, infinity), high(-infinity, -infinity, -infinity);
+    for (const Index v : surface.used_points()) {
+        const Eigen::Vector3d p = surface.point(v);
+        const Eigen::Array3d local(p.dot(camera.right), p.dot(camera.up), p.dot(camera.toward));
+        low = low.min(local);
+        high = high.max(local);
+    }
+    if (surface.used_points().empty()) {
+        low = -1;
+        high = 1;
+    }
+    const Eigen::Array3d middle = (low + high) / 2;
+    camera.centre = middle[0] * camera.right + middle[1] * camera.up + middle[2] * camera.toward;
+    constexpr double margin = 0.92;   // share of the pane that the object may fill
+    constexpr double smallest = 0.1;  // what is seen end on is not blown up further
+    const double width = margin * pane.width, height = margin * pane.height;
+    if (!perspective) {
+        camera.scale = std::min(width / std::max(high[0] - low[0], smallest), height / std::max(high[1] - low[1], smallest));
+        return camera;
+    }
+    const double focal = std::min(pane.width, pane.height) / 2.0 / half_view;
+    double distance = (high[2] - low[2]) / 2 + smallest;
+    for (const Index v : surface.used_points()) {
+        const Eigen::Vector3d p = surface.point(v) - camera.centre;
+        const double aside = std::max(std::abs(p.dot(camera.right)) / (width / 2), std::abs(p.dot(camera.up)) / (height / 2));
+        distance = std::max(distance, p.dot(camera.toward) + aside * focal);
+    }
+    camera.distance = distance;
+    camera.scale = focal / distance;
+    return camera;
+}
+
+/// One scale for the panes of one scene, or of all scenes.
+void share_scale(std::vector<Plan>& plans, const std::vector<std::unique_ptr<Surface>>& surfaces, bool all) {
+    double largest = 0;
+    for (const auto& surface : surfaces) largest = std::max(largest, surface->unit_length());
+    const auto relative = [&](const Plan& plan) { return surfaces[plan.pane.scene]->unit_length() / largest; };
+    for (std::size_t scene = 0; scene < surfaces.size(); ++scene) {
+        double least = std::numeric_limits<double>::infinity();
+        for (const Plan& plan : plans)
+            if (all || plan.pane.scene == scene) least = std::min(least, plan.camera.scale / relative(plan));
+        for (Plan& plan : plans) {
+            if (plan.pane.scene != scene) continue;
+            const double scale = least * relative(plan);
+            if (plan.camera.distance > 0) plan.camera.distance *= plan.camera.scale / scale;
+            plan.camera.scale = scale;
+        }
+    }
+}
+
+std::vector<LegendEntry> merged_legend(const std::vector<Scene>& scenes) {
+    std::vector<LegendEntry> list;
+    for (const Scene& scene : scenes)
+        for (const LegendEntry& entry : scene.legend) {
+            const auto same = [&](const LegendEntry& other) {
+                return other.text == entry.text && other.colour == entry.colour && other.mark == entry.mark;
+            };
+            if (std::none_of(list.begin(), list.end(), same)) list.push_back(entry);
+        }
+    return list;
+}
+
+std::size_t column_count(std::size_t panes, bool six, std::size_t scenes) {
+    if (six) return scenes == 1 ? 3 : 6;
+    if (panes <= 3) return panes;
+    return static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(panes))));
+}
+
+std::vector<Plan> plan_panes(const std::vector<Scene>& scenes, const RenderOptions& options) {
+    const bool six = options.views == "six";
+    const std::vector<View> views = six ? standard_views() : std::vector<View>{parse_view(options.view)};
+    std::vector<Plan> plans;
+    for (std::size_t scene = 0; scene < scenes.size(); ++scene)
+        for (const View& view : views) {
+            Plan plan;
+            plan.view = view;
+            plan.pane.scene = scene;
+            plan.pane.view = view.name;
+            const std::string title = detail::clean_text(scenes[scene].title);
+            plan.caption = !six ? title : scenes.size() == 1 || title.empty() ? view.name : title + ", " + view.name;
+            plans.push_back(plan);
+        }
+    return plans;
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void add_scale_bar(Canvas& canvas, Plan& plan, const Scene& scene, double unit_length, double strip, const detail::Style& style) {
+    Pane& pane = plan.pane;
+    const double room = std::min(170 * style.size, 0.5 * pane.width);
+    pane.bar_length = round_length(room / plan.camera.scale * unit_length);
+    pane.bar_pixels = pane.bar_length / unit_length * plan.camera.scale;
+    if (!(pane.bar_length > 0) || !(pane.bar_pixels >= 1)) {
+        pane.bar_length = pane.bar_pixels = 0;
+        return;
+    }
+    char number[32];
+    std::snprintf(number, sizeof number, "%.6g", pane.bar_length);
+    const std::string unit = detail::clean_text(scene.unit);
+    const std::string text =
+        (plan.camera.distance > 0 ? "\xE2\x89\x88 " : "") + std::string(number) + (unit.empty() ? "" : " " + unit);
+    detail::draw_scale_bar(canvas, pane.left + 14 * style.size, pane.top + pane.height + strip - 8 * style.size, pane.bar_pixels,
+                           text, style);
+}
+}  // namespace
+
+Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options) {
+    check_options(options, "render");
+    const Size size = parse_size(options.size);
+    const auto up = parse_up(options.up);
+    detail::Style style;
+    style.background = parse_colour(options.background);
+    std::vector<Plan> plans = plan_panes(scenes, options);
+    if (scenes.empty() || scenes.size() > 64) fail_usage("a picture shows 1 to 64 objects", "make several pictures");
+    style.size = std::clamp(std::min(size.width, size.height) / 900.0, 0.4, 8.0);
+    if (!options.transparent && style.background.red * 0.3 + style.background.green * 0.59 + style.background.blue * 0.11 < 110)
+        style.ink = {235, 235, 235};
+
+    Rendering rendering;
+    const auto start = std::chrono::steady_clock::now();
+    std::vector<std::unique_ptr<Surface>> surfaces;
+    for (const Scene& scene : scenes) surfaces.push_back(std::make_unique<Surface>(scene, options.shading == "smooth"));
+    rendering.build_seconds = seconds_since(start);
+
+    // The sheet: panes in columns and rows, each with a strip for a scale bar and a caption; a column at the right.
+    const auto drawing_start = std::chrono::steady_clock::now();
+    Canvas canvas(size.width, size.height);
+    if (!options.transparent) canvas.fill(style.background);
+    const double edge = 18 * style.size;
+    bool any_values = false, any_caption = false;
+    for (const Scene& scene : scenes) any_values = any_values || !scene.vertex_values.empty() || !scene.face_values.empty();
+    for (const Plan& plan : plans) any_caption = any_caption || !plan.caption.empty();
+    const bool show = !options.no_legend;
+    const detail::SideColumn side(canvas, show ? merged_legend(scenes) : std::vector<LegendEntry>{},
+                                  show && any_values ? options.scale : std::nullopt, 0.3 * size.width, size.height - 2 * edge,
+                                  style);
+    const double side_left = size.width - side.width() - (side.width() > 0 ? edge / 2 : 0);
+    const bool six = options.views == "six";
+    const std::size_t columns = column_count(plans.size(), six, scenes.size());
+    const std::size_t rows = (plans.size() + columns - 1) / columns;
+    const double strip = options.no_scale_bar ? 0 : 44 * style.size, caption = any_caption ? 30 * style.size : 0;
+    const double cell_width = side_left / static_cast<double>(columns), cell_height = size.height / static_cast<double>(rows);
+    for (std::size_t i = 0; i < plans.size(); ++i) {
+        Pane& pane = plans[i].pane;
+        pane.left = static_cast<int>(cell_width * static_cast<double>(i % columns));
+        pane.top = static_cast<int>(cell_height * static_cast<double>(i / columns));
+        pane.width = std::max(1, static_cast<int>(cell_width));
+        pane.height = std::max(1, static_cast<int>(cell_height - strip - caption));
+        plans[i].camera = fit_camera(*surfaces[pane.scene], plans[i].view, up, pane, options.projection == "perspective");
+    }
+    share_scale(plans, surfaces, options.fit == "all");
+
+    detail::Shading shading;
+    shading.smooth = options.shading == "smooth";
+    shading.crease_cosine = std::cos(options.crease * std::numbers::pi / 180);
+    shading.ambient_occlusion = options.ambient_occlusion;
+    shading.samples = options.samples;
+    shading.edges = options.edges;
+    shading.edge_width = std::max(0.6, 0.9 * style.size);
+    if (options.scale) shading.scale = *options.scale;
+    const double drawn_size = plans.size() > 2 ? 0.75 * style.size : style.size;
+    detail::Style small = style;
+    small.size = drawn_size;
+    const bool every_bar = options.fit == "each" && scenes.size() > 1;
+    for (Plan& plan : plans) {
+        Pane& pane = plan.pane;
+        const Scene& scene = scenes[pane.scene];
+        const Surface& surface = *surfaces[pane.scene];
+        plan.camera.scale *= options.zoom;
+        pane.pixels_per_unit = plan.camera.scale / surface.unit_length();
+        canvas.paint(detail::shade(scene, surface, plan.camera, pane.width, pane.height, shading), pane.left, pane.top,
+                     pane.width, pane.height);
+        Camera sheet_camera = plan.camera;
+        sheet_camera.middle_x += pane.left;
+        sheet_camera.middle_y += pane.top;
+        canvas.clip(pane.left, pane.top, pane.width, pane.height);
+        detail::draw_lines(canvas, scene, surface, sheet_camera, drawn_size);
+        pane.markers_shown = detail::draw_markers(canvas, scene, surface, sheet_camera, small);
+        canvas.unclip();
+        const bool first = &plan == &plans.front();
+        const bool first_of_scene = first || (&plan)[-1].pane.scene != pane.scene;
+        if (!options.no_scale_bar && (first || (every_bar && first_of_scene)))
+            add_scale_bar(canvas, plan, scene, surface.unit_length(), strip, style);
+        if (!plan.caption.empty())
+            canvas.text(canvas.elide(plan.caption, 17 * style.size, 0.94 * pane.width), pane.left + pane.width / 2.0,
+                        pane.top + pane.height + strip + 19 * style.size, 17 * style.size, style.ink, Canvas::Align::centre);
+    }
+    side.draw(side_left, edge);
+    rendering.picture = canvas.picture();
+    for (const Plan& plan : plans) rendering.panes.push_back(plan.pane);
+    rendering.draw_seconds = seconds_since(drawing_start);
+    return rendering;
+}
+
+}  // namespace ostraka

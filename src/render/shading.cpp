@@ -1,0 +1,217 @@
+#include "shading.h"
+
+#include "ostraka/core/parallel.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace ostraka::detail {
+
+namespace {
+/// Light adds up in linear intensities; files and screens hold them gamma-coded (sRGB, IEC 61966-2-1).
+double linear(double coded) { return coded <= 0.04045 ? coded / 12.92 : std::pow((coded + 0.055) / 1.055, 2.4); }
+double coded(double intensity) {
+    return intensity <= 0.0031308 ? 12.92 * intensity : 1.055 * std::pow(intensity, 1 / 2.4) - 0.055;
+}
+
+struct Tables {
+    std::array<float, 256> linear_of;
+    std::array<std::uint8_t, 4096> code_of;  ///< fine enough that code_of(linear_of(c)) = c
+    Tables() {
+        for (std::size_t i = 0; i < 256; ++i) linear_of[i] = static_cast<float>(linear(static_cast<double>(i) / 255));
+        for (std::size_t i = 0; i < 4096; ++i)
+            code_of[i] = static_cast<std::uint8_t>(std::lround(255 * coded(static_cast<double>(i) / 4095)));
+    }
+};
+const Tables& tables() {
+    static const Tables instance;
+    return instance;
+}
+
+/// Linear red, green, blue, multiplied by the coverage.
+using Light = Eigen::Array4f;
+
+Light to_light(const Rgb& colour) {
+    const auto& t = tables();
+    return {t.linear_of[colour.red], t.linear_of[colour.green], t.linear_of[colour.blue], 1};
+}
+
+std::uint32_t to_pixel(const Light& light) {
+    const float coverage = std::min(light[3], 1.0F);
+    if (!(coverage > 0)) return 0;
+    const auto alpha = static_cast<std::uint32_t>(std::lround(255 * coverage));
+    const auto channel = [&](int i) {
+        const float intensity = std::clamp(light[i] / light[3], 0.0F, 1.0F);
+        const std::uint32_t code = tables().code_of[static_cast<std::size_t>(std::lround(4095 * intensity))];
+        return (code * alpha + 127) / 255;
+    };
+    return alpha << 24 | channel(0) << 16 | channel(1) << 8 | channel(2);
+}
+
+/// Differs enough to be seen; roots stand for the gamma code.
+bool differs(const Light& a, const Light& b) {
+    if (a[3] != b[3]) return true;
+    const Light roots = (a.sqrt() - b.sqrt()).abs();
+    return roots.head<3>().maxCoeff() > 0.06F;
+}
+
+/// Directions spread evenly over the sphere (a spherical Fibonacci lattice).
+std::vector<Eigen::Vector3d> sphere_directions(int count) {
+    std::vector<Eigen::Vector3d> list;
+    for (int i = 0; i < count; ++i) {
+        const double z = 1 - (2 * i + 1.0) / count;
+        const double radius = std::sqrt(std::max(0.0, 1 - z * z));
+        const double angle = 2 * std::numbers::pi * std::fmod(i * 0.6180339887498949, 1.0);
+        list.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);
+    }
+    return list;
+}
+
+class Shader {
+public:
+    Shader(const Scene& scene, const Surface& surface, const Camera& camera, const Shading& shading)
+        : scene_(scene),
+          surface_(surface),
+          camera_(camera),
+          shading_(shading),
+          sky_(sphere_directions(2 * shading.ambient_occlusion)) {
+        key_ = (-0.55 * camera.right + 0.6 * camera.up + 0.75 * camera.toward).normalized();
+    }
+
+    [[nodiscard]] Light sample(double x, double y) const {
+        const Camera::Ray ray = camera_.ray(x, y);
+        Surface::Hit hit;
+        if (!surface_.first_hit(ray.origin, ray.direction, hit)) return Light::Zero();
+        const Eigen::Vector3d viewer = -ray.direction;
+        Eigen::Vector3d flat = surface_.face_normal(hit.triangle);
+        Eigen::Vector3d normal = shading_.smooth ? surface_.smooth_normal(hit, shading_.crease_cosine) : flat;
+        const bool inside = flat.dot(viewer) < 0;
+        if (inside) {
+            flat = -flat;
+            normal = -normal;
+        }
+        Light light = to_light(surface_colour(hit));
+        if (inside) light *= Light(0.42F, 0.46F, 0.52F, 1);
+        double strength = brightness(normal, viewer);
+        if (!sky_.empty()) strength *= 0.25 + 0.75 * openness(hit.point, flat);
+        if (strength <= 1) {
+            light.head<3>() *= static_cast<float>(strength);
+        } else {  // a soft highlight
+            light.head<3>() += (1 - light.head<3>()) * static_cast<float>(0.35 * (strength - 1));
+        }
+        if (shading_.edges) light.head<3>() *= static_cast<float>(1 - 0.75 * edge_share(hit, x, y));
+        return light;
+    }
+
+private:
+    /// 1 for a surface that faces the viewer, so that it is seen in its own colour.
+    [[nodiscard]] double brightness(const Eigen::Vector3d& normal, const Eigen::Vector3d& viewer) const {
+        const auto sum = [&](double facing, double key, double up) {
+            return 0.14 + 0.07 * up + 0.25 * std::max(0.0, facing) + 0.75 * std::max(0.0, key);
+        };
+        return sum(normal.dot(viewer), normal.dot(key_), normal.dot(camera_.up)) /
+               sum(1, viewer.dot(key_), viewer.dot(camera_.up));
+    }
+
+    /// Share of the sky above the surface from which light comes, weighted by the cosine.
+    [[nodiscard]] double openness(const Eigen::Vector3d& point, const Eigen::Vector3d& normal) const {
+        constexpr double reach = 0.6;
+        double open = 0, total = 0;
+        for (const auto& direction : sky_) {
+            const double cosine = direction.dot(normal);
+            if (cosine <= 0.05) continue;
+            total += cosine;
+            if (!surface_.blocked(point + 1e-3 * normal, direction, 0, reach)) open += cosine;
+        }
+        return total > 0 ? open / total : 1;
+    }
+
+    [[nodiscard]] Rgb surface_colour(const Surface::Hit& hit) const {
+        const auto& corners = surface_.corners(hit.triangle);
+        if (!scene_.vertex_values.empty()) {
+            double value = 0;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const double weight = hit.weights[static_cast<int>(k)];
+                if (weight != 0) value += weight * scene_.vertex_values[corners[k]];
+            }
+            return colour_of(shading_.scale, value);
+        }
+        if (!scene_.face_values.empty()) return colour_of(shading_.scale, scene_.face_values[hit.triangle]);
+        if (!scene_.face_colours.empty()) return scene_.face_colours[hit.triangle];
+        if (scene_.vertex_colours.empty()) return clay;
+        Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Rgb& colour = scene_.vertex_colours[corners[k]];
+            sum += hit.weights[static_cast<int>(k)] * Eigen::Vector3d(colour.red, colour.green, colour.blue);
+        }
+        return {static_cast<std::uint8_t>(std::lround(sum[0])), static_cast<std::uint8_t>(std::lround(sum[1])),
+                static_cast<std::uint8_t>(std::lround(sum[2]))};
+    }
+
+    /// How much of an edge line covers the pixel: 1 on the edge, 0 beyond its width.
+    [[nodiscard]] double edge_share(const Surface::Hit& hit, double x, double y) const {
+        std::array<Eigen::Vector2d, 3> screen;
+        for (std::size_t k = 0; k < 3; ++k)
+            if (!camera_.project(surface_.point(surface_.corners(hit.triangle)[k]), screen[k].x(), screen[k].y())) return 0;
+        double nearest = std::numeric_limits<double>::infinity();
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Eigen::Vector2d side = screen[(k + 1) % 3] - screen[k], offset = Eigen::Vector2d(x, y) - screen[k];
+            const double length = side.norm();
+            if (length > 0) nearest = std::min(nearest, std::abs(side.x() * offset.y() - side.y() * offset.x()) / length);
+        }
+        return std::clamp(shading_.edge_width / 2 + 0.5 - nearest, 0.0, 1.0);
+    }
+
+    const Scene& scene_;
+    const Surface& surface_;
+    const Camera& camera_;
+    const Shading& shading_;
+    std::vector<Eigen::Vector3d> sky_;
+    Eigen::Vector3d key_;
+};
+}  // namespace
+
+std::vector<std::uint32_t> shade(const Scene& scene, const Surface& surface, const Camera& camera, int width, int height,
+                                 const Shading& shading) {
+    const auto columns = static_cast<std::size_t>(width), rows = static_cast<std::size_t>(height);
+    const Shader shader(scene, surface, camera, shading);
+    std::vector<Light> light(columns * rows, Light::Zero());
+    parallel_for(
+        rows,
+        [&](std::size_t row) {
+            for (std::size_t column = 0; column < columns; ++column)
+                light[row * columns + column] = shader.sample(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5);
+        },
+        4);
+
+    std::vector<std::uint32_t> pixels(columns * rows);
+    parallel_for(
+        rows,
+        [&](std::size_t row) {
+            for (std::size_t column = 0; column < columns; ++column) {
+                const std::size_t here = row * columns + column;
+                Light sum = light[here];
+                const bool busy =
+                    shading.samples > 1 &&
+                    ((column > 0 && differs(sum, light[here - 1])) || (column + 1 < columns && differs(sum, light[here + 1])) ||
+                     (row > 0 && differs(sum, light[here - columns])) || (row + 1 < rows && differs(sum, light[here + columns])));
+                if (busy) {
+                    // The plastic-number sequence: any number of its points is spread evenly over the pixel (Roberts 2018).
+                    for (int i = 1; i < shading.samples; ++i)
+                        sum += shader.sample(static_cast<double>(column) + std::fmod(0.5 + i * 0.7548776662466927, 1.0),
+                                             static_cast<double>(row) + std::fmod(0.5 + i * 0.5698402909980532, 1.0));
+                    sum /= static_cast<float>(shading.samples);
+                }
+                pixels[here] = to_pixel(sum);
+            }
+        },
+        4);
+    return pixels;
+}
+
+}  // namespace ostraka::detail

@@ -1,0 +1,172 @@
+#include "folder.h"
+#include "ostraka/core/error.h"
+#include "ostraka/render/colour_scale.h"
+#include "ostraka/render/picture.h"
+#include "ostraka/render/values.h"
+#include "ostraka/render/view.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace ostraka {
+namespace {
+
+double lightness(const Rgb& colour) {
+    const auto linear = [](double c) { return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); };
+    return 0.2126 * linear(colour.red / 255.0) + 0.7152 * linear(colour.green / 255.0) + 0.0722 * linear(colour.blue / 255.0);
+}
+
+TEST(ColourScale, LightnessGrows) {
+    const ColourScale scale{-1, 3, false, ""};
+    double before = -1;
+    for (int i = 0; i <= 64; ++i) {
+        const double now = lightness(colour_of(scale, -1 + i / 16.0));
+        EXPECT_GT(now, before);
+        before = now;
+    }
+    EXPECT_EQ(colour_of(scale, -9), colour_of(scale, -1));
+    EXPECT_EQ(colour_of(scale, 99), colour_of(scale, 3));
+}
+
+TEST(ColourScale, SignedValuesDivergeAboutZero) {
+    const std::vector<double> values{-1, 4, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()};
+    const ColourScale scale = scale_of({&values}, "map");
+    EXPECT_TRUE(scale.diverging);
+    EXPECT_EQ(scale.minimum, -4);
+    EXPECT_EQ(scale.maximum, 4);
+    EXPECT_GT(lightness(colour_of(scale, 0)), lightness(colour_of(scale, 3)));
+    EXPECT_GT(lightness(colour_of(scale, 0)), lightness(colour_of(scale, -3)));
+    const std::vector<double> none{std::numeric_limits<double>::quiet_NaN()};
+    EXPECT_THROW((void)scale_of({&none}, "map"), Error);
+}
+
+TEST(ColourScale, ConstantAndExtremeValues) {
+    const std::vector<double> same{5, 5};
+    EXPECT_NO_THROW((void)colour_of(scale_of({&same}, "map"), 5));
+    EXPECT_EQ(ticks(scale_of({&same}, "map"), 7), std::vector<double>{5});
+    const ColourScale wide{-1.7e308, 1.7e308, true, ""};
+    EXPECT_EQ(colour_of(wide, 0), colour_of(ColourScale{-1, 1, true, ""}, 0));
+    EXPECT_LE(ticks(wide, 7).size(), 29U);
+}
+
+TEST(ColourScale, TicksAreRoundAndInside) {
+    for (const auto& [low, high] : {std::pair{0.0, 1.0}, {2.37, 2.41}, {-3.0, 3.0}, {1e-7, 4e-7}, {12345.0, 99999.0}}) {
+        const auto list = ticks({low, high, false, ""}, 7);
+        ASSERT_GE(list.size(), 3U);
+        EXPECT_LE(list.size(), 12U);
+        const double step = list[1] - list[0];
+        EXPECT_NEAR(round_length(step * (1 + 1e-6)) / step, 1, 1e-5);
+        for (const double tick : list) {
+            EXPECT_GE(tick, low - 1e-9 * step);
+            EXPECT_LE(tick, high + 1e-9 * step);
+            EXPECT_NEAR(std::remainder(tick, step) / step, 0, 1e-6);
+        }
+    }
+    EXPECT_EQ(tick_text(0.30000000000000004, 0.1), "0.3");
+    EXPECT_EQ(tick_text(2.5, 0.5), "2.5");
+    EXPECT_EQ(tick_text(20, 10), "20");
+}
+
+TEST(ColourScale, RoundLengths) {
+    EXPECT_EQ(round_length(1), 1);
+    EXPECT_EQ(round_length(4.99), 2);
+    EXPECT_EQ(round_length(99), 50);
+    EXPECT_EQ(round_length(0.012), 0.01);
+    EXPECT_EQ(round_length(0), 0);
+    EXPECT_EQ(round_length(std::numeric_limits<double>::infinity()), 0);
+    EXPECT_GT(round_length(1e308), 0);
+    EXPECT_GT(round_length(1e-300), 0);
+}
+
+TEST(View, AxesAreRightHandedAndStandardViewsExact) {
+    for (const char* up : {"x", "y", "z", "-x", "-y", "-z", "1,2,3"})
+        for (const char* name : {"front", "top", "iso", "33,-71"}) {
+            const ViewAxes a = view_axes(parse_view(name), parse_up(up));
+            const auto dot = [](const auto& p, const auto& q) { return p[0] * q[0] + p[1] * q[1] + p[2] * q[2]; };
+            EXPECT_NEAR(dot(a.right, a.right), 1, 1e-12);
+            EXPECT_NEAR(dot(a.up, a.up), 1, 1e-12);
+            EXPECT_NEAR(dot(a.right, a.up), 0, 1e-12);
+            EXPECT_NEAR(a.right[0] * a.up[1] - a.right[1] * a.up[0], a.toward[2], 1e-12);
+        }
+    using Triple = std::array<double, 3>;
+    EXPECT_EQ(view_axes(parse_view("front"), parse_up("z")).toward, (Triple{0, -1, 0}));
+    EXPECT_EQ(view_axes(parse_view("front"), parse_up("z")).right, (Triple{1, 0, 0}));
+    EXPECT_EQ(view_axes(parse_view("right"), parse_up("z")).toward, (Triple{1, 0, 0}));
+    EXPECT_EQ(view_axes(parse_view("front"), parse_up("y")).toward, (Triple{0, 0, 1}));
+    EXPECT_EQ(view_axes(parse_view("top"), parse_up("y")).toward, (Triple{0, 1, 0}));
+    EXPECT_EQ(view_axes(parse_view("0,0"), parse_up("z")).toward, view_axes(parse_view("front"), parse_up("auto")).toward);
+}
+
+TEST(PictureFile, PngComesBackAsItWas) {
+    const test::Folder folder;
+    Picture picture{5, 3, {}};
+    for (std::uint32_t i = 0; i < 15; ++i) picture.argb.push_back(i % 3 == 0 ? 0 : 0xFF000000U | i * 0x0F1307U);
+    const Path file = folder / "a.png";
+    write_png(file, picture);
+    EXPECT_EQ(read_file(file).substr(0, 8), "\x89PNG\r\n\x1a\n");
+    const Picture back = read_png(file);
+    EXPECT_EQ(back.width, 5);
+    EXPECT_EQ(back.argb, picture.argb);
+    write_file(folder / "b.png", "no picture");
+    EXPECT_THROW((void)read_png(folder / "b.png"), Error);
+    write_file(folder / "c.png", read_file(file).substr(0, 40));
+    EXPECT_THROW((void)read_png(folder / "c.png"), Error);
+}
+
+std::string npy(const std::string& type, const std::string& shape, const std::string& data) {
+    std::string header = "{'descr': '" + type + "', 'fortran_order': False, 'shape': " + shape + ", }";
+    header.resize(117, ' ');
+    header += '\n';
+    return std::string("\x93NUMPY\x01\x00", 8) + static_cast<char>(header.size()) + '\0' + header + data;
+}
+template <class Number>
+std::string raw(std::initializer_list<Number> numbers) {
+    std::string bytes(numbers.size() * sizeof(Number), '\0');
+    std::memcpy(bytes.data(), numbers.begin(), bytes.size());
+    return bytes;
+}
+
+TEST(Values, NumpyArrays) {
+    const test::Folder folder;
+    const Path file = folder / "v.npy";
+    write_file(file, npy("<f8", "(3,)", raw<double>({1.5, -2, 1e300})));
+    EXPECT_EQ(read_values(file), (std::vector<double>{1.5, -2, 1e300}));
+    write_file(file, npy("<f4", "(2, 1)", raw<float>({0.5F, 3})));
+    EXPECT_EQ(read_values(file), (std::vector<double>{0.5, 3}));
+    write_file(file, npy("<i4", "(2,)", raw<std::int32_t>({-7, 9})));
+    EXPECT_EQ(read_values(file), (std::vector<double>{-7, 9}));
+    for (const std::string& bad :
+         {npy("<f8", "(4,)", raw<double>({1, 2, 3})), npy("<f8", "(1000000000000,)", raw<double>({1})),
+          npy("<f8", "(2, 2)", raw<double>({1, 2, 3, 4})), npy("<f8", "()", raw<double>({1})),
+          npy(">f8", "(1,)", raw<double>({1})), npy("<c16", "(1,)", raw<double>({1, 2})), npy("<f8", "(1,)", "abc"),
+          npy("<f8", "(99999999999999999999,)", ""), npy("<f8", "(1,", ""), std::string("\x93NUMPY"), std::string(),
+          npy("<f8", "(1,)", raw<double>({1})).substr(0, 60), npy("<f8", "(x)", "")}) {
+        write_file(file, bad);
+        EXPECT_THROW((void)read_values(file), Error);
+    }
+}
+
+TEST(Values, Text) {
+    const test::Folder folder;
+    const Path file = folder / "v.txt";
+    write_file(file, "# thickness\n1\r\n  2.5e-3\n\n-4\nnan\n+7");
+    const auto values = read_values(file);
+    ASSERT_EQ(values.size(), 5U);
+    EXPECT_EQ(values[1], 2.5e-3);
+    EXPECT_TRUE(std::isnan(values[3]));
+    EXPECT_EQ(values[4], 7);
+    write_file(file, "1\n2 3\n");
+    try {
+        (void)read_values(file);
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_NE(error.where().find("line 2"), std::string::npos);
+    }
+    EXPECT_THROW((void)read_values(folder / "missing.txt"), Error);
+}
+
+}  // namespace
+}  // namespace ostraka
