@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 namespace ostraka {
@@ -72,17 +73,24 @@ std::vector<Outline> extract_outlines(const Mesh& mesh, const std::vector<Index>
     return outlines_of(mesh, selected, list);
 }
 
-Filling fill_outlines(const Mesh& mesh, const std::vector<Outline>& outlines) {
-    // Net number of times an edge is run through along its first halfedge.
+namespace {
+/// Net number of times an edge is run through along its first halfedge.
+std::map<Edge, int> net_edges(const Mesh& mesh, const std::vector<Halfedge>& edges) {
     std::map<Edge, int> net;
+    for (const Halfedge h : edges) net[mesh.edge(h)] += mesh.halfedge(mesh.edge(h)) == h ? 1 : -1;
+    return net;
+}
+}  // namespace
+
+Filling fill_outlines(const Mesh& mesh, const std::vector<Outline>& outlines) {
+    std::vector<Halfedge> edges;
     for (std::size_t o = 0; o < outlines.size(); ++o) {
         const Outline& outline = outlines[o];
         const auto where = [&](std::size_t i) { return "outline " + std::to_string(o) + ", vertex " + std::to_string(i); };
         if (outline.size() < 3) fail_input("outline " + std::to_string(o), "has fewer than three vertices");
         for (std::size_t i = 0; i < outline.size(); ++i)
             if (outline[i] >= mesh.number_of_vertices())
-                fail_input(where(i),
-                           "names vertex " + std::to_string(outline[i]) + " of " + std::to_string(mesh.number_of_vertices()),
+                fail_input(where(i), "names vertex " + std::to_string(outline[i]) + " of " + std::to_string(mesh.number_of_vertices()),
                            "is the annotation of another mesh?");
         for (std::size_t i = 0; i < outline.size(); ++i) {
             const Index a = outline[i], b = outline[(i + 1) % outline.size()];
@@ -90,9 +98,14 @@ Filling fill_outlines(const Mesh& mesh, const std::vector<Outline>& outlines) {
             if (h == Mesh::null_halfedge())
                 fail_input(where(i), "the mesh has no edge from " + std::to_string(a) + " to " + std::to_string(b),
                            "is the annotation of another mesh?");
-            net[mesh.edge(h)] += mesh.halfedge(mesh.edge(h)) == h ? 1 : -1;
+            edges.push_back(h);
         }
     }
+    return fill_edges(mesh, edges);
+}
+
+Filling fill_edges(const Mesh& mesh, const std::vector<Halfedge>& edges) {
+    const std::map<Edge, int> net = net_edges(mesh, edges);
     Filling filling;
     filling.selected.assign(mesh.number_of_faces(), false);
     std::vector<Face> stack;
@@ -101,15 +114,22 @@ Filling fill_outlines(const Mesh& mesh, const std::vector<Outline>& outlines) {
         filling.selected[mesh.face(h)] = true;
         stack.push_back(mesh.face(h));
     };
-    for (const auto& [edge, count] : net)
+    // Most edges are far from any outline: a flag per vertex saves the look-up.
+    std::vector<bool> on_outline(mesh.number_of_vertices(), false);
+    for (const auto& [edge, count] : net) {
+        on_outline[mesh.vertex(edge, 0)] = on_outline[mesh.vertex(edge, 1)] = true;
         if (count != 0) take(mesh.halfedge(edge, count > 0 ? 0 : 1));
+    }
+    const auto is_wall = [&](Halfedge h) {
+        if (!on_outline[mesh.source(h)] || !on_outline[mesh.target(h)]) return false;
+        const auto found = net.find(mesh.edge(h));
+        return found != net.end() && found->second != 0;
+    };
     while (!stack.empty()) {
         const Face f = stack.back();
         stack.pop_back();
-        for (const Halfedge h : CGAL::halfedges_around_face(mesh.halfedge(f), mesh)) {
-            const auto found = net.find(mesh.edge(h));
-            if (found == net.end() || found->second == 0) take(mesh.opposite(h));
-        }
+        for (const Halfedge h : CGAL::halfedges_around_face(mesh.halfedge(f), mesh))
+            if (!is_wall(h)) take(mesh.opposite(h));
     }
     std::vector<Face> right;
     for (const auto& [edge, count] : net) {
@@ -119,6 +139,51 @@ Filling fill_outlines(const Mesh& mesh, const std::vector<Outline>& outlines) {
     std::sort(right.begin(), right.end());
     filling.conflicts = static_cast<std::size_t>(std::unique(right.begin(), right.end()) - right.begin());
     return filling;
+}
+
+std::optional<std::vector<bool>> fill_by_winding(const Mesh& mesh, const std::vector<Halfedge>& edges, double expected_area) {
+    const std::map<Edge, int> net = net_edges(mesh, edges);
+    const auto weight = [&](Halfedge h) {  // winding number of the left face minus that of the right one
+        const auto found = net.find(mesh.edge(h));
+        if (found == net.end()) return 0;
+        return mesh.halfedge(mesh.edge(h)) == h ? found->second : -found->second;
+    };
+    // Components without any of the edges are not part of the question.
+    constexpr int unknown = std::numeric_limits<int>::min();
+    std::vector<int> number(mesh.number_of_faces(), unknown);
+    std::vector<bool> selected(mesh.number_of_faces(), false);
+    for (const auto& [edge, count] : net) {
+        const Halfedge start = mesh.is_border(mesh.halfedge(edge, 0)) ? mesh.halfedge(edge, 1) : mesh.halfedge(edge, 0);
+        if (count == 0 || number[mesh.face(start)] != unknown) continue;
+        std::vector<Face> component{mesh.face(start)};
+        number[component.front()] = 0;
+        for (std::size_t i = 0; i < component.size(); ++i) {
+            for (const Halfedge h : CGAL::halfedges_around_face(mesh.halfedge(component[i]), mesh)) {
+                if (mesh.is_border(mesh.opposite(h))) continue;
+                const Face other = mesh.face(mesh.opposite(h));
+                const int expected = number[component[i]] - weight(h);
+                if (number[other] == unknown) {
+                    number[other] = expected;
+                    component.push_back(other);
+                } else if (number[other] != expected) {
+                    return std::nullopt;
+                }
+            }
+        }
+        std::map<int, double> area_of;
+        for (const Face f : component) area_of[number[f]] += face_area(mesh, f);
+        double area = 0, best = expected_area;  // the empty set
+        int threshold = std::numeric_limits<int>::max();
+        for (auto i = area_of.rbegin(); i != area_of.rend(); ++i) {
+            area += i->second;
+            if (std::abs(area - expected_area) < best) {
+                best = std::abs(area - expected_area);
+                threshold = i->first;
+            }
+        }
+        for (const Face f : component) selected[f] = selected[f] || number[f] >= threshold;
+    }
+    return selected;
 }
 
 RegionMeasures measure_region(const Mesh& mesh, const std::vector<Index>& faces) {

@@ -36,36 +36,52 @@ PathSearch::PathSearch(const Mesh& mesh) : mesh_(mesh), records_(mesh.number_of_
 
 std::vector<Index> PathSearch::find(Vertex from, Vertex to, const Query& query) {
     if (from == to) return {static_cast<Index>(from)};
-    if (mesh_.is_isolated(from) || mesh_.is_isolated(to)) return {};
-    if (++stamp_ == 0) {
-        std::fill(records_.begin(), records_.end(), Record{});
-        stamp_ = 1;
-    }
+    if (mesh_.is_isolated(to)) return {};
     const std::vector<Point> guide = query.guide.empty() ? std::vector<Point>{mesh_.point(from), mesh_.point(to)} : query.guide;
-    const double limit = query.limit > 0 ? query.limit : std::numeric_limits<double>::infinity();
     // Straight-line distance bounds the Euclidean part of the remaining cost from below: A* where it applies.
     const Point goal = mesh_.point(to);
     const bool has_length = query.metric != PathMetric::segment;
     const auto bound = [&](Vertex v) { return has_length ? std::sqrt(CGAL::squared_distance(mesh_.point(v), goal)) : 0.0; };
+    return search(from, [&](Vertex v) { return v == to; }, bound, guide, query);
+}
+
+std::vector<Index> PathSearch::find_nearest(Vertex from, const std::function<bool(Vertex)>& goal, double limit) {
+    Query query;
+    query.limit = limit;
+    return search(from, goal, [](Vertex) { return 0.0; }, {}, query);
+}
+
+std::vector<Index> PathSearch::search(Vertex from, const std::function<bool(Vertex)>& is_goal, const std::function<double(Vertex)>& bound,
+                                      const std::vector<Point>& guide, const Query& query) {
+    if (mesh_.is_isolated(from)) return {};
+    if (++stamp_ == 0) {
+        std::fill(records_.begin(), records_.end(), Record{});
+        stamp_ = 1;
+    }
+    const double limit = query.limit > 0 ? query.limit : std::numeric_limits<double>::infinity();
     using Entry = std::tuple<double, Index>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
     records_[from] = {stamp_, false, no_index, 0, 0};
     queue.emplace(bound(from), from);
+    Vertex reached = Mesh::null_vertex();
     while (!queue.empty()) {
         const Vertex v(std::get<1>(queue.top()));
         queue.pop();
         if (records_[v].settled) continue;
         records_[v].settled = true;
-        if (v == to) break;
+        if (is_goal(v)) {
+            reached = v;
+            break;
+        }
         for (const Halfedge h : CGAL::halfedges_around_source(v, mesh_)) {
             const Vertex w = mesh_.target(h);
             Record& record = records_[w];
             if (record.stamp == stamp_ && record.settled) continue;
-            if (w != to && query.blocked && query.blocked(w)) continue;
+            if (query.blocked && query.blocked(w) && !is_goal(w)) continue;
             const double edge = std::sqrt(CGAL::squared_distance(mesh_.point(v), mesh_.point(w)));
             const double length = records_[v].length + edge;
             if (length > limit) continue;
-            double step = has_length ? edge : 0;
+            double step = query.metric == PathMetric::segment ? 0 : edge;
             if (query.metric != PathMetric::euclidean) step += distance_to_polyline(mesh_.point(w), guide);
             const double cost = records_[v].cost + step;
             if (record.stamp == stamp_ && record.cost <= cost) continue;
@@ -73,9 +89,9 @@ std::vector<Index> PathSearch::find(Vertex from, Vertex to, const Query& query) 
             queue.emplace(cost + bound(w), w);
         }
     }
-    if (records_[to].stamp != stamp_ || !records_[to].settled) return {};
     std::vector<Index> path;
-    for (Index v = to; v != no_index; v = records_[Vertex(v)].previous) path.push_back(v);
+    if (reached == Mesh::null_vertex()) return path;
+    for (Index v = reached; v != no_index; v = records_[Vertex(v)].previous) path.push_back(v);
     std::reverse(path.begin(), path.end());
     return path;
 }

@@ -3,6 +3,7 @@
 
 #include "ostraka/core/mesh.h"
 
+#include <optional>
 #include <vector>
 
 namespace ostraka {
@@ -27,6 +28,15 @@ struct Filling {
 /// outlines run through in both directions bound nothing and are ignored. Throws Error (input) naming the outline and the
 /// edge if an index is out of range, an edge does not exist or an outline has fewer than three vertices.
 Filling fill_outlines(const Mesh& mesh, const std::vector<Outline>& outlines);
+
+/// The same for directed edges that need not close: they may end on the border of the mesh.
+Filling fill_edges(const Mesh& mesh, const std::vector<Halfedge>& edges);
+
+/// The faces by winding number: crossing an edge from right to left adds the net number of times that `edges` run through it.
+/// Where outlines cross each other this still has an answer: of the sets "winding number at least k", the empty one included,
+/// that whose area is nearest to `expected_area`. Returns nothing if the numbers contradict each other (the edges do not
+/// bound). Linear in the mesh.
+std::optional<std::vector<bool>> fill_by_winding(const Mesh& mesh, const std::vector<Halfedge>& edges, double expected_area);
 
 /// Measures of a region.
 struct RegionMeasures {

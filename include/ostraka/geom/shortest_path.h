@@ -33,7 +33,13 @@ public:
     /// Dijkstra with a heap and early exit; ties go to the lower vertex index.
     std::vector<Index> find(Vertex from, Vertex to, const Query& query);
 
+    /// The Euclidean shortest path from `from` to the nearest vertex that `goal` accepts, within `limit`; empty if there is none.
+    std::vector<Index> find_nearest(Vertex from, const std::function<bool(Vertex)>& goal, double limit);
+
 private:
+    std::vector<Index> search(Vertex from, const std::function<bool(Vertex)>& is_goal, const std::function<double(Vertex)>& bound,
+                              const std::vector<Point>& guide, const Query& query);
+
     struct Record {
         std::uint32_t stamp = 0;
         bool settled = false;

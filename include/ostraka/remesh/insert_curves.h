@@ -1,0 +1,24 @@
+// Curves over the surface made into edges of the mesh.
+#pragma once
+
+#include "ostraka/core/mesh.h"
+#include "ostraka/geom/surface_trace.h"
+
+#include <vector>
+
+namespace ostraka {
+
+struct InsertedCurves {
+    Mesh mesh;                                    ///< old vertices first, under their old indices; the surface is unchanged
+    std::vector<Index> face_origin;               ///< new face -> old face
+    std::vector<std::vector<Index>> node_vertex;  ///< per curve and node: the vertex at it
+    std::size_t new_vertices = 0;
+};
+
+/// Adds a vertex at each node of the curves and cuts the faces so that each piece of a curve is an edge, or a chain of edges
+/// where curves cross inside a face (constrained Delaunay triangulation of each face that is crossed, in its plane).
+/// Nodes with the same element and the same place become one vertex. New faces stand where their old face stood.
+/// Linear in the mesh plus O(k log k) per face with k nodes. Throws Error (input) for a node out of range.
+InsertedCurves insert_curves(const Mesh& mesh, const std::vector<SurfaceCurve>& curves);
+
+}  // namespace ostraka

@@ -1,0 +1,252 @@
+#include "region_transfer.h"
+
+#include "ostraka/annotation/outline.h"
+#include "scores.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <map>
+
+namespace ostraka {
+
+std::vector<Chain> region_chains(const Mesh& mesh, const std::vector<Index>& faces) {
+    std::vector<Chain> chains;
+    std::vector<bool> selected(mesh.number_of_faces(), false);
+    for (const Index f : faces) selected[f] = true;
+    for (const Outline& outline : extract_outlines(mesh, faces)) {
+        const std::size_t n = outline.size();
+        // Edge i runs from vertex i to vertex i + 1; one on the border has no face on its right.
+        std::vector<bool> border(n, false);
+        bool any = false;
+        for (std::size_t i = 0; i < n; ++i) {
+            const Halfedge h = find_halfedge(mesh, Vertex(outline[i]), Vertex(outline[(i + 1) % n]));
+            border[i] = mesh.is_border(mesh.opposite(h));
+            any = any || border[i];
+        }
+        if (!any) {
+            chains.push_back({outline, true, false});
+            continue;
+        }
+        for (std::size_t i = 0; i < n; ++i) {
+            if (border[i] || !border[(i + n - 1) % n]) continue;
+            Chain chain;
+            chain.ends_on_border = true;
+            chain.vertices.push_back(outline[i]);
+            for (std::size_t k = i; !border[k % n]; ++k) chain.vertices.push_back(outline[(k + 1) % n]);
+            chains.push_back(std::move(chain));
+        }
+    }
+    return chains;
+}
+
+std::vector<Index> diameter_path(const std::vector<Index>& walk) {
+    if (walk.empty()) return {};
+    std::map<Index, std::vector<Index>> neighbours;
+    neighbours[walk.front()];
+    for (std::size_t i = 0; i + 1 < walk.size(); ++i) {
+        if (walk[i] == walk[i + 1]) continue;
+        neighbours[walk[i]].push_back(walk[i + 1]);
+        neighbours[walk[i + 1]].push_back(walk[i]);
+    }
+    const auto sweep = [&](Index from) {  // breadth first; the last vertex reached is a farthest one
+        std::map<Index, Index> previous{{from, no_index}};
+        std::deque<Index> queue{from};
+        Index last = from;
+        while (!queue.empty()) {
+            last = queue.front();
+            queue.pop_front();
+            for (const Index w : neighbours[last])
+                if (previous.emplace(w, last).second) queue.push_back(w);
+        }
+        std::vector<Index> path;
+        for (Index v = last; v != no_index; v = previous.at(v)) path.push_back(v);
+        return path;
+    };
+    const std::vector<Index> first = sweep(walk.front());
+    return sweep(first.front());
+}
+
+RegionTransfer::RegionTransfer(const Mesh& source, const SurfaceSearch& target, const TransferOptions& options)
+    : source_(source), search_(target), options_(options) {
+    const Mesh& mesh = target.mesh();
+    target_edge_ = std::sqrt(4 / std::sqrt(3.0) * surface_area(mesh) / static_cast<double>(std::max<std::size_t>(1, mesh.number_of_faces())));
+}
+
+RegionTransfer::~RegionTransfer() = default;
+
+namespace {
+
+double area_of(const Mesh& mesh, const std::vector<bool>& selected) {
+    double sum = 0;
+    for (const Face f : mesh.faces())
+        if (selected[f]) sum += face_area(mesh, f);
+    return sum;
+}
+
+/// Connected parts of a set of faces; for each, one face and whether any edge of it separates it from another face.
+struct Patch {
+    Index face;
+    bool bounded = false;
+};
+std::vector<Patch> patches_of(const Mesh& mesh, const std::vector<Index>& faces) {
+    std::vector<std::uint8_t> state(mesh.number_of_faces(), 0);  // 1 selected, 2 visited
+    for (const Index f : faces) state[f] = 1;
+    std::vector<Patch> patches;
+    std::vector<Face> stack;
+    for (const Index start : faces) {
+        if (state[start] != 1) continue;
+        patches.push_back({start, false});
+        state[start] = 2;
+        stack.emplace_back(start);
+        while (!stack.empty()) {
+            const Face f = stack.back();
+            stack.pop_back();
+            for (const Halfedge h : CGAL::halfedges_around_face(mesh.halfedge(f), mesh)) {
+                if (mesh.is_border(mesh.opposite(h))) continue;
+                const Face g = mesh.face(mesh.opposite(h));
+                if (state[g] == 0) patches.back().bounded = true;
+                else if (state[g] == 1) {
+                    state[g] = 2;
+                    stack.push_back(g);
+                }
+            }
+        }
+    }
+    return patches;
+}
+
+}  // namespace
+
+std::vector<bool> RegionTransfer::fill(const std::vector<Index>& region, const std::vector<TracedChain>& traced, const std::vector<Chain>& chains,
+                                       const Mesh& mesh, const std::vector<Index>* origin, TransferScore& score) {
+    double source_area = 0;
+    for (const Index f : region) source_area += face_area(source_, Face(f));
+    std::vector<Halfedge> edges;
+    std::size_t vanished = 0;
+    double length = 0;
+    for (const TracedChain& chain : traced) {
+        if (chain.path.size() < 2) ++vanished;
+        const std::size_t steps = chain.path.size() < 2 ? 0 : chain.closed ? chain.path.size() : chain.path.size() - 1;
+        for (std::size_t i = 0; i < steps; ++i) {
+            const Halfedge h = find_halfedge(mesh, Vertex(chain.path[i]), Vertex(chain.path[(i + 1) % chain.path.size()]));
+            if (h == Mesh::null_halfedge()) continue;  // a gap between two components
+            edges.push_back(h);
+            length += std::sqrt(CGAL::squared_distance(mesh.point(mesh.source(h)), mesh.point(mesh.target(h))));
+        }
+    }
+    const std::vector<Patch> patches = patches_of(source_, region);
+    const auto is_bounded = [](const Patch& patch) { return patch.bounded; };
+    if (vanished > 0 && vanished < traced.size())
+        score.note += (score.note.empty() ? "" : "; ") + std::to_string(vanished) + " of " + std::to_string(traced.size()) + " outlines vanished";
+    // Nothing but vanished outlines: the region is no larger than the target's faces, unless a patch never had an outline.
+    if (edges.empty() && std::all_of(patches.begin(), patches.end(), is_bounded)) return std::vector<bool>(mesh.number_of_faces(), false);
+
+    const auto plausible = [&](double area) { return std::abs(area - source_area) <= 0.5 * source_area + target_edge_ * length; };
+    Filling filling = fill_edges(mesh, edges);
+    double expected = source_area;
+    // Patches without outlines cover their component: a place inside leads to it.
+    bool unbounded = false;
+    for (const Patch& patch : patches) {
+        if (patch.bounded) continue;
+        unbounded = true;
+        const auto hit = search_.closest_compatible(centroid(source_, Face(patch.face)), area_vector(source_, Face(patch.face)), 0,
+                                                    options_.correspondence.max_distance * box_diagonal(search_.mesh()));
+        if (!hit) continue;
+        Index start = hit->face;
+        if (origin != nullptr) start = static_cast<Index>(std::lower_bound(origin->begin(), origin->end(), hit->face) - origin->begin());
+        std::vector<Face> stack{Face(start)};
+        filling.selected[start] = true;
+        while (!stack.empty()) {
+            const Face f = stack.back();
+            stack.pop_back();
+            for (const Halfedge h : CGAL::halfedges_around_face(mesh.halfedge(f), mesh)) {
+                if (mesh.is_border(mesh.opposite(h)) || filling.selected[mesh.face(mesh.opposite(h))]) continue;
+                filling.selected[mesh.face(mesh.opposite(h))] = true;
+                stack.push_back(mesh.face(mesh.opposite(h)));
+            }
+        }
+    }
+    std::vector<bool> selected = std::move(filling.selected);
+    if (!unbounded && (filling.conflicts > 0 || !plausible(area_of(mesh, selected)))) {
+        score.crossings_resolved = true;
+        const auto wound = fill_by_winding(mesh, edges, expected);
+        if (wound) selected = *wound;
+        if (!wound || !plausible(area_of(mesh, selected))) {
+            if (!source_search_) source_search_ = std::make_unique<SurfaceSearch>(source_);
+            selected = region_by_vote(source_, *source_search_, region, mesh, options_.correspondence);
+            score.voted = true;
+        }
+    }
+    if (options_.cover != "overlapping") cover(selected, chains, score);
+    return selected;
+}
+
+void RegionTransfer::cover(std::vector<bool>& selected, const std::vector<Chain>& chains, TransferScore& score) {
+    // The faces that the outline itself runs through, drawn exactly.
+    TransferScore ignored;
+    ChainTracer tracer(source_, search_, options_);
+    std::vector<Index> vertices;
+    for (const Chain& chain : chains) vertices.insert(vertices.end(), chain.vertices.begin(), chain.vertices.end());
+    tracer.match(std::move(vertices));
+    for (const Chain& chain : chains) tracer.trace_curves(chain, ignored);
+    score.detours += ignored.detours;
+    const Mesh& mesh = search_.mesh();
+    // The crossed faces and the edges the outline follows part the others into pieces, each on one side as a whole.
+    std::vector<bool> crossed(mesh.number_of_faces(), false), wall(mesh.number_of_edges(), false);
+    for (const SurfaceCurve& curve : tracer.curves())
+        for (std::size_t i = 0; i < curve.faces.size(); ++i) {
+            const SurfaceNode &a = curve.nodes[i], &b = curve.nodes[i + 1];
+            if (a.kind == SurfaceNode::Kind::vertex && b.kind == SurfaceNode::Kind::vertex) {
+                const Halfedge h = find_halfedge(mesh, Vertex(a.element), Vertex(b.element));
+                if (h != Mesh::null_halfedge()) wall[mesh.edge(h)] = true;
+            } else {
+                crossed[curve.faces[i]] = true;
+            }
+        }
+    std::vector<bool> seen = crossed;
+    for (const Face start : mesh.faces()) {
+        if (seen[start]) continue;
+        std::vector<Face> piece{start};
+        seen[start] = true;
+        double inside = 0, outside = 0;
+        for (std::size_t i = 0; i < piece.size(); ++i) {
+            (selected[piece[i]] ? inside : outside) += face_area(mesh, piece[i]);
+            for (const Halfedge h : CGAL::halfedges_around_face(mesh.halfedge(piece[i]), mesh)) {
+                if (mesh.is_border(mesh.opposite(h)) || wall[mesh.edge(h)]) continue;
+                const Face g = mesh.face(mesh.opposite(h));
+                if (seen[g]) continue;
+                seen[g] = true;
+                piece.push_back(g);
+            }
+        }
+        for (const Face f : piece) selected[f] = inside > outside;
+    }
+    for (std::size_t f = 0; f < crossed.size(); ++f)
+        if (crossed[f]) selected[f] = options_.cover == "enclosing";
+}
+
+std::function<bool(const SurfaceHit&)> RegionTransfer::membership(const std::vector<Index>& faces, const Mesh& mesh, const std::vector<Index>* origin) {
+    auto selected = std::make_shared<std::vector<bool>>(mesh.number_of_faces(), false);
+    for (const Index f : faces) (*selected)[f] = true;
+    if (origin == nullptr) return [selected](const SurfaceHit& hit) { return static_cast<bool>((*selected)[hit.face]); };
+    return [selected, origin, &mesh](const SurfaceHit& hit) {
+        // New faces stand in the order of their old ones.
+        const auto [first, last] = std::equal_range(origin->begin(), origin->end(), hit.face);
+        double best = std::numeric_limits<double>::infinity();
+        bool inside = false;
+        for (auto i = first; i != last; ++i) {
+            const auto f = static_cast<Index>(i - origin->begin());
+            const auto [a, b, c] = corners(mesh, Face(f));
+            const auto weights = nearest_barycentric(mesh.point(a), mesh.point(b), mesh.point(c), hit.point);
+            const double distance = CGAL::squared_distance(point_at(mesh, f, weights), hit.point);
+            if (distance < best) {
+                best = distance;
+                inside = (*selected)[f];
+            }
+        }
+        return inside;
+    };
+}
+
+}  // namespace ostraka

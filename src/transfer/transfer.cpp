@@ -1,0 +1,351 @@
+#include "ostraka/transfer/transfer.h"
+
+#include "chain_tracer.h"
+#include "ostraka/annotation/outline.h"
+#include "ostraka/core/progress.h"
+#include "ostraka/geom/polyline_distance.h"
+#include "region_transfer.h"
+#include "scores.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <set>
+
+namespace ostraka {
+
+Distortions distortions(const TransferScore& score) {
+    const auto off = [](double target, double source) { return source > 0 ? std::abs(target / source - 1) : 0.0; };
+    const double a = score.source_area, b = score.target_area, p = score.source_length, q = score.target_length;
+    Distortions d{};
+    d.area = off(b, a);
+    d.perimeter = off(q, p);
+    d.perimeter_by_area = b > 0 && a > 0 ? off(q / b, p / a) : 0;
+    d.area_by_perimeter = q > 0 && p > 0 ? off(b / q, a / p) : 0;
+    d.circularity = b > 0 && a > 0 ? off(q * q / b, p * p / a) : 0;
+    d.mean = (d.area + d.perimeter + d.perimeter_by_area + d.area_by_perimeter + d.circularity) / 5;
+    return d;
+}
+
+namespace {
+
+class Clock {
+public:
+    double lap() {
+        const auto now = std::chrono::steady_clock::now();
+        const double seconds = std::chrono::duration<double>(now - last_).count();
+        last_ = now;
+        return seconds;
+    }
+
+private:
+    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+double length_of(const Segments& segments) {
+    double sum = 0;
+    for (const auto& [a, b] : segments) sum += std::sqrt(CGAL::squared_distance(a, b));
+    return sum;
+}
+
+double area_of(const Mesh& mesh, const std::vector<Index>& faces) {
+    double sum = 0;
+    for (const Index f : faces) sum += face_area(mesh, Face(f));
+    return sum;
+}
+
+std::vector<Index> faces_of(const std::vector<bool>& selected) {
+    std::vector<Index> faces;
+    for (std::size_t f = 0; f < selected.size(); ++f)
+        if (selected[f]) faces.push_back(static_cast<Index>(f));
+    return faces;
+}
+
+void add_note(std::string& note, const std::string& text) { note += (note.empty() ? "" : "; ") + text; }
+
+void check_annotations(const Mesh& source, const AnnotationSet& set) {
+    for (const Annotation& annotation : set.annotations) {
+        const auto check = [&](Index v, std::size_t count, const char* what) {
+            if (v >= count)
+                fail_input("annotation " + std::to_string(annotation.id), std::string("names ") + what + " " + std::to_string(v) + " of " + std::to_string(count),
+                           "is it of another mesh?");
+        };
+        for (const Index v : annotation.points) check(v, source.number_of_vertices(), "vertex");
+        for (const auto& line : annotation.polylines)
+            for (const Index v : line) check(v, source.number_of_vertices(), "vertex");
+        for (const Index f : annotation.faces) check(f, source.number_of_faces(), "face");
+        for (const Attribute& attribute : annotation.attributes)
+            for (const Index v : attribute.measure.points) check(v, source.number_of_vertices(), "vertex");
+    }
+}
+
+/// One transfer: the parts share the correspondences, the paths and the search trees.
+class Transfer {
+public:
+    Transfer(const Mesh& source, const AnnotationSet& set, const SurfaceSearch& target, const TransferOptions& options)
+        : source_(source), set_(set), search_(target), target_(target.mesh()), options_(options), tracer_(source, target, options),
+          regions_(source, target, options) {}
+
+    TransferResult run() {
+        Clock clock;
+        match();
+        result_.times.correspondence = clock.lap();
+        std::vector<Annotation> transferred(set_.annotations.size());
+        result_.scores.resize(set_.annotations.size());
+        for (std::size_t i = 0; i < set_.annotations.size(); ++i) begin(set_.annotations[i], transferred[i], result_.scores[i]);
+        if (options_.refine) insert(transferred);
+        else
+            for (std::size_t i = 0; i < transferred.size(); ++i) trace(i, transferred[i]);
+        result_.times.paths = clock.lap();
+        const Mesh& mesh = on();
+        for (std::size_t i = 0; i < transferred.size(); ++i)
+            if (set_.annotations[i].type == AnnotationType::region) fill(i, transferred[i]);
+        result_.times.regions = clock.lap();
+        Progress progress("scores", transferred.size());
+        for (std::size_t i = 0; i < transferred.size(); ++i) {
+            attributes(set_.annotations[i], transferred[i], mesh);
+            score(set_.annotations[i], transferred[i], result_.scores[i]);
+            progress.advance();
+        }
+        result_.times.scores = clock.lap();
+        result_.annotations.object_class = set_.object_class;
+        result_.annotations.unit = set_.unit;
+        result_.annotations.up = set_.up;
+        for (std::size_t i = 0; i < transferred.size(); ++i)
+            if (result_.scores[i].outcome != "lost") result_.annotations.annotations.push_back(std::move(transferred[i]));
+        return std::move(result_);
+    }
+
+private:
+    const Mesh& on() const { return result_.refined ? result_.refined->mesh : target_; }
+
+    void match() {
+        std::vector<Index> vertices;
+        chains_.resize(set_.annotations.size());
+        for (std::size_t i = 0; i < set_.annotations.size(); ++i) {
+            const Annotation& annotation = set_.annotations[i];
+            for (const auto& line : annotation.polylines) {
+                Chain chain;
+                chain.vertices = line;
+                chain.closed = line.size() > 2 && line.front() == line.back();
+                if (chain.closed) chain.vertices.pop_back();
+                chains_[i].push_back(std::move(chain));
+            }
+            if (annotation.type == AnnotationType::region && !annotation.all) chains_[i] = region_chains(source_, annotation.faces);
+            for (const Chain& chain : chains_[i]) vertices.insert(vertices.end(), chain.vertices.begin(), chain.vertices.end());
+            vertices.insert(vertices.end(), annotation.points.begin(), annotation.points.end());
+            for (const Attribute& attribute : annotation.attributes)
+                vertices.insert(vertices.end(), attribute.measure.points.begin(), attribute.measure.points.end());
+        }
+        tracer_.match(std::move(vertices));
+    }
+
+    void begin(const Annotation& from, Annotation& to, TransferScore& score) {
+        to.id = score.id = from.id;
+        to.tag = score.tag = from.tag;
+        to.colour = from.colour;
+        to.type = score.source_type = from.type;
+        to.all = from.all;
+        to.note = from.note;
+        score.outcome = "kept";
+        std::set<Index> vertices(from.points.begin(), from.points.end());
+        for (const Chain& chain : chains_[index_of(score)]) vertices.insert(chain.vertices.begin(), chain.vertices.end());
+        score.vertices = vertices.size();
+        for (const Index v : vertices) {
+            const Correspondence& place = tracer_.place(v);
+            if (place.kind == CorrespondenceKind::ray) ++score.by_ray;
+            else if (place.kind == CorrespondenceKind::closest) ++score.by_closest_point;
+            else ++score.without_place;
+        }
+    }
+
+    std::size_t index_of(const TransferScore& score) const { return static_cast<std::size_t>(&score - result_.scores.data()); }
+
+    void trace(std::size_t i, Annotation& to) {
+        const Annotation& from = set_.annotations[i];
+        if (from.type == AnnotationType::point) {
+            for (const Index v : from.points)
+                if (const Index w = tracer_.place(v).vertex; w != no_index) to.points.push_back(w);
+            return;
+        }
+        traced_.resize(chains_.size());
+        for (const Chain& chain : chains_[i]) {
+            traced_[i].push_back(tracer_.trace_edges(chain, result_.scores[i]));
+            if (from.type == AnnotationType::line) add_line(traced_[i].back(), to);
+        }
+    }
+
+    static void add_line(const TracedChain& chain, Annotation& to) {
+        std::vector<Index> line = chain.path;
+        if (line.empty()) line = diameter_path(chain.walk);
+        else if (chain.closed) line.push_back(line.front());
+        if (!line.empty()) to.polylines.push_back(std::move(line));
+    }
+
+    /// Curves of all annotations become edges at once; then each chain is read off the refined mesh.
+    void insert(std::vector<Annotation>& transferred) {
+        std::vector<std::vector<std::vector<ChainTracer::Step>>> steps(chains_.size());
+        for (std::size_t i = 0; i < chains_.size(); ++i)
+            for (const Chain& chain : chains_[i]) steps[i].push_back(tracer_.trace_curves(chain, result_.scores[i]));
+        std::vector<SurfaceCurve> curves = tracer_.curves();
+        // Points become vertices too: curves of a single node.
+        std::map<Index, std::size_t> point_curve;
+        for (const Annotation& annotation : set_.annotations)
+            for (const Index v : annotation.points) {
+                const Correspondence& place = tracer_.place(v);
+                if (place.vertex == no_index || point_curve.count(v) > 0) continue;
+                point_curve[v] = curves.size();
+                SurfaceCurve curve;
+                curve.nodes.push_back(surface_node(target_, place.place.face, place.place.barycentric));
+                curves.push_back(std::move(curve));
+            }
+        result_.refined = insert_curves(target_, curves);
+        const InsertedCurves& refined = *result_.refined;
+        PathSearch paths(refined.mesh);
+        traced_.resize(chains_.size());
+        for (std::size_t i = 0; i < chains_.size(); ++i) {
+            const Annotation& from = set_.annotations[i];
+            for (const Index v : from.points)
+                if (const auto found = point_curve.find(v); found != point_curve.end()) transferred[i].points.push_back(refined.node_vertex[found->second].front());
+            for (std::size_t c = 0; c < chains_[i].size(); ++c) {
+                TracedChain chain;
+                chain.closed = chains_[i][c].closed;
+                const auto to_vertex = [&](Index v) {
+                    if (chain.walk.empty()) {
+                        chain.walk.push_back(v);
+                        return;
+                    }
+                    const Index last = chain.walk.back();
+                    if (last == v) return;
+                    if (find_halfedge(refined.mesh, Vertex(last), Vertex(v)) != Mesh::null_halfedge()) {
+                        chain.walk.push_back(v);
+                        return;
+                    }
+                    const std::vector<Index> way = paths.find(Vertex(last), Vertex(v), {});
+                    if (!way.empty()) chain.walk.insert(chain.walk.end(), way.begin() + 1, way.end());
+                };
+                for (const ChainTracer::Step& step : steps[i][c]) {
+                    const auto& nodes = refined.node_vertex[step.curve];
+                    if (step.backwards)
+                        for (auto v = nodes.rbegin(); v != nodes.rend(); ++v) to_vertex(*v);
+                    else
+                        for (const Index v : nodes) to_vertex(v);
+                }
+                if (chain.walk.empty() && !chains_[i][c].vertices.empty()) {
+                    const Correspondence& place = tracer_.place(chains_[i][c].vertices.front());
+                    if (place.vertex != no_index) chain.walk.push_back(place.vertex);
+                }
+                if (chain.closed && chain.walk.size() > 1 && chain.walk.front() == chain.walk.back()) chain.walk.pop_back();
+                chain.path = prune_spikes(chain.walk, chain.closed);
+                traced_[i].push_back(chain);
+                if (from.type == AnnotationType::line) add_line(chain, transferred[i]);
+            }
+        }
+    }
+
+    void fill(std::size_t i, Annotation& to) {
+        const Annotation& from = set_.annotations[i];
+        TransferScore& score = result_.scores[i];
+        if (from.all) {
+            for (Index f = 0; f < on().number_of_faces(); ++f) to.faces.push_back(f);
+            return;
+        }
+        to.faces = faces_of(regions_.fill(from.faces, traced_[i], chains_[i], on(), result_.refined ? &result_.refined->face_origin : nullptr, score));
+        if (!to.faces.empty()) return;
+        // Nothing but a trace is left: the longest one stands for the region.
+        std::vector<Index> line;
+        for (const TracedChain& chain : traced_[i])
+            if (std::vector<Index> path = diameter_path(chain.walk); path.size() > line.size()) line = std::move(path);
+        if (line.size() >= 2) {
+            to.type = AnnotationType::line;
+            to.polylines = {line};
+            score.outcome = "became a line";
+        } else if (line.size() == 1) {
+            to.type = AnnotationType::point;
+            to.points = line;
+            score.outcome = "became a point";
+        } else {
+            score.outcome = "lost";
+        }
+        if (score.outcome != "lost") add_note(to.note, "was a region, too small for this mesh");
+    }
+
+    void attributes(const Annotation& from, Annotation& to, const Mesh& mesh);
+    void score(const Annotation& from, Annotation& to, TransferScore& score);
+
+    const Mesh& source_;
+    const AnnotationSet& set_;
+    const SurfaceSearch& search_;
+    const Mesh& target_;
+    const TransferOptions& options_;
+    ChainTracer tracer_;
+    RegionTransfer regions_;
+    std::vector<std::vector<Chain>> chains_;
+    std::vector<std::vector<TracedChain>> traced_;
+    TransferResult result_;
+};
+
+void Transfer::attributes(const Annotation& from, Annotation& to, const Mesh&) {
+    for (const Attribute& attribute : from.attributes) {
+        Attribute moved = attribute;
+        if (attribute.type == AttributeType::descriptor) moved.descriptor.stale = true;
+        if (attribute.type == AttributeType::measure) {
+            moved.measure.points.clear();
+            moved.measure.locations.clear();
+            bool complete = true;
+            for (const Index v : attribute.measure.points) {
+                const Correspondence& place = tracer_.place(v);
+                if (place.vertex == no_index) {
+                    complete = false;
+                    continue;
+                }
+                moved.measure.points.push_back(place.vertex);
+                // Face indices of a refined mesh are new: there the nearest vertex stands alone.
+                if (!result_.refined) moved.measure.locations.push_back({place.place.face, place.place.barycentric});
+            }
+            if (!complete) add_note(to.note, "measure '" + attribute.name + "' lost a pin");
+            moved.measure.stale = true;
+        }
+        to.attributes.push_back(std::move(moved));
+    }
+}
+
+void Transfer::score(const Annotation& from, Annotation& to, TransferScore& score) {
+    score.target_type = to.type;
+    if (score.outcome == "kept" && to.points.empty() && to.polylines.empty() && to.faces.empty()) score.outcome = "lost";
+    const Segments a = segments_of(source_, from), b = segments_of(on(), to);
+    score.source_length = length_of(a);
+    score.target_length = length_of(b);
+    score.hausdorff = score.outcome == "lost" ? 0 : hausdorff_distance(a, b);
+    if (from.type != AnnotationType::region) {
+        if (from.type == AnnotationType::point && to.points.size() > std::set<Index>(to.points.begin(), to.points.end()).size())
+            add_note(score.note, "several points fell on one vertex");
+        return;
+    }
+    score.source_area = area_of(source_, from.faces);
+    score.target_area = area_of(on(), to.faces);
+    if (!options_.overlap || to.faces.empty()) return;
+    if (from.all) {
+        score.overlap = 1;
+        score.wrong_side = 0;
+        return;
+    }
+    const double common = overlapping_area(source_, from.faces, search_, options_.correspondence, regions_.membership(to.faces, on(), result_.refined ? &result_.refined->face_origin : nullptr));
+    score.overlap = common / (score.source_area + score.target_area - common);
+    score.wrong_side = std::max(0.0, score.source_area - common) + std::max(0.0, score.target_area - common);
+}
+
+}  // namespace
+
+TransferResult transfer(const Mesh& source, const AnnotationSet& annotations, const SurfaceSearch& target, const TransferOptions& options) {
+    check_options(options, "transfer");
+    check_annotations(source, annotations);
+    if (!options.force) {
+        const Alignment alignment = compare_alignment(source, target.mesh());
+        if (!alignment.problem.empty()) fail_input("transfer", alignment.problem, "or --force if they are meant to differ");
+    }
+    if (options.refine && options.cover != "overlapping") fail_usage("a refined target follows the outline exactly", "leave out --cover with --refine");
+    return Transfer(source, annotations, target, options).run();
+}
+
+}  // namespace ostraka
