@@ -94,7 +94,7 @@ Moments moments(const Mesh& mesh) {
     double area = 0;
     const CGAL::Bbox_3 box = bounding_box(mesh);
     const Eigen::Vector3d origin(box.xmin(), box.ymin(), box.zmin());
-    const auto position = [&](Vertex v) { return Eigen::Vector3d(mesh.point(v).x(), mesh.point(v).y(), mesh.point(v).z()) - origin; };
+    const auto position = [&](Vertex v) -> Eigen::Vector3d { return Eigen::Vector3d(mesh.point(v).x(), mesh.point(v).y(), mesh.point(v).z()) - origin; };
     for (const Face f : mesh.faces()) {
         const auto [a, b, c] = corners(mesh, f);
         const Eigen::Vector3d p = position(a), q = position(b), r = position(c), s = p + q + r;
