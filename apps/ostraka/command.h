@@ -63,7 +63,8 @@ std::string table(const std::vector<std::string>& header, const std::vector<std:
 std::string number(double value, int digits = 5);
 
 // One registration function a file; each adds its commands to the tool.
-void add_mesh_info(CLI::App& mesh, Session& session);                  // mesh_info.cpp: info, convert
+void add_mesh_info(CLI::App& mesh, Session& session);                  // mesh_info.cpp
+void add_mesh_convert(CLI::App& mesh, Session& session);               // mesh_convert.cpp
 void add_mesh_repair(CLI::App& mesh, Session& session);                // mesh_repair.cpp
 void add_mesh_resize(CLI::App& mesh, Session& session);                // mesh_resize.cpp: simplify, refine, remesh
 void add_mesh_make(CLI::App& mesh, Session& session);                  // mesh_make.cpp

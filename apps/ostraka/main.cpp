@@ -3,11 +3,15 @@
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
 
+#include <csignal>
 #include <iostream>
 #include <new>
 
 int main(int argc, char** argv) {
     using namespace ostraka;
+    // A closed pipe or a full disk shall be an error with words, not a signal.
+    std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);
     app::Session session;
     CLI::App tool("Semantics-aware modelling of 3D shapes", "ostraka");
     tool.set_version_flag("--version", version());
@@ -17,6 +21,7 @@ int main(int argc, char** argv) {
     CLI::App* annotation = tool.add_subcommand("annotation", "annotate meshes and carry annotations between them");
     annotation->require_subcommand(1);
     app::add_mesh_info(*mesh, session);
+    app::add_mesh_convert(*mesh, session);
     app::add_mesh_repair(*mesh, session);
     app::add_mesh_resize(*mesh, session);
     app::add_mesh_make(*mesh, session);

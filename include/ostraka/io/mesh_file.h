@@ -74,6 +74,10 @@ struct WriteOptions {
 std::vector<std::string> write_mesh(const Path& file, const Mesh& mesh, const MeshExtras& extras = {},
                                     const WriteOptions& options = {});
 
+/// As write_mesh, for triangles of any topology.
+std::vector<std::string> write_triangles(const Path& file, const TriangleSoup& soup, const MeshExtras& extras = {},
+                                         const WriteOptions& options = {});
+
 /// Throws Error (usage) unless `write_mesh` knows the extension.
 void check_mesh_extension(const Path& file);
 

@@ -1,0 +1,36 @@
+// The readers and writers behind read_polygons and write_mesh, one pair a format.
+#pragma once
+
+#include "ostraka/io/mesh_file.h"
+
+namespace ostraka::io {
+
+// Readers: `bytes` is the whole file, `file` its name for messages. They may change the bytes.
+PolygonSoup read_obj(std::string& bytes, const std::string& file);
+PolygonSoup read_off(std::string& bytes, const std::string& file);
+PolygonSoup read_ply(const std::string& bytes, const std::string& file);
+PolygonSoup read_stl(std::string& bytes, const std::string& file);
+
+/// True if the content is that of the format, whatever the file's name.
+bool looks_like_ply(std::string_view bytes);
+bool looks_like_off(std::string_view bytes);
+bool looks_like_stl(std::string_view bytes);
+
+/// Appends a polygon whose corners were pushed on `soup.corners`; throws Error if the corners no longer fit an Index.
+void close_polygon(PolygonSoup& soup, const std::string& file);
+
+/// Colour channels from a file: 0..1 as real numbers, NaN and what lies outside is counted in `bad` and clamped.
+std::uint8_t channel_from_unit(double value, std::size_t& bad);
+std::uint8_t channel_from_byte(double value, std::size_t& bad);
+
+inline constexpr Colour white{255, 255, 255, 255};
+
+// Writers: `extras` were checked to be empty or complete. They return what the format cannot hold.
+using Notes = std::vector<std::string>;
+Notes write_obj(const Path& file, const TriangleSoup& soup, const MeshExtras& extras, const WriteOptions& options);
+Notes write_off(const Path& file, const TriangleSoup& soup, const MeshExtras& extras, const WriteOptions& options);
+Notes write_ply(const Path& file, const TriangleSoup& soup, const MeshExtras& extras, const WriteOptions& options);
+Notes write_stl(const Path& file, const TriangleSoup& soup, const MeshExtras& extras, const WriteOptions& options);
+Notes write_glb(const Path& file, const TriangleSoup& soup, const MeshExtras& extras, const WriteOptions& options);
+
+}  // namespace ostraka::io

@@ -1,0 +1,43 @@
+// The header of a PLY file: elements and their properties, in the order of the file.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ostraka::io {
+
+enum class PlyFormat { ascii, little_endian, big_endian };
+enum class PlyType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+
+std::size_t size_of(PlyType type);
+inline bool is_real(PlyType type) { return type >= PlyType::float32; }
+
+struct PlyProperty {
+    std::string name;
+    PlyType type = PlyType::float32;
+    bool is_list = false;
+    PlyType count_type = PlyType::uint8;  ///< of a list
+};
+
+struct PlyElement {
+    std::string name;
+    std::size_t count = 0;
+    std::vector<PlyProperty> properties;
+    /// The fewest bytes one such element can take in a file of the format.
+    [[nodiscard]] std::size_t least_bytes(PlyFormat format) const;
+};
+
+struct PlyHeader {
+    PlyFormat format = PlyFormat::ascii;
+    std::vector<PlyElement> elements;
+    std::size_t size = 0;  ///< bytes up to the first element
+    bool has_texture_file = false;
+    [[nodiscard]] const PlyElement* find(std::string_view name) const;
+};
+
+/// Throws Error (input) that names the line of the header. Counts are as the file claims them.
+PlyHeader read_ply_header(std::string_view bytes, const std::string& file);
+
+}  // namespace ostraka::io

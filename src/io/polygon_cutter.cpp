@@ -1,0 +1,253 @@
+#include "polygon_cutter.h"
+
+#include "ostraka/core/mesh.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ostraka::io {
+
+namespace {
+
+using Point2 = std::array<double, 2>;
+using Point3 = std::array<double, 3>;
+
+/// Sign of the turn from a over b to c, exact: 1 is to the left.
+int turn(const Point2& a, const Point2& b, const Point2& c) {
+    using Flat = Kernel::Point_2;
+    return CGAL::orientation(Flat(a[0], a[1]), Flat(b[0], b[1]), Flat(c[0], c[1]));
+}
+
+Point3 cross_of(const Point3& a, const Point3& b, const Point3& c) {
+    const Point3 u{b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v{c[0] - a[0], c[1] - a[1], c[2] - a[2]};
+    return {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+}
+
+double dot(const Point3& a, const Point3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/// The largest power of two that keeps products of coordinates from overflowing: scaling by it loses nothing of them.
+double safe_scale(const std::vector<Point3>& points, const std::uint32_t* corners, std::size_t count) {
+    double largest = 0;
+    for (std::size_t i = 0; i < count; ++i)
+        for (const double x : points[corners[i]]) largest = std::max(largest, std::fabs(x));
+    if (largest == 0) return 1;
+    return std::ldexp(1.0, std::min(-std::ilogb(largest), 1000));
+}
+
+Point3 scaled(const Point3& p, double scale) { return {p[0] * scale, p[1] * scale, p[2] * scale}; }
+
+}  // namespace
+
+CutResult PolygonCutter::cut(const std::vector<Point3>& points, const std::uint32_t* corners, std::size_t count,
+                             std::vector<Triple>& triangles) {
+    drop_repeated(corners, count);
+    if (kept_.size() < 3) return CutResult::clean;
+    if (kept_.size() == 3) {
+        const auto a = kept_[0], b = kept_[1], c = kept_[2];
+        if (corners[a] != corners[b] && corners[b] != corners[c] && corners[c] != corners[a]) triangles.push_back({a, b, c});
+        return CutResult::clean;
+    }
+    if (kept_.size() == 4 && corners[kept_[0]] != corners[kept_[2]] && corners[kept_[1]] != corners[kept_[3]]) {
+        cut_quadrilateral(points, corners, triangles);
+        return CutResult::clean;
+    }
+    project(points, corners);
+    if (is_strictly_convex()) {
+        for (std::size_t i = 1; i + 1 < kept_.size(); ++i) triangles.push_back({kept_[0], kept_[i], kept_[i + 1]});
+        return CutResult::clean;
+    }
+    return clip_ears(corners, triangles);
+}
+
+/// Corners that repeat the one before (around the end as well) are left out.
+void PolygonCutter::drop_repeated(const std::uint32_t* corners, std::size_t count) {
+    kept_.clear();
+    for (std::size_t i = 0; i < count; ++i)
+        if (kept_.empty() || corners[kept_.back()] != corners[i]) kept_.push_back(static_cast<std::uint32_t>(i));
+    while (kept_.size() > 1 && corners[kept_.back()] == corners[kept_.front()]) kept_.pop_back();
+}
+
+void PolygonCutter::cut_quadrilateral(const std::vector<Point3>& points, const std::uint32_t* corners,
+                                      std::vector<Triple>& triangles) {
+    const double scale = safe_scale(points, corners, kept_.back() + 1);
+    std::array<Point3, 4> p;
+    for (std::size_t i = 0; i < 4; ++i) p[i] = scaled(points[corners[kept_[i]]], scale);
+    const bool first_upright = dot(cross_of(p[0], p[1], p[2]), cross_of(p[0], p[2], p[3])) > 0;
+    const bool second_upright = dot(cross_of(p[1], p[2], p[3]), cross_of(p[1], p[3], p[0])) > 0;
+    const auto squared = [](const Point3& a, const Point3& b) {
+        const Point3 d{a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+        return dot(d, d);
+    };
+    bool first = squared(p[0], p[2]) <= squared(p[1], p[3]);
+    if (first_upright != second_upright) first = first_upright;
+    const auto& k = kept_;
+    if (first) {
+        triangles.push_back({k[0], k[1], k[2]});
+        triangles.push_back({k[0], k[2], k[3]});
+    } else {
+        triangles.push_back({k[0], k[1], k[3]});
+        triangles.push_back({k[1], k[2], k[3]});
+    }
+}
+
+/// Onto the coordinate plane on which the polygon's area (Newell's normal) is largest, mirrored if need be so that it runs
+/// counter-clockwise; without area onto the plane of its two largest extents.
+void PolygonCutter::project(const std::vector<Point3>& points, const std::uint32_t* corners) {
+    const double scale = safe_scale(points, corners, kept_.back() + 1);
+    const Point3 origin = scaled(points[corners[kept_[0]]], scale);
+    Point3 normal{0, 0, 0}, low = origin, high = origin;
+    for (std::size_t i = 0; i < kept_.size(); ++i) {
+        const Point3 a = scaled(points[corners[kept_[i]]], scale),
+                     b = scaled(points[corners[kept_[(i + 1) % kept_.size()]]], scale);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::size_t u = (k + 1) % 3, v = (k + 2) % 3;
+            normal[k] += (a[u] - origin[u]) * (b[v] - origin[v]) - (a[v] - origin[v]) * (b[u] - origin[u]);
+            low[k] = std::min(low[k], a[k]);
+            high[k] = std::max(high[k], a[k]);
+        }
+    }
+    std::size_t axis = 0;
+    for (std::size_t k = 1; k < 3; ++k)
+        if (std::fabs(normal[k]) > std::fabs(normal[axis])) axis = k;
+    if (normal[axis] == 0) {
+        axis = 0;
+        for (std::size_t k = 1; k < 3; ++k)
+            if (high[k] - low[k] < high[axis] - low[axis]) axis = k;
+    }
+    std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
+    if (normal[axis] < 0) std::swap(u, v);
+    flat_.resize(kept_.size());
+    for (std::size_t i = 0; i < kept_.size(); ++i) {
+        const Point3 p = scaled(points[corners[kept_[i]]], scale);
+        flat_[i] = {p[u], p[v]};
+    }
+}
+
+/// Left turns only, and the direction runs around once: from rightward to leftward and back.
+bool PolygonCutter::is_strictly_convex() const {
+    const std::size_t count = flat_.size();
+    std::size_t reversals = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const Point2 &a = flat_[i], &b = flat_[(i + 1) % count], &c = flat_[(i + 2) % count];
+        if (turn(a, b, c) <= 0) return false;
+        reversals += (a < b) != (b < c);
+    }
+    return reversals == 2;
+}
+
+std::array<std::size_t, 2> PolygonCutter::cell_of(const Point2& point) const {
+    std::array<std::size_t, 2> cell{};
+    for (std::size_t k = 0; k < 2; ++k) {
+        const double place = std::floor((point[k] - grid_low_[k]) / grid_size_[k] * static_cast<double>(cells_));
+        cell[k] = static_cast<std::size_t>(std::clamp(place, 0.0, static_cast<double>(cells_ - 1)));
+    }
+    return cell;
+}
+
+/// Only corners that are not strictly convex can lie inside an ear, and clipping never makes a convex corner reflex.
+void PolygonCutter::build_grid(std::uint32_t start) {
+    std::size_t count = 0;
+    Point2 high = flat_[start];
+    grid_low_ = flat_[start];
+    reflex_.clear();
+    std::uint32_t i = start;
+    do {
+        for (std::size_t k = 0; k < 2; ++k) {
+            grid_low_[k] = std::min(grid_low_[k], flat_[i][k]);
+            high[k] = std::max(high[k], flat_[i][k]);
+        }
+        if (turn(flat_[previous_[i]], flat_[i], flat_[next_[i]]) <= 0) reflex_.push_back(i);
+        ++count;
+        i = next_[i];
+    } while (i != start);
+    for (std::size_t k = 0; k < 2; ++k) grid_size_[k] = high[k] > grid_low_[k] ? high[k] - grid_low_[k] : 1;
+    cells_ = std::clamp<std::size_t>(static_cast<std::size_t>(std::sqrt(static_cast<double>(count) / 4)), 1, 2048);
+    cell_begin_.assign(cells_ * cells_ + 1, 0);
+    const auto index = [this](std::uint32_t corner) {
+        const auto [x, y] = cell_of(flat_[corner]);
+        return y * cells_ + x;
+    };
+    for (const std::uint32_t r : reflex_) ++cell_begin_[index(r) + 1];
+    for (std::size_t c = 0; c + 1 < cell_begin_.size(); ++c) cell_begin_[c + 1] += cell_begin_[c];
+    cell_items_.resize(reflex_.size());
+    std::vector<std::uint32_t> fill(cell_begin_.begin(), cell_begin_.end() - 1);
+    for (const std::uint32_t r : reflex_) cell_items_[fill[index(r)]++] = r;
+}
+
+/// A strictly convex tip whose closed triangle holds no other corner (corners at the same place as one of the three aside).
+bool PolygonCutter::is_ear(std::uint32_t previous, std::uint32_t tip, std::uint32_t next) {
+    const Point2 &a = flat_[previous], &b = flat_[tip], &c = flat_[next];
+    if (turn(a, b, c) <= 0) return false;
+    const auto [left, bottom] = cell_of({std::min({a[0], b[0], c[0]}), std::min({a[1], b[1], c[1]})});
+    const auto [right, top] = cell_of({std::max({a[0], b[0], c[0]}), std::max({a[1], b[1], c[1]})});
+    for (std::size_t y = bottom; y <= top; ++y) {
+        const std::uint32_t first = cell_begin_[y * cells_ + left], last = cell_begin_[y * cells_ + right + 1];
+        const std::size_t work = 1 + last - first;
+        budget_ -= std::min(budget_, work);
+        for (std::uint32_t k = first; k < last; ++k) {
+            const std::uint32_t i = cell_items_[k];
+            const Point2& p = flat_[i];
+            if (alive_[i] == 0 || p == a || p == b || p == c) continue;
+            if (turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0) return false;
+        }
+        if (budget_ == 0) return false;
+    }
+    return true;
+}
+
+CutResult PolygonCutter::clip_ears(const std::uint32_t* corners, std::vector<Triple>& triangles) {
+    auto left = static_cast<std::uint32_t>(kept_.size());
+    alive_.assign(left, 1);
+    next_.resize(left);
+    previous_.resize(left);
+    for (std::uint32_t i = 0; i < left; ++i) {
+        next_[i] = i + 1 == left ? 0 : i + 1;
+        previous_[i] = i == 0 ? left - 1 : i - 1;
+    }
+    budget_ = 1000000 + 500 * static_cast<std::size_t>(left);
+    build_grid(0);
+    std::uint32_t in_grid = left;
+    CutResult result = CutResult::clean;
+    const auto distinct = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+        const auto u = corners[kept_[a]], v = corners[kept_[b]], w = corners[kept_[c]];
+        return u != v && v != w && w != u;
+    };
+    const auto clip = [&](std::uint32_t tip) {
+        const std::uint32_t before = previous_[tip], after = next_[tip];
+        if (distinct(before, tip, after)) triangles.push_back({kept_[before], kept_[tip], kept_[after]});
+        next_[before] = after;
+        previous_[after] = before;
+        alive_[tip] = 0;
+        --left;
+    };
+    std::uint32_t tip = 0, failures = 0;
+    while (left > 3) {
+        if (failures < left && budget_ > 0) {
+            --budget_;
+            if (distinct(previous_[tip], tip, next_[tip]) && is_ear(previous_[tip], tip, next_[tip])) {
+                const std::uint32_t after = next_[tip];
+                clip(tip);
+                tip = next_[after];  // the next but one: fewer slivers than a fan
+                failures = 0;
+                if (left < in_grid / 2) {  // large ears now: coarser cells, without the corners that are gone
+                    build_grid(tip);
+                    in_grid = left;
+                }
+            } else {
+                tip = next_[tip];
+                ++failures;
+            }
+            continue;
+        }
+        // The polygon crosses or touches itself, or the budget is spent: whatever stands next is cut off.
+        result = budget_ == 0 ? CutResult::gave_up : CutResult::crossing;
+        const std::uint32_t after = next_[tip];
+        clip(tip);
+        tip = after;
+        failures = 0;
+    }
+    if (distinct(previous_[tip], tip, next_[tip])) triangles.push_back({kept_[previous_[tip]], kept_[tip], kept_[next_[tip]]});
+    return result;
+}
+
+}  // namespace ostraka::io

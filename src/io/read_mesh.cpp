@@ -1,0 +1,124 @@
+#include "formats.h"
+#include "ostraka/core/error.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ostraka {
+
+namespace io {
+
+void close_polygon(PolygonSoup& soup, const std::string& file) {
+    if (soup.corners.size() >= no_index || soup.polygon_begin.size() >= no_index)
+        throw Error(ErrorKind::failure, file, "has more than four thousand million face corners", "split it");
+    soup.polygon_begin.push_back(static_cast<Index>(soup.corners.size()));
+}
+
+std::uint8_t channel_from_byte(double value, std::size_t& bad) {
+    if (!(value >= 0 && value <= 255)) {
+        ++bad;
+        return value > 255 ? 255 : 0;
+    }
+    return static_cast<std::uint8_t>(std::lround(value));
+}
+
+std::uint8_t channel_from_unit(double value, std::size_t& bad) {
+    if (!(value >= 0 && value <= 1)) {
+        ++bad;
+        return value > 1 ? 255 : 0;
+    }
+    return static_cast<std::uint8_t>(std::lround(255 * value));
+}
+
+namespace {
+
+enum class Format { obj, off, ply, stl };
+
+std::string name_of(Format format) {
+    constexpr const char* names[] = {"OBJ", "OFF", "PLY", "STL"};
+    return names[static_cast<int>(format)];
+}
+
+Format format_of_extension(const Path& file) {
+    const std::string ending = extension(file);
+    if (ending == ".obj") return Format::obj;
+    if (ending == ".off") return Format::off;
+    if (ending == ".ply") return Format::ply;
+    if (ending == ".stl") return Format::stl;
+    throw Error(ErrorKind::usage, file.string(), "has no extension of a mesh file that can be read",
+                "use .obj, .off, .ply or .stl");
+}
+
+/// The extension's format, unless the content is clearly that of another.
+Format format_of_content(Format expected, std::string_view bytes) {
+    if (looks_like_ply(bytes)) return Format::ply;
+    if (looks_like_off(bytes)) return Format::off;
+    if (looks_like_stl(bytes)) return Format::stl;
+    return expected;
+}
+
+std::string defects_in_words(const ManifoldDefects& defects) {
+    std::string text;
+    const auto add = [&text](std::size_t count, const char* what) {
+        if (count > 0) text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + what;
+    };
+    add(defects.repeated_corners, "triangles that repeat a vertex");
+    add(defects.nonmanifold_edges, "edges with more than two triangles");
+    add(defects.misoriented_edges, "edges whose triangles are oriented differently");
+    add(defects.nonmanifold_vertices, "vertices where several sheets touch");
+    return text + "; the first at triangle " + std::to_string(defects.example_triangle);
+}
+
+}  // namespace
+
+}  // namespace io
+
+PolygonSoup read_polygons(const Path& file) {
+    using namespace io;
+    const Format named = format_of_extension(file);
+    std::string bytes = read_file(file);
+    const std::string name = file.string();
+    if (bytes.empty()) fail_input(name, "is empty", "export it again");
+    const Format format = format_of_content(named, bytes);
+    PolygonSoup soup;
+    switch (format) {
+        case Format::obj:
+            soup = read_obj(bytes, name);
+            break;
+        case Format::off:
+            soup = read_off(bytes, name);
+            break;
+        case Format::ply:
+            soup = read_ply(bytes, name);
+            break;
+        case Format::stl:
+            soup = read_stl(bytes, name);
+            break;
+    }
+    if (soup.points.size() >= no_index)
+        throw Error(ErrorKind::failure, name, "has more than four thousand million vertices", "split it");
+    if (format != named)
+        soup.notes.push_back("named " + extension(file) + " but holds " + name_of(format) + ", and was read as such");
+    return soup;
+}
+
+MeshFile read_mesh(const Path& file) {
+    MeshFile result;
+    PolygonSoup polygons = read_polygons(file);
+    if (polygons.polygon_count() == 0)
+        fail_input(file.string(), "has no faces (" + std::to_string(polygons.points.size()) + " vertices)",
+                   "use a file with a surface");
+    TriangulatedSoup triangles = triangulate(std::move(polygons));
+    if (triangles.soup.triangles.empty())
+        fail_input(file.string(), "has no face with three distinct corners", "use a file with a surface");
+    const ManifoldDefects defects = try_build_mesh(triangles.soup, result.mesh);
+    if (defects.any())
+        fail_input(file.string(), "is not an oriented manifold: " + io::defects_in_words(defects),
+                   "run: ostraka mesh repair " + file.string());
+    result.extras = std::move(triangles.extras);
+    result.triangle_polygon = std::move(triangles.triangle_polygon);
+    result.notes = std::move(triangles.notes);
+    return result;
+}
+
+}  // namespace ostraka

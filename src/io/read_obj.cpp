@@ -1,0 +1,209 @@
+#include "formats.h"
+#include "ostraka/core/error.h"
+#include "text_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+namespace ostraka::io {
+
+namespace {
+
+/// Statements of the format that hold nothing of the surface we keep; any other word is an error, since a damaged
+/// keyword would silently shift all later indices.
+const std::set<std::string_view> ignored_statements{
+    "vn",    "vp",       "l",        "p",   "g",          "o",         "s",      "mg",    "usemtl", "mtllib", "maplib", "usemap",
+    "bevel", "c_interp", "d_interp", "lod", "shadow_obj", "trace_obj", "ctech",  "stech", "curv",   "curv2",  "surf",   "parm",
+    "trim",  "hole",     "scrv",     "sp",  "end",        "con",       "cstype", "deg",   "bmat",   "step"};
+
+/// "\" before a line end continues the line: both become blanks, the line end one that still counts as a line.
+void join_continued_lines(std::string& text) {
+    for (std::size_t i = text.find('\\'); i != std::string::npos; i = text.find('\\', i + 1)) {
+        std::size_t end = i + 1;
+        while (end < text.size() && (text[end] == '\r' || text[end] == ' ' || text[end] == '\t')) ++end;
+        if (end < text.size() && text[end] == '\n') {
+            text[i] = ' ';
+            text[end] = '\v';
+        }
+    }
+}
+
+class ObjReader {
+public:
+    ObjReader(std::string_view text, const std::string& file) : reader_(text, file, '#') {}
+
+    PolygonSoup read() {
+        while (reader_.next_line()) {
+            const char* line = reader_.position();
+            const std::string_view keyword = reader_.word();
+            if (keyword == "v") vertex();
+            else if (keyword == "f" || keyword == "fo") face();
+            else if (keyword == "vt") texture();
+            else if (ignored_statements.contains(keyword)) ignored_.insert(keyword);
+            else
+                reader_.fail("unknown statement " + in_quotes(keyword), "correct the line, or start it with # to have it skipped",
+                             line);
+        }
+        check_forward_references();
+        finish_colours();
+        finish_texture();
+        if (!ignored_.empty()) {
+            std::string list;
+            for (const auto word : ignored_) list += (list.empty() ? "" : ", ") + std::string(word);
+            soup_.notes.push_back("statements not kept: " + list);
+        }
+        if (weights_ > 0) soup_.notes.push_back(std::to_string(weights_) + " vertices have a weight, which is not kept");
+        return std::move(soup_);
+    }
+
+private:
+    void vertex() {
+        std::array<double, 3> point{};
+        for (double& x : point) x = reader_.finite("a coordinate");
+        soup_.points.push_back(point);
+        if (reader_.line_done()) return;
+        const char* first = reader_.position();
+        std::array<float, 4> more{0, 0, 0, 1};
+        std::size_t count = 0;
+        while (!reader_.line_done()) {
+            if (count == 4) reader_.fail("a vertex has more than seven numbers", {}, first);
+            more[count++] = static_cast<float>(reader_.number("a colour or weight"));
+        }
+        if (count == 1) {
+            if (more[0] != 1) ++weights_;
+            return;
+        }
+        if (count == 2) reader_.fail("a vertex has five numbers", "write x y z, x y z w, or x y z red green blue", first);
+        colours_.resize(soup_.points.size(), {-1, -1, -1, -1});
+        if (count == 3) more[3] = -1;
+        colours_.back() = more;
+    }
+
+    void texture() {
+        std::array<float, 2> uv{};
+        const char* first = reader_.position();
+        uv[0] = static_cast<float>(reader_.finite("a texture coordinate"));
+        if (!reader_.line_done()) uv[1] = static_cast<float>(reader_.finite("a texture coordinate"));
+        if (!std::isfinite(uv[0]) || !std::isfinite(uv[1])) reader_.fail("a texture coordinate does not fit a float", {}, first);
+        texture_.push_back(uv);
+    }
+
+    /// Index from 1, or from -1 backwards, to an index from 0.
+    Index resolve(std::int64_t value, std::size_t count, const char* what, const char* at, std::int64_t& largest,
+                  const char*& largest_at) {
+        const std::int64_t index = value > 0 ? value - 1 : static_cast<std::int64_t>(count) + value;
+        if (value == 0 || index < 0 || index >= static_cast<std::int64_t>(no_index))
+            reader_.fail(std::string("a face names ") + what + " " + std::to_string(value) + " of " + std::to_string(count),
+                         "indices start at 1", at);
+        if (index > largest) {
+            largest = index;
+            largest_at = at;
+        }
+        return static_cast<Index>(index);
+    }
+
+    void face() {
+        while (!reader_.line_done()) {
+            const char* at = reader_.position();
+            soup_.corners.push_back(
+                resolve(reader_.integer_part("a vertex index"), soup_.points.size(), "vertex", at, largest_, largest_at_));
+            Index uv = no_index;
+            if (reader_.take('/')) {
+                if (reader_.at_integer())
+                    uv = resolve(reader_.integer_part("a texture index"), texture_.size(), "texture coordinate", at, largest_uv_,
+                                 largest_uv_at_);
+                if (reader_.take('/') && reader_.at_integer()) reader_.integer_part("a normal index");
+            }
+            if (!reader_.at_word_end()) {
+                reader_.set_position(at);
+                reader_.fail("face corner " + in_quotes(reader_.word()) + " is not of the form 1, 1/1, 1//1 or 1/1/1", {}, at);
+            }
+            if (uv != no_index) {
+                corner_uv_.resize(soup_.corners.size(), no_index);
+                corner_uv_.back() = uv;
+            }
+        }
+        close_polygon(soup_, reader_.file());
+    }
+
+    /// Vertices may follow the faces that use them, so the largest index is compared with what came in the end.
+    void check_forward_references() {
+        if (largest_ >= static_cast<std::int64_t>(soup_.points.size()))
+            reader_.fail("a face names vertex " + std::to_string(largest_ + 1) + " of " + std::to_string(soup_.points.size()),
+                         "the file may be cut off or damaged", largest_at_);
+        if (largest_uv_ >= static_cast<std::int64_t>(texture_.size()))
+            reader_.fail(
+                "a face names texture coordinate " + std::to_string(largest_uv_ + 1) + " of " + std::to_string(texture_.size()),
+                "the file may be cut off or damaged", largest_uv_at_);
+    }
+
+    void finish_colours() {
+        if (colours_.empty()) return;
+        colours_.resize(soup_.points.size(), {-1, -1, -1, -1});
+        float largest = 0;
+        for (const auto& c : colours_)
+            for (const float x : c)
+                if (std::isfinite(x)) largest = std::max(largest, x);
+        const bool bytes = largest > 1;
+        if (bytes) soup_.notes.emplace_back("vertex colours exceed 1 and were read as 0 to 255");
+        std::size_t missing = 0, bad = 0;
+        soup_.extras.vertex_colours.assign(soup_.points.size(), white);
+        for (std::size_t v = 0; v < colours_.size(); ++v) {
+            if (colours_[v][0] == -1 && colours_[v][1] == -1) {
+                ++missing;
+                continue;
+            }
+            for (std::size_t k = 0; k < 4; ++k) {
+                if (k == 3 && colours_[v][3] == -1) continue;
+                soup_.extras.vertex_colours[v][k] =
+                    bytes ? channel_from_byte(colours_[v][k], bad) : channel_from_unit(colours_[v][k], bad);
+            }
+        }
+        if (missing > 0) soup_.notes.push_back(std::to_string(missing) + " vertices have no colour and were made white");
+        if (bad > 0) soup_.notes.push_back(std::to_string(bad) + " colour values are out of range and were clamped");
+    }
+
+    /// Texture coordinates belong to vertices if every corner names those of its vertex's number, else to corners.
+    void finish_texture() {
+        if (corner_uv_.empty()) {
+            if (!texture_.empty()) soup_.notes.emplace_back("texture coordinates that no face uses are not kept");
+            return;
+        }
+        corner_uv_.resize(soup_.corners.size(), no_index);
+        if (texture_.size() == soup_.points.size() && corner_uv_ == soup_.corners) {
+            soup_.extras.vertex_texture = std::move(texture_);
+            return;
+        }
+        std::size_t missing = 0;
+        soup_.extras.corner_texture.reserve(corner_uv_.size());
+        for (const Index uv : corner_uv_) {
+            missing += uv == no_index;
+            soup_.extras.corner_texture.push_back(uv == no_index ? std::array<float, 2>{0, 0} : texture_[uv]);
+        }
+        if (missing > 0)
+            soup_.notes.push_back(std::to_string(missing) + " face corners have no texture coordinates and were given (0, 0)");
+    }
+
+    TextReader reader_;
+    PolygonSoup soup_;
+    std::vector<std::array<float, 4>> colours_;  ///< -1 where the file gives none
+    std::vector<std::array<float, 2>> texture_;
+    std::vector<Index> corner_uv_;
+    std::int64_t largest_ = -1, largest_uv_ = -1;
+    const char* largest_at_ = nullptr;
+    const char* largest_uv_at_ = nullptr;
+    std::set<std::string_view> ignored_;
+    std::size_t weights_ = 0;
+};
+
+}  // namespace
+
+PolygonSoup read_obj(std::string& bytes, const std::string& file) {
+    normalise_text(bytes);
+    join_continued_lines(bytes);
+    return ObjReader(bytes, file).read();
+}
+
+}  // namespace ostraka::io

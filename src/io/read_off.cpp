@@ -1,0 +1,215 @@
+#include "formats.h"
+#include "ostraka/core/error.h"
+#include "text_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace ostraka::io {
+
+namespace {
+
+/// What stands in front of "OFF" in the first word: texture coordinates, colours, normals of the vertices.
+struct Header {
+    bool texture = false, colours = false, normals = false;
+};
+
+std::optional<Header> parse_header(std::string_view word) {
+    Header header;
+    const auto take = [&word](std::string_view prefix) {
+        if (!word.starts_with(prefix)) return false;
+        word.remove_prefix(prefix.size());
+        return true;
+    };
+    header.texture = take("ST");
+    header.colours = take("C");
+    header.normals = take("N");
+    if (word != "OFF") return std::nullopt;
+    return header;
+}
+
+class OffReader {
+public:
+    OffReader(std::string_view text, const std::string& file) : reader_(text, file, '#') {}
+
+    PolygonSoup read() {
+        read_header();
+        soup_.points.reserve(vertices_);
+        soup_.polygon_begin.reserve(faces_ + 1);
+        soup_.corners.reserve(std::min(3 * faces_, reader_.remaining() / 2));
+        for (std::size_t v = 0; v < vertices_; ++v) vertex(v);
+        for (std::size_t f = 0; f < faces_; ++f) face(f);
+        if (!soup_.extras.face_colours.empty()) soup_.extras.face_colours.resize(faces_, white);
+        if (header_.normals) soup_.notes.emplace_back("vertex normals are not kept");
+        if (palette_ > 0)
+            soup_.notes.push_back(std::to_string(palette_) + " faces name a colour of a palette, which is not kept");
+        if (uncoloured_ > 0 && uncoloured_ < faces_)
+            soup_.notes.push_back(std::to_string(uncoloured_) + " faces have no colour and were made white");
+        if (bad_ > 0) soup_.notes.push_back(std::to_string(bad_) + " colour values are out of range and were clamped");
+        if (reader_.skip_space()) soup_.notes.emplace_back("what follows the last face is not read");
+        return std::move(soup_);
+    }
+
+private:
+    void read_header() {
+        if (!reader_.skip_space()) fail_input(reader_.file(), "is empty", "export it again");
+        const char* first = reader_.position();
+        const std::string_view word = reader_.word();
+        if (const auto header = parse_header(word)) {
+            header_ = *header;
+            if (reader_.skip_space() && reader_.position()[0] == 'B')
+                reader_.fail("binary OFF is not supported", "convert it to text OFF or PLY");
+        } else if (!word.empty() && word.front() >= '0' && word.front() <= '9') {
+            reader_.set_position(first);  // the keyword may be left out
+        } else {
+            reader_.fail("does not start with OFF, COFF, NOFF or STOFF but with " + in_quotes(word),
+                         "check that this is an OFF file", first);
+        }
+        vertices_ = count("the number of vertices");
+        faces_ = count("the number of faces");
+        if (!reader_.line_done()) reader_.integer("the number of edges");
+        // A vertex takes at least six characters, a face two.
+        if (vertices_ > reader_.remaining() / 6 + 1 || faces_ > reader_.remaining() / 2 + 1)
+            reader_.fail("the header promises " + std::to_string(vertices_) + " vertices and " + std::to_string(faces_) +
+                             " faces, but only " + std::to_string(reader_.remaining()) + " bytes follow",
+                         "the file is cut off or its header is wrong");
+        find_undeclared_colours();
+    }
+
+    std::size_t count(const char* what) {
+        if (!reader_.skip_space())
+            reader_.fail(std::string("the file ends where ") + what + " is expected", "the file is cut off");
+        const std::int64_t value = reader_.integer(what);
+        if (value < 0) reader_.fail(std::string(what) + " is negative");
+        return static_cast<std::size_t>(value);
+    }
+
+    /// Some programs write vertex colours without saying so in the header: six or seven numbers on the first line of
+    /// vertices, and a line for every element.
+    void find_undeclared_colours() {
+        if (header_.colours || header_.normals || header_.texture || vertices_ == 0 || !reader_.skip_space()) return;
+        const char* first = reader_.position();
+        std::size_t numbers = 0, lines = 1;
+        while (!reader_.line_done() && numbers < 8) {
+            reader_.word();
+            ++numbers;
+        }
+        if (numbers == 6 || numbers == 7) {
+            while (lines < vertices_ + faces_ && reader_.next_line()) ++lines;
+            if (lines == vertices_ + faces_) {
+                header_.colours = true;
+                soup_.notes.emplace_back(
+                    "vertices have further numbers that the header does not declare; they were read as colours");
+            }
+        }
+        reader_.set_position(first);
+    }
+
+    void vertex(std::size_t v) {
+        if (!reader_.skip_space())
+            reader_.fail("the file ends at vertex " + std::to_string(v) + " of " + std::to_string(vertices_),
+                         "the file is cut off");
+        std::array<double, 3> point{};
+        for (double& x : point) x = coordinate("a coordinate");
+        soup_.points.push_back(point);
+        if (header_.normals)
+            for (int k = 0; k < 3; ++k) {
+                reader_.skip_space();
+                reader_.number("a normal");
+            }
+        if (header_.colours) soup_.extras.vertex_colours.push_back(colour(header_.texture ? 2 : 0).value_or(white));
+        if (header_.texture) {
+            const auto s = static_cast<float>(coordinate("a texture coordinate"));
+            const auto t = static_cast<float>(coordinate("a texture coordinate"));
+            if (!std::isfinite(s) || !std::isfinite(t)) reader_.fail("a texture coordinate does not fit a float");
+            soup_.extras.vertex_texture.push_back({s, t});
+        }
+    }
+
+    double coordinate(const char* what) {
+        reader_.skip_space();
+        return reader_.finite(what);
+    }
+
+    /// The colour in the next words of the line, `after` of which belong to something else. Whole numbers count from 0
+    /// to 255, others from 0 to 1.
+    std::optional<Colour> colour(std::size_t after) {
+        std::array<double, 6> values{};
+        const char* first = reader_.position();
+        std::size_t words = 0;
+        bool real = false;
+        const char* before_last[3] = {first, first, first};
+        while (words < 4 + after && !reader_.line_done()) {
+            before_last[words % 3] = reader_.position();
+            const char* start = reader_.position();
+            values[words++] = reader_.number("a colour");
+            if (words <= 4)
+                for (const char* c = start; c != reader_.position(); ++c)
+                    real = real || *c == '.' || *c == 'e' || *c == 'n' || *c == 'N';
+        }
+        if (words < after) reader_.fail("the line ends where texture coordinates are expected");
+        const std::size_t channels = words - after;
+        if (after > 0) reader_.set_position(before_last[channels % 3]);
+        if (channels == 0) return std::nullopt;
+        if (channels == 1) {
+            ++palette_;
+            return std::nullopt;
+        }
+        if (channels == 2) reader_.fail("a colour has two numbers", "write red, green, blue and perhaps alpha", first);
+        Colour result = white;
+        for (std::size_t k = 0; k < channels; ++k)
+            result[k] = real ? channel_from_unit(values[k], bad_) : channel_from_byte(values[k], bad_);
+        return result;
+    }
+
+    void face(std::size_t f) {
+        if (!reader_.skip_space())
+            reader_.fail("the file ends at face " + std::to_string(f) + " of " + std::to_string(faces_), "the file is cut off");
+        const char* first = reader_.position();
+        const std::int64_t size = reader_.integer("a number of corners");
+        if (size < 0 || static_cast<std::size_t>(size) > reader_.remaining() / 2 + 1)
+            reader_.fail("face " + std::to_string(f) + " promises " + std::to_string(size) + " corners",
+                         "the file is cut off or damaged", first);
+        for (std::int64_t k = 0; k < size; ++k) {
+            if (!reader_.skip_space()) reader_.fail("the file ends inside face " + std::to_string(f), "the file is cut off");
+            const char* at = reader_.position();
+            const std::int64_t index = reader_.integer("a vertex index");
+            if (index < 0 || static_cast<std::size_t>(index) >= vertices_)
+                reader_.fail(
+                    "face " + std::to_string(f) + " names vertex " + std::to_string(index) + " of " + std::to_string(vertices_),
+                    "indices start at 0; correct or remove the face", at);
+            soup_.corners.push_back(static_cast<Index>(index));
+        }
+        close_polygon(soup_, reader_.file());
+        if (reader_.line_done()) {
+            ++uncoloured_;
+            return;
+        }
+        const auto found = colour(0);
+        if (!reader_.line_done())
+            reader_.fail("face " + std::to_string(f) + " is followed by more than a colour", "put each face on its own line");
+        if (!found) return;
+        soup_.extras.face_colours.resize(f + 1, white);
+        soup_.extras.face_colours.back() = *found;
+    }
+
+    TextReader reader_;
+    PolygonSoup soup_;
+    Header header_;
+    std::size_t vertices_ = 0, faces_ = 0, palette_ = 0, uncoloured_ = 0, bad_ = 0;
+};
+
+}  // namespace
+
+bool looks_like_off(std::string_view bytes) {
+    TextReader reader(bytes.substr(0, 4096), {}, '#');
+    return reader.skip_space() && parse_header(reader.word()).has_value();
+}
+
+PolygonSoup read_off(std::string& bytes, const std::string& file) {
+    normalise_text(bytes);
+    return OffReader(bytes, file).read();
+}
+
+}  // namespace ostraka::io

@@ -1,0 +1,88 @@
+// Walks over the text of a mesh file: lines, words and numbers, with errors that name file and line.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace ostraka::io {
+
+/// Reads words separated by blanks (space, tab, carriage return, vertical tab) on lines that end with a line feed.
+/// `comment` is the character that starts a comment up to the end of its line, 0 for none.
+class TextReader {
+public:
+    TextReader(std::string_view text, std::string file, char comment)
+        : begin_(text.data()),
+          position_(text.data()),
+          end_(text.data() + text.size()),
+          file_(std::move(file)),
+          comment_(comment) {}
+
+    /// Leaves the rest of the current line and stops at the first word of the next line that has one; false at the end of the
+    /// text.
+    bool next_line();
+    /// Skips blanks, comments and line ends; false at the end of the text.
+    bool skip_space();
+    /// True if no further word stands on this line.
+    bool line_done() {
+        skip_blanks();
+        return position_ == end_ || *position_ == '\n' || (comment_ != 0 && *position_ == comment_);
+    }
+    /// The next word of this line; empty if there is none.
+    std::string_view word();
+    /// The next words of this line, up to its end or comment, blanks at the end cut off.
+    std::string_view rest_of_line();
+
+    /// The next word of this line as a number; throws Error if it is missing, malformed, or too large for a double.
+    /// NaN and infinities are refused.
+    double finite(const char* what);
+    /// As above, but true infinities and NaN are handed on (colours are checked by their reader).
+    double number(const char* what);
+    /// The next word of this line as a whole number that fits 64 bits.
+    std::int64_t integer(const char* what);
+    /// A whole number at the current position, without skipping blanks and whatever follows it.
+    std::int64_t integer_part(const char* what);
+    /// Takes one character if it is next.
+    bool take(char c) {
+        if (position_ == end_ || *position_ != c) return false;
+        ++position_;
+        return true;
+    }
+    /// True if the current position is a digit or a sign.
+    [[nodiscard]] bool at_integer() const {
+        return position_ != end_ && ((*position_ >= '0' && *position_ <= '9') || *position_ == '-' || *position_ == '+');
+    }
+    /// True if a word ends here.
+    [[nodiscard]] bool at_word_end() const { return position_ == end_ || is_blank(*position_) || *position_ == '\n'; }
+
+    [[nodiscard]] const char* position() const { return position_; }
+    void set_position(const char* position) { position_ = position; }
+    [[nodiscard]] std::size_t remaining() const { return static_cast<std::size_t>(end_ - position_); }
+    [[nodiscard]] const std::string& file() const { return file_; }
+
+    /// Throws Error (input) that names the file and the line at `at` (default: the current position).
+    [[noreturn]] void fail(const std::string& what, const std::string& remedy = {}, const char* at = nullptr) const;
+
+    static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
+
+private:
+    void skip_blanks() {
+        while (position_ != end_ && is_blank(*position_)) ++position_;
+    }
+    void to_line_end();
+
+    const char* begin_;
+    const char* position_;
+    const char* end_;
+    std::string file_;
+    char comment_;
+    bool started_ = false;
+};
+
+/// A word as it can stand in a message: printable, at most 40 characters.
+std::string in_quotes(std::string_view word);
+
+/// Lone carriage returns become line feeds where a text has no line feed at all; a byte order mark becomes blank.
+void normalise_text(std::string& text);
+
+}  // namespace ostraka::io

@@ -1,0 +1,70 @@
+// Collects text or bytes and hands them to an atomic file in large pieces.
+#pragma once
+
+#include "ostraka/core/file.h"
+
+#include <charconv>
+#include <cstring>
+#include <string>
+
+namespace ostraka::io {
+
+class TextWriter {
+public:
+    explicit TextWriter(const Path& file) : file_(file) { buffer_.reserve(block + 512); }
+
+    void text(std::string_view words) {
+        buffer_.append(words);
+        flush_if_full();
+    }
+    void character(char c) { buffer_.push_back(c); }
+    /// Shortest digits that read back to the same number.
+    template <class T>
+    void number(T value) {
+        char digits[32];
+        const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
+        buffer_.append(digits, end);
+    }
+    template <class T>
+    void numbers(std::initializer_list<T> values) {
+        for (const T value : values) {
+            character(' ');
+            number(value);
+        }
+    }
+    /// A value's bytes; the machine is little-endian (checked in core/mesh.cpp).
+    template <class T>
+    void bytes(const T& value) {
+        buffer_.append(reinterpret_cast<const char*>(&value), sizeof value);
+    }
+    void end_line() {
+        character('\n');
+        flush_if_full();
+    }
+    void flush_if_full() {
+        if (buffer_.size() >= block) flush();
+    }
+    void commit() {
+        flush();
+        file_.commit();
+    }
+
+private:
+    static constexpr std::size_t block = 1 << 20;
+    void flush() {
+        file_.write(buffer_);
+        buffer_.clear();
+    }
+    AtomicFile file_;
+    std::string buffer_;
+};
+
+/// A comment as one line of printable characters.
+inline std::string one_line(std::string_view comment) {
+    std::string line(comment);
+    for (char& c : line)
+        if (static_cast<unsigned char>(c) < 32) c = ' ';
+    return line;
+}
+
+}  // namespace ostraka::io

@@ -1,0 +1,82 @@
+#include "ostraka/io/mesh_file.h"
+#include "polygon_cutter.h"
+
+#include "ostraka/core/error.h"
+
+namespace ostraka {
+
+namespace {
+
+/// Face and corner data follow the triangles; vertex data stay.
+MeshExtras follow(MeshExtras&& extras, const std::vector<Index>& triangle_polygon, const std::vector<Index>& triangle_corner) {
+    MeshExtras result;
+    result.vertex_colours = std::move(extras.vertex_colours);
+    result.vertex_labels = std::move(extras.vertex_labels);
+    result.vertex_texture = std::move(extras.vertex_texture);
+    const auto pick = [](const auto& from, const std::vector<Index>& map, auto& to) {
+        if (from.empty()) return;
+        to.reserve(map.size());
+        for (const Index i : map) to.push_back(from[i]);
+    };
+    pick(extras.face_colours, triangle_polygon, result.face_colours);
+    pick(extras.face_labels, triangle_polygon, result.face_labels);
+    pick(extras.corner_texture, triangle_corner, result.corner_texture);
+    return result;
+}
+
+bool all_are_triangles(const PolygonSoup& polygons) {
+    if (polygons.corners.size() != 3 * polygons.polygon_count()) return false;
+    for (std::size_t i = 0; i < polygons.polygon_count(); ++i) {
+        if (polygons.polygon_begin[i] != 3 * i) return false;
+        const Index* c = &polygons.corners[3 * i];
+        if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) return false;
+    }
+    return true;
+}
+
+std::string counted(std::size_t count, const std::string& what) { return std::to_string(count) + " " + what; }
+
+}  // namespace
+
+TriangulatedSoup triangulate(PolygonSoup&& polygons) {
+    TriangulatedSoup result;
+    result.notes = std::move(polygons.notes);
+    result.soup.points = std::move(polygons.points);
+    auto& triangles = result.soup.triangles;
+    const auto& corners = polygons.corners;
+    if (all_are_triangles(polygons)) {
+        triangles.resize(polygons.polygon_count());
+        for (std::size_t t = 0; t < triangles.size(); ++t)
+            triangles[t] = {corners[3 * t], corners[3 * t + 1], corners[3 * t + 2]};
+        result.extras = std::move(polygons.extras);
+        return result;
+    }
+    std::vector<Index> triangle_corner;
+    std::vector<io::PolygonCutter::Triple> pieces;
+    io::PolygonCutter cutter;
+    std::size_t without = 0, crossing = 0, gave_up = 0;
+    for (std::size_t i = 0; i < polygons.polygon_count(); ++i) {
+        const Index begin = polygons.polygon_begin[i], count = polygons.polygon_begin[i + 1] - begin;
+        pieces.clear();
+        const auto cut = count == 0 ? io::CutResult::clean : cutter.cut(result.soup.points, &corners[begin], count, pieces);
+        without += pieces.empty();
+        crossing += cut == io::CutResult::crossing;
+        gave_up += cut == io::CutResult::gave_up;
+        for (const auto& piece : pieces) {
+            triangles.push_back({corners[begin + piece[0]], corners[begin + piece[1]], corners[begin + piece[2]]});
+            result.triangle_polygon.push_back(static_cast<Index>(i));
+            if (!polygons.extras.corner_texture.empty())
+                for (const auto k : piece) triangle_corner.push_back(begin + k);
+        }
+    }
+    if (without > 0)
+        result.notes.push_back(counted(without, "faces have fewer than three distinct corners and give no triangle"));
+    if (crossing > 0) result.notes.push_back(counted(crossing, "faces cross or touch themselves; their triangles may overlap"));
+    if (gave_up > 0)
+        result.notes.push_back(
+            counted(gave_up, "faces are too large and intricate to be cut cleanly; their triangles may overlap"));
+    result.extras = follow(std::move(polygons.extras), result.triangle_polygon, triangle_corner);
+    return result;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,67 @@
+#include "formats.h"
+#include "ostraka/core/error.h"
+
+#include <cmath>
+#include <stdexcept>
+
+namespace ostraka {
+
+namespace {
+
+void check_extras(const MeshExtras& extras, std::size_t vertices, std::size_t triangles) {
+    const auto check = [](std::size_t size, std::size_t wanted, const char* what) {
+        if (size != 0 && size != wanted)
+            throw std::logic_error(std::string("write_mesh: ") + what + " has " + std::to_string(size) + " entries instead of " +
+                                   std::to_string(wanted));
+    };
+    check(extras.vertex_colours.size(), vertices, "vertex_colours");
+    check(extras.vertex_labels.size(), vertices, "vertex_labels");
+    check(extras.vertex_texture.size(), vertices, "vertex_texture");
+    check(extras.face_colours.size(), triangles, "face_colours");
+    check(extras.face_labels.size(), triangles, "face_labels");
+    check(extras.corner_texture.size(), 3 * triangles, "corner_texture");
+}
+
+void check_soup(const Path& file, const TriangleSoup& soup) {
+    for (std::size_t v = 0; v < soup.points.size(); ++v)
+        for (const double x : soup.points[v])
+            if (!std::isfinite(x))
+                throw Error(ErrorKind::failure, file.string(),
+                            "vertex " + std::to_string(v) + " has a coordinate that is not finite");
+    for (std::size_t t = 0; t < soup.triangles.size(); ++t)
+        for (const Index v : soup.triangles[t])
+            if (v >= soup.points.size())
+                throw Error(ErrorKind::failure, file.string(),
+                            "triangle " + std::to_string(t) + " names vertex " + std::to_string(v) + " of " +
+                                std::to_string(soup.points.size()));
+}
+
+}  // namespace
+
+void check_mesh_extension(const Path& file) {
+    const std::string ending = extension(file);
+    for (const char* known : {".obj", ".ply", ".off", ".stl", ".glb"})
+        if (ending == known) return;
+    throw Error(ErrorKind::usage, file.string(), "has no extension of a mesh file that can be written",
+                "use .ply, .obj, .off, .stl or .glb");
+}
+
+std::vector<std::string> write_triangles(const Path& file, const TriangleSoup& soup, const MeshExtras& extras,
+                                         const WriteOptions& options) {
+    check_mesh_extension(file);
+    check_extras(extras, soup.points.size(), soup.triangles.size());
+    check_soup(file, soup);
+    const std::string ending = extension(file);
+    if (ending == ".obj") return io::write_obj(file, soup, extras, options);
+    if (ending == ".off") return io::write_off(file, soup, extras, options);
+    if (ending == ".stl") return io::write_stl(file, soup, extras, options);
+    if (ending == ".glb") return io::write_glb(file, soup, extras, options);
+    return io::write_ply(file, soup, extras, options);
+}
+
+std::vector<std::string> write_mesh(const Path& file, const Mesh& mesh, const MeshExtras& extras, const WriteOptions& options) {
+    check_mesh_extension(file);
+    return write_triangles(file, to_soup(mesh), extras, options);
+}
+
+}  // namespace ostraka

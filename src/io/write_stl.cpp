@@ -1,0 +1,106 @@
+#include "formats.h"
+#include "ostraka/core/error.h"
+#include "text_writer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ostraka::io {
+
+namespace {
+
+using Float3 = std::array<float, 3>;
+
+/// Unit normal, zero where the triangle has none; the scaling keeps huge and tiny triangles from overflowing.
+Float3 unit_normal(const std::array<double, 3>& a, const std::array<double, 3>& b, const std::array<double, 3>& c) {
+    double u[3], v[3], largest = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        u[k] = b[k] - a[k];
+        v[k] = c[k] - a[k];
+        largest = std::max({largest, std::fabs(u[k]), std::fabs(v[k])});
+    }
+    if (largest == 0) return {};
+    for (std::size_t k = 0; k < 3; ++k) {
+        u[k] /= largest;
+        v[k] /= largest;
+    }
+    const double n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+    const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    if (!(length > 0)) return {};
+    return {static_cast<float>(n[0] / length), static_cast<float>(n[1] / length), static_cast<float>(n[2] / length)};
+}
+
+/// True if a reader that numbers vertices by first appearance gets the numbers of `soup`.
+bool order_survives(const TriangleSoup& soup) {
+    Index next = 0;
+    for (const auto& triangle : soup.triangles)
+        for (const Index v : triangle) {
+            if (v > next) return false;
+            if (v == next) ++next;
+        }
+    return next == soup.points.size();
+}
+
+}  // namespace
+
+Notes write_stl(const Path& file, const TriangleSoup& soup, const MeshExtras& extras, const WriteOptions& options) {
+    if (soup.triangles.size() > std::numeric_limits<std::uint32_t>::max())
+        throw Error(ErrorKind::failure, file.string(), "STL does not hold so many triangles", "write PLY");
+    bool rounded = false;
+    for (const auto& point : soup.points)
+        for (const double x : point) {
+            if (std::fabs(x) > static_cast<double>(std::numeric_limits<float>::max()))
+                throw Error(ErrorKind::failure, file.string(), "a coordinate does not fit the single precision of STL",
+                            "write PLY, OBJ or OFF, or rescale the mesh");
+            rounded = rounded || static_cast<double>(static_cast<float>(x)) != x;
+        }
+    TextWriter writer(file);
+    const bool ascii = options.encoding == Encoding::ascii;
+    if (ascii) {
+        writer.text("solid " + one_line(options.comment) + "\n");
+    } else {
+        // Not "solid": some readers take that for text.
+        std::string header = one_line("binary STL; " + options.comment);
+        header.resize(80, ' ');
+        writer.text(header);
+        writer.bytes(static_cast<std::uint32_t>(soup.triangles.size()));
+    }
+    for (const auto& [a, b, c] : soup.triangles) {
+        const Float3 normal = unit_normal(soup.points[a], soup.points[b], soup.points[c]);
+        if (ascii) {
+            writer.text("facet normal");
+            writer.numbers({normal[0], normal[1], normal[2]});
+            writer.text("\nouter loop\n");
+        } else {
+            writer.bytes(normal);
+        }
+        for (const Index v : {a, b, c}) {
+            const auto& p = soup.points[v];
+            const Float3 point{static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])};
+            if (ascii) {
+                writer.text("vertex");
+                writer.numbers({point[0], point[1], point[2]});
+                writer.character('\n');
+            } else {
+                writer.bytes(point);
+            }
+        }
+        if (ascii) writer.text("endloop\nendfacet\n");
+        else writer.bytes(std::uint16_t{0});
+        writer.flush_if_full();
+    }
+    if (ascii) writer.text("endsolid\n");
+    writer.commit();
+    Notes notes;
+    if (rounded) notes.emplace_back("STL holds coordinates in single precision; they were rounded");
+    if (!order_survives(soup))
+        notes.emplace_back("STL does not hold vertices; they will be numbered by first appearance on reading");
+    if (!extras.vertex_colours.empty() || !extras.face_colours.empty()) notes.emplace_back("STL does not hold colours");
+    if (!extras.vertex_labels.empty() || !extras.face_labels.empty()) notes.emplace_back("STL does not hold labels");
+    if (!extras.vertex_texture.empty() || !extras.corner_texture.empty())
+        notes.emplace_back("STL does not hold texture coordinates");
+    return notes;
+}
+
+}  // namespace ostraka::io

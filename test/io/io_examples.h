@@ -1,0 +1,54 @@
+// Small meshes with everything a file may hold.
+#pragma once
+
+#include "ostraka/io/mesh_file.h"
+
+#include <cmath>
+
+namespace ostraka::test {
+
+/// An octahedron, its vertices in an order in which faces meet them first.
+inline TriangleSoup octahedron() {
+    TriangleSoup soup;
+    soup.points = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
+    soup.triangles = {{0, 1, 2}, {1, 3, 2}, {3, 4, 2}, {4, 0, 2}, {1, 0, 5}, {3, 1, 5}, {4, 3, 5}, {0, 4, 5}};
+    return soup;
+}
+
+/// A torus of `around` x `along` quadrilaterals cut in two, with coordinates that need all their digits.
+inline TriangleSoup torus(Index around, Index along) {
+    TriangleSoup soup;
+    for (Index i = 0; i < around; ++i)
+        for (Index j = 0; j < along; ++j) {
+            const double a = 2 * M_PI * i / around, b = 2 * M_PI * j / along;
+            soup.points.push_back(
+                {(3 + std::cos(b)) * std::cos(a) / 3, (3 + std::cos(b)) * std::sin(a) * 1e-3, std::sin(b) * 1e5});
+        }
+    const auto at = [&](Index i, Index j) { return (i % around) * along + j % along; };
+    for (Index i = 0; i < around; ++i)
+        for (Index j = 0; j < along; ++j) {
+            soup.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+            soup.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+        }
+    return soup;
+}
+
+/// Different values everywhere.
+inline MeshExtras full_extras(const TriangleSoup& soup) {
+    MeshExtras extras;
+    for (std::size_t v = 0; v < soup.points.size(); ++v) {
+        const auto k = static_cast<std::uint8_t>(37 * v);
+        extras.vertex_colours.push_back({k, static_cast<std::uint8_t>(k + 1), static_cast<std::uint8_t>(255 - k), 255});
+        extras.vertex_labels.push_back(static_cast<std::int32_t>(v) * 1000003 - 7);
+        extras.vertex_texture.push_back({0.1F * static_cast<float>(v), 1.0F / static_cast<float>(v + 3)});
+    }
+    for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
+        const auto k = static_cast<std::uint8_t>(11 * t);
+        extras.face_colours.push_back({k, 3, static_cast<std::uint8_t>(200 - k), static_cast<std::uint8_t>(100 + k)});
+        extras.face_labels.push_back(-static_cast<std::int32_t>(t));
+        for (int c = 0; c < 3; ++c) extras.corner_texture.push_back({0.3F * static_cast<float>(t), static_cast<float>(c) / 7});
+    }
+    return extras;
+}
+
+}  // namespace ostraka::test

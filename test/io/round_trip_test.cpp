@@ -1,0 +1,132 @@
+// What is written is read back to the bit, as far as the format holds it; what it does not hold is said.
+#include "io_examples.h"
+#include "ostraka/core/error.h"
+#include "scratch.h"
+
+using namespace ostraka;
+using namespace ostraka::test;
+
+namespace {
+
+TriangulatedSoup reread(const Path& file) { return triangulate(read_polygons(file)); }
+
+/// Texture coordinates of every corner, wherever they are kept: where each vertex has one corner the two are the same.
+std::vector<std::array<float, 2>> texture_of_corners(const TriangleSoup& soup, const MeshExtras& extras) {
+    if (extras.vertex_texture.empty()) return extras.corner_texture;
+    std::vector<std::array<float, 2>> list;
+    for (const auto& triangle : soup.triangles)
+        for (const Index v : triangle) list.push_back(extras.vertex_texture[v]);
+    return list;
+}
+
+std::vector<TriangleSoup> soups() {
+    TriangleSoup one;
+    one.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    one.triangles = {{0, 1, 2}};
+    TriangleSoup awkward = octahedron();  // extreme numbers, isolated vertices, a corner order that starts anywhere
+    awkward.points[0] = {5e-324, -1.7976931348623157e308, 0.1};
+    awkward.points[1] = {1e15 + 0.125, -1e-300, 1.0 / 3};
+    awkward.points.push_back({7, 8, 9});
+    for (auto& [a, b, c] : awkward.triangles) std::swap(a, b), std::swap(b, c);
+    TriangleSoup fans = octahedron();  // not a manifold
+    fans.triangles.push_back({0, 3, 2});
+    return {one, octahedron(), torus(20, 31), awkward, fans};
+}
+
+}  // namespace
+
+TEST(RoundTrip, PlyKeepsEverything) {
+    const Scratch scratch;
+    for (const auto& soup : soups())
+        for (const Encoding encoding : {Encoding::binary, Encoding::ascii}) {
+            const MeshExtras extras = full_extras(soup);
+            EXPECT_TRUE(write_triangles(scratch / "a.ply", soup, extras, {encoding, "made by a\ntest"}).empty());
+            const auto back = reread(scratch / "a.ply");
+            EXPECT_EQ(back.soup.points, soup.points);
+            EXPECT_EQ(back.soup.triangles, soup.triangles);
+            EXPECT_TRUE(back.triangle_polygon.empty());
+            EXPECT_EQ(back.extras.vertex_colours, extras.vertex_colours);
+            EXPECT_EQ(back.extras.face_colours, extras.face_colours);
+            EXPECT_EQ(back.extras.vertex_labels, extras.vertex_labels);
+            EXPECT_EQ(back.extras.face_labels, extras.face_labels);
+            EXPECT_EQ(back.extras.vertex_texture, extras.vertex_texture);
+            EXPECT_EQ(back.extras.corner_texture, extras.corner_texture);
+            EXPECT_TRUE(back.notes.empty());
+            EXPECT_NE(read_file(scratch / "a.ply").find("comment made by a test\n"), std::string::npos);
+        }
+}
+
+TEST(RoundTrip, ObjKeepsGeometryColoursAndTexture) {
+    const Scratch scratch;
+    for (const auto& soup : soups())
+        for (const bool by_vertex : {true, false}) {
+            MeshExtras extras = full_extras(soup);
+            (by_vertex ? extras.corner_texture : extras.vertex_texture).clear();
+            const auto notes = write_triangles(scratch / "a.obj", soup, extras);
+            EXPECT_EQ(notes.size(), 3U);  // face colours, labels of vertices, labels of faces
+            const auto back = reread(scratch / "a.obj");
+            EXPECT_EQ(back.soup.points, soup.points);
+            EXPECT_EQ(back.soup.triangles, soup.triangles);
+            EXPECT_EQ(back.extras.vertex_colours, extras.vertex_colours);
+            EXPECT_EQ(texture_of_corners(back.soup, back.extras), texture_of_corners(soup, extras));
+            if (by_vertex) {
+                EXPECT_EQ(back.extras.vertex_texture, extras.vertex_texture);
+            }
+            EXPECT_TRUE(back.extras.face_labels.empty());
+        }
+}
+
+TEST(RoundTrip, OffKeepsGeometryColoursAndTexture) {
+    const Scratch scratch;
+    for (const auto& soup : soups()) {
+        MeshExtras extras = full_extras(soup);
+        extras.vertex_colours.front()[3] = 17;
+        EXPECT_EQ(write_triangles(scratch / "a.off", soup, extras).size(), 3U);  // labels twice, texture of corners
+        const auto back = reread(scratch / "a.off");
+        EXPECT_EQ(back.soup.points, soup.points);
+        EXPECT_EQ(back.soup.triangles, soup.triangles);
+        EXPECT_EQ(back.extras.vertex_colours, extras.vertex_colours);
+        EXPECT_EQ(back.extras.face_colours, extras.face_colours);
+        EXPECT_EQ(back.extras.vertex_texture, extras.vertex_texture);
+        EXPECT_TRUE(write_triangles(scratch / "plain.off", soup).empty());
+        EXPECT_EQ(reread(scratch / "plain.off").soup.points, soup.points);
+    }
+}
+
+TEST(RoundTrip, StlKeepsWhatSinglePrecisionHolds) {
+    const Scratch scratch;
+    const TriangleSoup soup = octahedron();
+    for (const Encoding encoding : {Encoding::binary, Encoding::ascii}) {
+        EXPECT_TRUE(write_triangles(scratch / "a.stl", soup, {}, {encoding, "solid"}).empty());
+        const auto back = reread(scratch / "a.stl");
+        EXPECT_EQ(back.soup.points, soup.points);
+        EXPECT_EQ(back.soup.triangles, soup.triangles);
+        EXPECT_EQ(write_triangles(scratch / "a.stl", soup, full_extras(soup), {encoding, {}}).size(),
+                  3U);                                                                              // colours, labels, texture
+        EXPECT_EQ(write_triangles(scratch / "b.stl", torus(5, 7), {}, {encoding, {}}).size(), 2U);  // rounded, renumbered
+        const auto rounded = reread(scratch / "b.stl");
+        EXPECT_EQ(rounded.soup.points.size(), 35U);
+        EXPECT_EQ(rounded.soup.triangles.size(), 70U);
+    }
+}
+
+TEST(RoundTrip, EveryFormatGivesTheSameChecksum) {
+    const Scratch scratch;
+    const TriangleSoup soup = torus(12, 9);
+    const std::string checksum = mesh_checksum(build_mesh(soup));
+    for (const char* name : {"a.ply", "a.obj", "a.off"}) {
+        const Mesh mesh = build_mesh(soup);
+        write_mesh(scratch / name, mesh);
+        EXPECT_EQ(mesh_checksum(read_mesh(scratch / name).mesh), checksum) << name;
+    }
+}
+
+TEST(RoundTrip, WritingTwiceGivesTheSameBytes) {
+    const Scratch scratch;
+    const TriangleSoup soup = torus(12, 9);
+    for (const char* ending : {".ply", ".obj", ".off", ".stl", ".glb"}) {
+        write_triangles(scratch / ("a" + std::string(ending)), soup, full_extras(soup));
+        write_triangles(scratch / ("b" + std::string(ending)), soup, full_extras(soup));
+        EXPECT_EQ(read_file(scratch / ("a" + std::string(ending))), read_file(scratch / ("b" + std::string(ending))));
+    }
+}
