@@ -70,6 +70,7 @@ TEST(Mutation, ReadersSurviveDamagedFiles) {
         constexpr std::uint64_t copies = 400;
         for (std::uint64_t seed = 0; seed < copies; ++seed) {
             {
+                std::filesystem::remove(file);  // a new file need not be flushed when it is closed, a truncated one may
                 std::FILE* stream = std::fopen(file.c_str(), "wb");
                 ASSERT_NE(stream, nullptr);
                 const std::string damaged = mutate(bytes, seed);
