@@ -1,0 +1,116 @@
+#include "metric.h"
+#include "ostraka/core/error.h"
+#include "ostraka/core/progress.h"
+#include "property_carrier.h"
+#include "subdivide.h"
+
+#include <algorithm>
+
+namespace ostraka {
+
+namespace {
+
+class Halver {
+public:
+    Halver(Mesh& mesh, RefineResult& result) : mesh_(mesh), result_(result), edges_(mesh), faces_(mesh) {}
+
+    void halve(Edge e) {
+        const Halfedge h = mesh_.halfedge(e, 0), o = mesh_.opposite(h);  // a -> b, b -> a; afterwards a -> m, m -> a
+        const Vertex a = mesh_.source(h), b = mesh_.target(h);
+        const Point &p = mesh_.point(a), &q = mesh_.point(b);
+        const Vertex m = mesh_.add_vertex(Point(p.x() / 2 + q.x() / 2, p.y() / 2 + q.y() / 2, p.z() / 2 + q.z() / 2));
+        result_.parents.push_back({a, b});
+        const Halfedge rest = mesh_.add_edge(m, b), back = mesh_.opposite(rest);  // m -> b, b -> m
+        edges_.copy(e, mesh_.edge(rest));
+        result_.edge_origin.push_back(result_.edge_origin[e]);
+        mesh_.set_target(h, m);
+        if (mesh_.halfedge(b) == h) mesh_.set_halfedge(b, rest);
+        mesh_.set_halfedge(m, h);
+        if (mesh_.is_border(h)) {
+            mesh_.set_face(rest, Mesh::null_face());
+            mesh_.set_next(rest, mesh_.next(h));
+            mesh_.set_next(h, rest);
+        } else {
+            const Halfedge next = mesh_.next(h), last = mesh_.prev(h);  // b -> c, c -> a
+            const Halfedge cut = add_cut(m, mesh_.target(next));        // m -> c
+            link(mesh_.face(h), h, cut, last);
+            link(add_face(mesh_.face(h)), rest, next, mesh_.opposite(cut));
+        }
+        if (mesh_.is_border(o)) {
+            mesh_.set_face(back, Mesh::null_face());
+            mesh_.set_next(mesh_.prev(o), back);
+            mesh_.set_next(back, o);
+            mesh_.set_halfedge(m, back);
+        } else {
+            const Halfedge next = mesh_.next(o), last = mesh_.prev(o);  // a -> d, d -> b
+            const Halfedge cut = add_cut(m, mesh_.target(next));        // m -> d
+            link(mesh_.face(o), o, next, mesh_.opposite(cut));
+            link(add_face(mesh_.face(o)), back, cut, last);
+        }
+        ++result_.bisections;
+    }
+
+private:
+    Halfedge add_cut(Vertex from, Vertex to) {
+        result_.edge_origin.push_back(no_index);
+        return mesh_.add_edge(from, to);
+    }
+    Face add_face(Face old) {
+        const Face face = mesh_.add_face();
+        faces_.copy(old, face);
+        result_.face_origin.push_back(result_.face_origin[old]);
+        return face;
+    }
+    void link(Face f, Halfedge a, Halfedge b, Halfedge c) {
+        for (const Halfedge h : {a, b, c}) mesh_.set_face(h, f);
+        mesh_.set_next(a, b), mesh_.set_next(b, c), mesh_.set_next(c, a);
+        mesh_.set_halfedge(f, a);
+    }
+
+    Mesh& mesh_;
+    RefineResult& result_;
+    PropertyCarrier<Edge> edges_;
+    PropertyCarrier<Face> faces_;
+};
+
+}  // namespace
+
+void halve_longest_edges(Mesh& mesh, std::size_t vertices, RefineResult& result) {
+    if (mesh.number_of_vertices() >= vertices) return;
+    const std::size_t cuts = vertices - mesh.number_of_vertices();
+    const auto more = static_cast<Index>(cuts);
+    mesh.reserve(static_cast<Index>(vertices), static_cast<Index>(mesh.number_of_edges()) + 3 * more,
+                 static_cast<Index>(mesh.number_of_faces()) + 2 * more);
+    result.parents.reserve(result.parents.size() + cuts);
+    result.edge_origin.reserve(mesh.number_of_edges() + 3 * cuts);
+    result.face_origin.reserve(mesh.number_of_faces() + 2 * cuts);
+    const Frame frame = make_frame(mesh);
+    const auto squared_length = [&](Edge e) {
+        return (frame.local(mesh.point(mesh.vertex(e, 0))) - frame.local(mesh.point(mesh.vertex(e, 1)))).squared_length();
+    };
+    // Cutting a longest edge of length L makes edges of at most sqrt(3)/2 L: half of L, or the line from the middle to a corner
+    // whose own edges are not longer than L. So all edges longer than 0.867 L can be sorted once and cut one after the other, as
+    // a queue would do it.
+    constexpr double share = 0.867 * 0.867;
+    Halver halver(mesh, result);
+    Progress progress("refine", cuts);
+    std::vector<std::pair<double, Index>> longest;
+    while (mesh.number_of_vertices() < vertices) {
+        double greatest = 0;
+        for (const Edge e : mesh.edges()) greatest = std::max(greatest, squared_length(e));
+        if (!(greatest > 0)) fail_input("mesh", "has no edge with a length left to halve");
+        longest.clear();
+        for (const Edge e : mesh.edges())
+            if (const double length = squared_length(e); length >= share * greatest) longest.emplace_back(-length, e);
+        const std::size_t open = vertices - mesh.number_of_vertices();
+        if (longest.size() > open) {
+            std::nth_element(longest.begin(), longest.begin() + static_cast<std::ptrdiff_t>(open), longest.end());
+            longest.resize(open);
+        }
+        std::sort(longest.begin(), longest.end());
+        for (const auto& [length, e] : longest) halver.halve(Edge(e));
+        progress.advance(longest.size());
+    }
+}
+
+}  // namespace ostraka

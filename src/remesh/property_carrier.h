@@ -1,0 +1,36 @@
+// Copies an element's values, in every property map of a plain type, to an element that was cut from it.
+#pragma once
+
+#include "ostraka/core/mesh.h"
+
+#include <functional>
+#include <string_view>
+
+namespace ostraka {
+
+/// For maps keyed by Key with values of type Index, int, bool, double, float, std::uint8_t or arrays of four std::uint8_t
+/// (colours), whatever their names.
+template <class Key>
+class PropertyCarrier {
+public:
+    explicit PropertyCarrier(Mesh& mesh) {
+        for (const std::string& name : mesh.properties<Key>()) {
+            if (name == "v:point" || name.ends_with(":removed") || name.ends_with(":connectivity")) continue;
+            add<Index>(mesh, name), add<int>(mesh, name), add<bool>(mesh, name), add<double>(mesh, name), add<float>(mesh, name);
+            add<std::uint8_t>(mesh, name), add<std::array<std::uint8_t, 4>>(mesh, name);
+        }
+    }
+    void copy(Key from, Key to) const {
+        for (const auto& step : steps_) step(from, to);
+    }
+
+private:
+    template <class Value>
+    void add(Mesh& mesh, const std::string& name) {
+        const auto [map, found] = mesh.property_map<Key, Value>(name);
+        if (found) steps_.push_back([values = map](Key from, Key to) { values[to] = Value(values[from]); });
+    }
+    std::vector<std::function<void(Key, Key)>> steps_;
+};
+
+}  // namespace ostraka

@@ -1,0 +1,111 @@
+#include "ostraka/remesh/refine.h"
+
+#include "collapse.h"
+#include "ostraka/core/error.h"
+#include "subdivide.h"
+
+#include <numeric>
+
+namespace ostraka {
+
+namespace {
+
+constexpr std::uint64_t most_edges = (std::uint64_t{1} << 31) - 2;  ///< two halfedges each must fit 32 bits
+
+void check_size(std::uint64_t edges) {
+    if (edges > most_edges)
+        fail_usage("the refined mesh would have " + std::to_string(edges) + " edges, more than the " +
+                       std::to_string(most_edges) + " that 32-bit indices allow",
+                   "ask for fewer vertices or levels");
+}
+
+void check_request(const Mesh& mesh, const RefineOptions& options) {
+    check_options(options, "refine");
+    if (mesh.has_garbage()) throw std::logic_error("refine: collect the garbage first");
+    if ((options.vertices > 0) == (options.levels > 0))
+        fail_usage("refine needs either a number of vertices or a number of levels", "give one of --vertices and --levels");
+    if (mesh.number_of_faces() == 0) fail_input("mesh", "has no faces to refine");
+    for (const Face f : mesh.faces())
+        if (mesh.next(mesh.next(mesh.next(mesh.halfedge(f)))) != mesh.halfedge(f))
+            fail_input("face " + std::to_string(Index(f)), "is not a triangle");
+    if (options.levels > 0) {
+        if (options.scheme == "longest-edge")
+            fail_usage("levels mean nothing to the scheme longest-edge", "give --vertices, or the scheme midpoint or loop");
+        std::uint64_t edges = mesh.number_of_edges(), faces = mesh.number_of_faces();
+        for (int level = 0; level < options.levels; ++level) {
+            edges = 2 * edges + 3 * faces;
+            faces *= 4;
+            check_size(edges);
+        }
+    } else {
+        if (options.vertices < mesh.number_of_vertices())
+            fail_usage("the mesh has " + std::to_string(mesh.number_of_vertices()) + " vertices, more than the " +
+                           std::to_string(options.vertices) + " asked for",
+                       "use: ostraka mesh simplify");
+        check_size(mesh.number_of_edges() + 3 * (options.vertices - mesh.number_of_vertices()));
+    }
+}
+
+}  // namespace
+
+RefineResult refine(Mesh& mesh, const RefineOptions& options) {
+    check_request(mesh, options);
+    RefineResult result;
+    result.old_vertices = mesh.number_of_vertices();
+    result.face_origin.resize(mesh.number_of_faces());
+    result.edge_origin.resize(mesh.number_of_edges());
+    std::iota(result.face_origin.begin(), result.face_origin.end(), Index{0});
+    std::iota(result.edge_origin.begin(), result.edge_origin.end(), Index{0});
+    const bool smooth = options.scheme == "loop";
+    for (int level = 0; level < options.levels; ++level) cut_into_four(mesh, smooth, result);
+    if (options.vertices > 0) {
+        if (options.scheme != "longest-edge")
+            while (mesh.number_of_vertices() + mesh.number_of_edges() <= options.vertices) cut_into_four(mesh, smooth, result);
+        halve_longest_edges(mesh, options.vertices, result);
+    }
+    return result;
+}
+
+namespace {
+
+/// Appends the vertices after `a` on the way to `b` along the parts of one old edge; false if no old edge joined them.
+bool append_edge(const Mesh& mesh, const RefineResult& result, Vertex a, Vertex b, std::vector<Index>& chain) {
+    const std::size_t start = chain.size();
+    bool found = false;
+    for_each_incoming(mesh, a, [&](Halfedge incoming) {
+        const Index origin = result.edge_origin[mesh.edge(incoming)];
+        if (found || origin == no_index) return;
+        chain.resize(start);
+        Halfedge h = mesh.opposite(incoming);
+        for (;;) {
+            chain.push_back(mesh.target(h));
+            if (chain.back() < result.old_vertices) break;
+            Halfedge onward = Mesh::null_halfedge();  // a vertex inside an old edge has two parts of it
+            for_each_incoming(mesh, mesh.target(h), [&](Halfedge g) {
+                if (g != h && result.edge_origin[mesh.edge(g)] == origin) onward = mesh.opposite(g);
+            });
+            h = onward;
+        }
+        found = chain.back() == Index(b);
+    });
+    if (!found) chain.resize(start);
+    return found;
+}
+
+}  // namespace
+
+std::vector<Index> refine_polyline(const Mesh& mesh, const RefineResult& result, const std::vector<Index>& polyline) {
+    std::vector<Index> chain;
+    for (std::size_t i = 0; i < polyline.size(); ++i) {
+        if (polyline[i] >= result.old_vertices || mesh.is_isolated(Vertex(polyline[i])))
+            fail_input("poly-line",
+                       "names vertex " + std::to_string(polyline[i]) + ", which the mesh did not have before it was refined");
+        if (i == 0) chain.push_back(polyline[0]);
+        else if (!append_edge(mesh, result, Vertex(polyline[i - 1]), Vertex(polyline[i]), chain))
+            fail_input("poly-line", "goes from vertex " + std::to_string(polyline[i - 1]) + " to " + std::to_string(polyline[i]) +
+                                        " without an edge");
+    }
+    return chain;
+}
+
+}  // namespace ostraka
