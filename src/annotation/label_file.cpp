@@ -1,0 +1,156 @@
+#include "ostraka/annotation/label_file.h"
+
+#include "region_order.h"
+
+#include "ostraka/core/error.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace ostraka {
+
+namespace {
+
+std::string_view trimmed(std::string_view text) {
+    const auto first = text.find_first_not_of(" \t\r");
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+std::int32_t parse_label(std::string_view text, const std::string& where) {
+    std::int32_t label = 0;
+    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), label);
+    if (code != std::errc() || end != text.data() + text.size())
+        fail_input(where, "'" + std::string(text.substr(0, 40)) + "' is not a label",
+                   "give one whole number (of 32 bits) a line");
+    return label;
+}
+
+}  // namespace
+
+std::vector<std::int32_t> read_labels(const Path& file, std::size_t face_count, const std::vector<Index>& triangle_polygon) {
+    const std::string text = read_file(file);
+    std::vector<std::int32_t> labels;
+    std::size_t line_number = 0, blank_since = 0;
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t end = std::min(text.find('\n', at), text.size());
+        const std::string_view line = trimmed(std::string_view(text).substr(at, end - at));
+        at = end + 1;
+        ++line_number;
+        if (line.empty()) {
+            if (blank_since == 0) blank_since = line_number;
+            continue;
+        }
+        if (blank_since != 0)
+            fail_input(file.string() + ", line " + std::to_string(blank_since), "the line is empty",
+                       "give one whole number a line");
+        labels.push_back(parse_label(line, file.string() + ", line " + std::to_string(line_number)));
+    }
+    if (labels.size() == face_count) return labels;
+    const std::size_t polygons = triangle_polygon.empty()
+                                     ? face_count
+                                     : *std::max_element(triangle_polygon.begin(), triangle_polygon.end()) + std::size_t{1};
+    if (labels.size() != polygons) {
+        const std::string counts = polygons == face_count
+                                       ? std::to_string(face_count) + " faces"
+                                       : std::to_string(polygons) + " polygons (" + std::to_string(face_count) + " triangles)";
+        fail_input(file.string(), std::to_string(labels.size()) + " labels for a mesh of " + counts,
+                   "give the labels of this mesh, one for each face");
+    }
+    std::vector<std::int32_t> per_triangle;
+    per_triangle.reserve(triangle_polygon.size());
+    for (const Index polygon : triangle_polygon) per_triangle.push_back(labels[polygon]);
+    return per_triangle;
+}
+
+void write_labels(const Path& file, const std::vector<std::int32_t>& labels) {
+    std::string text;
+    text.reserve(3 * labels.size());
+    for (const std::int32_t label : labels) text += std::to_string(label) + '\n';
+    write_file(file, text);
+}
+
+std::map<std::int32_t, std::string> read_label_names(const Path& file) {
+    const Json document = read_json(file);
+    std::map<std::int32_t, std::string> names;
+    const auto add = [&](std::int32_t label, const JsonValue& name, const std::string& pointer) {
+        if (!name.IsString())
+            fail_input(file.string(), "at " + pointer + ": a name must be text", R"(write {"0": "head", "1": "arm"})");
+        names[label] = std::string(name.GetString(), name.GetStringLength());
+    };
+    if (document.IsObject()) {
+        for (const auto& member : document.GetObject()) {
+            const std::string key(member.name.GetString(), member.name.GetStringLength());
+            add(parse_label(key, file.string() + ", at /" + key), member.value, "/" + key);
+        }
+    } else if (document.IsArray()) {
+        for (rapidjson::SizeType i = 0; i < document.Size(); ++i)
+            add(static_cast<std::int32_t>(i), document[i], "/" + std::to_string(i));
+    } else {
+        fail_input(file.string(), "at the root: neither an object nor a list",
+                   R"(write {"0": "head", "1": "arm"} or ["head", "arm"])");
+    }
+    return names;
+}
+
+AnnotationSet regions_from_labels(const Mesh& mesh, const std::vector<std::int32_t>& face_labels,
+                                  const std::map<std::int32_t, std::string>& names) {
+    if (face_labels.size() != mesh.number_of_faces())
+        fail_input("labels",
+                   std::to_string(face_labels.size()) + " labels for " + std::to_string(mesh.number_of_faces()) + " faces");
+    std::map<std::int32_t, std::vector<Index>> faces;
+    auto last = faces.end();
+    for (std::size_t face = 0; face < face_labels.size(); ++face) {
+        const std::int32_t label = face_labels[face];
+        if (label == no_label) continue;
+        if (last == faces.end() || last->first != label) last = faces.try_emplace(label).first;
+        last->second.push_back(static_cast<Index>(face));
+    }
+    AnnotationSet set;
+    for (auto& [label, list] : faces) {
+        Annotation& annotation = set.annotations.emplace_back();
+        const auto name = names.find(label);
+        annotation.id = label;
+        annotation.tag = name == names.end() ? "part " + std::to_string(label) : name->second;
+        annotation.colour = distinct_colour(set.annotations.size() - 1);
+        annotation.faces = std::move(list);
+    }
+    return set;
+}
+
+std::vector<std::int32_t> face_labels_from_vertices(const Mesh& mesh, const std::vector<std::int32_t>& vertex_labels) {
+    if (vertex_labels.size() != mesh.number_of_vertices())
+        fail_input("labels", std::to_string(vertex_labels.size()) + " labels for " + std::to_string(mesh.number_of_vertices()) +
+                                 " vertices");
+    std::vector<std::int32_t> labels;
+    labels.reserve(mesh.number_of_faces());
+    for (const Face face : mesh.faces()) {
+        const auto [a, b, c] = corners(mesh, face);
+        labels.push_back(vertex_labels[b] == vertex_labels[c] ? vertex_labels[b] : vertex_labels[a]);
+    }
+    return labels;
+}
+
+std::vector<std::int32_t> labels_of(const Mesh& mesh, const AnnotationSet& set) {
+    std::vector<std::int32_t> labels(mesh.number_of_faces(), no_label);
+    for (const Annotation* region : regions_largest_first(mesh, set))
+        if (!region->all)
+            for (const Index face : region->faces) labels[face] = region->id;
+    return labels;
+}
+
+std::array<int, 3> distinct_colour(std::size_t index) {
+    // Hues a golden section of the circle apart; saturation and value take turns.
+    const double turn = 0.6180339887498949 * static_cast<double>(index) + 0.02;
+    const double hue = 6 * (turn - std::floor(turn)), saturation = index % 3 == 1 ? 0.5 : 0.75,
+                 value = index % 2 == 0 ? 0.95 : 0.75;
+    const double sector = std::floor(hue), share = hue - sector;
+    const double p = value * (1 - saturation), q = value * (1 - saturation * share), t = value * (1 - saturation * (1 - share));
+    const std::array<std::array<double, 3>, 6> table{
+        {{value, t, p}, {q, value, p}, {p, value, t}, {p, q, value}, {t, p, value}, {value, p, q}}};
+    const auto& rgb = table[static_cast<std::size_t>(sector) % 6];
+    return {static_cast<int>(255 * rgb[0] + 0.5), static_cast<int>(255 * rgb[1] + 0.5), static_cast<int>(255 * rgb[2] + 0.5)};
+}
+
+}  // namespace ostraka
