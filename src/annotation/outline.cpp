@@ -75,9 +75,10 @@ std::vector<Outline> extract_outlines(const Mesh& mesh, const std::vector<Index>
 
 namespace {
 /// Net number of times an edge is run through along its first halfedge.
+/// (An Edge made from a halfedge remembers that halfedge, so the first one has to be asked for by number.)
 std::map<Edge, int> net_edges(const Mesh& mesh, const std::vector<Halfedge>& edges) {
     std::map<Edge, int> net;
-    for (const Halfedge h : edges) net[mesh.edge(h)] += mesh.halfedge(mesh.edge(h)) == h ? 1 : -1;
+    for (const Halfedge h : edges) net[mesh.edge(h)] += mesh.halfedge(mesh.edge(h), 0) == h ? 1 : -1;
     return net;
 }
 }  // namespace
@@ -146,7 +147,7 @@ std::optional<std::vector<bool>> fill_by_winding(const Mesh& mesh, const std::ve
     const auto weight = [&](Halfedge h) {  // winding number of the left face minus that of the right one
         const auto found = net.find(mesh.edge(h));
         if (found == net.end()) return 0;
-        return mesh.halfedge(mesh.edge(h)) == h ? found->second : -found->second;
+        return mesh.halfedge(mesh.edge(h), 0) == h ? found->second : -found->second;
     };
     // Components without any of the edges are not part of the question.
     constexpr int unknown = std::numeric_limits<int>::min();

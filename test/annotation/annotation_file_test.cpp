@@ -180,10 +180,15 @@ TEST(AnnotationFile, WholeClosedComponentsAreKeptBySeeds) {
     set.annotations.push_back(region);
     const std::string text = written(set, mesh);
     EXPECT_NE(text.find("seeds"), std::string::npos) << text;
+    EXPECT_EQ(text.find("\"faces\": ["), std::string::npos) << text;
     EXPECT_EQ(parse(text, mesh).annotations[0].faces, region.faces);
     const std::string seed = std::to_string(per_sphere);
     expect_error(with(R"({"id": 0, "tag": "", "type": "region", "seeds": [)" + seed + ", " + seed + "]}"), mesh,
                  "/annotations/0/seeds/1", "already");
+    const auto [a, b, c] = corners(mesh, Face(3));
+    const std::string triangle = std::to_string(Index(a)) + ", " + std::to_string(Index(b)) + ", " + std::to_string(Index(c));
+    expect_error(with(R"({"id": 0, "tag": "", "type": "region", "boundaries": [[)" + triangle + R"(]], "seeds": [5]})"), mesh,
+                 "/annotations/0/seeds/0", "outline");
 }
 
 TEST(AnnotationFile, RegionsOfAnyTopologySurvive) {
@@ -199,6 +204,7 @@ TEST(AnnotationFile, RegionsOfAnyTopologySurvive) {
     const std::string text = written(set, mesh);
     EXPECT_EQ(parse(text, mesh).annotations[0].faces, faces);
     EXPECT_EQ(parse_json(text, "t")["annotations"][0]["boundaries"].Size(), 3U);
+    EXPECT_EQ(find_member(parse_json(text, "t")["annotations"][0], "faces"), nullptr);
 }
 
 TEST(AnnotationFile, AnEmptySetAndAnEmptyRegion) {
