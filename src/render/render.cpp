@@ -167,8 +167,16 @@ void add_scale_bar(Canvas& canvas, Plan& plan, const Scene& scene, double unit_l
 }
 }  // namespace
 
-Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options) {
+void check_render_options(const RenderOptions& options) {
     check_options(options, "render");
+    (void)parse_size(options.size);
+    (void)parse_view(options.view);
+    (void)parse_up(options.up);
+    (void)parse_colour(options.background);
+}
+
+Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options) {
+    check_render_options(options);
     const Size size = parse_size(options.size);
     const auto up = parse_up(options.up);
     detail::Style style;

@@ -102,7 +102,7 @@ public:
         if (strength <= 1) {
             light.head<3>() *= static_cast<float>(strength);
         } else {  // a soft highlight
-            light.head<3>() += (1 - light.head<3>()) * static_cast<float>(0.35 * (strength - 1));
+            light.head<3>() += (1 - light.head<3>()) * static_cast<float>(0.5 * (strength - 1));
         }
         if (shading_.edges) light.head<3>() *= static_cast<float>(1 - 0.75 * edge_share(hit, x, y));
         return light;

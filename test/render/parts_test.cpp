@@ -1,9 +1,9 @@
-#include "folder.h"
 #include "ostraka/core/error.h"
 #include "ostraka/render/colour_scale.h"
 #include "ostraka/render/picture.h"
 #include "ostraka/render/values.h"
 #include "ostraka/render/view.h"
+#include "scratch.h"
 
 #include <gtest/gtest.h>
 
@@ -101,7 +101,7 @@ TEST(View, AxesAreRightHandedAndStandardViewsExact) {
 }
 
 TEST(PictureFile, PngComesBackAsItWas) {
-    const test::Folder folder;
+    const test::Scratch folder;
     Picture picture{5, 3, {}};
     for (std::uint32_t i = 0; i < 15; ++i) picture.argb.push_back(i % 3 == 0 ? 0 : 0xFF000000U | i * 0x0F1307U);
     const Path file = folder / "a.png";
@@ -130,7 +130,7 @@ std::string raw(std::initializer_list<Number> numbers) {
 }
 
 TEST(Values, NumpyArrays) {
-    const test::Folder folder;
+    const test::Scratch folder;
     const Path file = folder / "v.npy";
     write_file(file, npy("<f8", "(3,)", raw<double>({1.5, -2, 1e300})));
     EXPECT_EQ(read_values(file), (std::vector<double>{1.5, -2, 1e300}));
@@ -150,7 +150,7 @@ TEST(Values, NumpyArrays) {
 }
 
 TEST(Values, Text) {
-    const test::Folder folder;
+    const test::Scratch folder;
     const Path file = folder / "v.txt";
     write_file(file, "# thickness\n1\r\n  2.5e-3\n\n-4\nnan\n+7");
     const auto values = read_values(file);

@@ -52,6 +52,9 @@ struct RenderOptions {
     }
 };
 
+/// Throws Error (usage) for options that `render` would refuse; to be called before the meshes are read.
+void check_render_options(const RenderOptions& options);
+
 /// Where things stand in a picture, for tests and for those who draw on.
 struct Pane {
     std::size_t scene = 0;

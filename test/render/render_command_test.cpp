@@ -1,0 +1,179 @@
+// `ostraka render` as people run it.
+#include "ostraka/core/json.h"
+#include "ostraka/render/colour_scale.h"
+#include "scenes.h"
+#include "scratch.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+namespace ostraka {
+namespace {
+using test::run_command;
+using test::Scratch;
+
+std::string off(const Scene& scene) {
+    std::ostringstream text;
+    text << "OFF\n" << scene.mesh.points.size() << ' ' << scene.mesh.triangles.size() << " 0\n";
+    for (const auto& p : scene.mesh.points) text << p[0] << ' ' << p[1] << ' ' << p[2] << '\n';
+    for (const auto& t : scene.mesh.triangles) text << "3 " << t[0] << ' ' << t[1] << ' ' << t[2] << '\n';
+    return text.str();
+}
+
+std::uint32_t pixel(const Rgb& c) { return 0xFF000000U | std::uint32_t{c.red} << 16 | std::uint32_t{c.green} << 8 | c.blue; }
+
+/// A cube file, the name of a picture, and what to run.
+class RenderCommand : public ::testing::Test {
+protected:
+    Scratch scratch;
+    Path cube = scratch.file("cube.off", off(test::cube()));
+    Path png = scratch / "picture.png";
+
+    test::CommandResult run(const std::string& words) {
+        return run_command("render " + cube.string() + " " + words + " " + png.string());
+    }
+    Picture picture() { return read_png(png); }
+    void refused(const test::CommandResult& result, int code, const std::string& words) {
+        EXPECT_EQ(result.code, code) << result.err;
+        EXPECT_NE(result.err.find(words), std::string::npos) << result.err;
+        EXPECT_EQ(result.out, "");
+        EXPECT_FALSE(std::filesystem::exists(png));
+    }
+};
+
+TEST_F(RenderCommand, MakesAPictureOfTheSizeAskedFor) {
+    const auto result = run("--size 320x200 --view front --json");
+    ASSERT_EQ(result.code, 0) << result.err;
+    EXPECT_EQ(picture().width, 320);
+    EXPECT_EQ(picture().height, 200);
+    const Json report = parse_json(result.out, "report");
+    EXPECT_STREQ(report["command"].GetString(), "render");
+    EXPECT_STREQ(report["result"]["picture"].GetString(), "picture.png");
+    EXPECT_EQ(report["result"]["panes"][0]["faces"].GetInt(), 12);
+    EXPECT_EQ(result.out.find(scratch.path().string()), std::string::npos);
+    EXPECT_EQ(picture().at(160, 80), pixel(clay));
+}
+
+TEST_F(RenderCommand, QuietWithoutJson) {
+    const auto result = run("");
+    EXPECT_EQ(result.code, 0);
+    EXPECT_EQ(result.out, "");
+    EXPECT_EQ(result.err, "");
+}
+
+TEST_F(RenderCommand, SameBytesForAnyNumberOfThreads) {
+    ASSERT_EQ(run("--threads 1 --edges").code, 0);
+    const std::string one = read_file(png);
+    ASSERT_EQ(run("--threads 3 --edges").code, 0);
+    EXPECT_EQ(one, read_file(png));
+}
+
+TEST_F(RenderCommand, WrongUsageIsTwo) {
+    refused(run("--view behind"), 2, "behind");
+    refused(run("--view 0,91"), 2, "0,91");
+    refused(run("--up w"), 2, "'w'");
+    refused(run("--views seven"), 2, "seven");
+    refused(run("--size 0x0"), 2, "0x0");
+    refused(run("--zoom 0"), 2, "zoom");
+    refused(run("--background mauve"), 2, "mauve");
+    refused(run("--annotations a.ant.json --annotations b.ant.json"), 2, "2 times for 1 meshes");
+    EXPECT_EQ(run_command("render " + cube.string()).code, 2);
+    EXPECT_EQ(run_command("render " + cube.string() + " " + (scratch / "picture.jpg").string()).code, 2);
+    EXPECT_EQ(run_command("render").code, 2);
+    // The output is an input.
+    const Path copy = scratch.file("mesh.png", off(test::cube()));
+    EXPECT_EQ(run_command("render " + copy.string() + " " + copy.string()).code, 2);
+    EXPECT_EQ(read_file(copy), off(test::cube()));
+}
+
+TEST_F(RenderCommand, BadInputIsOne) {
+    const Path map = scratch.file("map.txt", "1\n2\n3\n");
+    refused(run("--map " + map.string()), 1, "3 values for a mesh of 8 vertices and 12 faces");
+    refused(run("--map-on face --map " + map.string()), 1, "12 faces");
+    refused(run("--map " + (scratch / "missing.npy").string()), 1, "missing.npy");
+    refused(run("--annotations " + (scratch / "missing.ant.json").string()), 1, "missing.ant.json");
+    refused(run("--colour-by labels"), 1, "no labels");
+    refused(run_command("render " + (scratch / "missing.off").string() + " " + png.string()), 1, "missing.off");
+    refused(run_command("render " + cube.string() + " " + (scratch / "nowhere" / "a.png").string()), 1, "folder");
+    const Path words = scratch.file("words.txt", "1\ntwo\n");
+    refused(run("--map " + words.string()), 1, "line 2");
+    const Path none = scratch.file("none.txt", "nan\nnan\nnan\nnan\nnan\nnan\nnan\nnan\n");
+    refused(run("--map " + none.string()), 1, "no finite value");
+    EXPECT_EQ(test::count_files(scratch.path()), 4U);  // the cube and the maps; no temporary file
+}
+
+TEST_F(RenderCommand, AnEarlierPictureStaysWhenItFails) {
+    write_file(png, "earlier");
+    EXPECT_EQ(run("--view behind").code, 2);
+    EXPECT_EQ(run("--map " + (scratch / "missing.txt").string()).code, 1);
+    EXPECT_EQ(read_file(png), "earlier");
+}
+
+TEST_F(RenderCommand, MapsColourFacesAndVertices) {
+    std::string faces;
+    for (int i = 0; i < 12; ++i) faces += i < 2 ? "1\n" : "0\n";
+    const Path map = scratch.file("faces.txt", faces);
+    ASSERT_EQ(run("--no-legend --size 300x300 --view front --map " + map.string()).code, 0);
+    EXPECT_EQ(picture().at(150, 130), pixel(colour_of({0, 1, false, ""}, 1)));
+    ASSERT_EQ(run("--no-legend --size 300x300 --view front --map-range 0,2 --map " + map.string()).code, 0);
+    EXPECT_EQ(picture().at(150, 130), pixel(colour_of({0, 2, false, ""}, 1)));
+    const auto plain = picture();
+    ASSERT_EQ(run("--size 300x300 --view front --map-label 'thickness (mm)' --map " + map.string()).code, 0);
+    EXPECT_NE(picture().argb, plain.argb);
+    EXPECT_EQ(run("--map-range 2,1 --map " + map.string()).code, 2);
+}
+
+TEST_F(RenderCommand, DrawsWhatIsNotManifold) {
+    const Path bad = scratch.file("bad.off", "OFF\n5 3 0\n0 0 0\n1 0 0\n0 0 1\n0 1 0\n0 -1 0\n3 0 1 2\n3 0 1 3\n3 0 1 4\n");
+    const auto result = run_command("render " + bad.string() + " " + png.string());
+    EXPECT_EQ(result.code, 0) << result.err;
+}
+
+TEST_F(RenderCommand, AnnotationsTakeTheirColours) {
+    const Path annotations =
+        scratch.file("cube.ant.json", R"({"format": "ostraka-annotations", "version": 1, "unit": "mm", "up": [0, 0, 1],
+        "annotations": [
+          {"id": 1, "tag": "whole", "colour": [10, 200, 30], "type": "region", "all": true},
+          {"id": 2, "tag": "face", "colour": [200, 30, 10], "type": "region", "faces": [0, 1]},
+          {"id": 3, "tag": "seam", "colour": [0, 0, 255], "type": "line", "polylines": [[0, 1]]},
+          {"id": 4, "tag": "tip", "colour": [255, 255, 0], "type": "point", "points": [4, 7]}]})");
+    ASSERT_EQ(run("--no-legend --size 300x300 --view front --annotations " + annotations.string()).code, 0);
+    EXPECT_EQ(picture().at(150, 130), pixel({200, 30, 10}));
+    const auto result = run("--json --view=-20,-20 --annotations " + annotations.string());
+    ASSERT_EQ(result.code, 0) << result.err;
+    const Json report = parse_json(result.out, "report");
+    EXPECT_EQ(report["result"]["panes"][0]["markers"].GetInt(), 2);
+    EXPECT_EQ(report["result"]["panes"][0]["markersShown"].GetInt(), 1);  // vertex 7 is at the back
+    ASSERT_EQ(run("--no-legend --size 300x300 --view back --annotations " + annotations.string()).code, 0);
+    EXPECT_EQ(picture().at(150, 130), pixel({10, 200, 30}));
+    ASSERT_EQ(run_command("render " + cube.string() + " " + cube.string() + " --annotations none --annotations " +
+                          annotations.string() + " " + png.string())
+                  .code,
+              0);
+}
+
+TEST_F(RenderCommand, LabelsOfTheFileAreShown) {
+    std::ostringstream ply;
+    const Scene scene = test::cube();
+    ply << "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\nelement face 12\n"
+        << "property list uchar int vertex_indices\nproperty int label\nend_header\n";
+    for (const auto& p : scene.mesh.points) ply << p[0] << ' ' << p[1] << ' ' << p[2] << '\n';
+    for (std::size_t i = 0; i < 12; ++i) {
+        const auto& t = scene.mesh.triangles[i];
+        ply << "3 " << t[0] << ' ' << t[1] << ' ' << t[2] << ' ' << (i < 2 ? 4 : 9) << '\n';
+    }
+    const Path file = scratch.file("labels.ply", ply.str());
+    ASSERT_EQ(run_command("render --no-legend --size 300x300 --view front " + file.string() + " " + png.string()).code, 0);
+    EXPECT_EQ(picture().at(150, 130), pixel(category_colour(0)));
+    ASSERT_EQ(run_command("render --no-legend --size 300x300 --view back " + file.string() + " " + png.string()).code, 0);
+    EXPECT_EQ(picture().at(150, 130), pixel(category_colour(1)));
+    ASSERT_EQ(
+        run_command("render --no-legend --colour-by none --size 300x300 --view back " + file.string() + " " + png.string()).code,
+        0);
+    EXPECT_EQ(picture().at(150, 130), pixel(clay));
+}
+
+}  // namespace
+}  // namespace ostraka
