@@ -41,8 +41,9 @@ JsonValue score_to_json(const TransferScore& score, JsonAllocator& allocator) {
         add("targetPerimeter", JsonValue(score.target_length));
         if (score.target_type == AnnotationType::region && score.target_area > 0) {
             JsonValue distortion(rapidjson::kObjectType);
-            const std::pair<const char*, double> columns[] = {{"A", d.area}, {"P", d.perimeter}, {"P/A", d.perimeter_by_area},
-                                                              {"A/P", d.area_by_perimeter}, {"C", d.circularity}, {"average", d.mean}};
+            const std::pair<const char*, double> columns[] = {
+                {"A", d.area},        {"P", d.perimeter}, {"P/A", d.perimeter_by_area}, {"A/P", d.area_by_perimeter},
+                {"C", d.circularity}, {"average", d.mean}};
             for (const auto& [name, number_value] : columns) add_member(distortion, name, JsonValue(number_value), allocator);
             add("distortion", std::move(distortion));
         }
@@ -54,8 +55,9 @@ JsonValue score_to_json(const TransferScore& score, JsonAllocator& allocator) {
     }
     add("hausdorff", JsonValue(score.hausdorff));
     JsonValue places(rapidjson::kObjectType);
-    const std::pair<const char*, std::size_t> counts[] = {{"vertices", score.vertices}, {"byRay", score.by_ray}, {"byClosestPoint", score.by_closest_point},
-                                                          {"withoutPlace", score.without_place}, {"relocated", score.relocated}, {"detours", score.detours}};
+    const std::pair<const char*, std::size_t> counts[] = {
+        {"vertices", score.vertices},          {"byRay", score.by_ray},        {"byClosestPoint", score.by_closest_point},
+        {"withoutPlace", score.without_place}, {"relocated", score.relocated}, {"detours", score.detours}};
     for (const auto& [name, count] : counts) add_member(places, name, JsonValue(static_cast<std::uint64_t>(count)), allocator);
     add("correspondence", std::move(places));
     add("crossingsResolved", JsonValue(score.crossings_resolved));
@@ -74,7 +76,8 @@ std::string percent(double share) { return number(100 * share, 3); }
 void print_scores(const std::string& title, const std::vector<TransferScore>& scores) {
     std::vector<std::vector<std::string>> rows;
     for (const TransferScore& s : scores) {
-        const bool region = s.source_type == AnnotationType::region && s.target_type == AnnotationType::region && s.outcome == "kept";
+        const bool region =
+            s.source_type == AnnotationType::region && s.target_type == AnnotationType::region && s.outcome == "kept";
         const Distortions d = distortions(s);
         std::string remarks = s.outcome == "kept" ? "" : s.outcome;
         const auto remark = [&](const std::string& text) { remarks += (remarks.empty() ? "" : "; ") + text; };
@@ -89,10 +92,13 @@ void print_scores(const std::string& title, const std::vector<TransferScore>& sc
         rows.push_back({std::to_string(s.id), s.tag, to_string(s.target_type), if_region(d.area),
                         s.source_length > 0 && s.outcome == "kept" ? percent(d.perimeter) : "-", if_region(d.perimeter_by_area),
                         if_region(d.area_by_perimeter), if_region(d.circularity), if_region(d.mean), number(s.hausdorff, 3),
-                        s.overlap && region ? number(*s.overlap, 5) : "-", std::to_string(s.by_ray) + "/" + std::to_string(s.vertices), remarks});
+                        s.overlap && region ? number(*s.overlap, 5) : "-",
+                        std::to_string(s.by_ray) + "/" + std::to_string(s.vertices), remarks});
     }
     std::cout << title << "\n"
-              << table({"id", "tag", "type", "A %", "P %", "P/A %", "A/P %", "C %", "mean %", "Hausdorff", "overlap", "by ray", "remarks"}, rows);
+              << table({"id", "tag", "type", "A %", "P %", "P/A %", "A/P %", "C %", "mean %", "Hausdorff", "overlap", "by ray",
+                        "remarks"},
+                       rows);
 }
 
 Provenance provenance_of(const TransferCommand& command, const std::vector<Path>& inputs) {
@@ -112,7 +118,8 @@ int run(const Session& session, TransferCommand& command) {
         if (!more->empty()) outputs.emplace_back(*more);
     check_outputs(inputs, outputs);
     if (command.options.refine != !command.refined.empty())
-        fail_usage("--refine inserts vertices on the target", "give --refine together with --refined-mesh FILE for the mesh that results");
+        fail_usage("--refine inserts vertices on the target",
+                   "give --refine together with --refined-mesh FILE for the mesh that results");
     if (!command.map.empty() && command.refined.empty()) fail_usage("--map goes with --refine", "leave it out or refine");
     if (!command.refined.empty()) check_mesh_extension(command.refined);
 
@@ -161,15 +168,20 @@ int run(const Session& session, TransferCommand& command) {
         JsonValue result(rapidjson::kObjectType), times(rapidjson::kObjectType);
         add_member(result, "annotations", scores_to_json(there.scores, allocator), allocator);
         if (back) add_member(result, "back", scores_to_json(back->scores, allocator), allocator);
-        const std::pair<const char*, double> laps[] = {{"reading", reading}, {"tree", tree}, {"correspondence", there.times.correspondence},
-                                                       {"paths", there.times.paths}, {"regions", there.times.regions}, {"scores", there.times.scores}};
+        const std::pair<const char*, double> laps[] = {{"reading", reading},
+                                                       {"tree", tree},
+                                                       {"correspondence", there.times.correspondence},
+                                                       {"paths", there.times.paths},
+                                                       {"regions", there.times.regions},
+                                                       {"scores", there.times.scores}};
         for (const auto& [name, seconds] : laps) add_member(times, name, JsonValue(seconds), allocator);
         session.print_report(provenance, document, result, &times);
     } else {
         print_scores(Path(command.source).filename().string() + " -> " + Path(command.target).filename().string(), there.scores);
         if (back) print_scores("and back", back->scores);
-        session.note("reading " + number(reading, 3) + " s, search tree " + number(tree, 3) + " s, correspondence " + number(there.times.correspondence, 3) +
-                     " s, paths " + number(there.times.paths, 3) + " s, regions " + number(there.times.regions, 3) + " s, scores " + number(there.times.scores, 3) + " s");
+        session.note("reading " + number(reading, 3) + " s, search tree " + number(tree, 3) + " s, correspondence " +
+                     number(there.times.correspondence, 3) + " s, paths " + number(there.times.paths, 3) + " s, regions " +
+                     number(there.times.regions, 3) + " s, scores " + number(there.times.scores, 3) + " s");
     }
     return done;
 }
@@ -178,7 +190,8 @@ int run(const Session& session, TransferCommand& command) {
 
 void add_annotation_transfer(CLI::App& annotation, Session& session) {
     const auto command = std::make_shared<TransferCommand>();
-    CLI::App* app = session.add(annotation, "transfer", "carry annotations to another resolution of the same object, and say how faithful they are",
+    CLI::App* app = session.add(annotation, "transfer",
+                                "carry annotations to another resolution of the same object, and say how faithful they are",
                                 [&session, command] { return run(session, *command); });
     app->add_option("source", command->source, "the annotated mesh")->required();
     app->add_option("annotations", command->annotations, "its annotations")->required();
@@ -190,11 +203,15 @@ void add_annotation_transfer(CLI::App& annotation, Session& session) {
     app->add_flag("--no-overlap", command->no_overlap, "do not measure the overlap (the slowest score)");
     command->options.correspondence.describe(*std::make_unique<FlagVisitor>(FlagVisitor{app}));
     FlagVisitor visitor{app};
-    visitor("metric", command->options.metric, "what paths between corresponding vertices minimise", Choices{"euclidean", "segment", "combined"});
-    visitor("spikes", command->options.spikes, "prune spikes of an outline, avoid used vertices while tracing it, or keep them", Choices{"prune", "avoid", "keep"});
-    visitor("cover", command->options.cover, "the transferred region overlaps the source region, encloses it or is enclosed by it",
+    visitor("metric", command->options.metric, "what paths between corresponding vertices minimise",
+            Choices{"euclidean", "segment", "combined"});
+    visitor("spikes", command->options.spikes, "prune spikes of an outline, avoid used vertices while tracing it, or keep them",
+            Choices{"prune", "avoid", "keep"});
+    visitor("cover", command->options.cover,
+            "the transferred region overlaps the source region, encloses it or is enclosed by it",
             Choices{"overlapping", "enclosing", "enclosed"});
-    app->add_flag("--refine", command->options.refine, "insert vertices on the target so that outlines are exact (with --refined-mesh)");
+    app->add_flag("--refine", command->options.refine,
+                  "insert vertices on the target so that outlines are exact (with --refined-mesh)");
     app->add_flag("--force", command->options.force, "go on although the meshes differ in size or position");
     add_flags(app, command->reading);
 }

@@ -91,7 +91,8 @@ Filling fill_outlines(const Mesh& mesh, const std::vector<Outline>& outlines) {
         if (outline.size() < 3) fail_input("outline " + std::to_string(o), "has fewer than three vertices");
         for (std::size_t i = 0; i < outline.size(); ++i)
             if (outline[i] >= mesh.number_of_vertices())
-                fail_input(where(i), "names vertex " + std::to_string(outline[i]) + " of " + std::to_string(mesh.number_of_vertices()),
+                fail_input(where(i),
+                           "names vertex " + std::to_string(outline[i]) + " of " + std::to_string(mesh.number_of_vertices()),
                            "is the annotation of another mesh?");
         for (std::size_t i = 0; i < outline.size(); ++i) {
             const Index a = outline[i], b = outline[(i + 1) % outline.size()];

@@ -42,17 +42,20 @@ std::vector<Index> PathSearch::find(Vertex from, Vertex to, const Query& query) 
     const Point goal = mesh_.point(to);
     const bool has_length = query.metric != PathMetric::segment;
     const auto bound = [&](Vertex v) { return has_length ? std::sqrt(CGAL::squared_distance(mesh_.point(v), goal)) : 0.0; };
-    return search(from, [&](Vertex v) { return v == to; }, bound, guide, query);
+    return search(
+        from, [&](Vertex v) { return v == to; }, bound, guide, query);
 }
 
 std::vector<Index> PathSearch::find_nearest(Vertex from, const std::function<bool(Vertex)>& goal, double limit) {
     Query query;
     query.limit = limit;
-    return search(from, goal, [](Vertex) { return 0.0; }, {}, query);
+    return search(
+        from, goal, [](Vertex) { return 0.0; }, {}, query);
 }
 
-std::vector<Index> PathSearch::search(Vertex from, const std::function<bool(Vertex)>& is_goal, const std::function<double(Vertex)>& bound,
-                                      const std::vector<Point>& guide, const Query& query) {
+std::vector<Index> PathSearch::search(Vertex from, const std::function<bool(Vertex)>& is_goal,
+                                      const std::function<double(Vertex)>& bound, const std::vector<Point>& guide,
+                                      const Query& query) {
     if (mesh_.is_isolated(from)) return {};
     if (++stamp_ == 0) {
         std::fill(records_.begin(), records_.end(), Record{});

@@ -21,8 +21,8 @@ SurfaceNode edge_node(const Mesh& mesh, Halfedge h, double along, double snap) {
     node.kind = SurfaceNode::Kind::edge;
     const Edge e = mesh.edge(h);
     node.element = e;
-    node.parameter = mesh.halfedge(e) == h ? along : 1 - along;
-    const Point &a = mesh.point(mesh.source(mesh.halfedge(e))), &b = mesh.point(mesh.target(mesh.halfedge(e)));
+    node.parameter = mesh.halfedge(e, 0) == h ? along : 1 - along;
+    const Point &a = mesh.point(mesh.source(mesh.halfedge(e, 0))), &b = mesh.point(mesh.target(mesh.halfedge(e, 0)));
     node.point = a + node.parameter * (b - a);
     return node;
 }
@@ -33,7 +33,9 @@ std::vector<Face> faces_of(const Mesh& mesh, const SurfaceNode& node) {
         if (!mesh.is_border(h)) faces.push_back(mesh.face(h));
     };
     switch (node.kind) {
-        case SurfaceNode::Kind::face: faces.emplace_back(node.element); break;
+        case SurfaceNode::Kind::face:
+            faces.emplace_back(node.element);
+            break;
         case SurfaceNode::Kind::edge:
             add(mesh.halfedge(Edge(node.element), 0));
             add(mesh.halfedge(Edge(node.element), 1));
@@ -45,9 +47,7 @@ std::vector<Face> faces_of(const Mesh& mesh, const SurfaceNode& node) {
     return faces;
 }
 
-bool same(const SurfaceNode& a, const SurfaceNode& b) {
-    return a.kind == b.kind && a.element == b.element && a.point == b.point;
-}
+bool same(const SurfaceNode& a, const SurfaceNode& b) { return a.kind == b.kind && a.element == b.element && a.point == b.point; }
 
 /// A way out of a face: a node on its border that `from` does not share an edge with.
 struct Exit {
@@ -65,7 +65,8 @@ SurfaceNode surface_node(const Mesh& mesh, Index face, const std::array<double, 
         return surface_node(mesh, vertices[static_cast<std::size_t>(largest)]);
     }
     if (zeros == 1) {
-        const auto zero = static_cast<std::size_t>(std::min_element(barycentric.begin(), barycentric.end()) - barycentric.begin());
+        const auto zero =
+            static_cast<std::size_t>(std::min_element(barycentric.begin(), barycentric.end()) - barycentric.begin());
         const std::size_t a = (zero + 1) % 3, b = (zero + 2) % 3;
         const Halfedge h = find_halfedge(mesh, vertices[a], vertices[b]);
         return edge_node(mesh, h, barycentric[b] / (barycentric[a] + barycentric[b]), snap);
@@ -80,11 +81,13 @@ SurfaceNode surface_node(const Mesh& mesh, Index face, const std::array<double, 
 
 double SurfaceCurve::length() const {
     double sum = 0;
-    for (std::size_t i = 0; i + 1 < nodes.size(); ++i) sum += std::sqrt(CGAL::squared_distance(nodes[i].point, nodes[i + 1].point));
+    for (std::size_t i = 0; i + 1 < nodes.size(); ++i)
+        sum += std::sqrt(CGAL::squared_distance(nodes[i].point, nodes[i + 1].point));
     return sum;
 }
 
-std::optional<SurfaceCurve> trace_line(const Mesh& mesh, const SurfaceNode& from, const SurfaceNode& to, const Vector& up, double limit) {
+std::optional<SurfaceCurve> trace_line(const Mesh& mesh, const SurfaceNode& from, const SurfaceNode& to, const Vector& up,
+                                       double limit) {
     constexpr double snap = 1e-6;
     SurfaceCurve curve;
     curve.nodes.push_back(from);

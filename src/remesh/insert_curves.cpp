@@ -21,8 +21,8 @@ using Triangulation = CGAL::Constrained_Delaunay_triangulation_2<Kernel, Structu
 
 /// What happens inside one face of the old mesh.
 struct Cut {
-    std::vector<Index> inner;                      ///< vertices strictly inside
-    std::vector<std::pair<Index, Index>> segments; ///< pieces of curves, by vertex
+    std::vector<Index> inner;                       ///< vertices strictly inside
+    std::vector<std::pair<Index, Index>> segments;  ///< pieces of curves, by vertex
 };
 
 class Inserter {
@@ -75,11 +75,14 @@ private:
             for (const SurfaceNode& node : curve.nodes) {
                 Index v = node.element;
                 if (node.kind == SurfaceNode::Kind::vertex) {
-                    if (v >= mesh_.number_of_vertices()) fail_input("curve", "names vertex " + std::to_string(v) + ", which does not exist");
+                    if (v >= mesh_.number_of_vertices())
+                        fail_input("curve", "names vertex " + std::to_string(v) + ", which does not exist");
                 } else if (node.kind == SurfaceNode::Kind::edge) {
-                    if (node.element >= mesh_.number_of_edges()) fail_input("curve", "names edge " + std::to_string(node.element) + ", which does not exist");
+                    if (node.element >= mesh_.number_of_edges())
+                        fail_input("curve", "names edge " + std::to_string(node.element) + ", which does not exist");
                     const auto near = edge_vertex.lower_bound({node.element, node.parameter - same});
-                    if (near != edge_vertex.end() && std::get<0>(near->first) == node.element && std::get<1>(near->first) <= node.parameter + same) {
+                    if (near != edge_vertex.end() && std::get<0>(near->first) == node.element &&
+                        std::get<1>(near->first) <= node.parameter + same) {
                         v = near->second;
                     } else {
                         v = add_point(node.point);
@@ -87,8 +90,10 @@ private:
                         on_edge_[node.element].emplace_back(node.parameter, v);
                     }
                 } else {
-                    if (node.element >= mesh_.number_of_faces()) fail_input("curve", "names face " + std::to_string(node.element) + ", which does not exist");
-                    const auto [entry, fresh] = face_vertex.emplace(std::make_tuple(node.element, node.barycentric[1], node.barycentric[2]), 0);
+                    if (node.element >= mesh_.number_of_faces())
+                        fail_input("curve", "names face " + std::to_string(node.element) + ", which does not exist");
+                    const auto [entry, fresh] =
+                        face_vertex.emplace(std::make_tuple(node.element, node.barycentric[1], node.barycentric[2]), 0);
                     if (fresh) {
                         entry->second = add_point(node.point);
                         cuts_[node.element].inner.push_back(entry->second);
@@ -110,7 +115,7 @@ private:
             const auto found = on_edge_.find(mesh_.edge(h));
             if (found == on_edge_.end()) continue;
             const auto& list = found->second;
-            if (mesh_.halfedge(mesh_.edge(h)) == h)
+            if (mesh_.halfedge(mesh_.edge(h), 0) == h)
                 for (auto i = list.begin(); i != list.end(); ++i) chain.push_back(i->second);
             else
                 for (auto i = list.rbegin(); i != list.rend(); ++i) chain.push_back(i->second);
@@ -145,15 +150,16 @@ private:
     /// A face without area has no plane to triangulate in: its border is cut as a fan, which needs no geometry.
     void fan(Index f, const Cut& cut, const std::vector<Index>& chain) {
         if (!cut.inner.empty())
-            throw Error(ErrorKind::failure, "face " + std::to_string(f), "cannot be cut: it has no area to speak of", "repair the mesh first");
+            throw Error(ErrorKind::failure, "face " + std::to_string(f), "cannot be cut: it has no area to speak of",
+                        "repair the mesh first");
         for (std::size_t i = 1; i + 1 < chain.size(); ++i) {
             soup_.triangles.push_back({chain[0], chain[i], chain[i + 1]});
             result_.face_origin.push_back(f);
         }
     }
 
-    bool triangulate(Index f, const Cut& cut, const std::vector<Index>& chain, const Point& origin, const Vector& x, const Vector& y, double scale,
-                     bool with_curves) {
+    bool triangulate(Index f, const Cut& cut, const std::vector<Index>& chain, const Point& origin, const Vector& x,
+                     const Vector& y, double scale, bool with_curves) {
         Triangulation triangulation;
         std::map<Index, Triangulation::Vertex_handle> handle;
         const auto insert = [&](Index v) {
@@ -181,7 +187,8 @@ private:
         if (triangulation.number_of_vertices() != known) return false;
         if (with_curves)
             for (const auto& [v, w] : cut.segments)
-                if (handle.count(v) > 0 && handle.count(w) > 0 && rim.count({v, w}) == 0) triangulation.insert_constraint(handle[v], handle[w]);
+                if (handle.count(v) > 0 && handle.count(w) > 0 && rim.count({v, w}) == 0)
+                    triangulation.insert_constraint(handle[v], handle[w]);
         // Crossings of curves made new vertices.
         if (triangulation.number_of_vertices() != known) {
             std::set<Triangulation::Vertex_handle> old;

@@ -6,7 +6,12 @@
 namespace ostraka {
 
 ChainTracer::ChainTracer(const Mesh& source, const SurfaceSearch& target, const TransferOptions& options)
-    : source_(source), search_(target), target_(target.mesh()), options_(options), metric_(path_metric(options.metric)), paths_(target.mesh()) {}
+    : source_(source),
+      search_(target),
+      target_(target.mesh()),
+      options_(options),
+      metric_(path_metric(options.metric)),
+      paths_(target.mesh()) {}
 
 void ChainTracer::match(std::vector<Index> vertices) {
     std::sort(vertices.begin(), vertices.end());
@@ -44,7 +49,8 @@ std::vector<Correspondence> ChainTracer::settle(const Chain& chain, TransferScor
     std::vector<Correspondence> result(n);
     for (std::size_t i = 0; i < n; ++i) result[i] = places_.at(chain.vertices[i]);
     const auto source_length = [&](std::size_t i, std::size_t j) {
-        return std::sqrt(CGAL::squared_distance(source_.point(Vertex(chain.vertices[i])), source_.point(Vertex(chain.vertices[j]))));
+        return std::sqrt(
+            CGAL::squared_distance(source_.point(Vertex(chain.vertices[i])), source_.point(Vertex(chain.vertices[j]))));
     };
     const auto joined = [&](const Correspondence& a, const Correspondence& b, double length) {
         return a.vertex == b.vertex || !path(a.vertex, b.vertex, limit(a, b, length)).empty();
@@ -53,7 +59,8 @@ std::vector<Correspondence> ChainTracer::settle(const Chain& chain, TransferScor
     std::vector<std::size_t> breaks;  // a break lies before vertex i
     for (std::size_t i = chain.closed ? 0 : 1; i < n; ++i) {
         const std::size_t before = i == 0 ? n - 1 : i - 1;
-        if (result[i].vertex == no_index || result[before].vertex == no_index || !joined(result[before], result[i], source_length(before, i)))
+        if (result[i].vertex == no_index || result[before].vertex == no_index ||
+            !joined(result[before], result[i], source_length(before, i)))
             breaks.push_back(i);
     }
     if (breaks.empty()) return result;
@@ -86,7 +93,8 @@ std::vector<Correspondence> ChainTracer::settle(const Chain& chain, TransferScor
             if (result[i].vertex == no_index) continue;
             if (!joined(result[last], result[i], length)) {
                 Correspondence chosen;
-                for (Correspondence& candidate : candidate_correspondences(source_, chain.vertices[i], search_, options_.correspondence))
+                for (Correspondence& candidate :
+                     candidate_correspondences(source_, chain.vertices[i], search_, options_.correspondence))
                     if (joined(result[last], candidate, length)) {
                         chosen = candidate;
                         chosen.relocated = true;
@@ -148,8 +156,8 @@ TracedChain ChainTracer::trace_edges(const Chain& chain, TransferScore& score) {
         for (std::size_t m = i; m != j; m = (m + 1) % places.size())
             length += std::sqrt(CGAL::squared_distance(source_.point(Vertex(chain.vertices[m])),
                                                        source_.point(Vertex(chain.vertices[(m + 1) % places.size()]))));
-        const std::vector<Index> found =
-            connect(places[i].vertex, places[j].vertex, limit(places[i], places[j], length), score, used.empty() ? nullptr : &used);
+        const std::vector<Index> found = connect(places[i].vertex, places[j].vertex, limit(places[i], places[j], length), score,
+                                                 used.empty() ? nullptr : &used);
         if (found.empty()) continue;  // two components: the gap stays
         traced.walk.insert(traced.walk.end(), found.begin() + 1, found.end());
         if (!used.empty())
@@ -198,22 +206,27 @@ std::vector<ChainTracer::Step> ChainTracer::trace_curves(const Chain& chain, Tra
         const SurfaceNode to = surface_node(target_, places[j].place.face, places[j].place.barycentric);
         const Vector up = search_.normal(places[i].place.face) + search_.normal(places[j].place.face);
         const double straight = std::sqrt(CGAL::squared_distance(from.point, to.point));
-        std::optional<SurfaceCurve> curve = trace_line(target_, from, to, up, 2 * straight + 1e-9 * longest_edge(places[i].place.face));
+        std::optional<SurfaceCurve> curve =
+            trace_line(target_, from, to, up, 2 * straight + 1e-9 * longest_edge(places[i].place.face));
         if (!curve) {
             // The straight line fails (a fold, say): along edges instead, from face to corner, corner to corner, corner to face.
             curve.emplace();
             curve->nodes.push_back(from);
             const auto to_node = [&](const SurfaceNode& node, Index face) {
-                if (curve->nodes.back().kind == node.kind && curve->nodes.back().element == node.element && curve->nodes.back().point == node.point) return;
+                if (curve->nodes.back().kind == node.kind && curve->nodes.back().element == node.element &&
+                    curve->nodes.back().point == node.point)
+                    return;
                 curve->nodes.push_back(node);
                 curve->faces.push_back(face);
             };
-            std::vector<Index> corner_path = connect(places[i].vertex, places[j].vertex, limit(places[i], places[j], straight), score, nullptr);
+            std::vector<Index> corner_path =
+                connect(places[i].vertex, places[j].vertex, limit(places[i], places[j], straight), score, nullptr);
             if (corner_path.empty()) continue;
             to_node(surface_node(target_, Vertex(corner_path.front())), places[i].place.face);
             for (std::size_t m = 1; m < corner_path.size(); ++m) {
                 const Halfedge h = find_halfedge(target_, Vertex(corner_path[m - 1]), Vertex(corner_path[m]));
-                to_node(surface_node(target_, Vertex(corner_path[m])), target_.face(target_.is_border(h) ? target_.opposite(h) : h));
+                to_node(surface_node(target_, Vertex(corner_path[m])),
+                        target_.face(target_.is_border(h) ? target_.opposite(h) : h));
             }
             to_node(to, places[j].place.face);
         }

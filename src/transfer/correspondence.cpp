@@ -12,7 +12,8 @@ namespace ostraka {
 
 namespace {
 
-Correspondence at(CorrespondenceKind kind, const SurfaceHit& hit, const Point& from, const Mesh& target, const CorrespondenceOptions& options) {
+Correspondence at(CorrespondenceKind kind, const SurfaceHit& hit, const Point& from, const Mesh& target,
+                  const CorrespondenceOptions& options) {
     Correspondence result;
     result.kind = kind;
     result.place = hit;
@@ -36,18 +37,21 @@ struct Reach {
 Reach reach_of(const SurfaceSearch& target, const CorrespondenceOptions& options) {
     const double diagonal = box_diagonal(target.mesh());
     const double far = options.max_distance * diagonal;
-    const double edge = std::sqrt(4 / std::sqrt(3.0) * surface_area(target.mesh()) / static_cast<double>(target.mesh().number_of_faces()));
+    const double edge =
+        std::sqrt(4 / std::sqrt(3.0) * surface_area(target.mesh()) / static_cast<double>(target.mesh().number_of_faces()));
     return {std::min(far, 2 * edge), far, std::cos(options.max_angle * CGAL_PI / 180)};
 }
 
-Correspondence find_one(const Mesh& source, Index vertex, const SurfaceSearch& target, const CorrespondenceOptions& options, const Reach& reach) {
+Correspondence find_one(const Mesh& source, Index vertex, const SurfaceSearch& target, const CorrespondenceOptions& options,
+                        const Reach& reach) {
     const Point& p = source.point(Vertex(vertex));
     const Vector normal = vertex_normal(source, Vertex(vertex));
     // A short line first: most places lie within an edge length, and short lines meet few boxes.
     if (normal.squared_length() > 0) {
         for (const double length : {reach.near, reach.far}) {
             for (const SurfaceHit& hit : target.line_hits(p, normal, length))
-                if (target.normal(hit.face) * normal >= reach.min_cosine) return at(CorrespondenceKind::ray, hit, p, target.mesh(), options);
+                if (target.normal(hit.face) * normal >= reach.min_cosine)
+                    return at(CorrespondenceKind::ray, hit, p, target.mesh(), options);
             if (reach.near == reach.far) break;
         }
     }
@@ -58,12 +62,13 @@ Correspondence find_one(const Mesh& source, Index vertex, const SurfaceSearch& t
 
 }  // namespace
 
-std::vector<Correspondence> find_correspondences(const Mesh& source, const std::vector<Index>& vertices, const SurfaceSearch& target,
-                                                 const CorrespondenceOptions& options) {
+std::vector<Correspondence> find_correspondences(const Mesh& source, const std::vector<Index>& vertices,
+                                                 const SurfaceSearch& target, const CorrespondenceOptions& options) {
     check_options(options, "correspondence");
     const Reach reach = reach_of(target, options);
     std::vector<Correspondence> result(vertices.size());
-    parallel_for(vertices.size(), [&](std::size_t i) { result[i] = find_one(source, vertices[i], target, options, reach); }, 64);
+    parallel_for(
+        vertices.size(), [&](std::size_t i) { result[i] = find_one(source, vertices[i], target, options, reach); }, 64);
     return result;
 }
 
@@ -75,7 +80,8 @@ std::vector<Correspondence> candidate_correspondences(const Mesh& source, Index 
     std::vector<Correspondence> result;
     if (normal.squared_length() > 0)
         for (const SurfaceHit& hit : target.line_hits(p, normal, reach.far))
-            if (target.normal(hit.face) * normal >= reach.min_cosine) result.push_back(at(CorrespondenceKind::ray, hit, p, target.mesh(), options));
+            if (target.normal(hit.face) * normal >= reach.min_cosine)
+                result.push_back(at(CorrespondenceKind::ray, hit, p, target.mesh(), options));
     if (const auto hit = target.closest_compatible(p, normal, normal.squared_length() > 0 ? reach.min_cosine : -1, reach.far))
         result.push_back(at(CorrespondenceKind::closest, *hit, p, target.mesh(), options));
     return result;
@@ -94,7 +100,9 @@ Moments moments(const Mesh& mesh) {
     double area = 0;
     const CGAL::Bbox_3 box = bounding_box(mesh);
     const Eigen::Vector3d origin(box.xmin(), box.ymin(), box.zmin());
-    const auto position = [&](Vertex v) -> Eigen::Vector3d { return Eigen::Vector3d(mesh.point(v).x(), mesh.point(v).y(), mesh.point(v).z()) - origin; };
+    const auto position = [&](Vertex v) -> Eigen::Vector3d {
+        return Eigen::Vector3d(mesh.point(v).x(), mesh.point(v).y(), mesh.point(v).z()) - origin;
+    };
     for (const Face f : mesh.faces()) {
         const auto [a, b, c] = corners(mesh, f);
         const Eigen::Vector3d p = position(a), q = position(b), r = position(c), s = p + q + r;
@@ -121,9 +129,10 @@ std::string known_ratio(double scale) {
     const struct {
         double ratio;
         const char* units;
-    } known[] = {{1000, "metres and millimetres"}, {100, "metres and centimetres"}, {10, "centimetres and millimetres"},
-                 {25.4, "inches and millimetres"}, {2.54, "inches and centimetres"}, {1e6, "metres and micrometres"},
-                 {39.37007874, "metres and inches"}, {3.280839895, "metres and feet"}, {12, "feet and inches"}, {304.8, "feet and millimetres"}};
+    } known[] = {{1000, "metres and millimetres"},   {100, "metres and centimetres"},  {10, "centimetres and millimetres"},
+                 {25.4, "inches and millimetres"},   {2.54, "inches and centimetres"}, {1e6, "metres and micrometres"},
+                 {39.37007874, "metres and inches"}, {3.280839895, "metres and feet"}, {12, "feet and inches"},
+                 {304.8, "feet and millimetres"}};
     const double ratio = scale > 1 ? scale : 1 / scale;
     for (const auto& entry : known)
         if (std::abs(ratio / entry.ratio - 1) < 0.05) return std::string(", as ") + entry.units + " would be";
@@ -142,8 +151,10 @@ Alignment compare_alignment(const Mesh& source, const Mesh& target) {
     result.scale = target_size / source_size;
     char text[256];
     if (result.scale < 0.9 || result.scale > 1 / 0.9) {
-        std::snprintf(text, sizeof text, "the meshes differ in size: the target is %.6g times as large as the source%s; bring them to one unit first",
-                      result.scale, known_ratio(result.scale).c_str());
+        std::snprintf(
+            text, sizeof text,
+            "the meshes differ in size: the target is %.6g times as large as the source%s; bring them to one unit first",
+            result.scale, known_ratio(result.scale).c_str());
         result.problem = text;
         return result;
     }
@@ -162,11 +173,15 @@ Alignment compare_alignment(const Mesh& source, const Mesh& target) {
         result.rotation = std::max(result.rotation, std::acos(cosine) * 180 / CGAL_PI);
     }
     if (result.rotation > 5) {
-        std::snprintf(text, sizeof text, "the meshes are not aligned: their principal axes differ by %.3g degrees; register them first", result.rotation);
+        std::snprintf(text, sizeof text,
+                      "the meshes are not aligned: their principal axes differ by %.3g degrees; register them first",
+                      result.rotation);
         result.problem = text;
     } else if (result.offset > 0.02) {
         const Eigen::Vector3d d = t.centre - s.centre;
-        std::snprintf(text, sizeof text, "the meshes are not aligned: the target's centre lies %s of the diagonal away (%.6g, %.6g, %.6g); move it there first",
+        std::snprintf(text, sizeof text,
+                      "the meshes are not aligned: the target's centre lies %s of the diagonal away (%.6g, %.6g, %.6g); move it "
+                      "there first",
                       percent(result.offset).c_str(), d.x(), d.y(), d.z());
         result.problem = text;
     }

@@ -70,7 +70,8 @@ std::vector<Index> diameter_path(const std::vector<Index>& walk) {
 RegionTransfer::RegionTransfer(const Mesh& source, const SurfaceSearch& target, const TransferOptions& options)
     : source_(source), search_(target), options_(options) {
     const Mesh& mesh = target.mesh();
-    target_edge_ = std::sqrt(4 / std::sqrt(3.0) * surface_area(mesh) / static_cast<double>(std::max<std::size_t>(1, mesh.number_of_faces())));
+    target_edge_ = std::sqrt(4 / std::sqrt(3.0) * surface_area(mesh) /
+                             static_cast<double>(std::max<std::size_t>(1, mesh.number_of_faces())));
 }
 
 RegionTransfer::~RegionTransfer() = default;
@@ -118,8 +119,9 @@ std::vector<Patch> patches_of(const Mesh& mesh, const std::vector<Index>& faces)
 
 }  // namespace
 
-std::vector<bool> RegionTransfer::fill(const std::vector<Index>& region, const std::vector<TracedChain>& traced, const std::vector<Chain>& chains,
-                                       const Mesh& mesh, const std::vector<Index>* origin, TransferScore& score) {
+std::vector<bool> RegionTransfer::fill(const std::vector<Index>& region, const std::vector<TracedChain>& traced,
+                                       const std::vector<Chain>& chains, const Mesh& mesh, const std::vector<Index>* origin,
+                                       TransferScore& score) {
     double source_area = 0;
     for (const Index f : region) source_area += face_area(source_, Face(f));
     std::vector<Halfedge> edges;
@@ -138,9 +140,11 @@ std::vector<bool> RegionTransfer::fill(const std::vector<Index>& region, const s
     const std::vector<Patch> patches = patches_of(source_, region);
     const auto is_bounded = [](const Patch& patch) { return patch.bounded; };
     if (vanished > 0 && vanished < traced.size())
-        score.note += (score.note.empty() ? "" : "; ") + std::to_string(vanished) + " of " + std::to_string(traced.size()) + " outlines vanished";
+        score.note += (score.note.empty() ? "" : "; ") + std::to_string(vanished) + " of " + std::to_string(traced.size()) +
+                      " outlines vanished";
     // Nothing but vanished outlines: the region is no larger than the target's faces, unless a patch never had an outline.
-    if (edges.empty() && std::all_of(patches.begin(), patches.end(), is_bounded)) return std::vector<bool>(mesh.number_of_faces(), false);
+    if (edges.empty() && std::all_of(patches.begin(), patches.end(), is_bounded))
+        return std::vector<bool>(mesh.number_of_faces(), false);
 
     const auto plausible = [&](double area) { return std::abs(area - source_area) <= 0.5 * source_area + target_edge_ * length; };
     Filling filling = fill_edges(mesh, edges);
@@ -150,11 +154,12 @@ std::vector<bool> RegionTransfer::fill(const std::vector<Index>& region, const s
     for (const Patch& patch : patches) {
         if (patch.bounded) continue;
         unbounded = true;
-        const auto hit = search_.closest_compatible(centroid(source_, Face(patch.face)), area_vector(source_, Face(patch.face)), 0,
-                                                    options_.correspondence.max_distance * box_diagonal(search_.mesh()));
+        const auto hit = search_.closest_compatible(centroid(source_, Face(patch.face)), area_vector(source_, Face(patch.face)),
+                                                    0, options_.correspondence.max_distance * box_diagonal(search_.mesh()));
         if (!hit) continue;
         Index start = hit->face;
-        if (origin != nullptr) start = static_cast<Index>(std::lower_bound(origin->begin(), origin->end(), hit->face) - origin->begin());
+        if (origin != nullptr)
+            start = static_cast<Index>(std::lower_bound(origin->begin(), origin->end(), hit->face) - origin->begin());
         std::vector<Face> stack{Face(start)};
         filling.selected[start] = true;
         while (!stack.empty()) {
@@ -226,7 +231,8 @@ void RegionTransfer::cover(std::vector<bool>& selected, const std::vector<Chain>
         if (crossed[f]) selected[f] = options_.cover == "enclosing";
 }
 
-std::function<bool(const SurfaceHit&)> RegionTransfer::membership(const std::vector<Index>& faces, const Mesh& mesh, const std::vector<Index>* origin) {
+std::function<bool(const SurfaceHit&)> RegionTransfer::membership(const std::vector<Index>& faces, const Mesh& mesh,
+                                                                  const std::vector<Index>* origin) {
     auto selected = std::make_shared<std::vector<bool>>(mesh.number_of_faces(), false);
     for (const Index f : faces) (*selected)[f] = true;
     if (origin == nullptr) return [selected](const SurfaceHit& hit) { return static_cast<bool>((*selected)[hit.face]); };

@@ -22,11 +22,13 @@ public:
     ~RegionTransfer();
 
     /// Flags of the faces of `mesh` (the target, or the target refined with `origin` giving each face's old one).
-    std::vector<bool> fill(const std::vector<Index>& region, const std::vector<TracedChain>& traced, const std::vector<Chain>& chains, const Mesh& mesh,
-                           const std::vector<Index>* origin, TransferScore& score);
+    std::vector<bool> fill(const std::vector<Index>& region, const std::vector<TracedChain>& traced,
+                           const std::vector<Chain>& chains, const Mesh& mesh, const std::vector<Index>* origin,
+                           TransferScore& score);
 
     /// Whether a place on the target lies in `faces` of `mesh`.
-    std::function<bool(const SurfaceHit&)> membership(const std::vector<Index>& faces, const Mesh& mesh, const std::vector<Index>* origin);
+    std::function<bool(const SurfaceHit&)> membership(const std::vector<Index>& faces, const Mesh& mesh,
+                                                      const std::vector<Index>* origin);
 
 private:
     void cover(std::vector<bool>& selected, const std::vector<Chain>& chains, TransferScore& score);

@@ -10,12 +10,13 @@ namespace ostraka {
 
 namespace {
 double mean_target_edge(const Mesh& target) {
-    return std::sqrt(4 / std::sqrt(3.0) * surface_area(target) / static_cast<double>(std::max<std::size_t>(1, target.number_of_faces())));
+    return std::sqrt(4 / std::sqrt(3.0) * surface_area(target) /
+                     static_cast<double>(std::max<std::size_t>(1, target.number_of_faces())));
 }
 }  // namespace
 
-double overlapping_area(const Mesh& source, const std::vector<Index>& region, const SurfaceSearch& target, const CorrespondenceOptions& options,
-                        const std::function<bool(const SurfaceHit&)>& contains) {
+double overlapping_area(const Mesh& source, const std::vector<Index>& region, const SurfaceSearch& target,
+                        const CorrespondenceOptions& options, const std::function<bool(const SurfaceHit&)>& contains) {
     // Vertices on the outline and their neighbours make the band that is sampled finely.
     std::vector<bool> near(source.number_of_vertices(), false);
     std::vector<Index> rim;
@@ -29,39 +30,43 @@ double overlapping_area(const Mesh& source, const std::vector<Index>& region, co
     const double reach = options.max_distance * box_diagonal(target.mesh());
     const double min_cosine = std::cos(options.max_angle * CGAL_PI / 180);
     std::vector<double> inside(region.size(), 0);
-    parallel_for(region.size(), [&](std::size_t i) {
-        const Face f(region[i]);
-        const auto [a, b, c] = corners(source, f);
-        const Vector area = area_vector(source, f);
-        const double length = std::sqrt(area.squared_length());
-        if (!(length > 0)) return;
-        const Vector normal = area / length;
-        int k = 1;
-        if (near[a] || near[b] || near[c]) {
-            const double size = std::sqrt(std::max({CGAL::squared_distance(source.point(a), source.point(b)),
-                                                    CGAL::squared_distance(source.point(b), source.point(c)),
-                                                    CGAL::squared_distance(source.point(c), source.point(a))}));
-            k = std::clamp(static_cast<int>(std::ceil(size / fine)), 2, 8);
-        }
-        int hits = 0;
-        for (int u = 0; u < k; ++u)
-            for (int v = 0; u + v < k; ++v)
-                for (int half = 0; half < (u + v + 1 < k ? 2 : 1); ++half) {
-                    // Centroids of the k * k equal triangles of a regular subdivision.
-                    const double s = (u + (half == 0 ? 1.0 : 2.0) / 3) / k, t = (v + (half == 0 ? 1.0 : 2.0) / 3) / k;
-                    const Point p = source.point(a) + s * (source.point(b) - source.point(a)) + t * (source.point(c) - source.point(a));
-                    const auto hit = target.closest_compatible(p, normal, min_cosine, reach);
-                    if (hit && contains(*hit)) ++hits;
-                }
-        inside[i] = length * hits / (k * k);
-    }, 64);
+    parallel_for(
+        region.size(),
+        [&](std::size_t i) {
+            const Face f(region[i]);
+            const auto [a, b, c] = corners(source, f);
+            const Vector area = area_vector(source, f);
+            const double length = std::sqrt(area.squared_length());
+            if (!(length > 0)) return;
+            const Vector normal = area / length;
+            int k = 1;
+            if (near[a] || near[b] || near[c]) {
+                const double size = std::sqrt(std::max({CGAL::squared_distance(source.point(a), source.point(b)),
+                                                        CGAL::squared_distance(source.point(b), source.point(c)),
+                                                        CGAL::squared_distance(source.point(c), source.point(a))}));
+                k = std::clamp(static_cast<int>(std::ceil(size / fine)), 2, 8);
+            }
+            int hits = 0;
+            for (int u = 0; u < k; ++u)
+                for (int v = 0; u + v < k; ++v)
+                    for (int half = 0; half < (u + v + 1 < k ? 2 : 1); ++half) {
+                        // Centroids of the k * k equal triangles of a regular subdivision.
+                        const double s = (u + (half == 0 ? 1.0 : 2.0) / 3) / k, t = (v + (half == 0 ? 1.0 : 2.0) / 3) / k;
+                        const Point p =
+                            source.point(a) + s * (source.point(b) - source.point(a)) + t * (source.point(c) - source.point(a));
+                        const auto hit = target.closest_compatible(p, normal, min_cosine, reach);
+                        if (hit && contains(*hit)) ++hits;
+                    }
+            inside[i] = length * hits / (k * k);
+        },
+        64);
     double sum = 0;
     for (const double x : inside) sum += x;
     return sum;
 }
 
-std::vector<bool> region_by_vote(const Mesh& source, const SurfaceSearch& source_search, const std::vector<Index>& region, const Mesh& target,
-                                 const CorrespondenceOptions& options) {
+std::vector<bool> region_by_vote(const Mesh& source, const SurfaceSearch& source_search, const std::vector<Index>& region,
+                                 const Mesh& target, const CorrespondenceOptions& options) {
     std::vector<bool> in_region(source.number_of_faces(), false);
     CGAL::Bbox_3 box;
     for (const Index f : region) {
@@ -71,17 +76,21 @@ std::vector<bool> region_by_vote(const Mesh& source, const SurfaceSearch& source
     const double reach = options.max_distance * box_diagonal(target);
     const double min_cosine = std::cos(options.max_angle * CGAL_PI / 180);
     std::vector<std::uint8_t> vote(target.number_of_faces(), 0);
-    parallel_for(target.number_of_faces(), [&](std::size_t i) {
-        const Face f(static_cast<Index>(i));
-        const Point p = centroid(target, f);
-        if (p.x() < box.xmin() - reach || p.x() > box.xmax() + reach || p.y() < box.ymin() - reach || p.y() > box.ymax() + reach ||
-            p.z() < box.zmin() - reach || p.z() > box.zmax() + reach)
-            return;
-        const Vector area = area_vector(target, f);
-        const double length = std::sqrt(area.squared_length());
-        const auto hit = source_search.closest_compatible(p, length > 0 ? area / length : area, length > 0 ? min_cosine : -1, reach);
-        vote[i] = hit && in_region[hit->face] ? 1 : 0;
-    }, 1024);
+    parallel_for(
+        target.number_of_faces(),
+        [&](std::size_t i) {
+            const Face f(static_cast<Index>(i));
+            const Point p = centroid(target, f);
+            if (p.x() < box.xmin() - reach || p.x() > box.xmax() + reach || p.y() < box.ymin() - reach ||
+                p.y() > box.ymax() + reach || p.z() < box.zmin() - reach || p.z() > box.zmax() + reach)
+                return;
+            const Vector area = area_vector(target, f);
+            const double length = std::sqrt(area.squared_length());
+            const auto hit =
+                source_search.closest_compatible(p, length > 0 ? area / length : area, length > 0 ? min_cosine : -1, reach);
+            vote[i] = hit && in_region[hit->face] ? 1 : 0;
+        },
+        1024);
     return {vote.begin(), vote.end()};
 }
 

@@ -67,7 +67,8 @@ void check_annotations(const Mesh& source, const AnnotationSet& set) {
     for (const Annotation& annotation : set.annotations) {
         const auto check = [&](Index v, std::size_t count, const char* what) {
             if (v >= count)
-                fail_input("annotation " + std::to_string(annotation.id), std::string("names ") + what + " " + std::to_string(v) + " of " + std::to_string(count),
+                fail_input("annotation " + std::to_string(annotation.id),
+                           std::string("names ") + what + " " + std::to_string(v) + " of " + std::to_string(count),
                            "is it of another mesh?");
         };
         for (const Index v : annotation.points) check(v, source.number_of_vertices(), "vertex");
@@ -83,7 +84,12 @@ void check_annotations(const Mesh& source, const AnnotationSet& set) {
 class Transfer {
 public:
     Transfer(const Mesh& source, const AnnotationSet& set, const SurfaceSearch& target, const TransferOptions& options)
-        : source_(source), set_(set), search_(target), target_(target.mesh()), options_(options), tracer_(source, target, options),
+        : source_(source),
+          set_(set),
+          search_(target),
+          target_(target.mesh()),
+          options_(options),
+          tracer_(source, target, options),
           regions_(source, target, options) {}
 
     TransferResult run() {
@@ -131,7 +137,8 @@ private:
                 if (chain.closed) chain.vertices.pop_back();
                 chains_[i].push_back(std::move(chain));
             }
-            if (annotation.type == AnnotationType::region && !annotation.all) chains_[i] = region_chains(source_, annotation.faces);
+            if (annotation.type == AnnotationType::region && !annotation.all)
+                chains_[i] = region_chains(source_, annotation.faces);
             for (const Chain& chain : chains_[i]) vertices.insert(vertices.end(), chain.vertices.begin(), chain.vertices.end());
             vertices.insert(vertices.end(), annotation.points.begin(), annotation.points.end());
             for (const Attribute& attribute : annotation.attributes)
@@ -206,7 +213,8 @@ private:
         for (std::size_t i = 0; i < chains_.size(); ++i) {
             const Annotation& from = set_.annotations[i];
             for (const Index v : from.points)
-                if (const auto found = point_curve.find(v); found != point_curve.end()) transferred[i].points.push_back(refined.node_vertex[found->second].front());
+                if (const auto found = point_curve.find(v); found != point_curve.end())
+                    transferred[i].points.push_back(refined.node_vertex[found->second].front());
             for (std::size_t c = 0; c < chains_[i].size(); ++c) {
                 TracedChain chain;
                 chain.closed = chains_[i][c].closed;
@@ -250,7 +258,8 @@ private:
             for (Index f = 0; f < on().number_of_faces(); ++f) to.faces.push_back(f);
             return;
         }
-        to.faces = faces_of(regions_.fill(from.faces, traced_[i], chains_[i], on(), result_.refined ? &result_.refined->face_origin : nullptr, score));
+        to.faces = faces_of(regions_.fill(from.faces, traced_[i], chains_[i], on(),
+                                          result_.refined ? &result_.refined->face_origin : nullptr, score));
         if (!to.faces.empty()) return;
         // Nothing but a trace is left: the longest one stands for the region.
         std::vector<Index> line;
@@ -330,21 +339,25 @@ void Transfer::score(const Annotation& from, Annotation& to, TransferScore& scor
         score.wrong_side = 0;
         return;
     }
-    const double common = overlapping_area(source_, from.faces, search_, options_.correspondence, regions_.membership(to.faces, on(), result_.refined ? &result_.refined->face_origin : nullptr));
+    const double common =
+        overlapping_area(source_, from.faces, search_, options_.correspondence,
+                         regions_.membership(to.faces, on(), result_.refined ? &result_.refined->face_origin : nullptr));
     score.overlap = common / (score.source_area + score.target_area - common);
     score.wrong_side = std::max(0.0, score.source_area - common) + std::max(0.0, score.target_area - common);
 }
 
 }  // namespace
 
-TransferResult transfer(const Mesh& source, const AnnotationSet& annotations, const SurfaceSearch& target, const TransferOptions& options) {
+TransferResult transfer(const Mesh& source, const AnnotationSet& annotations, const SurfaceSearch& target,
+                        const TransferOptions& options) {
     check_options(options, "transfer");
     check_annotations(source, annotations);
     if (!options.force) {
         const Alignment alignment = compare_alignment(source, target.mesh());
         if (!alignment.problem.empty()) fail_input("transfer", alignment.problem, "or --force if they are meant to differ");
     }
-    if (options.refine && options.cover != "overlapping") fail_usage("a refined target follows the outline exactly", "leave out --cover with --refine");
+    if (options.refine && options.cover != "overlapping")
+        fail_usage("a refined target follows the outline exactly", "leave out --cover with --refine");
     return Transfer(source, annotations, target, options).run();
 }
 

@@ -19,7 +19,8 @@ using ostraka::test::torus;
 
 namespace {
 
-template <class Inside> Annotation region(int id, const Mesh& mesh, Inside&& inside) {
+template <class Inside>
+Annotation region(int id, const Mesh& mesh, Inside&& inside) {
     Annotation annotation;
     annotation.id = id;
     annotation.tag = "region " + std::to_string(id);
@@ -37,13 +38,15 @@ AnnotationSet set_of(std::vector<Annotation> annotations) {
 const auto cap = [](const Point& p) { return p.z() > 0.6; };
 const auto band = [](const Point& p) { return std::abs(p.x()) < 0.3; };
 
-TransferResult transfer_to(const Mesh& source, const AnnotationSet& set, const Mesh& target, const TransferOptions& options = {}) {
+TransferResult transfer_to(const Mesh& source, const AnnotationSet& set, const Mesh& target,
+                           const TransferOptions& options = {}) {
     const SurfaceSearch search(target);
     return transfer(source, set, search, options);
 }
 
 TriangleSoup rotated(TriangleSoup soup, double angle) {
-    for (auto& p : soup.points) p = {std::cos(angle) * p[0] - std::sin(angle) * p[1], std::sin(angle) * p[0] + std::cos(angle) * p[1], p[2]};
+    for (auto& p : soup.points)
+        p = {std::cos(angle) * p[0] - std::sin(angle) * p[1], std::sin(angle) * p[0] + std::cos(angle) * p[1], p[2]};
     return soup;
 }
 
@@ -162,10 +165,10 @@ TEST(Transfer, RegionTooSmallBecomesAPointOrALineAndSaysSo) {
 
 TEST(Transfer, SeveralOutlinesAndPatches) {
     const Mesh source = build_mesh(torus(60, 30)), target = build_mesh(torus(90, 50));
-    const AnnotationSet set = set_of({
-        region(1, source, [](const Point& p) { return std::abs(p.x()) > 1.5; }),                       // two patches
-        region(2, source, [](const Point& p) { return p.x() > 0 && !(p.y() > -0.6 && p.y() < 0.6 && p.z() > 0.3); }),  // a hole
-        region(3, source, [](const Point& p) { return p.z() > 0; })});                                // an annulus around the axis
+    const AnnotationSet set = set_of(
+        {region(1, source, [](const Point& p) { return std::abs(p.x()) > 1.5; }),  // two patches
+         region(2, source, [](const Point& p) { return p.x() > 0 && !(p.y() > -0.6 && p.y() < 0.6 && p.z() > 0.3); }),  // a hole
+         region(3, source, [](const Point& p) { return p.z() > 0; })});  // an annulus around the axis
     const TransferResult result = transfer_to(source, set, target);
     for (std::size_t i = 0; i < 3; ++i) {
         const auto& faces = result.annotations.annotations[i].faces;
@@ -176,11 +179,14 @@ TEST(Transfer, SeveralOutlinesAndPatches) {
 }
 
 TEST(Transfer, WholeComponentsAndTheWholeMesh) {
-    const auto pair = [](int a, int b) { return build_mesh(joined(octahedron_sphere(a), moved(octahedron_sphere(b), 1, {3, 0, 0}))); };
+    const auto pair = [](int a, int b) {
+        return build_mesh(joined(octahedron_sphere(a), moved(octahedron_sphere(b), 1, {3, 0, 0})));
+    };
     const Mesh source = pair(3, 3), target = pair(4, 2);
     Annotation all = region(0, source, [](const Point&) { return true; });
     all.all = true;
-    const TransferResult result = transfer_to(source, set_of({all, region(1, source, [](const Point& p) { return p.x() > 1.5; })}), target);
+    const TransferResult result =
+        transfer_to(source, set_of({all, region(1, source, [](const Point& p) { return p.x() > 1.5; })}), target);
     EXPECT_EQ(result.annotations.annotations[0].faces.size(), target.number_of_faces());
     for (const Face f : target.faces()) {
         const auto& faces = result.annotations.annotations[1].faces;
@@ -190,7 +196,8 @@ TEST(Transfer, WholeComponentsAndTheWholeMesh) {
 
 TEST(Transfer, BorderOfAnOpenMeshBoundsTheRegion) {
     const Mesh source = build_mesh(patch(20, 20)), target = build_mesh(patch(33, 29));
-    const AnnotationSet set = set_of({region(1, source, [](const Point& p) { return p.x() < 0.5; }), region(2, source, [](const Point&) { return true; })});
+    const AnnotationSet set = set_of(
+        {region(1, source, [](const Point& p) { return p.x() < 0.5; }), region(2, source, [](const Point&) { return true; })});
     const TransferResult result = transfer_to(source, set, target);
     EXPECT_EQ(result.annotations.annotations[1].faces.size(), target.number_of_faces());
     EXPECT_NEAR(result.scores[0].target_area / result.scores[0].source_area, 1, 0.02);
@@ -205,7 +212,8 @@ TEST(Transfer, ThinWallDoesNotAttractTheOutlineOfTheOtherSide) {
         return build_mesh(soup);
     };
     const Mesh source = flat(16), target = flat(23);
-    const AnnotationSet set = set_of({region(1, source, [](const Point& p) { return p.z() > 0.0099 && std::hypot(p.x() - 0.5, p.y() - 0.5) < 0.3; })});
+    const AnnotationSet set =
+        set_of({region(1, source, [](const Point& p) { return p.z() > 0.0099 && std::hypot(p.x() - 0.5, p.y() - 0.5) < 0.3; })});
     for (const bool refine : {false, true}) {
         TransferOptions options;
         options.refine = refine;
@@ -228,7 +236,9 @@ TEST(Transfer, SharedBorderStaysShared) {
 }
 
 TEST(Transfer, SameForAnyNumberOfThreadsAndScale) {
-    const auto at = [](int level, double scale, const std::array<double, 3>& by) { return build_mesh(moved(rotated(octahedron_sphere(level), 0.2 * level), scale, by)); };
+    const auto at = [](int level, double scale, const std::array<double, 3>& by) {
+        return build_mesh(moved(rotated(octahedron_sphere(level), 0.2 * level), scale, by));
+    };
     const Mesh source = at(4, 1, {0, 0, 0}), target = at(5, 1, {0, 0, 0});
     const AnnotationSet set = set_of({region(1, source, cap)});
     set_threads(1);

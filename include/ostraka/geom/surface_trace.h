@@ -14,7 +14,7 @@ struct SurfaceNode {
     enum class Kind { vertex, edge, face };
     Kind kind = Kind::vertex;
     Index element = no_index;                    ///< vertex, edge or face index
-    double parameter = 0;                        ///< on an edge: 0 at its vertex(e, 0), 1 at vertex(e, 1)
+    double parameter = 0;                        ///< on an edge: 0 at the source of halfedge(e, 0), 1 at its target
     std::array<double, 3> barycentric{1, 0, 0};  ///< in a face
     Point point{0, 0, 0};
 };
@@ -33,6 +33,7 @@ struct SurfaceCurve {
 /// Follows the plane through both nodes and the direction `up` (the mean surface normal, say) over the surface, from
 /// `from` to `to`. Nothing if the walk meets the border, does not arrive, or grows longer than `limit`.
 /// Linear in the number of faces crossed.
-std::optional<SurfaceCurve> trace_line(const Mesh& mesh, const SurfaceNode& from, const SurfaceNode& to, const Vector& up, double limit);
+std::optional<SurfaceCurve> trace_line(const Mesh& mesh, const SurfaceNode& from, const SurfaceNode& to, const Vector& up,
+                                       double limit);
 
 }  // namespace ostraka

@@ -14,10 +14,13 @@ struct CorrespondenceOptions {
     double max_distance = 0.02;  ///< share of the target's box diagonal
     double max_angle = 90;       ///< degrees between the normals of vertex and target face
     std::string vertex = "projection";
-    template <class Visitor> void describe(Visitor& visit) {
-        visit("max-distance", max_distance, "farthest a corresponding place may lie, as a share of the box diagonal", Range{1e-9, 1});
+    template <class Visitor>
+    void describe(Visitor& visit) {
+        visit("max-distance", max_distance, "farthest a corresponding place may lie, as a share of the box diagonal",
+              Range{1e-9, 1});
         visit("max-angle", max_angle, "largest angle between the normals of vertex and target face, in degrees", Range{0, 180});
-        visit("vertex", vertex, "which corner of the face that is hit corresponds: the one nearest to the projection or to the source vertex",
+        visit("vertex", vertex,
+              "which corner of the face that is hit corresponds: the one nearest to the projection or to the source vertex",
               Choices{"projection", "source"});
     }
 };
@@ -30,15 +33,15 @@ enum class CorrespondenceKind {
 
 struct Correspondence {
     CorrespondenceKind kind = CorrespondenceKind::none;
-    SurfaceHit place;          ///< on the target; place.distance is that to the source vertex
-    Index vertex = no_index;   ///< the corner of the face that was hit
-    bool relocated = false;    ///< the first place was on another layer than its neighbours' and was given up
+    SurfaceHit place;         ///< on the target; place.distance is that to the source vertex
+    Index vertex = no_index;  ///< the corner of the face that was hit
+    bool relocated = false;   ///< the first place was on another layer than its neighbours' and was given up
 };
 
 /// Correspondences of some vertices of `source` on the target, in the order of `vertices`. Runs on all threads.
 /// O(k log n) for k vertices and n target faces.
-std::vector<Correspondence> find_correspondences(const Mesh& source, const std::vector<Index>& vertices, const SurfaceSearch& target,
-                                                 const CorrespondenceOptions& options = {});
+std::vector<Correspondence> find_correspondences(const Mesh& source, const std::vector<Index>& vertices,
+                                                 const SurfaceSearch& target, const CorrespondenceOptions& options = {});
 
 /// All places a vertex may correspond to, likeliest first: hits of the normal's line by distance, then the nearest
 /// compatible point. Used to choose again when the first one turns out to lie on another layer.
@@ -47,10 +50,10 @@ std::vector<Correspondence> candidate_correspondences(const Mesh& source, Index 
 
 /// Whether two meshes can be two resolutions of one object standing in one place.
 struct Alignment {
-    double scale = 1;          ///< target diagonal / source diagonal
-    double offset = 0;         ///< distance of the box centres, as a share of the larger diagonal
-    double rotation = 0;       ///< angle between the principal axes, in degrees; 0 where they are not distinct
-    std::string problem;       ///< empty if the meshes agree; otherwise what differs, by how much and how to mend it
+    double scale = 1;     ///< target diagonal / source diagonal
+    double offset = 0;    ///< distance of the box centres, as a share of the larger diagonal
+    double rotation = 0;  ///< angle between the principal axes, in degrees; 0 where they are not distinct
+    std::string problem;  ///< empty if the meshes agree; otherwise what differs, by how much and how to mend it
 };
 Alignment compare_alignment(const Mesh& source, const Mesh& target);
 

@@ -19,10 +19,13 @@ struct TransferOptions {
     bool refine = false;
     bool overlap = true;
     bool force = false;
-    template <class Visitor> void describe(Visitor& visit) {
+    template <class Visitor>
+    void describe(Visitor& visit) {
         correspondence.describe(visit);
-        visit("metric", metric, "what paths between corresponding vertices minimise", Choices{"euclidean", "segment", "combined"});
-        visit("spikes", spikes, "prune spikes of an outline, avoid used vertices while tracing it, or keep them", Choices{"prune", "avoid", "keep"});
+        visit("metric", metric, "what paths between corresponding vertices minimise",
+              Choices{"euclidean", "segment", "combined"});
+        visit("spikes", spikes, "prune spikes of an outline, avoid used vertices while tracing it, or keep them",
+              Choices{"prune", "avoid", "keep"});
         visit("cover", cover, "the transferred region overlaps the source region, encloses it or is enclosed by it",
               Choices{"overlapping", "enclosing", "enclosed"});
         visit("refine", refine, "insert vertices on the target so that outlines are exact", Anything{});
@@ -36,18 +39,18 @@ struct TransferScore {
     int id = 0;
     std::string tag;
     AnnotationType source_type = AnnotationType::region, target_type = AnnotationType::region;
-    std::string outcome;  ///< "kept", "became a line", "became a point", "lost"
-    std::string note;     ///< what else is to be known, in words
-    double source_area = 0, target_area = 0;            ///< of regions
-    double source_length = 0, target_length = 0;        ///< perimeter of regions, length of lines
-    double hausdorff = 0;                               ///< between the outlines (lines, points); two-sided, over vertices and edge midpoints
-    std::optional<double> overlap;                      ///< intersection over union of the areas
-    std::optional<double> wrong_side;                   ///< area put on the wrong side of the outline, both ways added
-    std::size_t vertices = 0;                           ///< outline vertices, line vertices or points of the source
+    std::string outcome;                          ///< "kept", "became a line", "became a point", "lost"
+    std::string note;                             ///< what else is to be known, in words
+    double source_area = 0, target_area = 0;      ///< of regions
+    double source_length = 0, target_length = 0;  ///< perimeter of regions, length of lines
+    double hausdorff = 0;              ///< between the outlines (lines, points); two-sided, over vertices and edge midpoints
+    std::optional<double> overlap;     ///< intersection over union of the areas
+    std::optional<double> wrong_side;  ///< area put on the wrong side of the outline, both ways added
+    std::size_t vertices = 0;          ///< outline vertices, line vertices or points of the source
     std::size_t by_ray = 0, by_closest_point = 0, without_place = 0, relocated = 0;
-    std::size_t detours = 0;                            ///< pairs of neighbours joined by no short path
-    bool crossings_resolved = false;                    ///< outlines crossed; the interior was found by winding numbers
-    bool voted = false;                                 ///< the interior was found face by face instead of from outlines
+    std::size_t detours = 0;          ///< pairs of neighbours joined by no short path
+    bool crossings_resolved = false;  ///< outlines crossed; the interior was found by winding numbers
+    bool voted = false;               ///< the interior was found face by face instead of from outlines
 };
 
 /// Distortions of a region as in Table 2.1 of the thesis: |target / source - 1| of area A, perimeter P, P / A, A / P and
@@ -72,6 +75,7 @@ struct TransferResult {
 /// corresponding vertices; regions are what lies to the left of their outlines; measures move with their pins and are
 /// evaluated anew. A region too small for the target becomes a line or a point and says so.
 /// Throws Error (input) if the meshes differ in unit, position or orientation, unless options.force.
-TransferResult transfer(const Mesh& source, const AnnotationSet& annotations, const SurfaceSearch& target, const TransferOptions& options = {});
+TransferResult transfer(const Mesh& source, const AnnotationSet& annotations, const SurfaceSearch& target,
+                        const TransferOptions& options = {});
 
 }  // namespace ostraka
