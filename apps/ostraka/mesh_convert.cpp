@@ -22,13 +22,15 @@ void write_map(const Arguments& arguments, const TriangulatedSoup& triangles, st
     auto& allocator = document.GetAllocator();
     add_member(document, "format", "ostraka-map", allocator);
     add_member(document, "version", JsonValue(1), allocator);
-    add_member(document, "polygons", JsonValue(static_cast<std::uint64_t>(polygon_count)), allocator);
-    add_member(document, "triangles", JsonValue(static_cast<std::uint64_t>(triangles.soup.triangles.size())), allocator);
+    add_member(document, "kind", "face", allocator);
+    add_member(document, "description", "for each triangle written the polygon of the input it was cut from", allocator);
+    add_member(document, "from", JsonValue(static_cast<std::uint64_t>(triangles.soup.triangles.size())), allocator);
+    add_member(document, "to", JsonValue(static_cast<std::uint64_t>(polygon_count)), allocator);
     JsonValue list(rapidjson::kArrayType);
     list.Reserve(static_cast<rapidjson::SizeType>(triangles.soup.triangles.size()), allocator);
     for (std::size_t t = 0; t < triangles.soup.triangles.size(); ++t)
         list.PushBack(triangles.triangle_polygon.empty() ? static_cast<Index>(t) : triangles.triangle_polygon[t], allocator);
-    add_member(document, "triangle_polygon", std::move(list), allocator);
+    add_member(document, "map", std::move(list), allocator);
     add_member(document, "provenance", provenance.to_json(allocator), allocator);
     write_json(arguments.map, document);
 }

@@ -204,7 +204,7 @@ CutResult PolygonCutter::clip_ears(const std::uint32_t* corners, std::vector<Tri
         next_[i] = i + 1 == left ? 0 : i + 1;
         previous_[i] = i == 0 ? left - 1 : i - 1;
     }
-    budget_ = 1000000 + 500 * static_cast<std::size_t>(left);
+    budget_ = 1000000 + 200 * static_cast<std::size_t>(left);
     build_grid(0);
     std::uint32_t in_grid = left;
     CutResult result = CutResult::clean;
@@ -220,32 +220,48 @@ CutResult PolygonCutter::clip_ears(const std::uint32_t* corners, std::vector<Tri
         alive_[tip] = 0;
         --left;
     };
-    std::uint32_t tip = 0, failures = 0;
-    while (left > 3) {
-        if (failures < left && budget_ > 0) {
-            --budget_;
-            if (distinct(previous_[tip], tip, next_[tip]) && is_ear(previous_[tip], tip, next_[tip])) {
-                const std::uint32_t after = next_[tip];
-                clip(tip);
-                tip = next_[after];  // the next but one: fewer slivers than a fan
-                failures = 0;
-                if (left < in_grid / 2) {  // large ears now: coarser cells, without the corners that are gone
-                    build_grid(tip);
-                    in_grid = left;
-                }
-            } else {
-                tip = next_[tip];
-                ++failures;
-            }
-            continue;
-        }
-        // The polygon crosses or touches itself, or the budget is spent: whatever stands next is cut off.
-        result = budget_ == 0 ? CutResult::gave_up : CutResult::crossing;
-        const std::uint32_t after = next_[tip];
+    // Rounds over candidates: clipping an ear only changes its two neighbours, which wait for the next round (every second
+    // corner goes first, which gives fewer slivers than a fan). When no candidate is left, all corners are tried again, since
+    // a corner that stood in an ear may be gone.
+    std::uint32_t last = 0, clipped_since_scan = 1, round = 0;
+    round_of_.assign(left, 0);
+    candidates_.clear();
+    const auto clip_and_note = [&](std::uint32_t tip) {
         clip(tip);
-        tip = after;
-        failures = 0;
+        ++clipped_since_scan;
+        last = next_[tip];
+        for (const std::uint32_t neighbour : {previous_[tip], next_[tip]}) {
+            if (round_of_[neighbour] == round) continue;
+            round_of_[neighbour] = round;
+            waiting_.push_back(neighbour);
+        }
+    };
+    while (left > 3) {
+        ++round;
+        waiting_.clear();
+        if (budget_ == 0 || (candidates_.empty() && clipped_since_scan == 0)) {
+            // The polygon crosses or touches itself, or the budget is spent: whatever stands next is cut off.
+            result = budget_ == 0 ? CutResult::gave_up : CutResult::crossing;
+            clip_and_note(last);
+        } else {
+            if (candidates_.empty()) {
+                clipped_since_scan = 0;
+                for (std::uint32_t i = next_[last], n = 0; n < left; i = next_[i], ++n) candidates_.push_back(i);
+            }
+            for (const std::uint32_t tip : candidates_) {
+                if (left <= 3 || budget_ == 0) break;
+                --budget_;
+                if (alive_[tip] == 0 || round_of_[tip] == round || !distinct(previous_[tip], tip, next_[tip])) continue;
+                if (is_ear(previous_[tip], tip, next_[tip])) clip_and_note(tip);
+            }
+            if (left < in_grid / 2) {  // large ears now: coarser cells, without the corners that are gone
+                build_grid(last);
+                in_grid = left;
+            }
+        }
+        std::swap(candidates_, waiting_);
     }
+    const std::uint32_t tip = last;
     if (distinct(previous_[tip], tip, next_[tip])) triangles.push_back({kept_[previous_[tip]], kept_[tip], kept_[next_[tip]]});
     return result;
 }

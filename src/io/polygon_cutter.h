@@ -21,7 +21,7 @@ public:
     /// (the one at the first corner if equal), strictly convex polygons into a fan from the first corner, all others by
     /// clipping ears (Meisters 1975) in the coordinate plane that shows them best; the corners that could lie in an ear are
     /// found with a grid, which makes the time near linear in practice. `crossing`: no ear was left, so triangles overlap.
-    /// `gave_up`: a budget of a million tests and 500 a corner was spent, and the rest is cut
+    /// `gave_up`: a budget of a million tests and 200 a corner was spent, and the rest is cut
     /// off corner by corner. Works in O(count) memory.
     CutResult cut(const std::vector<std::array<double, 3>>& points, const std::uint32_t* corners, std::size_t count,
                   std::vector<Triple>& triangles);
@@ -41,6 +41,7 @@ private:
     std::vector<std::uint32_t> kept_;  ///< positions of corners that differ from the one before
     std::vector<Point2> flat_;         ///< of kept corners, scaled by a power of two, counter-clockwise
     std::vector<std::uint32_t> next_, previous_;
+    std::vector<std::uint32_t> candidates_, waiting_, round_of_;   ///< corners to try in this and the next round
     std::vector<std::uint32_t> reflex_, cell_begin_, cell_items_;  ///< grid of corners that are not strictly convex
     std::vector<char> alive_;
     Point2 grid_low_{}, grid_size_{1, 1};

@@ -1,0 +1,325 @@
+// Each format's readings with known answers, and what is refused with which words.
+#include "io_examples.h"
+#include "ostraka/core/error.h"
+#include "scratch.h"
+
+#include <cstring>
+
+using namespace ostraka;
+using namespace ostraka::test;
+
+namespace {
+
+PolygonSoup read(const std::string& name, const std::string& bytes) {
+    const Scratch scratch;
+    return read_polygons(scratch.file(name, bytes));
+}
+
+/// The message of the refusal; empty if the file was read.
+std::string refusal(const std::string& name, const std::string& bytes) {
+    try {
+        read(name, bytes);
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::input) << error.what();
+        return error.what();
+    }
+    return {};
+}
+
+testing::AssertionResult has(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos ? testing::AssertionSuccess()
+                                                : testing::AssertionFailure() << "'" << part << "' is not in: " << text;
+}
+
+bool has_note(const std::vector<std::string>& notes, const std::string& part) {
+    for (const auto& note : notes)
+        if (note.find(part) != std::string::npos) return true;
+    return false;
+}
+
+using Corners = std::vector<Index>;
+using Points = std::vector<std::array<double, 3>>;
+
+const std::string obj_square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+const std::string ply_xyz = "property float x\nproperty float y\nproperty float z\n";
+const std::string ply_faces = "property list uchar int vertex_indices\n";
+
+}  // namespace
+
+TEST(Obj, IndicesCountForwardBackwardAndAhead) {
+    const auto soup = read("a.obj", "f 1 2 3\n" + obj_square + "f -4 -3/ -2//\nf 1/1/1 2//5 \\\n 4\nvt 0 0\n# f 9 9 9\n");
+    EXPECT_EQ(soup.corners, (Corners{0, 1, 2, 0, 1, 2, 0, 1, 3}));
+    EXPECT_EQ(soup.polygon_begin, (Corners{0, 3, 6, 9}));
+}
+
+TEST(Obj, NumbersInAllTheirForms) {
+    const auto soup =
+        read("a.obj", "\xEF\xBB\xBFv +1 2. .5\r\nv -1e-2 1E2 1e-400\r\nv 0.1 5e-324 123456789012345678901234567890\r\n");
+    EXPECT_EQ(soup.points, (Points{{1, 2, 0.5}, {-0.01, 100, 0}, {0.1, 5e-324, 123456789012345678901234567890.0}}));
+    for (const char* number : {"nan", "inf", "-infinity", "1e400", "0x10", "1e", "1.5.2", "--1", "+-1", "", "1,5", "\x01"}) {
+        const std::string message = refusal("a.obj", "v 0 0 0\nv 0 0 " + std::string(number) + "\n");
+        EXPECT_TRUE(has(message, "line 2")) << number;
+    }
+}
+
+TEST(Obj, ColoursInUnitsOrBytes) {
+    const auto unit = read("a.obj", "v 0 0 0 1 0.5 0\nv 1 0 0 0 0 1 0.2\nv 0 1 0\nf 1 2 3\n");
+    EXPECT_EQ(unit.extras.vertex_colours, (std::vector<Colour>{{255, 128, 0, 255}, {0, 0, 255, 51}, {255, 255, 255, 255}}));
+    EXPECT_TRUE(has_note(unit.notes, "1 vertices have no colour"));
+    const auto bytes = read("a.obj", "v 0 0 0 255 100 0\nf 1 1 1\n");
+    EXPECT_EQ(bytes.extras.vertex_colours, (std::vector<Colour>{{255, 100, 0, 255}}));
+    EXPECT_TRUE(has_note(read("a.obj", "v 0 0 0 nan 0 0\nf 1 1 1\n").notes, "out of range"));
+    EXPECT_TRUE(has_note(read("a.obj", "v 0 0 0 2\nf 1 1 1\n").notes, "weight"));
+}
+
+TEST(Obj, RefusalsNameTheLine) {
+    EXPECT_TRUE(has(refusal("a.obj", obj_square + "f 1 2 0\n"), "line 5"));
+    EXPECT_TRUE(has(refusal("a.obj", obj_square + "f 1 2 3\nf 1 2 5\nf 2 3 4\n"), "line 6: a face names vertex 5 of 4"));
+    EXPECT_TRUE(has(refusal("a.obj", obj_square + "f 1 2 -5\n"), "vertex -5 of 4"));
+    EXPECT_TRUE(has(refusal("a.obj", obj_square + "f 1 2 99999999999\n"), "99999999999"));
+    EXPECT_TRUE(has(refusal("a.obj", obj_square + "f 1 2 3x\n"), "'3x'"));
+    EXPECT_TRUE(has(refusal("a.obj", obj_square + "f 1/1 2/1 3/1\n"), "texture coordinate 1 of 0"));
+    EXPECT_TRUE(has(refusal("a.obj", obj_square + "w 1 2 3\n"), "unknown statement 'w'"));
+    EXPECT_TRUE(has(refusal("a.obj", obj_square + "v 1 2\n"), "line 5"));
+    EXPECT_TRUE(has(refusal("a.obj", "v 1 2 3 4 5\n"), "five numbers"));
+    EXPECT_TRUE(has(refusal("a.obj", "v 0 0 0 \\\n\\\nf 1 1\nf 2 2 2\n"), "line 3"));  // continued lines still count
+}
+
+TEST(Obj, ShortFacesAreReadAndGiveNoTriangle) {
+    auto soup = read("a.obj", obj_square + "f 1 2\nf\nf 1 1 2\nf 1 2 3\nl 1 2\ng x\n");
+    EXPECT_EQ(soup.polygon_count(), 4U);
+    EXPECT_TRUE(has_note(soup.notes, "g, l"));
+    const auto triangles = triangulate(std::move(soup));
+    EXPECT_EQ(triangles.soup.triangles.size(), 1U);
+    EXPECT_EQ(triangles.triangle_polygon, (Corners{3}));
+    EXPECT_TRUE(has_note(triangles.notes, "3 faces have fewer than three"));
+}
+
+TEST(Ply, PropertiesAndElementsInAnyOrder) {
+    const auto soup =
+        read("a.ply",
+             "ply\r\nformat ascii 1.0\r\ncomment x\r\nelement camera 1\r\nproperty list uchar float view\r\nproperty float f\r\n"
+             "element face 2\r\nproperty float quality\r\nproperty list int uint vertex_index\r\nproperty uchar red\r\nproperty "
+             "uchar green\r\nproperty uchar blue\r\nproperty short part_label\r\n"
+             "element vertex 4\r\nproperty int z\r\nproperty double x\r\nproperty list uchar int neighbours\r\nproperty float "
+             "y\r\nproperty float red\r\nproperty float green\r\nproperty float blue\r\nproperty uint label\r\nend_header\r\n"
+             "2 0.5 nan 7\r\n\r\n0.25 3 0 1 2 10 20 30 -5\r\n9 4 0 1 2 3 1 2 3 6\r\n1 0.1 0 2 1 0 0.5 4294967295\r\n0 1 1 7 0 0 "
+             "0 0 3\r\n0 1 0 1 0 0 0 4\r\n0 0 0 1 0 0 0 5\r\n");
+    EXPECT_EQ(soup.points, (Points{{0.1, 2, 1}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}));
+    EXPECT_EQ(soup.corners, (Corners{0, 1, 2, 0, 1, 2, 3}));
+    EXPECT_EQ(soup.extras.face_colours, (std::vector<Colour>{{10, 20, 30, 255}, {1, 2, 3, 255}}));
+    EXPECT_EQ(soup.extras.face_labels, (std::vector<std::int32_t>{-5, 6}));
+    EXPECT_EQ(soup.extras.vertex_labels, (std::vector<std::int32_t>{-1, 3, 4, 5}));
+    EXPECT_EQ(soup.extras.vertex_colours.front(), (Colour{255, 0, 128, 255}));
+    EXPECT_TRUE(has_note(soup.notes, "element not kept: camera"));
+    EXPECT_TRUE(has_note(soup.notes, "vertex properties not kept: neighbours"));
+    EXPECT_TRUE(has_note(soup.notes, "face properties not kept: quality"));
+    EXPECT_TRUE(has_note(soup.notes, "1 labels above"));
+}
+
+TEST(Ply, BigEndianEqualsLittleEndian) {
+    const std::string header =
+        " 1.0\nelement vertex 3\nproperty double x\nproperty short y\nproperty float z\nelement face 1\nproperty list ushort "
+        "uint vertex_indices\nend_header\n";
+    std::string little, big;
+    const auto put = [&](const auto value) {
+        char bytes[sizeof value];
+        std::memcpy(bytes, &value, sizeof value);
+        little.append(bytes, sizeof value);
+        std::reverse(bytes, bytes + sizeof value);
+        big.append(bytes, sizeof value);
+    };
+    for (int v = 0; v < 3; ++v) {
+        put(0.1 * v);
+        put(static_cast<std::int16_t>(-300 * v * v));
+        put(1.5F * static_cast<float>(v));
+    }
+    put(std::uint16_t{3});
+    for (const std::uint32_t v : {2U, 0U, 1U}) put(v);
+    const auto a = read("a.ply", "ply\nformat binary_little_endian" + header + little),
+               b = read("b.ply", "ply\nformat binary_big_endian" + header + big);
+    EXPECT_EQ(a.points, b.points);
+    EXPECT_EQ(a.corners, b.corners);
+    EXPECT_EQ(a.corners, (Corners{2, 0, 1}));
+    EXPECT_EQ(a.points[2], (std::array<double, 3>{0.2, -1200, 3}));
+}
+
+TEST(Ply, StripsBecomeTriangles) {
+    const auto soup = read("a.ply", "ply\nformat ascii 1.0\nelement vertex 5\n" + ply_xyz +
+                                        "element tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 "
+                                        "1 0\n1 1 0\n0 2 0\n10 0 1 2 3 -1 2 3 4 4 1\n");
+    EXPECT_EQ(soup.corners, (Corners{0, 1, 2, 2, 1, 3, 2, 3, 4}));
+}
+
+TEST(Ply, HeadersThatLieAreRefusedBeforeMemoryIsTaken) {
+    for (const char* format : {"ascii", "binary_little_endian", "binary_big_endian"}) {
+        const std::string start = std::string("ply\nformat ") + format + " 1.0\n";
+        EXPECT_TRUE(has(refusal("a.ply", start + "element vertex 1000000000\n" + ply_xyz + "end_header\n0 0 0\n"), "1000000000"));
+        EXPECT_TRUE(has(
+            refusal("a.ply", start + "element vertex 0\n" + ply_xyz + "element face 1000000000\n" + ply_faces + "end_header\n"),
+            "1000000000"));
+        EXPECT_TRUE(
+            has(refusal("a.ply", start + "element vertex 9223372036854775807\n" + ply_xyz + "end_header\n0 0 0\n"), "promises"));
+        EXPECT_TRUE(has(refusal("a.ply", start + "element vertex 99999999999999999999\n" + ply_xyz + "end_header\n"), "line 3"));
+    }
+    std::string list = "ply\nformat binary_little_endian 1.0\nelement vertex 0\n" + ply_xyz +
+                       "element face 1\nproperty list uint int vertex_indices\nend_header\n";
+    EXPECT_TRUE(has(refusal("a.ply", list + std::string(4, '\xff')), "claims 4294967295 entries"));
+}
+
+TEST(Ply, RefusalsNameLineOrByte) {
+    const std::string start = "ply\nformat ascii 1.0\n", vertices = start + "element vertex 3\n" + ply_xyz,
+                      faces = vertices + "element face 1\n" + ply_faces + "end_header\n0 0 0\n1 0 0\n0 1 0\n";
+    EXPECT_EQ(refusal("a.ply", faces + "3 0 1 2\n"), "");
+    EXPECT_TRUE(has(refusal("a.ply", faces + "3 0 1 3\n"), "line 13: face 0 names vertex 3 of 3"));
+    EXPECT_TRUE(has(refusal("a.ply", faces + "3 0 1 -1\n"), "vertex -1 of 3"));
+    EXPECT_TRUE(has(refusal("a.ply", faces + "3 0 1\n"), "line 13"));
+    EXPECT_TRUE(has(refusal("a.ply", faces + "3 0 1 2 0\n"), "more values"));
+    EXPECT_TRUE(has(refusal("a.ply", faces + "-1\n"), "claims -1"));
+    EXPECT_TRUE(has(refusal("a.ply", faces), "ends at face 0 of 1"));
+    EXPECT_TRUE(has(refusal("a.ply", vertices + "end_header\n0 0 0\nnan 0 0\n1 1 1\n"), "line 9: vertex 1"));
+    EXPECT_TRUE(has(refusal("a.ply", start + "element vertex 1\nproperty float x\nend_header\n0\n"), "x, y and z"));
+    EXPECT_TRUE(has(refusal("a.ply", vertices), "end_header"));
+    EXPECT_TRUE(has(refusal("a.ply", "ply\nelement vertex 0\nend_header\n"), "no format"));
+    EXPECT_TRUE(has(refusal("a.ply", "ply\nformat text 1.0\n"), "unknown format 'text'"));
+    EXPECT_TRUE(has(refusal("a.ply", start + "element vertex 0\nproperty quaternion x\n"), "unknown property type"));
+    EXPECT_TRUE(has(refusal("a.ply", start + "property float x\n"), "before the first element"));
+    EXPECT_TRUE(has(refusal("a.ply", start + "wobble\n"), "unknown header line 'wobble'"));
+    EXPECT_TRUE(has(refusal("a.ply", start + "element vertex 0\nelement vertex 0\n"), "declared twice"));
+    const std::string binary = "ply\nformat binary_little_endian 1.0\nelement vertex 1\n" + ply_xyz + "end_header\n";
+    EXPECT_TRUE(has(refusal("a.ply", binary + std::string("\0\0\x80\x7f\0\0\0\0\0\0\0\0", 12)), "byte"));  // an infinity
+}
+
+TEST(Off, HeaderInItsForms) {
+    const std::string body = "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    for (const std::string header :
+         {"OFF\n3 1 0\n", "OFF 3 1 0\n", "# c\n\nOFF # c\n# c\n3 1\n", "3 1 3\n", "OFF\r\n3 1 0\r\n"}) {
+        const auto soup = read("a.off", header + body);
+        EXPECT_EQ(soup.points, (Points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})) << header;
+        EXPECT_EQ(soup.corners, (Corners{0, 1, 2})) << header;
+    }
+    const auto one_line = read("a.off", "OFF 3 1 0 0 0 0 1 0 0 0 1 0 3 0 1 2");
+    EXPECT_EQ(one_line.corners, (Corners{0, 1, 2}));
+}
+
+TEST(Off, ColoursNormalsAndTexture) {
+    const auto full = read("a.off",
+                           "STCNOFF\n3 2 0\n0 0 0 0 0 1 255 0 0 255 0.5 0.25\n1 0 0 0 0 1 0 1.0 0 0 1\n0 1 0 0 0 1 7 8 9 1 1\n3 "
+                           "0 1 2 0.5 1.0 0\n3 0 2 1 10 20 30 40\n");
+    EXPECT_EQ(full.points[2], (std::array<double, 3>{0, 1, 0}));
+    EXPECT_EQ(full.extras.vertex_colours, (std::vector<Colour>{{255, 0, 0, 255}, {0, 255, 0, 255}, {7, 8, 9, 255}}));
+    EXPECT_EQ(full.extras.vertex_texture[0], (std::array<float, 2>{0.5F, 0.25F}));
+    EXPECT_EQ(full.extras.vertex_texture[1], (std::array<float, 2>{0, 1}));
+    EXPECT_EQ(full.extras.face_colours, (std::vector<Colour>{{128, 255, 0, 255}, {10, 20, 30, 40}}));
+    const auto undeclared = read("a.off", "OFF\n3 2 0\n0 0 0 1 2 3\n1 0 0 4 5 6\n0 1 0 7 8 9\n3 0 1 2\n3 0 2 1 5\n");
+    EXPECT_EQ(undeclared.extras.vertex_colours[2], (Colour{7, 8, 9, 255}));
+    EXPECT_TRUE(has_note(undeclared.notes, "palette"));
+}
+
+TEST(Off, RefusalsNameTheLine) {
+    EXPECT_TRUE(has(refusal("a.off", "OFF\n2000000000 2000000000 0\n0 0 0\n"), "promises"));
+    EXPECT_TRUE(has(refusal("a.off", "OFF\n-3 1 0\n"), "negative"));
+    EXPECT_TRUE(has(refusal("a.off", "OFF BINARY\n"), "binary OFF"));
+    EXPECT_TRUE(has(refusal("a.off", "4OFF\n1 0 0\n0 0 0 0\n"), "4OFF"));
+    EXPECT_TRUE(has(refusal("a.off", "hello\n"), "hello"));
+    EXPECT_TRUE(has(refusal("a.off", "OFF\n1 1 0\n0 0 0\n3 0 0 1\n"), "line 4: face 0 names vertex 1 of 1"));
+    EXPECT_TRUE(has(refusal("a.off", "OFF\n1 1 0\n0 0 0\n1000000 0 0 0\n"), "promises 1000000 corners"));
+    EXPECT_TRUE(has(refusal("a.off", "OFF\n1 2 0\n0 0 0\n3 0 0 0\n"), "ends at face 1 of 2"));
+    EXPECT_TRUE(has(refusal("a.off", "OFF\n1 1 0\n0 0 0\n3 0 0 0 1 2 3 4 5\n"), "more than a colour"));
+}
+
+TEST(Stl, SizeDecidesNotTheFirstWord) {
+    const Scratch scratch;
+    write_triangles(scratch / "a.stl", octahedron());
+    std::string bytes = read_file(scratch / "a.stl");
+    bytes.replace(0, 5, "solid");
+    EXPECT_EQ(read("a.stl", bytes).polygon_count(), 8U);
+    bytes[84 + 48] = 1;
+    EXPECT_TRUE(has_note(read("a.stl", bytes).notes, "attribute"));
+    EXPECT_TRUE(has_note(read("a.stl", bytes + "tail").notes, "last triangle"));
+    EXPECT_TRUE(has(refusal("a.stl", bytes.substr(0, 300)), "room for 4"));
+    EXPECT_TRUE(has(refusal("a.stl", bytes.substr(0, 50)), "STL"));
+    std::memset(&bytes[84 + 50 + 12], 0xff, 4);
+    EXPECT_TRUE(has(refusal("a.stl", bytes), "triangle 1"));
+}
+
+TEST(Stl, TextWithSeveralSolids) {
+    const std::string facet =
+        "FACET NORMAL nan nan nan\n OUTER LOOP\n VERTEX 0 0 0\n vertex 1 0 -0\n vertex 0 1e0 0\n ENDLOOP\n ENDFACET\n";
+    const std::string other = "facet normal 0 0 1 outer loop vertex -0 0 0 vertex 0 1 0 vertex 1 0 0 endloop endfacet\n";
+    const auto soup = read("a.stl", "solid one facet\n" + facet + "endsolid one facet\nsolid\n" + other + "endsolid");
+    EXPECT_EQ(soup.corners, (Corners{0, 1, 2, 0, 2, 1}));  // negative zero is zero
+    EXPECT_TRUE(has(refusal("a.stl", "solid\n" + facet), "endsolid"));
+    EXPECT_TRUE(has(refusal("a.stl", "solid\n" + facet.substr(0, 60)), "cut off"));
+    EXPECT_TRUE(has(refusal("a.stl", "solid\n" + facet + "hello\n"), "line 9: unexpected word 'hello'"));
+    EXPECT_TRUE(has(refusal("a.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 inf\n"), "line 4"));
+}
+
+TEST(ReadPolygons, ContentWinsOverAWrongExtension) {
+    const Scratch scratch;
+    write_triangles(scratch / "a.ply", octahedron());
+    std::filesystem::rename(scratch / "a.ply", scratch / "a.STL");
+    const auto soup = read_polygons(scratch / "a.STL");
+    EXPECT_EQ(soup.points, octahedron().points);
+    EXPECT_TRUE(has_note(soup.notes, "holds PLY"));
+}
+
+TEST(ReadPolygons, WhatIsNoMeshFileIsRefused) {
+    const Scratch scratch;
+    EXPECT_TRUE(has(refusal("a.obj", ""), "is empty"));
+    EXPECT_THROW(read_polygons(scratch / "missing.ply"), Error);
+    std::filesystem::create_directory(scratch / "folder.ply");
+    EXPECT_THROW(read_polygons(scratch / "folder.ply"), Error);
+    try {
+        read_polygons(scratch.file("a.xyz", "0 0 0\n"));
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::usage);
+    }
+}
+
+TEST(ReadMesh, OnlyOrientedManifoldsPass) {
+    const Scratch scratch;
+    const auto message = [&](const std::string& obj) {
+        try {
+            read_mesh(scratch.file("a.obj", obj));
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    EXPECT_EQ(message(obj_square + "f 1 2 3 4\n"), "");
+    EXPECT_TRUE(has(message(obj_square), "has no faces"));
+    EXPECT_TRUE(has(message(obj_square + "f 1 2\n"), "three distinct corners"));
+    const std::string flipped = message(obj_square + "f 1 2 3\nf 1 3 4\nf 1 3 2\n");
+    EXPECT_TRUE(has(flipped, "a.obj")) << "the file is named";
+    EXPECT_TRUE(has(flipped, "edges with more than two triangles"));
+    EXPECT_TRUE(has(flipped, "run: ostraka mesh repair"));
+    EXPECT_TRUE(has(message(obj_square + "f 1 2 3\nf 1 4 3\nf 4 3 2\n"), "oriented differently"));
+    EXPECT_TRUE(has(message(obj_square + "v 2 2 0\nf 1 2 3\nf 3 4 5\n"), "several sheets"));
+    const auto mesh = read_mesh(scratch.file("b.obj", "v 9 9 9\n" + obj_square + "f 2 3 4 5\n"));
+    EXPECT_EQ(mesh.mesh.number_of_vertices(), 5U);  // the isolated vertex stays
+    EXPECT_EQ(mesh.triangle_polygon, (Corners{0, 0}));
+}
+
+TEST(ReadPolygons, EveryDefectiveFileIsReadOrRefusedWithWords) {
+    const Path data = OSTRAKA_SHARED_DATA;
+    if (!std::filesystem::is_directory(data / "broken")) GTEST_SKIP() << "no " << data;
+    std::size_t files = 0, refused = 0;
+    for (const char* folder : {"broken", "broken-synthetic"})
+        for (const auto& entry : std::filesystem::directory_iterator(data / folder)) {
+            if (entry.path().extension() == ".txt") continue;
+            ++files;
+            try {
+                Mesh mesh;
+                try_build_mesh(triangulate(read_polygons(entry.path())).soup, mesh);
+            } catch (const Error& error) {
+                ++refused;
+                EXPECT_TRUE(has(error.what(), entry.path().filename().string()));
+            }
+        }
+    EXPECT_GT(files, refused);
+    for (const char* name :
+         {"huge_counts.off", "index_out_of_range.off", "nan_vertex.off", "overflow_vertex.off", "truncated_faces.off"})
+        EXPECT_THROW(read_polygons(data / "broken-synthetic" / name), Error) << name;
+}
