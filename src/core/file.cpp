@@ -68,6 +68,13 @@ AtomicFile::AtomicFile(Path file) : file_(std::move(file)) {
         const Path target = std::filesystem::weakly_canonical(file_, code);
         if (!code) file_ = target;
     }
+    // A device or a pipe (/dev/null, /dev/stdout) is written to, not replaced by a file.
+    if (std::filesystem::exists(file_, code) && !std::filesystem::is_regular_file(file_, code)) {
+        stream_ = std::fopen(file_.c_str(), "wb");
+        if (stream_ == nullptr)
+            throw Error(ErrorKind::failure, file_.string(), "cannot be written: " + reason(), "check its rights");
+        return;
+    }
     std::string pattern = file_.string() + ".XXXXXX";
     const int descriptor = ::mkstemp(pattern.data());
     if (descriptor < 0) {
@@ -90,7 +97,7 @@ AtomicFile::AtomicFile(Path file) : file_(std::move(file)) {
 AtomicFile::~AtomicFile() {
     if (stream_ != nullptr) {
         std::fclose(stream_);
-        ::unlink(temporary_.c_str());
+        if (!temporary_.empty()) ::unlink(temporary_.c_str());
     }
 }
 
@@ -101,13 +108,14 @@ void AtomicFile::write(std::string_view bytes) {
 }
 
 void AtomicFile::commit() {
-    const bool flushed = std::fflush(stream_) == 0 && ::fsync(::fileno(stream_)) == 0;
+    const bool direct = temporary_.empty();
+    const bool flushed = std::fflush(stream_) == 0 && (direct || ::fsync(::fileno(stream_)) == 0);
     const std::string why = flushed ? "" : reason();
     const bool closed = std::fclose(stream_) == 0;
     stream_ = nullptr;
-    if (!flushed || !closed || ::rename(temporary_.c_str(), file_.c_str()) != 0) {
+    if (!flushed || !closed || (!direct && ::rename(temporary_.c_str(), file_.c_str()) != 0)) {
         const std::string cause = flushed ? reason() : why;
-        ::unlink(temporary_.c_str());
+        if (!direct) ::unlink(temporary_.c_str());
         throw Error(ErrorKind::failure, file_.string(), "cannot be written: " + cause,
                     "free some space; an earlier file of that name is untouched");
     }

@@ -16,7 +16,8 @@ std::string read_file(const Path& file);
 
 /// A file that appears under its name only when complete: bytes go to a temporary file beside it, `commit` flushes
 /// them to the disk and renames; without `commit` (an exception, say) the temporary file is removed and whatever
-/// stood under the name stays. Throws Error (failure) when the folder is missing or the disk is full.
+/// stood under the name stays. Devices and pipes (/dev/null, /dev/stdout) are written to directly. Throws Error (failure) when
+/// the folder is missing or the disk is full.
 class AtomicFile {
 public:
     explicit AtomicFile(Path file);
