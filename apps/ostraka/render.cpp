@@ -11,6 +11,7 @@
 #include <iostream>
 #include <map>
 #include <memory>
+#include <set>
 
 namespace ostraka::app {
 
@@ -139,6 +140,14 @@ void check_lists(const RenderInput& input, std::size_t meshes) {
     check("title", input.titles);
 }
 
+/// Of the units that are known.
+bool units_differ(const std::vector<Scene>& scenes) {
+    std::set<std::string> units;
+    for (const Scene& scene : scenes)
+        if (!scene.unit.empty()) units.insert(scene.unit);
+    return units.size() > 1;
+}
+
 JsonValue report(const std::vector<Scene>& scenes, const Rendering& rendering, const Path& picture, JsonAllocator& allocator) {
     JsonValue result(rapidjson::kObjectType);
     add_member(result, "picture", picture.filename().string(), allocator);
@@ -198,11 +207,10 @@ int run_render(const RenderInput& input, const Session& session) {
         scenes.push_back(std::move(scene));
     }
     if (!input.maps.empty()) options.scale = common_scale(scenes, input);
-    for (const Scene& scene : scenes)
-        if (scene.unit != scenes.front().unit && options.fit == "all") {
-            session.note("the objects have different units: each is drawn at a scale of its own");
-            options.fit = "each";
-        }
+    if (options.fit == "all" && units_differ(scenes)) {
+        session.note("the objects have different units: each is drawn at a scale of its own");
+        options.fit = "each";
+    }
     const double read_seconds = since(reading);
     const Rendering rendering = render(scenes, options);
     const auto writing = Clock::now();

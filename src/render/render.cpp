@@ -24,7 +24,7 @@ struct Size {
 
 Size parse_size(const std::string& text) {
     constexpr int least = 16, most = 16384;
-    constexpr double most_pixels = 1 << 26;
+    constexpr double most_pixels = 1 << 25;
     Size size{};
     char cross = 0, rest = 0;
     const bool good =
@@ -32,7 +32,7 @@ Size parse_size(const std::string& text) {
     if (!good || size.width < least || size.height < least || size.width > most || size.height > most ||
         double(size.width) * size.height > most_pixels)
         fail_usage("size '" + text + "' is not possible",
-                   "use WIDTHxHEIGHT such as 1200x900, each 16 to 16384, at most 67 million pixels");
+                   "use WIDTHxHEIGHT such as 1200x900, each 16 to 16384, at most 33 million pixels");
     return size;
 }
 

@@ -60,6 +60,12 @@ bool differs(const Light& a, const Light& b) {
     return roots.head<3>().maxCoeff() > 0.06F;
 }
 
+/// A channel under light of some strength: in proportion up to 1, beyond it on towards white without a kink.
+float lit(float channel, float strength) {
+    if (strength <= 1 || channel >= 1) return channel * std::min(strength, 1.0F);
+    return 1 - (1 - channel) * std::exp(-channel / (1 - channel) * (strength - 1));
+}
+
 /// Directions spread evenly over the sphere (a spherical Fibonacci lattice).
 std::vector<Eigen::Vector3d> sphere_directions(int count) {
     std::vector<Eigen::Vector3d> list;
@@ -99,11 +105,7 @@ public:
         if (inside) light *= Light(0.42F, 0.46F, 0.52F, 1);
         double strength = brightness(normal, viewer);
         if (!sky_.empty()) strength *= 0.25 + 0.75 * openness(hit.point, flat);
-        if (strength <= 1) {
-            light.head<3>() *= static_cast<float>(strength);
-        } else {  // a soft highlight
-            light.head<3>() += (1 - light.head<3>()) * static_cast<float>(0.5 * (strength - 1));
-        }
+        light.head<3>() = light.head<3>().unaryExpr([&](float c) { return lit(c, static_cast<float>(strength)); });
         if (shading_.edges) light.head<3>() *= static_cast<float>(1 - 0.75 * edge_share(hit, x, y));
         return light;
     }
@@ -158,13 +160,18 @@ private:
         std::array<Eigen::Vector2d, 3> screen;
         for (std::size_t k = 0; k < 3; ++k)
             if (!camera_.project(surface_.point(surface_.corners(hit.triangle)[k]), screen[k].x(), screen[k].y())) return 0;
-        double nearest = std::numeric_limits<double>::infinity();
+        const Eigen::Vector2d across = screen[1] - screen[0], down = screen[2] - screen[0];
+        const double twice_area = std::abs(across.x() * down.y() - across.y() * down.x());
+        double nearest = std::numeric_limits<double>::infinity(), longest = 0;
         for (std::size_t k = 0; k < 3; ++k) {
             const Eigen::Vector2d side = screen[(k + 1) % 3] - screen[k], offset = Eigen::Vector2d(x, y) - screen[k];
             const double length = side.norm();
             if (length > 0) nearest = std::min(nearest, std::abs(side.x() * offset.y() - side.y() * offset.x()) / length);
+            longest = std::max(longest, length);
         }
-        return std::clamp(shading_.edge_width / 2 + 0.5 - nearest, 0.0, 1.0);
+        // Triangles of few pixels would be all edge: their lines fade.
+        const double height = longest > 0 ? twice_area / longest : 0;
+        return std::clamp(shading_.edge_width / 2 + 0.5 - nearest, 0.0, 1.0) * std::clamp(height / 3, 0.0, 1.0);
     }
 
     const Scene& scene_;
