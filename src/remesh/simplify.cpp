@@ -237,6 +237,9 @@ SimplifyResult simplify(Mesh& mesh, const SimplifyOptions& options, const Marked
         if (mesh.next(mesh.next(mesh.next(mesh.halfedge(f)))) != mesh.halfedge(f))
             fail_input("face " + std::to_string(Index(f)), "is not a triangle");
 
+    // Border vertices must know a border halfedge, which not every algorithm takes care of.
+    for (const Halfedge h : mesh.halfedges())
+        if (mesh.is_border(h)) mesh.set_halfedge(mesh.target(h), h);
     SimplifyResult result;
     std::vector<Vertex> isolated;
     for (const Vertex v : mesh.vertices())

@@ -1,0 +1,113 @@
+#include "ostraka/remesh/remesh.h"
+
+#include "metric.h"
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/remesh/refine.h"
+#include "ostraka/remesh/simplify.h"
+
+#include <CGAL/AABB_face_graph_triangle_primitive.h>
+#include <CGAL/AABB_traits.h>
+#include <CGAL/AABB_tree.h>
+#include <CGAL/Polygon_mesh_processing/remesh.h>
+
+#include <cmath>
+
+namespace ostraka {
+
+namespace {
+
+/// Side of the equilateral triangles that cover `area` with `vertices` vertices: two triangles a vertex, sqrt(3)/4 L^2 each.
+double edge_length_for(double area, double vertices) { return std::sqrt(2 * area / (std::sqrt(3.0) * vertices)); }
+
+void mark_features(const Mesh& mesh, double degrees, Mesh::Property_map<Edge, bool>& constrained) {
+    const double cosine = std::cos(degrees * M_PI / 180);
+    for (const Edge e : mesh.edges()) {
+        if (mesh.is_border(e)) continue;
+        const Vector a = area_vector(mesh, mesh.face(mesh.halfedge(e, 0))), b = area_vector(mesh, mesh.face(mesh.halfedge(e, 1)));
+        constrained[e] = a * b < cosine * std::sqrt(a.squared_length() * b.squared_length());
+    }
+}
+
+void run_rounds(Mesh& mesh, double length, const RemeshOptions& options) {
+    namespace pmp = CGAL::Polygon_mesh_processing;
+    auto constrained = mesh.add_property_map<Edge, bool>("e:constrained", false).first;
+    if (options.feature_angle > 0) mark_features(mesh, options.feature_angle, constrained);
+    pmp::isotropic_remeshing(faces(mesh), length, mesh,
+                             CGAL::parameters::number_of_iterations(static_cast<unsigned>(options.iterations))
+                                 .number_of_relaxation_steps(1)
+                                 .edge_is_constrained_map(constrained));
+    mesh.remove_property_map(constrained);
+    mesh.collect_garbage();
+    mesh = build_mesh(to_soup(mesh));  // the library does not keep a border halfedge at border vertices
+}
+
+using Primitive = CGAL::AABB_face_graph_triangle_primitive<Mesh>;
+using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
+
+/// Puts every vertex inside the surface onto the old one; returns the largest distance that is left (border vertices stay).
+double project(Mesh& mesh, const Tree& tree, double size) {
+    const std::size_t count = mesh.number_of_vertices();
+    std::vector<double> distance(count, 0);
+    parallel_for(count, [&](std::size_t i) {
+        const Vertex v(static_cast<Index>(i));
+        const Point nearest = tree.closest_point(mesh.point(v));
+        if (mesh.is_border(v)) distance[i] = std::sqrt(CGAL::squared_distance(mesh.point(v), nearest));
+        else mesh.point(v) = nearest;
+    });
+    double largest = 0;
+    for (const double d : distance) largest = std::max(largest, d);
+    return largest < 1e-12 * size ? 0 : largest;
+}
+
+}  // namespace
+
+RemeshResult remesh(const Mesh& mesh, const RemeshOptions& options) {
+    check_options(options, "remesh");
+    if (mesh.has_garbage()) throw std::logic_error("remesh: collect the garbage first");
+    // The work is done on a centred copy of size one, so that tolerances inside the library mean the same for every object.
+    const Frame frame = make_frame(mesh);
+    TriangleSoup soup = to_soup(mesh);
+    for (auto& p : soup.points) {
+        const Vector x = frame.local(Point(p[0], p[1], p[2]));
+        p = {x.x(), x.y(), x.z()};
+    }
+    const Mesh old = build_mesh(soup);
+    soup = {};
+    const double area = surface_area(old);
+    if (!(area > 0) || !std::isfinite(area)) fail_input("mesh", "has no area to remesh");
+
+    RemeshResult result;
+    const auto wanted = static_cast<double>(options.vertices);
+    double length = edge_length_for(area, wanted);
+    // Borders, features and curvature shift the count: measured once, corrected once.
+    constexpr double accepted = 0.03;
+    for (int attempt = 0; attempt < 3; ++attempt) {
+        result.mesh = old;
+        run_rounds(result.mesh, length, options);
+        result.remeshed = result.mesh.number_of_vertices();
+        result.target_edge_length = length * frame.size;
+        const double ratio = static_cast<double>(result.remeshed) / wanted;
+        if (std::abs(ratio - 1) <= accepted) break;
+        length *= std::sqrt(ratio);
+    }
+    if (result.remeshed > options.vertices) {
+        SimplifyOptions fewer;
+        fewer.vertices = options.vertices;
+        simplify(result.mesh, fewer);
+    } else if (result.remeshed < options.vertices) {
+        RefineOptions more;
+        more.vertices = options.vertices;
+        more.scheme = "longest-edge";
+        refine(result.mesh, more);
+    }
+    result.reached = result.mesh.number_of_vertices() == options.vertices;
+    Tree tree(faces(old).first, faces(old).second, old);
+    tree.build();
+    tree.accelerate_distance_queries();
+    result.deviation = project(result.mesh, tree, 1) * frame.size;
+    for (const Vertex v : result.mesh.vertices()) result.mesh.point(v) = frame.world(result.mesh.point(v) - CGAL::ORIGIN);
+    return result;
+}
+
+}  // namespace ostraka

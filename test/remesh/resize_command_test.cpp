@@ -1,0 +1,166 @@
+// The built command as people run it.
+#include "ostraka/annotation/annotation_file.h"
+#include "ostraka/core/error.h"
+#include "ostraka/io/mesh_file.h"
+#include "scratch.h"
+#include "test_meshes.h"
+
+#include <gtest/gtest.h>
+
+using namespace ostraka;
+using namespace ostraka::test;
+
+namespace {
+
+class ResizeCommand : public testing::Test {
+protected:
+    void SetUp() override {
+        mesh = build_mesh(octahedron_sphere(4));
+        MeshExtras extras;
+        for (const Face f : mesh.faces()) extras.face_labels.push_back(centroid(mesh, f).z() > 0 ? 4 : 9);
+        write_mesh(scratch / "ball.ply", mesh, extras);
+        AnnotationSet set;
+        Annotation cap;
+        cap.id = 3, cap.tag = "cap", cap.type = AnnotationType::region;
+        for (const Face f : mesh.faces())
+            if (centroid(mesh, f).z() > 0.5) cap.faces.push_back(f);
+        Annotation line;
+        line.id = 4, line.tag = "seam", line.type = AnnotationType::line;
+        line.polylines = {{0}};
+        for (int i = 0; i < 8; ++i) {
+            const Vertex v(line.polylines[0].back());
+            Vertex best = v;  // towards -z
+            for (const Vertex w : CGAL::vertices_around_target(v, mesh))
+                if (mesh.point(w).z() < mesh.point(best).z()) best = w;
+            line.polylines[0].push_back(best);
+        }
+        Annotation point;
+        point.id = 5, point.tag = "top", point.type = AnnotationType::point, point.points = {4};
+        set.annotations = {cap, line, point};
+        write_annotations(scratch / "ball.ant.json", set, mesh, "ball.ply", {});
+    }
+    [[nodiscard]] CommandResult run(const std::string& arguments) const { return run_command("mesh " + arguments); }
+    [[nodiscard]] std::string at(const std::string& name) const { return (scratch / name).string(); }
+
+    Scratch scratch;
+    Mesh mesh;
+};
+
+double area_of(const Mesh& mesh, const Annotation& annotation) {
+    double sum = 0;
+    for (const Index f : annotation.faces) sum += face_area(mesh, Face(f));
+    return sum;
+}
+
+}  // namespace
+
+TEST_F(ResizeCommand, SimplifyCarriesAnnotationsAndLabels) {
+    for (const std::string flags : {"", "--protect-outlines", "--outlines ignore", "--method lindstrom-turk"}) {
+        SCOPED_TRACE(flags);
+        const auto result =
+            run("simplify " + at("ball.ply") + " " + at("small.ply") + " --vertices 300 --annotations " + at("ball.ant.json") +
+                " --annotations-out " + at("small.ant.json") + " --labels-out " + at("small.txt") + " --vertex-map " +
+                at("vertices.json") + " --face-map " + at("faces.json") + " " + flags);
+        ASSERT_EQ(result.code, 0) << result.err;
+        const MeshFile small = read_mesh(at("small.ply"));
+        EXPECT_EQ(small.mesh.number_of_vertices(), 300u);
+        EXPECT_EQ(small.extras.face_labels.size(), small.mesh.number_of_faces());
+        const AnnotationSet before = read_annotations(at("ball.ant.json"), mesh),
+                            after = read_annotations(at("small.ant.json"), small.mesh);
+        ASSERT_EQ(after.annotations.size(), 3u);
+        EXPECT_NEAR(area_of(small.mesh, *after.find(3)) / area_of(mesh, *before.find(3)), 1, 0.1);
+        EXPECT_GE(after.find(4)->polylines.at(0).size(), 2u);
+        EXPECT_EQ(after.find(5)->points.size(), 1u);
+        EXPECT_NE(result.out.find("cap"), std::string::npos);
+        EXPECT_TRUE(std::filesystem::exists(at("small.txt")));
+        EXPECT_TRUE(std::filesystem::exists(at("vertices.json")));
+    }
+}
+
+TEST_F(ResizeCommand, RefineKeepsAreaAndLengthExactly) {
+    for (const std::string flags : {"--vertices 5000", "--levels 1", "--vertices 3000 --scheme longest-edge"}) {
+        SCOPED_TRACE(flags);
+        const auto result = run("refine " + at("ball.ply") + " " + at("large.obj") + " --annotations " + at("ball.ant.json") +
+                                " --annotations-out " + at("large.ant.json") + " --json " + flags);
+        ASSERT_EQ(result.code, 0) << result.err;
+        const Json report = parse_json(result.out, "report");
+        validate(report, "report", "report");
+        for (const auto& entry : report["result"]["annotations"].GetArray()) {
+            EXPECT_NEAR(entry["after"]["area"].GetDouble(), entry["before"]["area"].GetDouble(), 1e-9);
+            EXPECT_NEAR(entry["after"]["length"].GetDouble(), entry["before"]["length"].GetDouble(), 1e-9);
+        }
+        const MeshFile large = read_mesh(at("large.obj"));
+        const AnnotationSet after = read_annotations(at("large.ant.json"), large.mesh);
+        EXPECT_EQ(after.annotations.size(), 3u);
+    }
+}
+
+TEST_F(ResizeCommand, RemeshMeetsTheNumber) {
+    const auto result = run("remesh " + at("ball.ply") + " " + at("new.off") + " --vertices 700");
+    ASSERT_EQ(result.code, 0) << result.err;
+    EXPECT_EQ(read_mesh(at("new.off")).mesh.number_of_vertices(), 700u);
+    EXPECT_NE(result.err.find("labels"), std::string::npos) << result.err;  // says that they are left out
+}
+
+TEST_F(ResizeCommand, TheSameBytesTwiceAndForAnyNumberOfThreads) {
+    for (const std::string name : {"a", "b"}) {
+        const std::string threads = name == "a" ? " --threads 1" : " --threads 2";
+        std::filesystem::create_directory(scratch / name);
+        ASSERT_EQ(run("simplify " + at("ball.ply") + " " + at(name + "/s.ply") + " --vertices 200 --annotations " +
+                      at("ball.ant.json") + " --annotations-out " + at(name + "/s.ant.json") + threads)
+                      .code,
+                  0);
+        ASSERT_EQ(run("remesh " + at("ball.ply") + " " + at(name + "/r.ply") + " --vertices 900" + threads).code, 0);
+        ASSERT_EQ(run("refine " + at("ball.ply") + " " + at(name + "/f.ply") + " --vertices 4000" + threads).code, 0);
+    }
+    for (const std::string file : {"s.ply", "s.ant.json", "r.ply", "f.ply"})
+        EXPECT_EQ(read_file(at("a/" + file)), read_file(at("b/" + file))) << file;
+}
+
+TEST_F(ResizeCommand, TooFewVerticesGiveTheSmallestMeshAndCodeThree) {
+    const auto result = run("simplify " + at("ball.ply") + " " + at("tiny.ply") + " --vertices 2");
+    EXPECT_EQ(result.code, 3);
+    EXPECT_NE(result.err.find("could not be reached"), std::string::npos) << result.err;
+    EXPECT_GE(read_mesh(at("tiny.ply")).mesh.number_of_vertices(), 4u);
+}
+
+TEST_F(ResizeCommand, WrongUse) {
+    const std::string in = at("ball.ply"), out = at("out.ply"), annotations = at("ball.ant.json");
+    write_file(scratch / "bad.ply", "ply\nformat ascii 1.0\nend_header\n");
+    write_file(scratch / "out.ply", "earlier");
+    struct Case {
+        std::string arguments;
+        int code;
+        std::string says;
+    };
+    for (const Case& c :
+         {Case{"simplify " + in + " " + out, 2, "vertices"},
+          {"simplify " + in + " " + out + " --vertices 99999", 2, "fewer"},
+          {"simplify " + in + " " + out + " --vertices 0", 2, "vertices"},
+          {"simplify " + in + " " + out + " --vertices 100 --method best", 2, "method"},
+          {"simplify " + in + " " + in + " --vertices 100", 2, "ball.ply"},
+          {"simplify " + in + " " + at("out.xyz") + " --vertices 100", 2, "xyz"},
+          {"simplify " + in + " " + at("nowhere/out.ply") + " --vertices 100", 1, "nowhere"},
+          {"simplify " + at("none.ply") + " " + out + " --vertices 100", 1, "none.ply"},
+          {"simplify " + at("bad.ply") + " " + out + " --vertices 100", 1, "bad.ply"},
+          {"simplify " + in + " " + out + " --vertices 100 --annotations " + annotations, 2, "--annotations-out"},
+          {"simplify " + in + " " + at("out.stl") + " --vertices 100 --annotations " + annotations + " --annotations-out " +
+               at("o.json"),
+           2, "stl"},
+          {"simplify " + in + " " + out + " --vertices 100 --annotations " + in + " --annotations-out " + at("o.json"), 1,
+           "ball.ply"},
+          {"simplify " + in + " " + out + " --vertices 100 --protect-outlines --outlines follow", 2, "outlines"},
+          {"refine " + in + " " + out, 2, "--levels"},
+          {"refine " + in + " " + out + " --vertices 3", 2, "simplify"},
+          {"refine " + in + " " + out + " --vertices 9999 --levels 1", 2, "one of"},
+          {"refine " + in + " " + out + " --levels 1 --scheme sqrt3", 2, "scheme"},
+          {"remesh " + in + " " + out, 2, "vertices"},
+          {"remesh " + at("none.ply") + " " + out + " --vertices 50", 1, "none.ply"}}) {
+        SCOPED_TRACE(c.arguments);
+        const auto result = run(c.arguments);
+        EXPECT_EQ(result.code, c.code) << result.err;
+        EXPECT_NE(result.err.find(c.says), std::string::npos) << result.err;
+        EXPECT_TRUE(result.out.empty());
+        EXPECT_EQ(read_file(scratch / "out.ply"), "earlier");
+    }
+}
