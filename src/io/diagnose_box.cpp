@@ -1,0 +1,177 @@
+// The oriented box: directions tried on a few hundred extreme points, then measured on all.
+#include "ostraka/core/parallel.h"
+#include "ostraka/io/diagnose.h"
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+namespace ostraka {
+
+namespace {
+
+using Array3 = std::array<double, 3>;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+Vector3d vector(const Array3& p) { return {p[0], p[1], p[2]}; }
+
+/// Evenly spread directions of a half-sphere (Fibonacci lattice).
+std::vector<Vector3d> directions(int count) {
+    std::vector<Vector3d> list;
+    for (int i = 0; i < count; ++i) {
+        const double z = (i + 0.5) / count, r = std::sqrt(1 - z * z), turn = i * std::numbers::pi * (3 - std::sqrt(5.0));
+        list.emplace_back(r * std::cos(turn), r * std::sin(turn), z);
+    }
+    return list;
+}
+
+/// The points farthest along each direction and against it.
+std::vector<Vector3d> extreme_points(const std::vector<Array3>& points, const std::vector<Vector3d>& along) {
+    std::vector<Index> extreme(2 * along.size(), 0);
+    parallel_for(along.size(), [&](std::size_t d) {
+        const Vector3d n = along[d];
+        double low = std::numeric_limits<double>::infinity(), high = -low;
+        for (Index v = 0; v < points.size(); ++v) {
+            const double height = n[0] * points[v][0] + n[1] * points[v][1] + n[2] * points[v][2];
+            if (height < low) low = height, extreme[2 * d] = v;
+            if (height > high) high = height, extreme[2 * d + 1] = v;
+        }
+    }, 4);
+    std::sort(extreme.begin(), extreme.end());
+    extreme.erase(std::unique(extreme.begin(), extreme.end()), extreme.end());
+    std::vector<Vector3d> list;
+    for (const Index v : extreme) list.push_back(vector(points[v]));
+    return list;
+}
+
+std::vector<Vector2d> convex_hull(std::vector<Vector2d> p) {
+    std::sort(p.begin(), p.end(), [](const Vector2d& a, const Vector2d& b) { return a[0] < b[0] || (a[0] == b[0] && a[1] < b[1]); });
+    std::vector<Vector2d> hull;
+    const auto left = [&](const Vector2d& q) {
+        const Vector2d u = hull.back() - hull[hull.size() - 2], w = q - hull.back();
+        return u[0] * w[1] - u[1] * w[0] > 0;
+    };
+    for (int side = 0; side < 2; ++side) {
+        const std::size_t base = hull.size();
+        for (const Vector2d& q : p) {
+            while (hull.size() >= base + 2 && !left(q)) hull.pop_back();
+            hull.push_back(q);
+        }
+        hull.pop_back();
+        std::reverse(p.begin(), p.end());
+    }
+    return hull;
+}
+
+struct Candidate {
+    double volume = std::numeric_limits<double>::infinity();
+    Vector3d normal = Vector3d::UnitZ(), side = Vector3d::UnitX();
+};
+
+/// The smallest box with a face across `normal`.
+Candidate box_across(const Vector3d& normal, const std::vector<Vector3d>& points) {
+    const Vector3d u = normal.unitOrthogonal(), w = normal.cross(u);
+    std::vector<Vector2d> flat;
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Vector3d& p : points) {
+        flat.emplace_back(u.dot(p), w.dot(p));
+        low = std::min(low, normal.dot(p));
+        high = std::max(high, normal.dot(p));
+    }
+    const auto hull = convex_hull(std::move(flat));
+    Candidate best;
+    best.normal = normal;
+    double smallest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < hull.size(); ++i) {  // a side of the smallest rectangle lies on a side of the hull
+        Vector2d a = hull[(i + 1) % hull.size()] - hull[i];
+        if (a.norm() == 0) a = Vector2d::UnitX();
+        a.normalize();
+        double x0 = std::numeric_limits<double>::infinity(), x1 = -x0, y0 = x0, y1 = -x0;
+        for (const Vector2d& q : hull) {
+            const double x = a.dot(q), y = a[0] * q[1] - a[1] * q[0];
+            x0 = std::min(x0, x), x1 = std::max(x1, x), y0 = std::min(y0, y), y1 = std::max(y1, y);
+        }
+        // Flat objects have boxes of no volume: a trace of the sides' sum tells them apart.
+        const double thickness = high - low, area = (x1 - x0) * (y1 - y0);
+        const double sum = thickness + (x1 - x0) + (y1 - y0), cost = thickness * area + 1e-9 * sum * sum * sum;
+        if (cost < smallest) {
+            smallest = cost;
+            best.volume = cost;
+            best.side = (a[0] * u + a[1] * w).normalized();
+        }
+    }
+    return best;
+}
+
+}  // namespace
+
+OrientedBox oriented_box(const std::vector<Array3>& points) {
+    OrientedBox box;
+    box.axes = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    if (points.empty()) return box;
+    std::vector<Vector3d> extreme = extreme_points(points, directions(96));
+    // Directions do not depend on place and scale; numbers near one keep products in range.
+    const Vector3d origin = extreme.front();
+    double reach = 0;
+    for (auto& p : extreme) reach = std::max(reach, (p -= origin).cwiseAbs().maxCoeff());
+    if (reach > 0)
+        for (auto& p : extreme) p /= reach;
+
+    std::vector<Vector3d> tried = directions(400);
+    Vector3d mean = Vector3d::Zero();
+    for (const auto& p : extreme) mean += p / static_cast<double>(extreme.size());
+    Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+    for (const auto& p : extreme) scatter += (p - mean) * (p - mean).transpose();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(scatter);
+    for (int k = 0; k < 3; ++k) {
+        tried.push_back(Vector3d::Unit(k));
+        tried.push_back(principal.eigenvectors().col(k).normalized());
+    }
+    std::vector<Candidate> candidates(tried.size());
+    parallel_for(tried.size(), [&](std::size_t i) { candidates[i] = box_across(tried[i], extreme); }, 16);
+    std::stable_sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) { return a.volume < b.volume; });
+    candidates.resize(4);
+    for (Candidate& best : candidates)
+        for (double step = 0.05; step > 1e-6;) {
+            Candidate better = best;
+            for (int k = 0; k < 8; ++k) {
+                const Vector3d u = best.side, w = best.normal.cross(u);
+                const double turn = k * std::numbers::pi / 4;
+                const Candidate next = box_across((best.normal + step * (std::cos(turn) * u + std::sin(turn) * w)).normalized(), extreme);
+                if (next.volume < better.volume) better = next;
+            }
+            if (better.volume < best.volume) best = better;
+            else step /= 2;
+        }
+    const Candidate best = *std::min_element(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) { return a.volume < b.volume; });
+
+    const std::array<Vector3d, 3> axes{best.side, best.normal.cross(best.side).normalized(), best.normal};
+    std::array<double, 3> low, high;
+    low.fill(std::numeric_limits<double>::infinity());
+    high.fill(-std::numeric_limits<double>::infinity());
+    for (const auto& p : points)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double height = axes[k].dot(vector(p) - origin);
+            low[k] = std::min(low[k], height);
+            high[k] = std::max(high[k], height);
+        }
+    std::array<std::size_t, 3> order{0, 1, 2};
+    std::stable_sort(order.begin(), order.end(), [&](auto i, auto j) { return high[i] - low[i] > high[j] - low[j]; });
+    Vector3d centre = origin;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t from = order[k];
+        box.sides[k] = high[from] - low[from];
+        for (std::size_t c = 0; c < 3; ++c) box.axes[k][c] = axes[from][static_cast<Eigen::Index>(c)];
+        centre += axes[from] * ((low[from] + high[from]) / 2);
+    }
+    if (vector(box.axes[0]).cross(vector(box.axes[1])).dot(vector(box.axes[2])) < 0)
+        for (double& c : box.axes[2]) c = -c;
+    box.centre = {centre[0], centre[1], centre[2]};
+    return box;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,183 @@
+#include "ostraka/io/repair.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+#include "repair_parts.h"
+#include "soup_geometry.h"
+#include "triangle_tree.h"
+
+namespace ostraka {
+
+using detail::Worksoup;
+
+namespace {
+
+std::size_t count_of(const detail::Counts& counts, const std::string& name) {
+    for (const auto& [key, value] : counts)
+        if (key == name) return value;
+    return 0;
+}
+
+/// Refuses what no step can make a surface of.
+void check_triangles(const TriangleSoup& soup) {
+    detail::check_soup(soup);
+    if (soup.triangles.empty())
+        fail_input("mesh", soup.points.empty() ? "is empty" : "has " + std::to_string(soup.points.size()) + " points and no faces",
+                   "give a file with faces; points alone are not a surface");
+    for (const auto& t : soup.triangles)
+        if (!detail::has_no_area(soup, t)) return;
+    fail_input("mesh", "has no face with an area", "look at the scale and the precision of the file's coordinates");
+}
+
+/// Members of `values` for each new element, like the old element named.
+template <class Value> std::vector<Value> carried(const std::vector<Value>& values, const std::vector<Index>& like) {
+    std::vector<Value> result;
+    if (values.empty()) return result;
+    result.reserve(like.size());
+    for (const Index old : like) result.push_back(values[old]);
+    return result;
+}
+
+void check_extras(const TriangleSoup& soup, const MeshExtras& extras) {
+    const auto check = [](std::size_t size, std::size_t count, const char* what) {
+        if (size != 0 && size != count)
+            fail_input(what, "has " + std::to_string(size) + " entries for " + std::to_string(count) + " elements");
+    };
+    check(extras.vertex_colours.size(), soup.points.size(), "vertex colours");
+    check(extras.vertex_labels.size(), soup.points.size(), "vertex labels");
+    check(extras.vertex_texture.size(), soup.points.size(), "vertex texture");
+    check(extras.face_colours.size(), soup.triangles.size(), "face colours");
+    check(extras.face_labels.size(), soup.triangles.size(), "face labels");
+    check(extras.corner_texture.size(), 3 * soup.triangles.size(), "corner texture");
+}
+
+MeshExtras carry_extras(const MeshExtras& old, const Worksoup& work) {
+    MeshExtras extras;
+    extras.vertex_colours = carried(old.vertex_colours, work.vertex_like);
+    extras.vertex_labels = carried(old.vertex_labels, work.vertex_like);
+    extras.vertex_texture = carried(old.vertex_texture, work.vertex_like);
+    extras.face_colours = carried(old.face_colours, work.face_like);
+    extras.face_labels = carried(old.face_labels, work.face_like);
+    if (!old.corner_texture.empty())
+        for (const auto& corners : work.corner_like)
+            for (const Index c : corners) extras.corner_texture.push_back(old.corner_texture[c]);
+    return extras;
+}
+
+/// Old -> new from new -> old, through the element kept for each old one.
+std::vector<Index> inverted(const std::vector<Index>& source, const std::vector<Index>& kept_for) {
+    std::vector<Index> map(kept_for.size(), no_index);
+    for (std::size_t i = source.size(); i-- > 0;)
+        if (source[i] != no_index) map[source[i]] = static_cast<Index>(i);
+    for (Index old = 0; old < map.size(); ++old) {
+        Index kept = old;
+        while (kept_for[kept] != kept) kept = kept_for[kept];
+        if (kept != old) map[old] = map[kept];
+    }
+    return map;
+}
+
+Index nearest_corner(const TriangleSoup& soup, Index triangle, const Point& p) {
+    Index best = 0;
+    for (Index k = 1; k < 3; ++k)
+        if (CGAL::squared_distance(p, detail::point(soup, soup.triangles[triangle][k])) <
+            CGAL::squared_distance(p, detail::point(soup, soup.triangles[triangle][best])))
+            best = k;
+    return best;
+}
+
+Point middle(const TriangleSoup& soup, Index t) {
+    const auto& [a, b, c] = soup.triangles[t];
+    return CGAL::centroid(detail::point(soup, a), detail::point(soup, b), detail::point(soup, c));
+}
+
+/// Replaces the soup by its wrap; values and maps go by the nearest triangle, and the nearest corner of that.
+void wrap(Worksoup& work, const TriangleSoup& original, const RepairOptions& options, RepairResult& result) {
+    const double size = detail::diagonal(detail::box_of_triangles(work.soup));
+    TriangleSoup wrapped = detail::wrap_soup(work.soup, options.wrap_alpha * size, options.wrap_offset * size);
+    const detail::TriangleTree old_tree(original), new_tree(wrapped);
+    Worksoup made(wrapped);
+    parallel_for(wrapped.points.size(), [&](std::size_t v) {
+        const Point p = detail::point(wrapped, static_cast<Index>(v));
+        const Index t = old_tree.nearest(p).triangle;
+        made.vertex_source[v] = no_index;
+        made.vertex_like[v] = original.triangles[t][nearest_corner(original, t, p)];
+    });
+    parallel_for(wrapped.triangles.size(), [&](std::size_t f) {
+        const Index t = old_tree.nearest(middle(wrapped, static_cast<Index>(f))).triangle;
+        made.face_source[f] = no_index;
+        made.face_like[f] = t;
+        for (std::size_t k = 0; k < 3; ++k)
+            made.corner_like[f][k] = 3 * t + nearest_corner(original, t, detail::point(wrapped, wrapped.triangles[f][k]));
+    });
+    result.vertex_map.assign(original.points.size(), no_index);
+    result.face_map.assign(original.triangles.size(), no_index);
+    parallel_for(original.triangles.size(), [&](std::size_t t) {
+        result.face_map[t] = new_tree.nearest(middle(original, static_cast<Index>(t))).triangle;
+    });
+    std::vector<std::uint8_t> used(original.points.size(), 0);
+    for (const auto& t : original.triangles)
+        for (const Index v : t) used[v] = 1;
+    parallel_for(original.points.size(), [&](std::size_t v) {
+        if (used[v] == 0) return;
+        const Point p = detail::point(original, static_cast<Index>(v));
+        const Index t = new_tree.nearest(p).triangle;
+        result.vertex_map[v] = wrapped.triangles[t][nearest_corner(wrapped, t, p)];
+    });
+    result.maps_by_distance = true;
+    result.steps.push_back({"wrap", {{"vertices made", wrapped.points.size()}, {"triangles made", wrapped.triangles.size()}}});
+    work = std::move(made);
+}
+
+}  // namespace
+
+RepairResult repair(const TriangleSoup& original, const MeshExtras& extras, const RepairOptions& options) {
+    check_options(options, "repair");
+    check_triangles(original);
+    check_extras(original, extras);
+    RepairResult result;
+    const auto step = [&](const char* name, detail::Counts counts) -> const detail::Counts& {
+        result.steps.push_back({name, std::move(counts)});
+        return result.steps.back().counts;
+    };
+    Worksoup work(original);
+    const double size = detail::diagonal(detail::box_of_triangles(original));
+    step("merge points", detail::merge_points(work, options.merge_distance * size));
+    step("drop triangles", detail::drop_bad_triangles(work));
+    if (work.soup.triangles.empty())
+        fail_input("mesh", "has no face left after points were merged", "use a smaller --merge-distance");
+    const auto& orientation = step("orient", detail::orient_patches(work));
+    if (count_of(orientation, "edges cut because the surface has one side only") > 0)
+        result.notes.emplace_back("a part of the surface has one side only (a Moebius strip): it was cut open to be oriented");
+    step("take apart", detail::take_apart(work));
+    if (options.keep_largest || options.min_component_share > 0)
+        step("drop components", detail::drop_components(work, options.keep_largest, options.min_component_share));
+    const auto& degenerate = step("triangles without area", detail::flip_degenerate(work));
+    if (count_of(degenerate, "border triangles dropped") > 0) step("take apart again", detail::take_apart(work));
+    step("turn outwards", detail::turn_outwards(work));
+    step("isolated vertices", {{"dropped", work.drop_isolated(options.keep_isolated)}});
+    if (options.fill_holes > 0) {
+        step("fill holes", detail::fill_holes(work, {static_cast<std::size_t>(options.fill_holes), options.fill_holes_size, false}));
+        step("turn outwards, once closed", detail::turn_outwards(work));
+        const auto& flat = step("fillings without area", detail::flip_degenerate(work));
+        if (count_of(flat, "border triangles dropped") > 0) detail::take_apart(work);
+    }
+    if (work.soup.triangles.empty()) fail_input("mesh", "has no face with an area left", "look at the file's coordinates");
+    if (options.remove_self_intersections)
+        step("self-intersections", detail::remove_self_intersections(work, result.notes));
+    if (options.wrap) {
+        wrap(work, original, options, result);
+    } else {
+        result.vertex_map = inverted(work.vertex_source, work.merged_into);
+        result.face_map = inverted(work.face_source, work.duplicate_of);
+    }
+    if (try_build_mesh(work.soup, result.mesh).any())
+        throw Error(ErrorKind::failure, "mesh", "could not be made an oriented manifold", "try --wrap, and please report the file");
+    result.extras = carry_extras(extras, work);
+    result.vertex_source = std::move(work.vertex_source);
+    result.face_source = std::move(work.face_source);
+    result.after = diagnose(work.soup);
+    return result;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,241 @@
+// Holes closed by triangles over their border vertices.
+#include "ostraka/core/parallel.h"
+#include "repair_parts.h"
+#include "soup_geometry.h"
+
+#include <cmath>
+#include <limits>
+#include <queue>
+#include <unordered_set>
+
+namespace ostraka::detail {
+
+namespace {
+
+/// The border of one hole: halfedges of the triangles around it in the order in which those run, that is clockwise seen
+/// from outside.
+using Hole = std::vector<Index>;
+
+std::vector<Hole> find_holes(const TriangleSoup& soup, const std::vector<Index>& opposite) {
+    std::vector<Index> leaving(soup.points.size(), no_index);  // one border halfedge leaves a border vertex
+    for (Index h = 0; h < opposite.size(); ++h)
+        if (opposite[h] == no_index) leaving[origin(soup, h)] = h;
+    std::vector<std::uint8_t> used(opposite.size(), 0);
+    std::vector<Hole> holes;
+    for (Index start = 0; start < opposite.size(); ++start) {
+        if (opposite[start] != no_index || used[start] != 0) continue;
+        Hole hole;
+        for (Index h = start; used[h] == 0; h = leaving[target(soup, h)]) {
+            used[h] = 1;
+            hole.push_back(h);
+        }
+        holes.push_back(std::move(hole));
+    }
+    return holes;
+}
+
+using Triple = std::array<Index, 3>;  ///< positions along the hole, increasing
+
+/// Triangulates the hole's polygon without new vertices; empty if it cannot be done. Positions of a long border are first
+/// cut off one by one, shortest chord first (O(n log n)); the rest is triangulated so that the largest dihedral angle is
+/// least, and then the area (O(n^3), Liepa 2003, section 3, after Barequet and Sharir 1995).
+class HoleFiller {
+public:
+    HoleFiller(const TriangleSoup& soup, const std::vector<Index>& opposite, const Hole& hole) : soup_(soup), hole_(hole) {
+        const auto n = static_cast<Index>(hole.size());
+        // Chords along existing edges would make them non-manifold.
+        std::vector<std::pair<Index, Index>> positions;  // vertex, position
+        for (Index i = 0; i < n; ++i) positions.emplace_back(origin(soup, hole[i]), i);
+        std::sort(positions.begin(), positions.end());
+        for (Index i = 0; i < n; ++i)
+            for (Index h = hole[i];;) {  // the fan at position i, from the border on
+                const Index other = origin(soup, previous_halfedge(h));
+                const auto found = std::lower_bound(positions.begin(), positions.end(), std::pair<Index, Index>{other, 0});
+                if (found != positions.end() && found->first == other) edges_.insert(key(i, found->second));
+                h = opposite[previous_halfedge(h)];
+                if (h == no_index) break;
+            }
+        for (Index i = 0; i < n; ++i) {
+            places_.push_back(point(soup, origin(soup, hole[i])));
+            outside_.push_back(unit(normal(soup, soup.triangles[hole[i] / 3])));
+        }
+    }
+
+    std::vector<Triple> run() {
+        const auto n = static_cast<Index>(hole_.size());
+        if (n < 3 || (n == 3 && hole_[0] / 3 == hole_[1] / 3)) return {};  // a single triangle has no hole
+        std::vector<Triple> triangles;
+        std::vector<Index> ring(n);
+        for (Index i = 0; i < n; ++i) ring[i] = i;
+        constexpr std::size_t most = 100;
+        if (n > most && !cut_corners(ring, most, triangles)) return {};
+        if (!best_triangulation(ring, triangles)) return {};
+        return triangles;
+    }
+
+private:
+    static std::uint64_t key(Index i, Index j) { return static_cast<std::uint64_t>(std::min(i, j)) << 32 | std::max(i, j); }
+    static Vector unit(const Vector& v) {
+        const double length = std::sqrt(v.squared_length());
+        return length > 0 ? v / length : Vector(0, 0, 0);
+    }
+    [[nodiscard]] bool is_edge(Index i, Index j) const { return edges_.count(key(i, j)) > 0; }
+    /// Normal of a filling triangle with positions i < j < k: it runs against the border.
+    [[nodiscard]] Vector filling_normal(Index i, Index j, Index k) const {
+        return CGAL::cross_product(places_[k] - places_[i], places_[j] - places_[i]);
+    }
+
+    bool cut_corners(std::vector<Index>& ring, std::size_t most, std::vector<Triple>& triangles) {
+        const auto n = static_cast<Index>(ring.size());
+        std::vector<Index> previous(n), next(n), stamp(n, 0);
+        for (Index i = 0; i < n; ++i) previous[i] = (i + n - 1) % n, next[i] = (i + 1) % n;
+        struct Corner {
+            double chord;
+            Index position, stamp;
+            bool operator<(const Corner& o) const { return chord != o.chord ? chord > o.chord : position > o.position; }
+        };
+        std::priority_queue<Corner> queue;
+        const auto push = [&](Index i) {
+            if (!is_edge(previous[i], next[i]))
+                queue.push({CGAL::squared_distance(places_[previous[i]], places_[next[i]]), i, stamp[i]});
+        };
+        for (Index i = 0; i < n; ++i) push(i);
+        std::size_t left = n;
+        std::vector<std::uint8_t> gone(n, 0);
+        while (left > most && !queue.empty()) {
+            const Corner corner = queue.top();
+            queue.pop();
+            const Index i = corner.position, p = previous[i], q = next[i];
+            if (gone[i] != 0 || corner.stamp != stamp[i] || is_edge(p, q)) continue;
+            Triple t{p, i, q};
+            std::sort(t.begin(), t.end());
+            triangles.push_back(t);
+            const Vector across = unit(filling_normal(t[0], t[1], t[2]));
+            edges_.insert(key(p, q));
+            outside_[p] = across;  // the new side from p to q
+            gone[i] = 1;
+            next[p] = q;
+            previous[q] = p;
+            ++stamp[p], ++stamp[q];
+            push(p);
+            push(q);
+            --left;
+        }
+        ring.clear();
+        for (Index i = 0; i < n; ++i)
+            if (gone[i] == 0) ring.push_back(i);
+        return left <= most;
+    }
+
+    struct Weight {
+        double bend = 0, area = 0;  ///< 1 - cosine of the largest dihedral angle, area
+        bool operator<(const Weight& o) const { return bend != o.bend ? bend < o.bend : area < o.area; }
+    };
+
+    bool best_triangulation(const std::vector<Index>& ring, std::vector<Triple>& triangles) const {
+        const std::size_t n = ring.size();
+        constexpr double never = std::numeric_limits<double>::infinity();
+        std::vector<Weight> weight(n * n, {never, never});
+        std::vector<std::size_t> middle(n * n, 0);
+        std::vector<Vector> normals(n * n, Vector(0, 0, 0));  // of the triangle chosen beyond a chord
+        for (std::size_t i = 0; i + 1 < n; ++i) {
+            weight[i * n + i + 1] = {};
+            normals[i * n + i + 1] = outside_[ring[i]];
+        }
+        for (std::size_t span = 2; span < n; ++span)
+            for (std::size_t i = 0; i + span < n; ++i) {
+                const std::size_t k = i + span;
+                const bool closing = i == 0 && k == n - 1;
+                if (!closing && is_edge(ring[i], ring[k])) continue;
+                for (std::size_t m = i + 1; m < k; ++m) {
+                    const Weight &left = weight[i * n + m], &right = weight[m * n + k];
+                    if (left.bend == never || right.bend == never) continue;
+                    const Vector across = filling_normal(ring[i], ring[m], ring[k]);
+                    const double length = std::sqrt(across.squared_length());
+                    const Vector direction = length > 0 ? across / length : across;
+                    Weight own{std::max({left.bend, right.bend, 1 - direction * normals[i * n + m], 1 - direction * normals[m * n + k]}),
+                               left.area + right.area + length / 2};
+                    if (closing) own.bend = std::max(own.bend, 1 - direction * outside_[ring[k]]);
+                    if (length == 0) own.bend = std::max(own.bend, 3.0);  // without area: the last resort
+                    if (own < weight[i * n + k]) {
+                        weight[i * n + k] = own;
+                        middle[i * n + k] = m;
+                        normals[i * n + k] = direction;
+                    }
+                }
+            }
+        if (weight[n - 1].bend == never) return false;
+        std::vector<std::pair<std::size_t, std::size_t>> stack{{0, n - 1}};
+        while (!stack.empty()) {
+            const auto [i, k] = stack.back();
+            stack.pop_back();
+            if (k - i < 2) continue;
+            const std::size_t m = middle[i * n + k];
+            triangles.push_back({ring[i], ring[m], ring[k]});
+            stack.emplace_back(i, m);
+            stack.emplace_back(m, k);
+        }
+        return true;
+    }
+
+    const TriangleSoup& soup_;
+    const Hole& hole_;
+    std::unordered_set<std::uint64_t> edges_;  ///< pairs of positions joined by an edge, the hole's border among them
+    std::vector<Point> places_;
+    std::vector<Vector> outside_;  ///< unit normal of the triangle at the side from a position to the next
+};
+
+}  // namespace
+
+Counts fill_holes(Worksoup& work, const HoleLimits& limits) {
+    auto& soup = work.soup;
+    const std::vector<Index> opposite = pair_manifold(soup);
+    const std::vector<Hole> holes = find_holes(soup, opposite);
+    DisjointSets sets(soup.points.size());
+    for (const auto& t : soup.triangles) {
+        sets.unite(t[0], t[1]);
+        sets.unite(t[0], t[2]);
+    }
+    std::vector<CGAL::Bbox_3> boxes(holes.empty() ? 0 : soup.points.size());
+    for (Index v = 0; v < boxes.size(); ++v) boxes[sets.find(v)] += point(soup, v).bbox();
+
+    std::size_t filled = 0, triangles = 0, too_long = 0, too_wide = 0, refused = 0;
+    std::vector<const Hole*> chosen;
+    for (const Hole& hole : holes) {
+        CGAL::Bbox_3 box;
+        std::size_t touched = 0;
+        for (const Index h : hole) {
+            box += point(soup, origin(soup, h)).bbox();
+            touched += work.touched[origin(soup, h)];
+        }
+        if (limits.only_touched && 2 * touched < hole.size()) continue;
+        if (hole.size() > limits.edges) ++too_long;
+        else if (diagonal(box) > limits.share * diagonal(boxes[sets.find(origin(soup, hole[0]))])) ++too_wide;
+        else chosen.push_back(&hole);
+    }
+    std::vector<std::vector<Triple>> fillings(chosen.size());
+    parallel_for(chosen.size(), [&](std::size_t i) { fillings[i] = HoleFiller(soup, opposite, *chosen[i]).run(); }, 1);
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+        const Hole& hole = *chosen[i];
+        if (fillings[i].empty()) {
+            ++refused;
+            continue;
+        }
+        ++filled;
+        triangles += fillings[i].size();
+        for (const auto& [a, b, c] : fillings[i]) {
+            const Index like = hole[a] / 3;  // the triangle beside its first corner
+            const auto corner = [&](Index p) { return work.corner_like[hole[p] / 3][hole[p] % 3]; };
+            work.add_triangle({origin(soup, hole[a]), origin(soup, hole[c]), origin(soup, hole[b])}, no_index, work.face_like[like],
+                              {corner(a), corner(c), corner(b)}, work.flipped[like] != 0);
+        }
+    }
+    return {{"holes", limits.only_touched ? chosen.size() + too_long + too_wide : holes.size()},
+            {"filled", filled},
+            {"triangles added", triangles},
+            {"left: too many edges", too_long},
+            {"left: too wide", too_wide},
+            {"left: no filling", refused}};
+}
+
+}  // namespace ostraka::detail

@@ -1,0 +1,355 @@
+// Orientation, and the taking apart of what is not a manifold.
+#include "repair_parts.h"
+#include "soup_geometry.h"
+
+#include <cmath>
+#include <numeric>
+
+namespace ostraka::detail {
+
+Counts orient_patches(Worksoup& work) {
+    auto& soup = work.soup;
+    const SoupEdges edges = group_edges(soup);
+    // Only edges of exactly two triangles tell how these must lie to one another.
+    std::vector<Index> other(3 * soup.triangles.size(), no_index);
+    for (std::size_t e = 0; e < edges.count(); ++e) {
+        if (edges.valence(e) != 2) continue;
+        const Index* h = edges.first(e);
+        other[h[0]] = h[1];
+        other[h[1]] = h[0];
+    }
+    constexpr std::uint8_t unknown = 2;
+    std::vector<std::uint8_t> turned(soup.triangles.size(), unknown);
+    std::vector<Index> patch;
+    std::size_t flipped = 0, conflicts = 0;
+    for (Index seed = 0; seed < work.triangle_count(); ++seed) {
+        if (turned[seed] != unknown) continue;
+        patch.assign(1, seed);
+        turned[seed] = 0;
+        std::size_t turned_count = 0;
+        for (std::size_t i = 0; i < patch.size(); ++i) {  // breadth first: conflicts meet far from the seed
+            const Index t = patch[i];
+            for (Index h = 3 * t; h < 3 * t + 3; ++h) {
+                if (other[h] == no_index) continue;
+                const Index neighbour = other[h] / 3;
+                const std::uint8_t needed = turned[t] ^ (origin(soup, h) == origin(soup, other[h]) ? 1 : 0);
+                if (turned[neighbour] == unknown) {
+                    turned[neighbour] = needed;
+                    turned_count += needed;
+                    patch.push_back(neighbour);
+                } else if (turned[neighbour] != needed && h < other[h]) {
+                    ++conflicts;
+                }
+            }
+        }
+        // The majority's sense stays.
+        const std::uint8_t minority = 2 * turned_count <= patch.size() ? 1 : 0;
+        for (const Index t : patch) turned[t] = turned[t] == minority ? 1 : 0;
+    }
+    for (Index t = 0; t < work.triangle_count(); ++t)
+        if (turned[t] == 1) work.flip(t), ++flipped;
+    return {{"flipped triangles", flipped}, {"edges cut because the surface has one side only", conflicts}};
+}
+
+namespace {
+
+/// A triangle soup whose joints are written down rather than read off the indices.
+struct Joints {
+    Worksoup& work;
+    std::vector<Index> opposite;
+
+    void join(Index h, Index o) {
+        opposite[h] = o;
+        if (o != no_index) opposite[o] = h;
+    }
+
+    /// Puts vertex m at the start of halfedge h = a -> b of triangle (a, b, c), which becomes (m, b, c), and adds (a, m, c).
+    /// Returns the added triangle; its halfedges are a -> m, m -> c, c -> a.
+    Index halve_triangle(Index h, Index m) {
+        auto& soup = work.soup;
+        const Index t = h / 3, p = previous_halfedge(h), a = origin(soup, h), c = apex(soup, h);
+        const auto like = work.corner_like[t];
+        const auto added = static_cast<Index>(soup.triangles.size());
+        work.add_triangle({a, m, c}, work.face_source[t], work.face_like[t], {like[h % 3], like[h % 3], like[p % 3]}, work.flipped[t] != 0);
+        soup.triangles[t][h % 3] = m;
+        opposite.resize(opposite.size() + 3, no_index);
+        join(3 * added + 2, opposite[p]);
+        join(3 * added + 1, p);
+        return added;
+    }
+
+    void split_edge(Index h) {
+        auto& soup = work.soup;
+        const Index a = origin(soup, h), b = target(soup, h), o = opposite[h];
+        std::array<double, 3> middle;
+        for (std::size_t k = 0; k < 3; ++k) middle[k] = soup.points[a][k] / 2 + soup.points[b][k] / 2;
+        const Index m = work.add_vertex(middle, no_index, work.vertex_like[a], (work.touched[a] & work.touched[b]) != 0);
+        const Index near_a = halve_triangle(h, m);
+        opposite[h] = no_index;
+        opposite[3 * near_a] = no_index;
+        if (o == no_index) return;
+        const Index near_b = halve_triangle(o, m);
+        join(3 * near_a, o);  // a -> m and m -> a
+        join(h, 3 * near_b);  // m -> b and b -> m
+    }
+};
+
+/// Joins the triangles around one edge two by two so that no two pairs cross: sorted by angle, each triangle that has the
+/// solid on its far side (in the sense of growing angles) is joined to the next that has it on its near side.
+std::size_t pair_around(const TriangleSoup& soup, const Index* halfedges, Index valence, std::vector<Index>& opposite) {
+    const Index low = std::min(origin(soup, halfedges[0]), target(soup, halfedges[0]));
+    const Index high = std::max(origin(soup, halfedges[0]), target(soup, halfedges[0]));
+    const Point start = point(soup, low);
+    Vector axis = point(soup, high) - start;
+    axis = axis / std::sqrt(std::max(axis.squared_length(), 1e-300));
+    Vector zero(0, 0, 0), side(0, 0, 0);
+    struct Leaf {
+        double angle;
+        bool opens;  ///< the solid lies at greater angles
+        Index halfedge;
+    };
+    std::vector<Leaf> leaves;
+    for (Index i = 0; i < valence; ++i) {
+        Vector out = point(soup, apex(soup, halfedges[i])) - start;
+        out = out - (out * axis) * axis;
+        const double length = std::sqrt(out.squared_length());
+        if (length > 0) out = out / length;
+        if (i == 0) zero = out, side = CGAL::cross_product(axis, out);
+        double angle = std::atan2(out * side, out * zero);
+        if (i > 0 && apex(soup, halfedges[i]) == apex(soup, halfedges[0])) angle = 0;
+        if (angle < 0) angle += 2 * CGAL_PI;
+        leaves.push_back({angle, origin(soup, halfedges[i]) == high, halfedges[i]});
+    }
+    // At one angle (a wall between two solids) the solid that ends comes before the one that begins.
+    std::sort(leaves.begin(), leaves.end(), [](const Leaf& a, const Leaf& b) {
+        return a.angle != b.angle ? a.angle < b.angle : a.opens != b.opens ? b.opens : a.halfedge < b.halfedge;
+    });
+    // Matched like brackets, twice around because the circle has no beginning.
+    std::vector<Index> waiting;
+    std::size_t joined = 0;
+    for (int round = 0; round < 2; ++round)
+        for (const Leaf& leaf : leaves) {
+            if (opposite[leaf.halfedge] != no_index) continue;
+            if (leaf.opens) {
+                if (round == 0) waiting.push_back(leaf.halfedge);
+            } else if (!waiting.empty()) {
+                opposite[leaf.halfedge] = waiting.back();
+                opposite[waiting.back()] = leaf.halfedge;
+                waiting.pop_back();
+                ++joined;
+            }
+        }
+    return joined;
+}
+
+/// One vertex for each fan; the first fan keeps the vertex, the others get copies.
+std::size_t separate_fans(Joints& joints) {
+    Worksoup& work = joints.work;
+    auto& soup = work.soup;
+    const auto corners = static_cast<Index>(3 * soup.triangles.size());
+    DisjointSets fans(corners);
+    for (Index h = 0; h < corners; ++h) {
+        const Index o = joints.opposite[h];
+        if (o == no_index || o < h) continue;
+        fans.unite(h, next_halfedge(o));
+        fans.unite(next_halfedge(h), o);
+    }
+    std::vector<std::uint8_t> taken(soup.points.size(), 0);
+    std::vector<Index> vertex_of_fan(corners, no_index);
+    std::size_t copies = 0;
+    for (Index c = 0; c < corners; ++c) {
+        if (fans.find(c) != c) continue;
+        const Index v = soup.triangles[c / 3][c % 3];
+        if (taken[v] == 0) {
+            taken[v] = 1;
+            vertex_of_fan[c] = v;
+        } else {
+            vertex_of_fan[c] = work.add_vertex(soup.points[v], work.vertex_source[v], work.vertex_like[v], work.touched[v] != 0);
+            ++copies;
+        }
+    }
+    for (Index c = 0; c < corners; ++c) soup.triangles[c / 3][c % 3] = vertex_of_fan[fans.find(c)];
+    return copies;
+}
+
+/// Two edges between the same two vertices, not joined to one another: all but the first get a vertex in the middle.
+std::size_t separate_edges(Joints& joints) {
+    const SoupEdges edges = group_edges(joints.work.soup);
+    std::vector<std::uint8_t> halved(joints.work.soup.triangles.size(), 0);
+    std::size_t split = 0;
+    for (std::size_t e = 0; e < edges.count(); ++e) {
+        const Index* h = edges.first(e);
+        const Index valence = edges.valence(e);
+        if (valence < 2 || (valence == 2 && joints.opposite[h[0]] == h[1])) continue;
+        // A halved triangle no longer has the sides it was listed with: its edges wait for the next call.
+        if (std::any_of(h, h + valence, [&](Index g) { return halved[g / 3] != 0; })) continue;
+        bool first = true;
+        for (Index i = 0; i < valence; ++i) {
+            const Index o = joints.opposite[h[i]];
+            if (o != no_index && std::find(h, h + i, o) != h + i) continue;  // a joint is met from both sides
+            if (!first) {
+                halved[h[i] / 3] = 1;
+                if (o != no_index) halved[o / 3] = 1;
+                joints.split_edge(h[i]);
+                ++split;
+            }
+            first = false;
+        }
+    }
+    return split;
+}
+
+}  // namespace
+
+Counts take_apart(Worksoup& work) {
+    const SoupEdges edges = group_edges(work.soup);
+    Joints joints{work, std::vector<Index>(3 * work.soup.triangles.size(), no_index)};
+    std::size_t nonmanifold = 0, cut = 0;
+    for (std::size_t e = 0; e < edges.count(); ++e) {
+        const Index* h = edges.first(e);
+        const Index valence = edges.valence(e);
+        if (valence == 2) {
+            if (origin(work.soup, h[0]) != origin(work.soup, h[1])) joints.join(h[0], h[1]);
+            else ++cut;
+        } else if (valence > 2) {
+            ++nonmanifold;
+            const std::size_t joined = pair_around(work.soup, h, valence, joints.opposite);
+            cut += valence - 2 * joined;
+        }
+    }
+    const std::size_t copies = separate_fans(joints);
+    std::size_t split = 0;
+    while (const std::size_t more = separate_edges(joints)) split += more;
+    return {{"non-manifold edges taken apart", nonmanifold},
+            {"triangle sides left unjoined there", cut},
+            {"copies of vertices made", copies},
+            {"edges split", split}};
+}
+
+Counts turn_outwards(Worksoup& work) {
+    auto& soup = work.soup;
+    const std::vector<Index> opposite = pair_manifold(soup);
+    DisjointSets sets(soup.points.size());
+    for (const auto& t : soup.triangles) {
+        sets.unite(t[0], t[1]);
+        sets.unite(t[0], t[2]);
+    }
+    std::vector<Index> number(soup.points.size(), no_index), component(soup.triangles.size());
+    std::vector<bool> closed;
+    std::vector<std::uint8_t> as_read;
+    std::vector<double> volume;
+    std::vector<Point> apex_of;
+    for (Index t = 0; t < work.triangle_count(); ++t) {
+        const Index root = sets.find(soup.triangles[t][0]);
+        if (number[root] == no_index) {
+            number[root] = static_cast<Index>(closed.size());
+            closed.push_back(true);
+            as_read.push_back(1);
+            volume.push_back(0);
+            apex_of.push_back(point(soup, soup.triangles[t][0]));
+        }
+        const Index c = component[t] = number[root];
+        for (Index h = 3 * t; h < 3 * t + 3; ++h)
+            if (opposite[h] == no_index) closed[c] = false;
+        if (work.flipped[t] != 0) as_read[c] = 0;
+        volume[c] += sixfold_volume(soup, soup.triangles[t], apex_of[c]);
+    }
+    // The wall of a cavity rightly looks inwards: if it was read that way and lies inside another component, it stays.
+    std::vector<Index> inward, unturned;
+    for (Index c = 0; c < closed.size(); ++c) {
+        if (!closed[c] || !(volume[c] < 0)) continue;
+        inward.push_back(c);
+        if (as_read[c] != 0) unturned.push_back(c);
+    }
+    const auto enclosed = enclosed_components(soup, component, closed, unturned);
+    std::vector<std::uint8_t> turn(closed.size(), 0);
+    std::size_t turned = 0, cavities = 0;
+    for (const Index c : inward) {
+        if (enclosed[c] != 0) ++cavities;
+        else turn[c] = 1, ++turned;
+    }
+    for (Index t = 0; t < work.triangle_count(); ++t)
+        if (turn[component[t]] != 0) work.flip(t);
+    return {{"components turned outwards", turned}, {"cavities left", cavities}};
+}
+
+namespace {
+bool joined_by_edge(const TriangleSoup& soup, const std::vector<Index>& opposite, Index leaving, Index other) {
+    // Around the start of `leaving`, in both senses in case of a border.
+    for (Index h = leaving;;) {
+        if (target(soup, h) == other || origin(soup, previous_halfedge(h)) == other) return true;
+        h = opposite[previous_halfedge(h)];
+        if (h == leaving) return false;
+        if (h == no_index) break;
+    }
+    for (Index h = leaving; opposite[h] != no_index;) {
+        h = next_halfedge(opposite[h]);
+        if (target(soup, h) == other) return true;
+    }
+    return false;
+}
+}  // namespace
+
+Counts flip_degenerate(Worksoup& work) {
+    auto& soup = work.soup;
+    std::vector<Index> opposite = pair_manifold(soup);
+    std::vector<Index> queue;
+    const auto without_area = triangles_without_area(soup);
+    for (Index t = 0; t < work.triangle_count(); ++t)
+        if (without_area[t] != 0) queue.push_back(t);
+    std::vector<std::uint8_t> keep(soup.triangles.size(), 1);
+    std::size_t flipped = 0, dropped = 0;
+    const std::size_t most = 20 * queue.size();
+    const auto join = [&](Index h, Index o) {
+        opposite[h] = o;
+        if (o != no_index) opposite[o] = h;
+    };
+    for (std::size_t i = 0; i < queue.size() && i < most; ++i) {
+        const Index t = queue[i];
+        if (keep[t] == 0 || !has_no_area(soup, soup.triangles[t])) continue;
+        // The middle corner lies on the longest side, opposite to it.
+        Index h = 3 * t;
+        double longest = -1;
+        for (Index g = 3 * t; g < 3 * t + 3; ++g) {
+            const double length = CGAL::squared_distance(point(soup, origin(soup, g)), point(soup, target(soup, g)));
+            if (length > longest) longest = length, h = g;
+        }
+        const Index o = opposite[h];
+        if (o == no_index) {  // on the border nothing is lost with it
+            keep[t] = 0;
+            ++dropped;
+            for (Index g = 3 * t; g < 3 * t + 3; ++g) {
+                if (opposite[g] != no_index) opposite[opposite[g]] = no_index;
+                opposite[g] = no_index;
+            }
+            continue;
+        }
+        // (a, b, m) and (b, a, c) become (m, a, c) and (m, c, b).
+        const Index other = o / 3, a = origin(soup, h), b = target(soup, h), m = apex(soup, h), c = apex(soup, o);
+        if (m == c || joined_by_edge(soup, opposite, previous_halfedge(h), c)) continue;
+        const Index b_to_m = opposite[next_halfedge(h)], m_to_a = opposite[previous_halfedge(h)];
+        const Index a_to_c = opposite[next_halfedge(o)], c_to_b = opposite[previous_halfedge(o)];
+        const auto like_t = work.corner_like[t], like_o = work.corner_like[other];
+        const Index like_m = like_t[previous_halfedge(h) % 3], like_a = like_o[next_halfedge(o) % 3], like_b = like_o[o % 3],
+                    like_c = like_o[previous_halfedge(o) % 3];
+        soup.triangles[t] = {m, a, c};
+        soup.triangles[other] = {m, c, b};
+        work.corner_like[t] = {like_m, like_a, like_c};
+        work.corner_like[other] = {like_m, like_c, like_b};
+        work.face_source[t] = work.face_source[other];  // both are parts of the triangle that had an area
+        work.face_like[t] = work.face_like[other];
+        work.flipped[t] = work.flipped[other];
+        join(3 * t, m_to_a);
+        join(3 * t + 1, a_to_c);
+        join(3 * t + 2, 3 * other);
+        join(3 * other + 1, c_to_b);
+        join(3 * other + 2, b_to_m);
+        ++flipped;
+        queue.push_back(t);
+        queue.push_back(other);
+    }
+    work.keep_triangles(keep);
+    return {{"edges flipped", flipped}, {"border triangles dropped", dropped}};
+}
+
+}  // namespace ostraka::detail

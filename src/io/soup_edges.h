@@ -1,0 +1,64 @@
+// Edges of a triangle soup, found without promising anything of its topology. Private to the module.
+#pragma once
+
+#include "ostraka/core/mesh.h"
+
+#include <vector>
+
+namespace ostraka::detail {
+
+inline Index next_halfedge(Index h) { return h % 3 == 2 ? h - 2 : h + 1; }
+inline Index previous_halfedge(Index h) { return h % 3 == 0 ? h + 2 : h - 1; }
+
+/// Undirected edges, each with the halfedges that run along it. Halfedge 3 t + k runs from corner k to corner k + 1 of
+/// triangle t. Triangles that name a vertex twice are left out.
+struct SoupEdges {
+    std::vector<Index> halfedges;  ///< grouped by edge; inside a group by triangle
+    std::vector<Index> begin;      ///< edge e has halfedges [begin[e], begin[e + 1])
+    [[nodiscard]] std::size_t count() const { return begin.size() - 1; }
+    [[nodiscard]] Index valence(std::size_t edge) const { return begin[edge + 1] - begin[edge]; }
+    [[nodiscard]] const Index* first(std::size_t edge) const { return halfedges.data() + begin[edge]; }
+};
+
+inline Index origin(const TriangleSoup& soup, Index h) { return soup.triangles[h / 3][h % 3]; }
+inline Index target(const TriangleSoup& soup, Index h) { return soup.triangles[h / 3][(h + 1) % 3]; }
+inline Index apex(const TriangleSoup& soup, Index h) { return soup.triangles[h / 3][(h + 2) % 3]; }
+inline bool repeats_corner(const std::array<Index, 3>& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
+
+/// Linear but for the sorting of about six halfedges a vertex.
+SoupEdges group_edges(const TriangleSoup& soup);
+
+/// For each point the lowest index of a point at the same place (negative zero is zero). Expected linear time.
+std::vector<Index> same_place(const std::vector<std::array<double, 3>>& points);
+
+/// Throws Error (input) if a triangle names a vertex that does not exist, a coordinate is not finite or beyond 1e100, or
+/// there are more elements than indices.
+void check_soup(const TriangleSoup& soup);
+
+/// Disjoint sets; the root is always the smallest member, so that results do not depend on the order of unions.
+class DisjointSets {
+public:
+    explicit DisjointSets(std::size_t count);
+    Index find(Index i) {
+        while (parent_[i] != i) {
+            parent_[i] = parent_[parent_[i]];
+            i = parent_[i];
+        }
+        return i;
+    }
+    void unite(Index a, Index b) {
+        a = find(a);
+        b = find(b);
+        if (a < b) parent_[b] = a;
+        else parent_[a] = b;
+    }
+
+private:
+    std::vector<Index> parent_;
+};
+
+/// Sets of corners (3 t + k) that lie in one fan of triangles around their vertex: corners of triangles that meet at an
+/// edge, whatever its valence.
+DisjointSets fans_of_corners(const TriangleSoup& soup, const SoupEdges& edges);
+
+}  // namespace ostraka::detail
