@@ -1,0 +1,402 @@
+#include "ostraka/core/error.h"
+#include "ostraka/io/repair.h"
+#include "soups.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <set>
+
+using namespace ostraka;
+using namespace ostraka::soups;
+
+namespace {
+
+Place place(const Mesh& mesh, Index v) {
+    const Point& p = mesh.point(Vertex(v));
+    return {p.x(), p.y(), p.z()};
+}
+
+/// Laws of every repair: maps in range, there and back, and elements at the places of the old ones.
+void check_maps(const TriangleSoup& old, const RepairResult& r) {
+    ASSERT_EQ(r.vertex_map.size(), old.points.size());
+    ASSERT_EQ(r.face_map.size(), old.triangles.size());
+    ASSERT_EQ(r.vertex_source.size(), r.mesh.number_of_vertices());
+    ASSERT_EQ(r.face_source.size(), r.mesh.number_of_faces());
+    for (Index v = 0; v < r.vertex_source.size(); ++v)
+        if (r.vertex_source[v] != no_index) {
+            EXPECT_EQ(place(r.mesh, v), old.points.at(r.vertex_source[v]));
+        }
+    for (Index f = 0; f < r.face_source.size(); ++f) {
+        if (r.face_source[f] == no_index) continue;
+        std::multiset<Place> was, is;
+        for (const Index v : old.triangles.at(r.face_source[f])) was.insert(old.points[v]);
+        for (const Vertex v : corners(r.mesh, Face(f))) is.insert(place(r.mesh, static_cast<Index>(v)));
+        EXPECT_EQ(was, is) << "face " << f;
+        EXPECT_NE(r.face_map[r.face_source[f]], no_index);
+    }
+    for (Index v = 0; v < old.points.size(); ++v)
+        if (r.vertex_map[v] != no_index) {
+            ASSERT_LT(r.vertex_map[v], r.mesh.number_of_vertices());
+            EXPECT_EQ(place(r.mesh, r.vertex_map[v]), old.points[v]);
+        }
+    for (const Index f : r.face_map)
+        if (f != no_index) {
+            ASSERT_LT(f, r.mesh.number_of_faces());
+        }
+}
+
+std::size_t counted(const RepairResult& r, const std::string& step, const std::string& name) {
+    for (const auto& s : r.steps)
+        if (s.name == step)
+            for (const auto& [key, value] : s.counts)
+                if (key == name) return value;
+    ADD_FAILURE() << "no " << step << " / " << name;
+    return 0;
+}
+
+RepairOptions no_filling() {
+    RepairOptions options;
+    options.fill_holes = 0;
+    return options;
+}
+
+}  // namespace
+
+TEST(Repair, SoundMeshComesOutUnchanged) {
+    for (const auto& s : {cube(), sphere(), torus(), both(cube(), cube({1, 1, 1}))}) {
+        const auto r = repair(s);
+        EXPECT_TRUE(r.after.defects().empty());
+        const auto out = to_soup(r.mesh);
+        EXPECT_EQ(out.points, s.points);
+        EXPECT_EQ(out.triangles, s.triangles);
+        check_maps(s, r);
+    }
+}
+
+TEST(Repair, FlippedTrianglesAreTurnedBackAtAnyScaleAndPlace) {
+    for (const double scale : {1e-12, 1.0, 1e12})
+        for (const double far : {0.0, 1e5}) {
+            auto s = moved(sphere(), scale, {far * scale, far * scale, 0});
+            std::mt19937 random(3);
+            for (std::size_t t = 0; t < s.triangles.size(); ++t)
+                if (random() % 10 < 3) flip(s, t);
+            const auto r = repair(s);
+            EXPECT_TRUE(r.after.defects().empty()) << scale << " " << far << " " << r.after.defects().front();
+            EXPECT_NEAR(r.after.volume / (scale * scale * scale), 4.0 / 3 * std::numbers::pi, 0.3);
+            check_maps(s, r);
+        }
+}
+
+TEST(Repair, InsideOutIsTurnedAndCavitiesStay) {
+    auto inner = cube({0.25, 0.25, 0.25}, 0.5);
+    for (std::size_t t = 0; t < 12; ++t) flip(inner, t);
+    EXPECT_DOUBLE_EQ(repair(inner).after.volume, 0.125);
+    const auto hollow = repair(both(cube(), inner));
+    EXPECT_DOUBLE_EQ(hollow.after.volume, 0.875);
+    EXPECT_TRUE(hollow.after.defects().empty());
+}
+
+TEST(Repair, TriangleSoupIsJoined) {
+    TriangleSoup loose;
+    for (const auto& t : sphere().triangles)
+        for (const Index v : t) {
+            if (loose.points.size() % 3 == 0) {
+                const auto n = static_cast<Index>(loose.points.size());
+                loose.triangles.push_back({n, n + 1, n + 2});
+            }
+            loose.points.push_back(sphere().points[v]);
+        }
+    const auto r = repair(loose);
+    EXPECT_TRUE(r.after.defects().empty());
+    EXPECT_EQ(r.mesh.number_of_vertices(), sphere().points.size());
+    check_maps(loose, r);
+    // The same with noise, joined within a distance.
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> noise(-1e-6, 1e-6);
+    for (auto& p : loose.points)
+        for (auto& x : p) x += noise(random);
+    EXPECT_FALSE(repair(loose, {}, no_filling()).after.closed());
+    RepairOptions near;
+    near.merge_distance = 1e-5;
+    const auto joined = repair(loose, {}, near);
+    EXPECT_TRUE(joined.after.defects().empty()) << joined.after.defects().front();
+    EXPECT_EQ(joined.mesh.number_of_vertices(), sphere().points.size());
+}
+
+TEST(Repair, CubesThatShareAnEdgeAVertexOrAWallComeApart) {
+    for (const auto& s : {welded(both(cube(), cube({1, 1, 0}))), welded(both(cube(), cube({1, 1, 1}))), welded(both(cube(), cube({1, 0, 0})))}) {
+        const auto r = repair(s);
+        EXPECT_TRUE(r.after.manifold() && r.after.closed() && r.after.oriented());
+        EXPECT_EQ(r.after.components.size(), 2u);
+        EXPECT_DOUBLE_EQ(r.after.volume, 2);
+        check_maps(s, r);
+    }
+}
+
+TEST(Repair, SolidThatTouchesItselfAlongAnEdgeStaysManifold) {
+    // A ring of eight cubes-in-a-square with one corner pushed in would share an edge with itself; two cubes at an edge that
+    // are joined by a third block over both do so directly.
+    auto s = welded(both(both(cube(), cube({1, 1, 0})), both(cube({0, 0, 1}), both(cube({1, 0, 1}), cube({1, 1, 1})))));
+    // Inner walls (a triangle and its reverse) are left out so that one solid remains.
+    std::map<std::set<Index>, int> count;
+    for (const auto& t : s.triangles) ++count[{t[0], t[1], t[2]}];
+    std::erase_if(s.triangles, [&](const auto& t) { return count[{t[0], t[1], t[2]}] > 1; });
+    const auto before = diagnose(s);
+    EXPECT_GT(before.nonmanifold_edges, 0u);
+    const auto r = repair(s);
+    EXPECT_TRUE(r.after.manifold() && r.after.closed() && r.after.oriented());
+    EXPECT_NEAR(r.after.volume, before.volume, 1e-12);
+    EXPECT_NEAR(r.after.area, before.area, 1e-12);
+}
+
+TEST(Repair, DuplicatesAreDroppedAndMapToTheOneKept) {
+    auto s = cube();
+    s.triangles.push_back(s.triangles[3]);
+    s.triangles.push_back({s.triangles[4][1], s.triangles[4][2], s.triangles[4][0]});
+    const auto r = repair(s);
+    EXPECT_TRUE(r.after.defects().empty());
+    EXPECT_EQ(counted(r, "drop triangles", "duplicate triangles"), 2u);
+    EXPECT_EQ(r.face_map[12], r.face_map[3]);
+    EXPECT_EQ(r.face_map[13], r.face_map[4]);
+    check_maps(s, r);
+}
+
+TEST(Repair, SheetWrittenOnceForEachSideBecomesOneSheet) {
+    TriangleSoup s{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}, {0, 2, 1}, {0, 3, 2}}};
+    const auto r = repair(s, {}, no_filling());
+    EXPECT_EQ(r.mesh.number_of_faces(), 2u);
+    EXPECT_TRUE(r.after.manifold() && r.after.oriented());
+    EXPECT_EQ(r.after.border_edges, 4u);
+    EXPECT_EQ(r.after.self_intersections, 0u);
+}
+
+TEST(Repair, MoebiusStripIsCutAndItIsSaid) {
+    const auto s = moebius();
+    const auto r = repair(s, {}, no_filling());
+    EXPECT_TRUE(r.after.manifold() && r.after.oriented());
+    EXPECT_FALSE(r.after.closed());
+    EXPECT_EQ(r.mesh.number_of_faces(), s.triangles.size());
+    ASSERT_EQ(r.notes.size(), 1u);
+    EXPECT_NE(r.notes[0].find("one side"), std::string::npos);
+    check_maps(s, r);
+}
+
+TEST(Repair, SmallHolesAreFilledLargeOnesNot) {
+    auto s = sphere(40, 80);
+    TriangleSoup holed{s.points, {}};
+    for (std::size_t t = 0; t < s.triangles.size(); ++t) {
+        const auto& p = s.points[s.triangles[t][0]];
+        if (p[2] < 0.97 && p[2] > -0.5) holed.triangles.push_back(s.triangles[t]);
+    }
+    const auto r = repair(holed);
+    EXPECT_EQ(counted(r, "fill holes", "filled"), 1u);
+    EXPECT_EQ(counted(r, "fill holes", "left: too wide"), 1u);
+    EXPECT_EQ(r.after.border_loops.size(), 1u);
+    EXPECT_EQ(r.after.self_intersections, 0u);
+    check_maps(holed, r);
+    RepairOptions all;
+    all.fill_holes_size = 1;
+    const auto closed = repair(holed, {}, all);
+    EXPECT_TRUE(closed.after.defects().empty()) << closed.after.defects().front();
+    EXPECT_LT(closed.after.volume, 4.0 / 3 * std::numbers::pi);
+    EXPECT_GT(closed.after.volume, 3);
+    RepairOptions short_ones;
+    short_ones.fill_holes = 10;
+    EXPECT_EQ(counted(repair(holed, {}, short_ones), "fill holes", "left: too many edges"), 2u);
+}
+
+TEST(Repair, FlatHoleIsFilledFlat) {
+    auto s = cube();
+    s.triangles.erase(s.triangles.begin(), s.triangles.begin() + 2);
+    RepairOptions all;
+    all.fill_holes_size = 1;
+    const auto r = repair(s, {}, all);
+    EXPECT_TRUE(r.after.defects().empty());
+    EXPECT_DOUBLE_EQ(r.after.volume, 1);
+}
+
+TEST(Repair, LongBorderDoesNotHang) {
+    TriangleSoup s;  // a long thin collar: two borders of 20000 edges
+    const Index n = 20000;
+    for (Index i = 0; i < n; ++i) {
+        const double a = 2 * std::numbers::pi * i / n;
+        s.points.push_back({std::cos(a), std::sin(a), 0});
+        s.points.push_back({std::cos(a), std::sin(a), 0.001});
+        const Index j = (i + 1) % n;
+        s.triangles.push_back({2 * i, 2 * j, 2 * i + 1});
+        s.triangles.push_back({2 * j, 2 * j + 1, 2 * i + 1});
+    }
+    RepairOptions all;
+    all.fill_holes = 100000;
+    all.fill_holes_size = 1;
+    const auto r = repair(s, {}, all);
+    EXPECT_TRUE(r.after.closed() && r.after.manifold());
+    EXPECT_NEAR(r.after.volume, 0.001 * std::numbers::pi, 1e-6);
+}
+
+TEST(Repair, TrianglesWithoutAreaAreFlippedAway) {
+    auto s = cube();
+    // A vertex in the middle of edge 0-1 on one side only, the other side keeps a triangle without area.
+    s.points.push_back({0.5, 0, 0});
+    s.triangles[0] = {0, 2, 8};            // was 0 2 1
+    s.triangles.push_back({8, 2, 1});
+    s.triangles.push_back({0, 8, 1});      // without area, between them and 0 1 4
+    const auto before = diagnose(s);
+    EXPECT_EQ(before.degenerate_triangles, 1u);
+    EXPECT_TRUE(before.closed() && before.manifold());
+    const auto r = repair(s);
+    EXPECT_TRUE(r.after.defects().empty()) << r.after.defects().front();
+    EXPECT_DOUBLE_EQ(r.after.volume, 1);
+}
+
+TEST(Repair, ComponentsStayUnlessToldOtherwise) {
+    const auto s = both(both(cube(), cube({3, 0, 0}, 0.1)), sphere(12, 24, 2, {8, 0, 0}));
+    EXPECT_EQ(repair(s).after.components.size(), 3u);
+    RepairOptions largest;
+    largest.keep_largest = true;
+    const auto r = repair(s, {}, largest);
+    EXPECT_EQ(r.after.components.size(), 1u);
+    EXPECT_GT(r.after.volume, 20);
+    EXPECT_EQ(r.face_map[0], no_index);
+    EXPECT_EQ(r.vertex_map[0], no_index);
+    check_maps(s, r);
+    RepairOptions share;
+    share.min_component_share = 0.01;
+    EXPECT_EQ(repair(s, {}, share).after.components.size(), 2u);
+}
+
+TEST(Repair, IsolatedVerticesAreDroppedUnlessToldOtherwise) {
+    auto s = cube();
+    s.points.insert(s.points.begin(), {5, 5, 5});
+    for (auto& t : s.triangles)
+        for (auto& v : t) ++v;
+    const auto r = repair(s);
+    EXPECT_EQ(r.mesh.number_of_vertices(), 8u);
+    EXPECT_EQ(r.vertex_map[0], no_index);
+    check_maps(s, r);
+    RepairOptions keep;
+    keep.keep_isolated = true;
+    EXPECT_EQ(repair(s, {}, keep).mesh.number_of_vertices(), 9u);
+}
+
+TEST(Repair, RefusesWhatIsNoSurface) {
+    const auto refusal = [](const TriangleSoup& s) {
+        try {
+            repair(s);
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    EXPECT_NE(refusal({}).find("empty"), std::string::npos);
+    EXPECT_NE(refusal({{{0, 0, 0}, {1, 2, 3}}, {}}).find("no faces"), std::string::npos);
+    EXPECT_NE(refusal({{{0, 0, 0}, {1, 1, 1}, {2, 2, 2}}, {{0, 1, 2}}}).find("no face with an area"), std::string::npos);
+    EXPECT_NE(refusal({{{0, 0, 0}, {1, 1, 1}, {2, 2, NAN}}, {{0, 1, 2}}}).find("vertex 2"), std::string::npos);
+    RepairOptions bad;
+    bad.merge_distance = -1;
+    EXPECT_THROW(repair(cube(), {}, bad), Error);
+}
+
+TEST(Repair, SingleTriangleStaysAnOpenTriangle) {
+    RepairOptions all;
+    all.fill_holes_size = 1;
+    const auto r = repair({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}, {}, all);
+    EXPECT_EQ(r.mesh.number_of_faces(), 1u);
+    EXPECT_EQ(r.after.border_edges, 3u);
+}
+
+TEST(Repair, SelfIntersectionsAreCutOut) {
+    auto s = sphere(30, 60);
+    for (const std::size_t v : {400ul, 900ul, 1200ul})
+        for (auto& x : s.points[v]) x *= -0.2;  // spikes through the other side of their ring
+    for (auto& x : s.points[700]) x *= 0.3;
+    s.points[700][0] += 0.9;
+    const auto before = diagnose(s);
+    RepairOptions options;
+    options.remove_self_intersections = true;
+    const auto r = repair(s, {}, options);
+    EXPECT_EQ(r.after.self_intersections, 0u) << "of " << before.self_intersections;
+    EXPECT_TRUE(r.after.defects().empty());
+    check_maps(s, r);
+}
+
+TEST(Repair, WrapEnclosesTheSoupAndMapsByDistance) {
+    auto s = both(sphere(16, 32), sphere(16, 32, 0.8, {0.9, 0, 0}));
+    MeshExtras extras;
+    extras.face_labels.assign(s.triangles.size(), 1);
+    std::fill(extras.face_labels.begin() + static_cast<std::ptrdiff_t>(s.triangles.size() / 2), extras.face_labels.end(), 2);
+    RepairOptions options;
+    options.wrap = true;
+    options.wrap_alpha = 0.05;
+    options.wrap_offset = 0.005;
+    const auto r = repair(s, extras, options);
+    EXPECT_TRUE(r.after.defects().empty());
+    EXPECT_TRUE(r.maps_by_distance);
+    for (const Index f : r.face_map) EXPECT_LT(f, r.mesh.number_of_faces());
+    for (const Face f : r.mesh.faces()) {
+        const double x = centroid(r.mesh, f).x();
+        if (x < 0.2) {
+            EXPECT_EQ(r.extras.face_labels[f], 1);
+        }
+        if (x > 1.2) {
+            EXPECT_EQ(r.extras.face_labels[f], 2);
+        }
+    }
+}
+
+TEST(Repair, ColoursLabelsAndTextureFollow) {
+    auto s = welded(both(cube(), cube({1, 1, 1})));
+    flip(s, 4);
+    s.triangles.push_back(s.triangles[0]);
+    s.points.insert(s.points.begin(), {7, 7, 7});
+    for (auto& t : s.triangles)
+        for (auto& v : t) ++v;
+    MeshExtras extras;
+    for (std::size_t v = 0; v < s.points.size(); ++v) {
+        extras.vertex_labels.push_back(static_cast<std::int32_t>(100 + v));
+        extras.vertex_colours.push_back({static_cast<std::uint8_t>(v), 0, 0, 255});
+    }
+    for (std::size_t t = 0; t < s.triangles.size(); ++t) {
+        extras.face_labels.push_back(static_cast<std::int32_t>(t));
+        for (const Index v : s.triangles[t]) extras.corner_texture.push_back({static_cast<float>(v), static_cast<float>(t)});
+    }
+    const auto r = repair(s, extras);
+    ASSERT_TRUE(r.after.defects().empty());
+    ASSERT_EQ(r.extras.face_labels.size(), r.mesh.number_of_faces());
+    for (Index v = 0; v < r.mesh.number_of_vertices(); ++v) {
+        EXPECT_EQ(r.extras.vertex_labels[v], static_cast<std::int32_t>(100 + r.vertex_source[v]));
+        EXPECT_EQ(r.extras.vertex_colours[v][0], r.vertex_source[v]);
+    }
+    for (Index f = 0; f < r.mesh.number_of_faces(); ++f) {
+        EXPECT_EQ(r.extras.face_labels[f], static_cast<std::int32_t>(r.face_source[f]));
+        const auto at = corners(r.mesh, Face(f));
+        for (std::size_t k = 0; k < 3; ++k)  // texture stays with its corner even where the triangle was turned over
+            EXPECT_EQ(static_cast<Index>(r.extras.corner_texture[3 * f + k][0]), r.vertex_source[at[k]]);
+    }
+    check_maps(s, r);
+}
+
+// The law on random trouble: whatever comes in, an oriented manifold comes out, and the maps are right.
+TEST(Repair, RandomSoupsBecomeOrientedManifolds) {
+    std::mt19937 random(11);
+    for (int trial = 0; trial < 300; ++trial) {
+        TriangleSoup s;
+        const Index n = 4 + random() % 12;
+        for (Index v = 0; v < n; ++v) s.points.push_back({double(random() % 4), double(random() % 4), double(random() % 4)});
+        const std::size_t triangles = 1 + random() % 40;
+        for (std::size_t t = 0; t < triangles; ++t)
+            s.triangles.push_back({static_cast<Index>(random() % n), static_cast<Index>(random() % n), static_cast<Index>(random() % n)});
+        RepairOptions options;
+        options.fill_holes_size = trial % 2 == 0 ? 1 : 0.3;
+        options.remove_self_intersections = trial % 3 == 0;
+        try {
+            const auto r = repair(s, {}, options);
+            EXPECT_TRUE(r.mesh.is_valid(false));
+            EXPECT_TRUE(r.after.manifold() && r.after.oriented());
+            EXPECT_EQ(r.after.inside_out_components, 0u) << trial;
+        } catch (const Error& error) {
+            EXPECT_NE(std::string(error.what()).find("no face"), std::string::npos) << error.what();
+        }
+    }
+}
