@@ -145,16 +145,38 @@ void examine_border(const TriangleSoup& soup, const SoupEdges& edges, detail::Di
         at_fan.emplace_back(border[i].second_fan, i);
     }
     std::sort(at_fan.begin(), at_fan.end());
+    struct Step {
+        Index vertex;
+        BorderLoop leaving;  ///< the edge taken from here
+    };
+    std::vector<std::uint8_t> on_walk(border.empty() ? 0 : soup.points.size(), 0);
+    using detail::origin, detail::target, detail::point;
     for (Index start = 0; start < border.size(); ++start) {
         if (border[start].used) continue;
-        BorderLoop loop;
-        Index edge = start, fan = border[start].second_fan;
+        // A walk that comes back to a vertex (two holes touch there) has gone around one of them: that is cut off.
+        std::vector<Step> walk;
+        Index edge = start, fan = border[start].second_fan, at = target(soup, border[start].halfedge);
+        walk.push_back({origin(soup, border[start].halfedge), {}});
+        on_walk[walk.front().vertex] = 1;
         while (edge != no_index) {
             border[edge].used = true;
             const Index h = border[edge].halfedge;
-            ++loop.edges;
-            loop.length += std::sqrt(
-                CGAL::squared_distance(detail::point(soup, detail::origin(soup, h)), detail::point(soup, detail::target(soup, h))));
+            walk.back().leaving = {1, std::sqrt(CGAL::squared_distance(point(soup, origin(soup, h)), point(soup, target(soup, h))))};
+            if (on_walk[at] != 0) {
+                BorderLoop loop;
+                while (true) {
+                    const Step& step = walk.back();
+                    loop.edges += step.leaving.edges;
+                    loop.length += step.leaving.length;
+                    if (step.vertex == at) break;
+                    on_walk[step.vertex] = 0;
+                    walk.pop_back();
+                }
+                diagnosis.border_loops.push_back(loop);
+            } else {
+                walk.push_back({at, {}});
+                on_walk[at] = 1;
+            }
             edge = no_index;
             for (auto i = std::lower_bound(at_fan.begin(), at_fan.end(), std::pair<Index, Index>{fan, 0});
                  i != at_fan.end() && i->first == fan; ++i)
@@ -162,9 +184,20 @@ void examine_border(const TriangleSoup& soup, const SoupEdges& edges, detail::Di
                     edge = i->second;
                     break;
                 }
-            if (edge != no_index) fan = border[edge].first_fan == fan ? border[edge].second_fan : border[edge].first_fan;
+            if (edge == no_index) break;
+            const bool forward = border[edge].first_fan == fan;
+            fan = forward ? border[edge].second_fan : border[edge].first_fan;
+            const Index next = border[edge].halfedge;
+            at = forward ? target(soup, next) : origin(soup, next);
         }
-        diagnosis.border_loops.push_back(loop);
+        BorderLoop rest;  // of a walk that ends at a non-manifold edge
+        for (const Step& step : walk) {
+            on_walk[step.vertex] = 0;
+            if (&step == &walk.back()) break;
+            rest.edges += step.leaving.edges;
+            rest.length += step.leaving.length;
+        }
+        if (rest.edges > 0) diagnosis.border_loops.push_back(rest);
     }
     std::stable_sort(diagnosis.border_loops.begin(), diagnosis.border_loops.end(),
                      [](const BorderLoop& a, const BorderLoop& b) { return a.length > b.length; });
@@ -220,7 +253,9 @@ void find_cavities(const TriangleSoup& soup, const std::vector<Index>& component
     for (Index c = 0; c < diagnosis.components.size(); ++c) {
         const auto& part = diagnosis.components[c];
         closed.push_back(part.closed());
-        if (part.closed() && part.misoriented_edges == 0 && part.orientable && part.volume < 0) negative.push_back(c);
+        // A volume below its rounding error has no sign.
+        const bool inward = part.volume < -1e-13 * part.area * diagnosis.diagonal;
+        if (part.closed() && part.misoriented_edges == 0 && part.orientable && inward) negative.push_back(c);
     }
     const auto enclosed = detail::enclosed_components(soup, component, closed, negative);
     for (const Index c : negative) {

@@ -13,23 +13,31 @@ namespace ostraka::detail {
 namespace {
 
 /// The border of one hole: halfedges of the triangles around it in the order in which those run, that is clockwise seen
-/// from outside.
+/// from outside. The last ends at the place where the first begins, if not at the same vertex.
 using Hole = std::vector<Index>;
 
-std::vector<Hole> find_holes(const TriangleSoup& soup, const std::vector<Index>& opposite) {
+std::vector<Hole> find_holes(const TriangleSoup& soup, const std::vector<Index>& opposite, const std::vector<Index>& place) {
     std::vector<Index> leaving(soup.points.size(), no_index);  // one border halfedge leaves a border vertex
     for (Index h = 0; h < opposite.size(); ++h)
         if (opposite[h] == no_index) leaving[origin(soup, h)] = h;
-    std::vector<std::uint8_t> used(opposite.size(), 0);
+    std::vector<std::uint8_t> used(opposite.size(), 0), on_walk(soup.points.size(), 0);
     std::vector<Hole> holes;
     for (Index start = 0; start < opposite.size(); ++start) {
         if (opposite[start] != no_index || used[start] != 0) continue;
-        Hole hole;
+        // A walk that comes back to a place (holes that touch, where the vertex was taken apart) has gone around a hole.
+        Hole walk;
         for (Index h = start; used[h] == 0; h = leaving[target(soup, h)]) {
             used[h] = 1;
-            hole.push_back(h);
+            on_walk[place[origin(soup, h)]] = 1;
+            walk.push_back(h);
+            const Index at = place[target(soup, h)];
+            if (on_walk[at] == 0) continue;
+            auto first = walk.end() - 1;
+            while (place[origin(soup, *first)] != at) --first;
+            for (auto i = first; i != walk.end(); ++i) on_walk[place[origin(soup, *i)]] = 0;
+            holes.emplace_back(first, walk.end());
+            walk.erase(first, walk.end());
         }
-        holes.push_back(std::move(hole));
     }
     return holes;
 }
@@ -56,6 +64,7 @@ public:
                 if (h == no_index) break;
             }
         for (Index i = 0; i < n; ++i) {
+            edges_.insert(key(i, (i + 1) % n));
             places_.push_back(point(soup, origin(soup, hole[i])));
             outside_.push_back(unit(normal(soup, soup.triangles[hole[i] / 3])));
         }
@@ -190,7 +199,8 @@ private:
 Counts fill_holes(Worksoup& work, const HoleLimits& limits) {
     auto& soup = work.soup;
     const std::vector<Index> opposite = pair_manifold(soup);
-    const std::vector<Hole> holes = find_holes(soup, opposite);
+    const std::vector<Index> place = same_place(soup.points);
+    const std::vector<Hole> holes = find_holes(soup, opposite, place);
     DisjointSets sets(soup.points.size());
     for (const auto& t : soup.triangles) {
         sets.unite(t[0], t[1]);
@@ -230,9 +240,25 @@ Counts fill_holes(Worksoup& work, const HoleLimits& limits) {
                               {corner(a), corner(c), corner(b)}, work.flipped[like] != 0);
         }
     }
+    // Where a hole closes at two copies of a vertex, its filling joins their fans.
+    std::size_t rejoined = 0;
+    DisjointSets copies(soup.points.size());
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+        const Index first = origin(soup, chosen[i]->front()), last = target(soup, chosen[i]->back());
+        if (fillings[i].empty() || first == last) continue;
+        copies.unite(first, last);
+        ++rejoined;
+    }
+    if (rejoined > 0) {
+        for (auto& t : soup.triangles)
+            for (Index& v : t) v = copies.find(v);
+        take_apart(work);  // should two copies have been neighbours of the same vertex
+        work.drop_isolated(true);
+    }
     return {{"holes", limits.only_touched ? chosen.size() + too_long + too_wide : holes.size()},
             {"filled", filled},
             {"triangles added", triangles},
+            {"copies of vertices rejoined", rejoined},
             {"left: too many edges", too_long},
             {"left: too wide", too_wide},
             {"left: no filling", refused}};

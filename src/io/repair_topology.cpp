@@ -188,9 +188,10 @@ std::size_t separate_edges(Joints& joints) {
             const Index o = joints.opposite[h[i]];
             if (o != no_index && std::find(h, h + i, o) != h + i) continue;  // a joint is met from both sides
             if (!first) {
+                joints.split_edge(h[i]);
+                halved.resize(joints.work.soup.triangles.size(), 1);
                 halved[h[i] / 3] = 1;
                 if (o != no_index) halved[o / 3] = 1;
-                joints.split_edge(h[i]);
                 ++split;
             }
             first = false;
