@@ -1,0 +1,72 @@
+#include "ostraka/core/file.h"
+#include "ostraka/core/error.h"
+
+#include "scratch.h"
+
+using namespace ostraka;
+using ostraka::test::Scratch;
+
+TEST(AtomicFile, AppearsWhenCompleteAndLeavesNothingOtherwise) {
+    const Scratch scratch;
+    const Path earlier = scratch.file("a.txt", "earlier");
+    {
+        AtomicFile output(earlier);
+        output.write("half");
+    }
+    EXPECT_EQ(read_file(earlier), "earlier");
+    EXPECT_EQ(test::count_files(scratch.path()), 1U);
+    write_file(earlier, "later");
+    EXPECT_EQ(read_file(earlier), "later");
+    EXPECT_EQ(test::count_files(scratch.path()), 1U);
+}
+
+TEST(AtomicFile, FollowsLinksAndWritesToDevices) {
+    const Scratch scratch;
+    const Path real = scratch.file("real.txt", "1");
+    std::filesystem::create_symlink(real, scratch / "link.txt");
+    write_file(scratch / "link.txt", "2");
+    EXPECT_TRUE(std::filesystem::is_symlink(scratch / "link.txt"));
+    EXPECT_EQ(read_file(real), "2");
+    write_file("/dev/null", "3");
+    EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+    if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
+    std::filesystem::create_symlink("/dev/full", scratch / "full.txt");
+    EXPECT_THROW(write_file(scratch / "full.txt", std::string(100000, 'x')), Error);
+    EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
+}
+
+TEST(AtomicFile, RefusesFoldersAndMissingFolders) {
+    const Scratch scratch;
+    EXPECT_THROW(write_file(scratch.path(), "x"), Error);
+    EXPECT_THROW(write_file(scratch / "none" / "a.txt", "x"), Error);
+}
+
+TEST(CheckOutputs, SeesThroughLinksAndSpellings) {
+    const Scratch scratch;
+    const Path input = scratch.file("in.ply", "x");
+    std::filesystem::create_hard_link(input, scratch / "hard.ply");
+    std::filesystem::create_symlink(input, scratch / "soft.ply");
+    for (const char* name : {"in.ply", "./in.ply", "hard.ply", "soft.ply"})
+        EXPECT_THROW(check_outputs({input}, {scratch / name}), Error) << name;
+    EXPECT_THROW(check_outputs({input}, {scratch / "a.ply", scratch / "./a.ply"}), Error);
+    EXPECT_THROW(check_outputs({input}, {scratch / "none" / "a.ply"}), Error);
+    EXPECT_THROW(check_outputs({input}, {scratch.path()}), Error);
+    EXPECT_NO_THROW(check_outputs({input, {}}, {scratch / "a.ply", {}, {}}));
+}
+
+TEST(ReadFile, GivesAllBytesOrSaysWhyNot) {
+    const Scratch scratch;
+    const std::string bytes("a\0b\n", 4);
+    EXPECT_EQ(read_file(scratch.file("a", bytes)), bytes);
+    EXPECT_THROW(read_file(scratch / "missing"), Error);
+    EXPECT_THROW(read_file(scratch.path()), Error);
+}
+
+TEST(Sha256, MatchesThePublishedVectors) {
+    // FIPS 180-4 examples.
+    EXPECT_EQ(sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+    EXPECT_EQ(sha256(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+    const Scratch scratch;
+    EXPECT_EQ(sha256_of_file(scratch.file("a", "abc")), sha256("abc"));
+    EXPECT_THROW(sha256_of_file(scratch / "missing"), Error);
+}
