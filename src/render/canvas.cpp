@@ -5,6 +5,14 @@
 #include <cstring>
 #include <numbers>
 
+#if defined(__SANITIZE_ADDRESS__)
+// The font library keeps some hundred bytes of its settings for ever, which is none of our doing.
+extern "C" const char* __lsan_default_suppressions();
+extern "C" const char* __lsan_default_suppressions() { return "leak:libfontconfig\n"; }
+extern "C" const char* __lsan_default_options();
+extern "C" const char* __lsan_default_options() { return "print_suppressions=0"; }
+#endif
+
 namespace ostraka::detail {
 
 namespace {

@@ -1,3 +1,4 @@
+#include "mutate.h"
 #include "ostraka/core/error.h"
 #include "ostraka/render/colour_scale.h"
 #include "ostraka/render/picture.h"
@@ -166,6 +167,21 @@ TEST(Values, Text) {
         EXPECT_NE(error.where().find("line 2"), std::string::npos);
     }
     EXPECT_THROW((void)read_values(folder / "missing.txt"), Error);
+}
+
+TEST(Values, DamagedFilesGiveNumbersOrAnError) {
+    const test::Scratch folder;
+    const std::string good_npy = npy("<f8", "(5,)", raw<double>({1, 2, 3, 4, 5})), good_text = "# map\n1.5\n2\nnan\n-4e3\n";
+    for (std::size_t i = 0; i < 200; ++i)
+        for (const bool binary : {true, false}) {
+            const Path file =
+                folder.file(std::to_string(i) + (binary ? ".npy" : ".txt"), test::mutate(binary ? good_npy : good_text, i));
+            try {
+                EXPECT_LT(read_values(file).size(), 100U);
+            } catch (const Error& error) {
+                EXPECT_EQ(error.kind(), ErrorKind::input);
+            }
+        }
 }
 
 }  // namespace
