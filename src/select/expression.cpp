@@ -1,0 +1,194 @@
+#include "expression.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/select/selections.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace ostraka {
+
+namespace {
+
+using std::to_string;
+
+bool is_volume(const std::string& kind) { return kind == "box" || kind == "sphere" || kind == "halfspace"; }
+
+PathMetric metric_of(const JsonValue& value) {
+    const JsonValue* metric = find_member(value, "metric");
+    return path_metric(metric == nullptr ? "euclidean" : metric->GetString());
+}
+
+}  // namespace
+
+std::pair<std::string, const JsonValue*> kind_of(const JsonValue& expression) {
+    for (const auto& member : expression.GetObject()) {
+        const std::string name(member.name.GetString(), member.name.GetStringLength());
+        if (name != "frame") return {name, &member.value};
+    }
+    return {"", nullptr};
+}
+
+ExpressionEvaluator::ExpressionEvaluator(const Mesh& mesh, const std::vector<std::int32_t>& face_labels, const AnnotationSet& set,
+                                         std::string where)
+    : mesh_(mesh), face_labels_(face_labels), set_(set), where_(std::move(where)), bounds_(bounding_box(mesh)) {}
+
+void ExpressionEvaluator::fail(const std::string& at, const std::string& what, const std::string& remedy) const {
+    fail_input(where_, "at " + at + ": " + what, remedy);
+}
+
+Frame ExpressionEvaluator::frame_of(const JsonValue& object, Frame around) {
+    const JsonValue* frame = find_member(object, "frame");
+    return frame == nullptr ? around : Frame{std::string(frame->GetString()) == "box"};
+}
+
+Point ExpressionEvaluator::point(const JsonValue& list, Frame frame) const {
+    const double x = list[0].GetDouble(), y = list[1].GetDouble(), z = list[2].GetDouble();
+    if (!frame.box) return Point(x, y, z);
+    return Point(bounds_.xmin() + x * (bounds_.xmax() - bounds_.xmin()), bounds_.ymin() + y * (bounds_.ymax() - bounds_.ymin()),
+                 bounds_.zmin() + z * (bounds_.zmax() - bounds_.zmin()));
+}
+
+Index ExpressionEvaluator::vertex(const JsonValue& pick, Frame frame, const std::string& at) const {
+    if (pick.IsArray()) return nearest_vertex(mesh_, point(pick, frame));
+    if (pick.GetUint() >= mesh_.number_of_vertices())
+        fail(at, "vertex " + to_string(pick.GetUint()) + " of a mesh with " + to_string(mesh_.number_of_vertices()) + " vertices",
+             "pick by coordinates, or another vertex");
+    return pick.GetUint();
+}
+
+Index ExpressionEvaluator::face(const JsonValue& pick, Frame frame, const std::string& at) const {
+    if (pick.IsArray()) return nearest_face(mesh_, point(pick, frame));
+    if (pick.GetUint() >= mesh_.number_of_faces())
+        fail(at, "face " + to_string(pick.GetUint()) + " of a mesh with " + to_string(mesh_.number_of_faces()) + " faces",
+             "pick by coordinates, or another face");
+    return pick.GetUint();
+}
+
+std::vector<Index> ExpressionEvaluator::picks(const JsonValue& list, Frame frame, const std::string& at) const {
+    std::vector<Index> vertices;
+    for (rapidjson::SizeType i = 0; i < list.Size(); ++i) vertices.push_back(vertex(list[i], frame, at + '/' + to_string(i)));
+    return vertices;
+}
+
+std::function<bool(const Point&)> ExpressionEvaluator::volume(const std::string& kind, const JsonValue& value, Frame frame,
+                                                              const std::string& at) const {
+    if (kind == "box") {
+        const Point min = point(value["min"], frame), max = point(value["max"], frame);
+        if (min.x() > max.x() || min.y() > max.y() || min.z() > max.z()) fail(at + "/box", "min exceeds max", "exchange the two");
+        return box_volume(min, max);
+    }
+    if (kind == "sphere") {
+        const double scale = frame.box ? std::hypot(bounds_.xmax() - bounds_.xmin(), bounds_.ymax() - bounds_.ymin(),
+                                                    bounds_.zmax() - bounds_.zmin())
+                                       : 1;
+        return sphere_volume(point(value["centre"], frame), scale * value["radius"].GetDouble());
+    }
+    const JsonValue& n = value["normal"];
+    const Vector normal(n[0].GetDouble(), n[1].GetDouble(), n[2].GetDouble());
+    if (normal == CGAL::NULL_VECTOR) fail(at + "/halfspace/normal", "the normal has no length", "give a vector that is not zero");
+    return halfspace_volume(point(value["point"], frame), normal);
+}
+
+const Annotation& ExpressionEvaluator::earlier(const JsonValue& id, AnnotationType type, const std::string& at) const {
+    const Annotation* found = set_.find(id.GetInt());
+    if (found == nullptr)
+        fail(at + "/annotation", "no earlier annotation has the id " + to_string(id.GetInt()), "define it before it is used");
+    if (found->type != type)
+        fail(at + "/annotation",
+             "annotation " + to_string(found->id) + " is a " + to_string(found->type) + ", where a " + to_string(type) +
+                 " is needed",
+             "use one of that type");
+    return *found;
+}
+
+std::vector<bool> ExpressionEvaluator::faces(const JsonValue& expression, Frame around, const std::string& at) const {
+    const Frame frame = frame_of(expression, around);
+    const auto [kind, value] = kind_of(expression);
+    if (is_volume(kind)) return faces_within(mesh_, volume(kind, *value, frame, at));
+    std::vector<bool> result(mesh_.number_of_faces(), false);
+    if (kind == "all") {
+        result.assign(mesh_.number_of_faces(), true);
+    } else if (kind == "faces") {
+        for (rapidjson::SizeType i = 0; i < value->Size(); ++i)
+            result[face((*value)[i], frame, at + "/faces/" + to_string(i))] = true;
+    } else if (kind == "lasso") {
+        result = lasso(mesh_, picks((*value)["points"], frame, at + "/lasso/points"),
+                       face((*value)["seed"], frame, at + "/lasso/seed"), metric_of(*value), where_ + ", at " + at + "/lasso");
+    } else if (kind == "component") {
+        result = component_of(mesh_, face((*value)["seed"], frame, at + "/component/seed"));
+    } else if (kind == "labels") {
+        if (face_labels_.empty())
+            fail(at + "/labels", "the mesh has no face labels",
+                 "give a mesh with labels, e.g. a PLY file with a face property \"label\"");
+        std::set<std::int32_t> wanted;
+        for (const auto& label : value->GetArray()) wanted.insert(label.GetInt());
+        for (std::size_t i = 0; i < face_labels_.size(); ++i) result[i] = wanted.contains(face_labels_[i]);
+    } else if (kind == "annotation") {
+        for (const Index i : earlier(*value, AnnotationType::region, at).faces) result[i] = true;
+    } else if (kind == "invert") {
+        result = faces(*value, frame, at + "/invert");
+        result.flip();
+    } else if (kind == "union" || kind == "intersection" || kind == "difference") {
+        for (rapidjson::SizeType i = 0; i < value->Size(); ++i) {
+            const std::vector<bool> part = faces((*value)[i], frame, at + '/' + kind + '/' + to_string(i));
+            for (std::size_t f = 0; f < result.size(); ++f) {
+                if (i == 0) result[f] = part[f];
+                else if (kind == "union") result[f] = result[f] || part[f];
+                else if (kind == "intersection") result[f] = result[f] && part[f];
+                else result[f] = result[f] && !part[f];
+            }
+        }
+    } else {
+        fail(at + '/' + kind, "does not select faces, which a region is made of",
+             "use it for a line or a point, or select faces");
+    }
+    return result;
+}
+
+std::vector<Index> ExpressionEvaluator::vertices(const JsonValue& expression, Frame around, const std::string& at) const {
+    const Frame frame = frame_of(expression, around);
+    const auto [kind, value] = kind_of(expression);
+    if (is_volume(kind)) return vertices_within(mesh_, volume(kind, *value, frame, at));
+    std::vector<Index> result;
+    if (kind == "vertices") {
+        result = picks(*value, frame, at + "/vertices");
+    } else if (kind == "nearest") {
+        result = {vertex(*value, frame, at + "/nearest")};
+    } else if (kind == "annotation") {
+        result = earlier(*value, AnnotationType::point, at).points;
+    } else if (kind == "union" || kind == "intersection" || kind == "difference") {
+        for (rapidjson::SizeType i = 0; i < value->Size(); ++i) {
+            const std::vector<Index> part = vertices((*value)[i], frame, at + '/' + kind + '/' + to_string(i));
+            const std::set<Index> members(part.begin(), part.end());
+            if (i == 0 || kind == "union") result.insert(result.end(), part.begin(), part.end());
+            else std::erase_if(result, [&](Index v) { return members.contains(v) != (kind == "intersection"); });
+        }
+    } else {
+        fail(at + '/' + kind, "does not select points", "use vertices, nearest, a volume, or a set operation of these");
+    }
+    std::set<Index> seen;  // order kept, repeats dropped
+    std::erase_if(result, [&](Index v) { return !seen.insert(v).second; });
+    return result;
+}
+
+std::vector<std::vector<Index>> ExpressionEvaluator::polylines(const JsonValue& expression, Frame around,
+                                                               const std::string& at) const {
+    const Frame frame = frame_of(expression, around);
+    const auto [kind, value] = kind_of(expression);
+    if (kind == "path") {
+        const JsonValue* closed = find_member(*value, "closed");
+        return {path_through(mesh_, picks((*value)["points"], frame, at + "/path/points"), closed != nullptr && closed->GetBool(),
+                             metric_of(*value), where_ + ", at " + at + "/path")};
+    }
+    if (kind == "vertices") return {picks(*value, frame, at + "/vertices")};
+    if (kind == "annotation") return earlier(*value, AnnotationType::line, at).polylines;
+    if (kind != "union") fail(at + '/' + kind, "does not select poly-lines", "use path, vertices, or a union of these");
+    std::vector<std::vector<Index>> result;
+    for (rapidjson::SizeType i = 0; i < value->Size(); ++i)
+        for (auto& polyline : polylines((*value)[i], frame, at + "/union/" + to_string(i))) result.push_back(std::move(polyline));
+    return result;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,181 @@
+#include "ostraka/select/selections.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/geom/surface_search.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace ostraka {
+
+namespace {
+
+/// Flags the faces reached from `seed` without crossing a wall; counts them and the wall edges met.
+struct Flood {
+    std::vector<bool> reached;
+    std::size_t count = 0, walls = 0;
+};
+Flood flood(const Mesh& mesh, Index seed, const std::vector<bool>& wall) {
+    Flood result;
+    result.reached.assign(mesh.number_of_faces(), false);
+    result.reached[seed] = true;
+    std::vector<Index> front{seed};
+    while (!front.empty()) {
+        const Face face(front.back());
+        front.pop_back();
+        ++result.count;
+        for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(face))) {
+            if (!wall.empty() && wall[mesh.edge(h)]) {
+                ++result.walls;
+                continue;
+            }
+            const Face next = mesh.face(mesh.opposite(h));
+            if (next == Mesh::null_face() || result.reached[next]) continue;
+            result.reached[next] = true;
+            front.push_back(next);
+        }
+    }
+    return result;
+}
+
+void require_faces(const Mesh& mesh) {
+    if (mesh.number_of_faces() == 0) fail_input("mesh", "has no faces to select from", "give another mesh");
+}
+
+std::string name_of(std::size_t pick, const std::vector<Index>& picks) {
+    return "point " + std::to_string(pick) + " (vertex " + std::to_string(picks[pick]) + ")";
+}
+
+/// Successive equal picks, and a last one equal to the first of a closed path, count once.
+std::vector<Index> distinct(const std::vector<Index>& picks, bool closed) {
+    std::vector<Index> result;
+    for (const Index pick : picks)
+        if (result.empty() || result.back() != pick) result.push_back(pick);
+    while (closed && result.size() > 1 && result.front() == result.back()) result.pop_back();
+    return result;
+}
+
+/// Path through distinct picks; with `avoid` a leg keeps off the vertices of earlier legs if it can.
+std::vector<Index> trace(const Mesh& mesh, const std::vector<Index>& picks, bool closed, PathMetric metric, bool avoid,
+                         const std::string& where) {
+    PathSearch search(mesh);
+    std::vector<bool> used(mesh.number_of_vertices(), false);
+    if (avoid)
+        for (const Index pick : picks) used[pick] = true;
+    std::vector<Index> path{picks.front()};
+    const std::size_t legs = closed ? picks.size() : picks.size() - 1;
+    for (std::size_t i = 0; i < legs; ++i) {
+        const std::size_t next = (i + 1) % picks.size();
+        PathSearch::Query query;
+        query.metric = metric;
+        std::vector<Index> leg;
+        if (avoid) {
+            query.blocked = [&used](Vertex v) { return used[v]; };
+            leg = search.find(Vertex(picks[i]), Vertex(picks[next]), query);
+            query.blocked = nullptr;
+        }
+        if (leg.empty()) leg = search.find(Vertex(picks[i]), Vertex(picks[next]), query);
+        if (leg.empty())
+            fail_input(where, "no path along the surface joins " + name_of(i, picks) + " and " + name_of(next, picks),
+                       "they lie on separate parts of the mesh: pick points on one part");
+        path.insert(path.end(), leg.begin() + 1, leg.end());
+        for (const Index vertex : leg) used[vertex] = true;
+    }
+    return path;
+}
+
+}  // namespace
+
+Volume box_volume(const Point& min, const Point& max) {
+    return [min, max](const Point& p) {
+        return min.x() <= p.x() && p.x() <= max.x() && min.y() <= p.y() && p.y() <= max.y() && min.z() <= p.z() &&
+               p.z() <= max.z();
+    };
+}
+
+Volume sphere_volume(const Point& centre, double radius) {
+    return [centre, radius](const Point& p) { return CGAL::squared_distance(p, centre) <= radius * radius; };
+}
+
+Volume halfspace_volume(const Point& point, const Vector& normal) {
+    return [point, normal](const Point& p) { return (p - point) * normal >= 0; };
+}
+
+std::vector<bool> faces_within(const Mesh& mesh, const Volume& volume) {
+    std::vector<bool> faces(mesh.number_of_faces(), false);
+    for (const Face face : mesh.faces()) faces[face] = volume(centroid(mesh, face));
+    return faces;
+}
+
+std::vector<Index> vertices_within(const Mesh& mesh, const Volume& volume) {
+    std::vector<Index> vertices;
+    for (const Vertex vertex : mesh.vertices())
+        if (!mesh.is_isolated(vertex) && volume(mesh.point(vertex))) vertices.push_back(vertex);
+    return vertices;
+}
+
+Index nearest_vertex(const Mesh& mesh, const Point& point) {
+    require_faces(mesh);
+    Index nearest = no_index;
+    double best = std::numeric_limits<double>::infinity();
+    for (const Vertex vertex : mesh.vertices()) {
+        if (mesh.is_isolated(vertex)) continue;
+        const double d = CGAL::squared_distance(mesh.point(vertex), point);
+        if (d < best || nearest == no_index) best = d, nearest = vertex;
+    }
+    return nearest;
+}
+
+Index nearest_face(const Mesh& mesh, const Point& point) {
+    require_faces(mesh);
+    Index nearest = no_index;
+    double best = std::numeric_limits<double>::infinity();
+    for (const Face face : mesh.faces()) {
+        const auto [a, b, c] = corners(mesh, face);
+        const auto weights = nearest_barycentric(mesh.point(a), mesh.point(b), mesh.point(c), point);
+        const double d = CGAL::squared_distance(point_at(mesh, face, weights), point);
+        if (d < best || nearest == no_index) best = d, nearest = face;
+    }
+    return nearest;
+}
+
+std::vector<bool> component_of(const Mesh& mesh, Index seed) {
+    if (seed >= mesh.number_of_faces())
+        fail_input("face " + std::to_string(seed), "the mesh has " + std::to_string(mesh.number_of_faces()) + " faces");
+    return flood(mesh, seed, {}).reached;
+}
+
+std::vector<Index> path_through(const Mesh& mesh, const std::vector<Index>& picks, bool closed, PathMetric metric,
+                                const std::string& where) {
+    const std::vector<Index> points = distinct(picks, closed);
+    if (points.size() < (closed ? 3U : 2U))
+        fail_input(where,
+                   std::string(closed ? "a closed path" : "a path") + " through " + std::to_string(points.size()) +
+                       " different vertices",
+                   closed ? "pick three points or more, farther apart" : "pick two points or more, farther apart");
+    return trace(mesh, points, closed, metric, false, where);
+}
+
+std::vector<bool> lasso(const Mesh& mesh, const std::vector<Index>& picks, Index seed, PathMetric metric,
+                        const std::string& where) {
+    if (seed >= mesh.number_of_faces())
+        fail_input(where, "the seed is face " + std::to_string(seed) + " of " + std::to_string(mesh.number_of_faces()),
+                   "pick a face of the mesh");
+    const std::vector<Index> points = distinct(picks, true);
+    if (points.size() < 3)
+        fail_input(where, "the lasso cannot be closed: it has " + std::to_string(points.size()) + " different vertices",
+                   "pick three points or more, farther apart");
+    const std::vector<Index> path = trace(mesh, points, true, metric, true, where);
+    std::vector<bool> wall(mesh.number_of_edges(), false);
+    for (std::size_t i = 0; i + 1 < path.size(); ++i)
+        wall[mesh.edge(find_halfedge(mesh, Vertex(path[i]), Vertex(path[i + 1])))] = true;
+    Flood inside = flood(mesh, seed, wall);
+    if (inside.walls == 0)
+        fail_input(where, "the seed lies on another part of the mesh than the lasso", "put the seed within the lasso");
+    if (inside.count == flood(mesh, seed, {}).count)
+        fail_input(where, "the lasso does not close off any part of the surface around the seed",
+                   "it may run through a handle or along a border: pick more points");
+    return std::move(inside.reached);
+}
+
+}  // namespace ostraka
