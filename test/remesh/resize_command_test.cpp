@@ -164,3 +164,72 @@ TEST_F(ResizeCommand, WrongUse) {
         EXPECT_EQ(read_file(scratch / "out.ply"), "earlier");
     }
 }
+
+// A region that loses all its faces becomes a line or a point, keeps its tag and says so.
+TEST_F(ResizeCommand, RegionsWithoutFacesSaySo) {
+    AnnotationSet set;
+    for (int i = 0; i < 60; ++i) {
+        Annotation one;
+        one.id = i, one.tag = "face " + std::to_string(i), one.type = AnnotationType::region, one.faces = {Index(i * 30)};
+        set.annotations.push_back(one);
+    }
+    write_annotations(scratch / "many.ant.json", set, mesh, "ball.ply", {});
+    const auto result = run("simplify " + at("ball.ply") + " " + at("few.ply") + " --vertices 40 --json --annotations " +
+                            at("many.ant.json") + " --annotations-out " + at("few.ant.json"));
+    ASSERT_EQ(result.code, 0) << result.err;
+    const Json report = parse_json(result.out, "report");
+    EXPECT_TRUE(report["result"]["outlines_broken"].GetBool());
+    const MeshFile few = read_mesh(at("few.ply"));
+    const AnnotationSet after = read_annotations(at("few.ant.json"), few.mesh);
+    ASSERT_EQ(after.annotations.size(), 60u);
+    std::size_t degenerate = 0;
+    for (const auto& entry : report["result"]["annotations"].GetArray()) {
+        const Annotation* annotation = after.find(entry["id"].GetInt());
+        ASSERT_NE(annotation, nullptr);
+        EXPECT_EQ(annotation->tag, "face " + std::to_string(annotation->id));
+        EXPECT_EQ(entry["degenerate"].GetBool(), annotation->type != AnnotationType::region);
+        if (!entry["degenerate"].GetBool()) continue;
+        ++degenerate;
+        EXPECT_FALSE(annotation->note.empty());
+    }
+    EXPECT_GT(degenerate, 0u);
+}
+
+TEST_F(ResizeCommand, ColoursAreCarried) {
+    MeshExtras extras;
+    for (const Vertex v : mesh.vertices())
+        extras.vertex_colours.push_back({std::uint8_t(100 + 50 * mesh.point(v).x()), 7, 8, 255});
+    for (const Face f : mesh.faces()) extras.face_colours.push_back({std::uint8_t(100 + 50 * centroid(mesh, f).x()), 1, 2, 255});
+    write_mesh(scratch / "coloured.ply", mesh, extras);
+    for (const std::string work : {"simplify", "refine"}) {
+        SCOPED_TRACE(work);
+        const auto result =
+            run(work + " " + at("coloured.ply") + " " + at("out.ply") + " --vertices " + (work == "refine" ? "6000" : "500"));
+        ASSERT_EQ(result.code, 0) << result.err;
+        const MeshFile out = read_mesh(at("out.ply"));
+        ASSERT_EQ(out.extras.vertex_colours.size(), out.mesh.number_of_vertices());
+        ASSERT_EQ(out.extras.face_colours.size(), out.mesh.number_of_faces());
+        for (const Vertex v : out.mesh.vertices())
+            ASSERT_NEAR(out.extras.vertex_colours[v][0], 100 + 50 * out.mesh.point(v).x(), 8);
+        for (const Face f : out.mesh.faces())
+            ASSERT_NEAR(out.extras.face_colours[f][0], 100 + 50 * centroid(out.mesh, f).x(), 12);
+    }
+}
+
+TEST(ResizeRealScan, GargoyleKeepsTopologyAndVolume) {
+    const Path folder = Path(OSTRAKA_SHARED_DATA) / "heritage-scans";
+    Path file;
+    if (std::filesystem::is_directory(folder))
+        for (const auto& entry : std::filesystem::directory_iterator(folder))
+            if (entry.path().stem().string().find("gargoyle") != std::string::npos && entry.path().extension() != ".txt")
+                file = entry.path();
+    if (file.empty()) GTEST_SKIP() << "no gargoyle in " << folder;
+    const Scratch scratch;
+    const std::string out = (scratch / "small.ply").string();
+    const auto result = run_command("mesh simplify " + file.string() + " " + out + " --vertices 4000");
+    ASSERT_EQ(result.code, 0) << result.err;
+    const Mesh before = read_mesh(file).mesh, after = read_mesh(out).mesh;
+    EXPECT_EQ(after.number_of_vertices(), 4000u);
+    EXPECT_EQ(euler_number(after), euler_number(before));
+    EXPECT_NEAR(volume(after) / volume(before), 1, 0.01);
+}

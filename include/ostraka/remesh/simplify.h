@@ -15,8 +15,8 @@ struct SimplifyOptions {
     std::string method = "qem";       ///< what a collapse costs and where its vertex goes
     std::string outlines = "follow";  ///< what happens to the marked edges
     double max_normal_change = 60;    ///< degrees a face may turn in one collapse, as long as the number can be reached so
-    double outline_weight = 0.1;      ///< weight of the distance to marked edges, relative to the distance to faces
-    double border_weight = 1;         ///< weight of the distance to border edges
+    double outline_weight = 1;        ///< weight of the distance to marked edges, relative to the distance to faces (qem only)
+    double border_weight = 1;         ///< weight of the distance to border edges (qem only)
 
     template <class Visitor>
     void describe(Visitor& visit) {
@@ -31,9 +31,10 @@ struct SimplifyOptions {
               Choices{"follow", "protect", "ignore"});
         visit("max-normal-change", max_normal_change,
               "degrees that a face may turn in one collapse (given up, up to 90, if the number cannot be reached)", Range{1, 90});
-        visit("outline-weight", outline_weight, "weight of the distance to outlines that are followed, relative to the surface's",
+        visit("outline-weight", outline_weight,
+              "qem: weight of the distance to outlines that are followed, relative to the surface's", Range{0, 1e6});
+        visit("border-weight", border_weight, "qem: weight of the distance to the border, relative to the surface's",
               Range{0, 1e6});
-        visit("border-weight", border_weight, "weight of the distance to the border, relative to the surface's", Range{0, 1e6});
     }
 };
 
