@@ -56,12 +56,14 @@ private:
 
     void set_normals() {
         parallel_for(points_.size(), [&](std::size_t v) {
-            if (table_.outgoing(static_cast<Index>(v)) != no_index) normals_[v] = object_.sample(points_[v]).gradient.normalized();
+            if (table_.outgoing(static_cast<Index>(v)) != no_index)
+                normals_[v] = object_.sample(points_[v]).gradient.normalized();
         });
     }
 
     /// Whether a triangle with these corners is full enough and faces outward.
-    [[nodiscard]] static bool sound(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& normals, double fullness) {
+    [[nodiscard]] static bool sound(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& normals,
+                                    double fullness) {
         const Vector3d cross = (b - a).cross(c - a);
         const double twice_area = cross.norm();
         const double longest = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
@@ -209,7 +211,8 @@ private:
             mesh.points.push_back(points_[v]);
         }
         for (Index h = 0; h < table_.halfedges(); h += 3) {
-            if (table_.alive(h)) mesh.faces.push_back({fresh[table_.origin(h)], fresh[table_.origin(h + 1)], fresh[table_.origin(h + 2)]});
+            if (table_.alive(h))
+                mesh.faces.push_back({fresh[table_.origin(h)], fresh[table_.origin(h + 1)], fresh[table_.origin(h + 2)]});
         }
         return mesh;
     }

@@ -23,7 +23,8 @@ public:
     [[nodiscard]] std::size_t living_faces() const { return living_faces_; }
 
     /// Calls visit(halfedge) for the halfedges that leave `v`, clockwise.
-    template <class Visit> void around(Index v, Visit&& visit) const {
+    template <class Visit>
+    void around(Index v, Visit&& visit) const {
         const Index first = outgoing_[v];
         Index h = first;
         do {

@@ -34,7 +34,8 @@ HalfedgeTable::HalfedgeTable(const Triangles& mesh)
 bool HalfedgeTable::can_collapse(Index h) const {
     const Index a = origin(h), b = target(h);
     const Index c = target(next(h)), d = target(next(opposite(h)));
-    // Link condition (Dey et al., Topology preserving edge contraction, 1999): the only common neighbours are the opposite corners.
+    // Link condition (Dey et al., Topology preserving edge contraction, 1999): the only common neighbours are the opposite
+    // corners.
     int valence_a = 0, valence_b = 0, valence_c = 0, valence_d = 0, common = 0;
     Index ring[32];
     bool too_many = false;
@@ -56,8 +57,8 @@ void HalfedgeTable::collapse(Index h) {
     const Index o = opposite(h), a = origin(h), b = target(h);
     const Index c = target(next(h)), d = target(next(o));
     around(b, [&](Index g) { origin_[g] = a; });
-    const Index to_c = opposite(previous(h)), from_c = opposite(next(h));     // a -> c and c -> b of the neighbours
-    const Index to_d = opposite(previous(o)), from_d = opposite(next(o));     // b -> d and d -> a
+    const Index to_c = opposite(previous(h)), from_c = opposite(next(h));  // a -> c and c -> b of the neighbours
+    const Index to_d = opposite(previous(o)), from_d = opposite(next(o));  // b -> d and d -> a
     glue(to_c, from_c);
     glue(to_d, from_d);
     outgoing_[a] = to_c;
@@ -88,8 +89,8 @@ void HalfedgeTable::flip(Index h) {
     const Index hn = next(h), hp = previous(h), on = next(o), op = previous(o);
     const Index c = origin(hp), d = origin(op);
     const Index bc = opposite(hn), ca = opposite(hp), ad = opposite(on), db = opposite(op);
-    origin_[h] = c, origin_[hn] = d, origin_[hp] = b;   // c -> d -> b -> c
-    origin_[o] = d, origin_[on] = c, origin_[op] = a;   // d -> c -> a -> d
+    origin_[h] = c, origin_[hn] = d, origin_[hp] = b;  // c -> d -> b -> c
+    origin_[o] = d, origin_[on] = c, origin_[op] = a;  // d -> c -> a -> d
     glue(hn, db);
     glue(hp, bc);
     glue(on, ca);

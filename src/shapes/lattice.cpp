@@ -14,8 +14,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr int block_cubes = 4;                    // cubes along a block's edge
-constexpr int block_points = 2 * block_cubes + 2; // half-cube steps, with the next block's first centres
+constexpr int block_cubes = 4;                     // cubes along a block's edge
+constexpr int block_points = 2 * block_cubes + 2;  // half-cube steps, with the next block's first centres
 constexpr int coordinate_bits = 20;
 
 /// Lattice points have integer coordinates in half cubes: cube corners even, cube centres odd.
@@ -26,7 +26,8 @@ Vector3d position(const Lattice& lattice, const Place& place) {
 }
 
 /// The seven directions of lattice edges, first non-zero coordinate positive.
-constexpr std::array<std::array<int, 3>, 7> directions{{{2, 0, 0}, {0, 2, 0}, {0, 0, 2}, {1, 1, 1}, {1, 1, -1}, {1, -1, 1}, {1, -1, -1}}};
+constexpr std::array<std::array<int, 3>, 7> directions{
+    {{2, 0, 0}, {0, 2, 0}, {0, 0, 2}, {1, 1, 1}, {1, 1, -1}, {1, -1, 1}, {1, -1, -1}}};
 
 using EdgeKey = std::uint64_t;
 
@@ -49,7 +50,8 @@ std::pair<Place, Place> edge_ends(EdgeKey key) {
     const auto& d = directions[key & 7];
     key >>= 3;
     constexpr std::uint64_t mask = (std::uint64_t{1} << coordinate_bits) - 1;
-    const Place a{static_cast<int>(key >> (2 * coordinate_bits)), static_cast<int>(key >> coordinate_bits & mask), static_cast<int>(key & mask)};
+    const Place a{static_cast<int>(key >> (2 * coordinate_bits)), static_cast<int>(key >> coordinate_bits & mask),
+                  static_cast<int>(key & mask)};
     return {a, {a[0] + d[0], a[1] + d[1], a[2] + d[2]}};
 }
 
@@ -69,7 +71,8 @@ public:
             return;
         }
         for (int child = 0; child < 8; ++child) {
-            visit({corner[0] + (child & 1) * cubes, corner[1] + (child >> 1 & 1) * cubes, corner[2] + (child >> 2) * cubes}, cubes / 2);
+            visit({corner[0] + (child & 1) * cubes, corner[1] + (child >> 1 & 1) * cubes, corner[2] + (child >> 2) * cubes},
+                  cubes / 2);
         }
     }
     std::vector<Place> blocks;
@@ -113,14 +116,17 @@ public:
         for (const auto& triangle : keys_) {
             auto& local = piece.triangles.emplace_back();
             for (int k = 0; k < 3; ++k) {
-                local[k] = static_cast<std::uint16_t>(std::lower_bound(piece.edges.begin(), piece.edges.end(), triangle[k]) - piece.edges.begin());
+                local[k] = static_cast<std::uint16_t>(std::lower_bound(piece.edges.begin(), piece.edges.end(), triangle[k]) -
+                                                      piece.edges.begin());
             }
         }
         return piece;
     }
 
 private:
-    static std::size_t index(const Place& p) { return static_cast<std::size_t>((p[0] * block_points + p[1]) * block_points + p[2]); }
+    static std::size_t index(const Place& p) {
+        return static_cast<std::size_t>((p[0] * block_points + p[1]) * block_points + p[2]);
+    }
     [[nodiscard]] Place global(const Place& p) const { return {corner_[0] + p[0], corner_[1] + p[1], corner_[2] + p[2]}; }
 
     /// The twelve tetrahedra around the cube's three upper faces: two cube centres and an edge of the face between them.
@@ -222,7 +228,8 @@ Triangles march(const MadeObject& object, const Lattice& lattice) {
     const auto& blocks = finder.blocks;
 
     std::vector<Piece> pieces(blocks.size());
-    parallel_for(blocks.size(), [&](std::size_t i) { pieces[i] = BlockMarcher(object, lattice, blocks[i]).run(); }, 16);
+    parallel_for(
+        blocks.size(), [&](std::size_t i) { pieces[i] = BlockMarcher(object, lattice, blocks[i]).run(); }, 16);
 
     std::vector<EdgeKey> edges;
     std::vector<std::size_t> first_face(pieces.size() + 1, 0);
@@ -235,15 +242,18 @@ Triangles march(const MadeObject& object, const Lattice& lattice) {
 
     Triangles result;
     result.faces.resize(first_face.back());
-    parallel_for(pieces.size(), [&](std::size_t i) {
-        std::vector<Index> global;
-        for (const EdgeKey key : pieces[i].edges) {
-            global.push_back(static_cast<Index>(std::lower_bound(edges.begin(), edges.end(), key) - edges.begin()));
-        }
-        std::size_t face = first_face[i];
-        for (const auto& [a, b, c] : pieces[i].triangles) result.faces[face++] = {global[a], global[b], global[c]};
-        pieces[i] = {};
-    }, 64);
+    parallel_for(
+        pieces.size(),
+        [&](std::size_t i) {
+            std::vector<Index> global;
+            for (const EdgeKey key : pieces[i].edges) {
+                global.push_back(static_cast<Index>(std::lower_bound(edges.begin(), edges.end(), key) - edges.begin()));
+            }
+            std::size_t face = first_face[i];
+            for (const auto& [a, b, c] : pieces[i].triangles) result.faces[face++] = {global[a], global[b], global[c]};
+            pieces[i] = {};
+        },
+        64);
     result.points.resize(edges.size());
     parallel_for(edges.size(), [&](std::size_t i) {
         const auto [a, b] = edge_ends(edges[i]);

@@ -26,8 +26,8 @@ struct Triangles {
 inline constexpr double lattice_vertices_per_area = 6.4641016151377546;
 
 /// Triangulates the surface; every edge has exactly two triangles whatever the function, and vertices lie on the surface
-/// (on lattice edges). Blocks far from the surface are skipped by the bound on the function's slope: work and memory grow with the area only.
-/// The seed turns and shifts the lattice. Same result for any number of threads.
+/// (on lattice edges). Blocks far from the surface are skipped by the bound on the function's slope: work and memory grow with
+/// the area only. The seed turns and shifts the lattice. Same result for any number of threads.
 Triangles march(const MadeObject& object, const Lattice& lattice);
 
 /// Frame turned and shifted by the seed.

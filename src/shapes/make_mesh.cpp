@@ -63,7 +63,8 @@ shapes::Triangles marched(const MadeObject& object, double vertices, std::uint64
         shapes::Triangles mesh = shapes::march(object, shapes::seeded_lattice(object, cube, seed));
         if (has_genus(mesh, object.genus) && is_connected(mesh)) return mesh;
     }
-    throw Error(ErrorKind::failure, object.name, "the marched surface does not have the object's genus " + std::to_string(object.genus),
+    throw Error(ErrorKind::failure, object.name,
+                "the marched surface does not have the object's genus " + std::to_string(object.genus),
                 "ask for more vertices or use another seed");
 }
 
@@ -73,7 +74,8 @@ MadeMesh make_mesh(const MadeObject& object, const MakeOptions& options) {
     check_options(options, "mesh make");
     if (options.vertices < object.minimum_vertices) refuse(object, options.vertices);
     const auto wanted = static_cast<std::size_t>(options.vertices);
-    shapes::Triangles even = shapes::make_even(object, marched(object, surplus * static_cast<double>(wanted), options.seed), wanted);
+    shapes::Triangles even =
+        shapes::make_even(object, marched(object, surplus * static_cast<double>(wanted), options.seed), wanted);
     if (static_cast<double>(even.points.size()) > 1.01 * static_cast<double>(wanted)) refuse(object, options.vertices);
 
     MadeMesh made;

@@ -10,10 +10,12 @@ namespace ostraka {
 namespace {
 using Maker = shapes::ObjectPointer (*)();
 const std::map<std::string, Maker>& makers() {
-    static const std::map<std::string, Maker> list{{"box", shapes::make_box_object}, {"capsule", shapes::make_capsule},
-                                                   {"cylinder", shapes::make_cylinder_object},
-                                                   {"sphere", shapes::make_sphere}, {"teapot", shapes::make_teapot},
-                                                   {"torus", shapes::make_torus_object}, {"vase", shapes::make_vase}};
+    static const std::map<std::string, Maker> list{
+        {"box", shapes::make_box_object},      {"capsule", shapes::make_capsule},
+        {"cylinder", shapes::make_cylinder_object},
+        {"sphere", shapes::make_sphere},
+        {"teapot", shapes::make_teapot},
+        {"torus", shapes::make_torus_object},  {"vase", shapes::make_vase}};
     return list;
 }
 
@@ -55,7 +57,8 @@ const MadeObject& made_object(const std::string& name) {
         const std::size_t distance = name.size() > 64 ? 64 : edits(name, known);
         if (distance < least) least = distance, nearest = known;
     }
-    fail_usage("there is no made object '" + name + "'", nearest.empty() ? "use one of: " + all : "did you mean '" + nearest + "'? All: " + all);
+    fail_usage("there is no made object '" + name + "'",
+               nearest.empty() ? "use one of: " + all : "did you mean '" + nearest + "'? All: " + all);
 }
 
 }  // namespace ostraka

@@ -5,7 +5,8 @@
 
 namespace ostraka::shapes {
 
-/// The counter's number in the seed's sequence (SplitMix64: Steele, Lea and Flood, Fast splittable pseudorandom number generators, 2014), in [0, 1).
+/// The counter's number in the seed's sequence (SplitMix64: Steele, Lea and Flood, Fast splittable pseudorandom number
+/// generators, 2014), in [0, 1).
 inline double random_share(std::uint64_t seed, std::uint64_t counter) {
     std::uint64_t z = (seed + 0x632BE59BD9B4E019ULL) * 0x9E3779B97F4A7C15ULL + (counter + 1) * 0x9E3779B97F4A7C15ULL;
     z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;

@@ -8,7 +8,8 @@ namespace ostraka::shapes {
 using std::numbers::pi;
 
 namespace {
-std::unique_ptr<MadeObject> start(const std::string& name, const std::string& description, int genus, double area, double volume) {
+std::unique_ptr<MadeObject> start(const std::string& name, const std::string& description, int genus, double area,
+                                  double volume) {
     auto object = std::make_unique<MadeObject>();
     object->name = object->object_class = name;
     object->description = description;
@@ -28,13 +29,15 @@ ObjectPointer finished(std::unique_ptr<MadeObject> object) {
 
 ObjectPointer make_sphere() {
     const double r = 50;
-    auto object = start("sphere", "radius 50; caps of 0.5, 2.5 and 10 % of the area around +z, +x and -z", 0, 4 * pi * r * r, 4.0 / 3 * pi * r * r * r);
+    auto object = start("sphere", "radius 50; caps of 0.5, 2.5 and 10 % of the area around +z, +x and -z", 0, 4 * pi * r * r,
+                        4.0 / 3 * pi * r * r * r);
     const int rest = add_part(*object, "rest", grey);
     add_member(*object, make_ellipsoid({}, {r, r, r}), rest, 0);
     // A cap of height h has the area 2 pi r h, the share h / 2r of the sphere's.
     const auto cap = [&](const std::string& name, const Colour3& colour, const Vector3d& axis, double share) {
         const int part = add_part(*object, name, colour);
-        object->cuts.push_back({rest, part, [axis, level = r - 2 * r * share](const Vector3d& p) { return level - axis.dot(p); }});
+        object->cuts.push_back(
+            {rest, part, [axis, level = r - 2 * r * share](const Vector3d& p) { return level - axis.dot(p); }});
     };
     cap("small cap", red, Vector3d::UnitZ(), 0.005);
     cap("cap", blue, Vector3d::UnitX(), 0.025);
@@ -44,8 +47,8 @@ ObjectPointer make_sphere() {
 
 ObjectPointer make_torus_object() {
     const double ring = 50, tube = 20;
-    auto object = start("torus", "ring radius 50, tube radius 20; outer half 2 pi r (pi R + 2 r), inner half 2 pi r (pi R - 2 r)", 1,
-                        4 * pi * pi * ring * tube, 2 * pi * pi * ring * tube * tube);
+    auto object = start("torus", "ring radius 50, tube radius 20; outer half 2 pi r (pi R + 2 r), inner half 2 pi r (pi R - 2 r)",
+                        1, 4 * pi * pi * ring * tube, 2 * pi * pi * ring * tube * tube);
     const int outer = add_part(*object, "outer half", grey), inner = add_part(*object, "inner half", red);
     add_member(*object, make_torus({}, ring, tube), outer, 0);
     object->cuts.push_back({outer, inner, [ring](const Vector3d& p) { return std::hypot(p.x(), p.y()) - ring; }});
@@ -58,8 +61,9 @@ ObjectPointer make_box_object() {
     // Steiner: the box shrunk by r, grown again by balls of radius r.
     const Vector3d a = 2 * (half - Vector3d::Constant(r));
     const double flat = 2 * (a.x() * a.y() + a.y() * a.z() + a.z() * a.x()), edges = a.sum();
-    auto object = start("box", "120 x 80 x 50 with edges rounded by 8; the top plate is a part of its own", 0,
-                        flat + 2 * pi * r * edges + 4 * pi * r * r, a.prod() + flat * r + pi * r * r * edges + 4.0 / 3 * pi * r * r * r);
+    auto object =
+        start("box", "120 x 80 x 50 with edges rounded by 8; the top plate is a part of its own", 0,
+              flat + 2 * pi * r * edges + 4 * pi * r * r, a.prod() + flat * r + pi * r * r * edges + 4.0 / 3 * pi * r * r * r);
     const int sides = add_part(*object, "sides", grey), top = add_part(*object, "top", blue);
     add_member(*object, make_box({}, half, r), sides, 0);
     object->cuts.push_back({sides, top, [level = half.z() - r](const Vector3d& p) { return level - p.z(); }});
@@ -68,9 +72,10 @@ ObjectPointer make_box_object() {
 
 ObjectPointer make_capsule() {
     const double r = 20, length = 80;
-    auto object = start("capsule", "radius 20, straight part 80 along z; the two caps are parts", 0, 2 * pi * r * length + 4 * pi * r * r,
-                        pi * r * r * length + 4.0 / 3 * pi * r * r * r);
-    const int middle = add_part(*object, "middle", grey), upper = add_part(*object, "upper cap", red), lower = add_part(*object, "lower cap", blue);
+    auto object = start("capsule", "radius 20, straight part 80 along z; the two caps are parts", 0,
+                        2 * pi * r * length + 4 * pi * r * r, pi * r * r * length + 4.0 / 3 * pi * r * r * r);
+    const int middle = add_part(*object, "middle", grey), upper = add_part(*object, "upper cap", red),
+              lower = add_part(*object, "lower cap", blue);
     add_member(*object, make_tube({{{0, 0, -length / 2}, r}, {{0, 0, length / 2}, r}}), middle, 0);
     object->cuts.push_back({middle, upper, [=](const Vector3d& p) { return length / 2 - p.z(); }});
     object->cuts.push_back({middle, lower, [=](const Vector3d& p) { return length / 2 + p.z(); }});
@@ -84,7 +89,8 @@ ObjectPointer make_cylinder_object() {
     const double volume = pi * radius * radius * 2 * (half - r) +
                           2 * (pi * core * core * r + 2 * pi * (core + 4 * r / (3 * pi)) * (pi * r * r / 4));
     auto object = start("cylinder", "radius 30, height 100, rims rounded by 6; side, top and bottom are parts", 0, area, volume);
-    const int side = add_part(*object, "side", grey), top = add_part(*object, "top", red), bottom = add_part(*object, "bottom", blue);
+    const int side = add_part(*object, "side", grey), top = add_part(*object, "top", red),
+              bottom = add_part(*object, "bottom", blue);
     add_member(*object, make_cylinder({}, radius, half, r), side, 0);
     object->cuts.push_back({side, top, [=](const Vector3d& p) { return half - r - p.z(); }});
     object->cuts.push_back({side, bottom, [=](const Vector3d& p) { return half - r + p.z(); }});

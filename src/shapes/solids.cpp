@@ -44,7 +44,8 @@ Sample revolve(const Vector3d& p, double distance, double value, const Vector2d&
 
 class Ellipsoid final : public PlacedSolid {
 public:
-    Ellipsoid(const Placement& placement, const Vector3d& radii) : PlacedSolid(placement), radii_(radii), smallest_(radii.minCoeff()) {}
+    Ellipsoid(const Placement& placement, const Vector3d& radii)
+        : PlacedSolid(placement), radii_(radii), smallest_(radii.minCoeff()) {}
     [[nodiscard]] double flatness() const override { return smallest_ / radii_.maxCoeff(); }
 
 protected:
@@ -156,14 +157,16 @@ public:
     [[nodiscard]] double parameter(const Vector3d& p) const override {
         const auto ball_distance = [&p](const Ball& ball) { return (p - ball.centre).norm() - ball.radius; };
         const std::size_t best = shapes::SampleGroups{samples_per_piece, samples_.size()}.least(
-            [&](std::size_t piece) { return ball_distance(balls_[piece]); }, [&](std::size_t i) { return ball_distance(samples_[i]); });
+            [&](std::size_t piece) { return ball_distance(balls_[piece]); },
+            [&](std::size_t i) { return ball_distance(samples_[i]); });
         const double low = samples_[best == 0 ? 0 : best - 1].t, high = samples_[std::min(best + 1, samples_.size() - 1)].t;
         return shapes::bracketed_root(low, high, samples_[best].t, [&](double t) {
             const auto c = path_.at(t);
             const auto r = radius_.at(t);
             const Vector3d away = c.value - p;
             const double distance = std::max(away.norm(), 1e-300), along = away.dot(c.first) / distance;
-            return std::pair(along - r.first[0], (c.first.squaredNorm() - along * along + away.dot(c.second)) / distance - r.second[0]);
+            return std::pair(along - r.first[0],
+                             (c.first.squaredNorm() - along * along + away.dot(c.second)) / distance - r.second[0]);
         });
     }
     [[nodiscard]] AlignedBox3d box() const override { return box_; }
@@ -205,7 +208,8 @@ public:
             const Vector2d middle = samples_[piece * samples_per_piece + samples_per_piece / 2].second;
             double reach = 0;
             for (int k = 0; k <= samples_per_piece; ++k) {
-                reach = std::max(reach, (samples_[piece * samples_per_piece + static_cast<std::size_t>(k)].second - middle).norm());
+                reach =
+                    std::max(reach, (samples_[piece * samples_per_piece + static_cast<std::size_t>(k)].second - middle).norm());
             }
             discs_.emplace_back(middle, reach);
         }
@@ -233,7 +237,8 @@ private:
         const std::size_t best = shapes::SampleGroups{samples_per_piece, samples_.size()}.least(
             [&](std::size_t piece) { return (q - discs_[piece].first).norm() - discs_[piece].second; },
             [&](std::size_t i) { return (q - samples_[i].second).norm(); });
-        const double low = samples_[best == 0 ? 0 : best - 1].first, high = samples_[std::min(best + 1, samples_.size() - 1)].first;
+        const double low = samples_[best == 0 ? 0 : best - 1].first,
+                     high = samples_[std::min(best + 1, samples_.size() - 1)].first;
         return shapes::bracketed_root(low, high, samples_[best].first, [&](double t) {
             const auto c = curve_.at(t);
             const Vector2d away = c.value - q;
@@ -246,9 +251,11 @@ private:
     Vector2d extents_ = Vector2d::Zero();
 };
 
-template <class Items, class Position> std::vector<double> cumulative(const Items& items, Position position) {
+template <class Items, class Position>
+std::vector<double> cumulative(const Items& items, Position position) {
     std::vector<double> lengths{0};
-    for (std::size_t i = 1; i < items.size(); ++i) lengths.push_back(lengths.back() + (position(items[i]) - position(items[i - 1])).norm());
+    for (std::size_t i = 1; i < items.size(); ++i)
+        lengths.push_back(lengths.back() + (position(items[i]) - position(items[i - 1])).norm());
     return lengths;
 }
 
@@ -259,7 +266,8 @@ template <class Items, class Position> std::vector<double> cumulative(const Item
     fail_usage(text);
 }
 
-template <class Items> void check_path(const Items& items, const char* what) {
+template <class Items>
+void check_path(const Items& items, const char* what) {
     if (items.size() < 2) refuse(what, "needs at least two points");
     const auto lengths = chord_lengths(items);
     for (std::size_t i = 1; i < lengths.size(); ++i) {

@@ -12,7 +12,8 @@
 namespace ostraka::shapes {
 
 /// Cubic spline through `points` at given knots; an end without slope has zero curvature.
-template <int D> class Spline {
+template <int D>
+class Spline {
 public:
     using Vec = Eigen::Matrix<double, D, 1>;
     struct State {
@@ -21,7 +22,8 @@ public:
 
     Spline(std::vector<double> knots, std::vector<Vec> points, std::optional<Vec> start = {}, std::optional<Vec> end = {})
         : knots_(std::move(knots)), points_(std::move(points)), bends_(points_.size(), Vec::Zero()) {
-        // Second derivatives at the knots: one tridiagonal system, solved by elimination (de Boor, A Practical Guide to Splines, IV).
+        // Second derivatives at the knots: one tridiagonal system, solved by elimination (de Boor, A Practical Guide to Splines,
+        // IV).
         const std::size_t n = points_.size();
         std::vector<double> diagonal(n, 1), above(n, 0), below(n, 0);
         const auto slope = [&](std::size_t i) -> Vec { return (points_[i + 1] - points_[i]) / step(i); };
@@ -52,9 +54,10 @@ public:
         const auto next = std::upper_bound(knots_.begin() + 1, knots_.end() - 1, t);
         const auto i = static_cast<std::size_t>(next - knots_.begin()) - 1;
         const double h = step(i), a = (knots_[i + 1] - t) / h, b = (t - knots_[i]) / h;
-        return {a * points_[i] + b * points_[i + 1] + ((a * a * a - a) * bends_[i] + (b * b * b - b) * bends_[i + 1]) * (h * h / 6),
-                (points_[i + 1] - points_[i]) / h + ((1 - 3 * a * a) * bends_[i] + (3 * b * b - 1) * bends_[i + 1]) * (h / 6),
-                a * bends_[i] + b * bends_[i + 1]};
+        return {
+            a * points_[i] + b * points_[i + 1] + ((a * a * a - a) * bends_[i] + (b * b * b - b) * bends_[i + 1]) * (h * h / 6),
+            (points_[i + 1] - points_[i]) / h + ((1 - 3 * a * a) * bends_[i] + (3 * b * b - 1) * bends_[i + 1]) * (h / 6),
+            a * bends_[i] + b * bends_[i + 1]};
     }
     [[nodiscard]] double length() const { return knots_.back(); }
 
@@ -76,7 +79,8 @@ private:
 
 /// Root of an increasing function within [low, high] (or the end nearest to it): Newton steps kept inside a shrinking bracket.
 /// `slope_and_bend(t)` gives the function and its derivative.
-template <class Function> double bracketed_root(double low, double high, double t, Function&& slope_and_bend) {
+template <class Function>
+double bracketed_root(double low, double high, double t, Function&& slope_and_bend) {
     // Newton's error after a step is of the order of the step squared: this small a step leaves nothing to gain.
     const double enough = 1e-7 * (high - low);
     for (int i = 0; i < 40 && high - low > enough; ++i) {
@@ -97,7 +101,8 @@ template <class Function> double bracketed_root(double low, double high, double 
 struct SampleGroups {
     int per_piece;
     std::size_t samples;  ///< pieces * per_piece + 1
-    template <class Bound, class Cost> [[nodiscard]] std::size_t least(Bound&& lower_bound, Cost&& cost) const {
+    template <class Bound, class Cost>
+    [[nodiscard]] std::size_t least(Bound&& lower_bound, Cost&& cost) const {
         const std::size_t pieces = samples / static_cast<std::size_t>(per_piece);
         std::size_t best = 0, first_piece = 0;
         double least_bound = std::numeric_limits<double>::infinity(), least_cost = least_bound;
@@ -106,7 +111,8 @@ struct SampleGroups {
             if (bound < least_bound) least_bound = bound, first_piece = piece;
         }
         const auto scan = [&](std::size_t piece) {
-            for (std::size_t i = piece * static_cast<std::size_t>(per_piece); i <= (piece + 1) * static_cast<std::size_t>(per_piece); ++i) {
+            for (std::size_t i = piece * static_cast<std::size_t>(per_piece);
+                 i <= (piece + 1) * static_cast<std::size_t>(per_piece); ++i) {
                 const double value = cost(i);
                 if (value < least_cost) least_cost = value, best = i;
             }

@@ -22,14 +22,16 @@ double volume(const Mesh& mesh) {
     double sum = 0;
     for (const Face f : mesh.faces()) {
         const auto c = corners(mesh, f);
-        const Vector a = mesh.point(c[0]) - CGAL::ORIGIN, b = mesh.point(c[1]) - CGAL::ORIGIN, d = mesh.point(c[2]) - CGAL::ORIGIN;
+        const Vector a = mesh.point(c[0]) - CGAL::ORIGIN, b = mesh.point(c[1]) - CGAL::ORIGIN,
+                     d = mesh.point(c[2]) - CGAL::ORIGIN;
         sum += a * CGAL::cross_product(b, d) / 6;
     }
     return sum;
 }
 
 int euler_characteristic(const Mesh& mesh) {
-    return static_cast<int>(mesh.number_of_vertices()) - static_cast<int>(mesh.number_of_edges()) + static_cast<int>(mesh.number_of_faces());
+    return static_cast<int>(mesh.number_of_vertices()) - static_cast<int>(mesh.number_of_edges()) +
+           static_cast<int>(mesh.number_of_faces());
 }
 
 /// Number of pieces of each label's faces, joined across edges.
@@ -64,7 +66,8 @@ TEST_P(EveryObject, IsClosedOrientedOfItsGenusAtEveryResolution) {
     const MadeObject& object = made_object(GetParam());
     for (const std::size_t vertices : {object.minimum_vertices, std::size_t{4000}, std::size_t{12000}}) {
         const MadeMesh m = made(object.name, vertices, vertices);
-        EXPECT_NEAR(static_cast<double>(m.mesh.number_of_vertices()), static_cast<double>(vertices), 0.01 * static_cast<double>(vertices));
+        EXPECT_NEAR(static_cast<double>(m.mesh.number_of_vertices()), static_cast<double>(vertices),
+                    0.01 * static_cast<double>(vertices));
         EXPECT_TRUE(CGAL::is_closed(m.mesh));
         EXPECT_TRUE(m.mesh.is_valid());
         EXPECT_EQ(euler_characteristic(m.mesh), 2 - 2 * object.genus) << vertices;
@@ -84,7 +87,8 @@ TEST_P(EveryObject, TrianglesAreEvenAndFaceOutward) {
         const Vector area = area_vector(m.mesh, f);
         EXPECT_GT(area * object.gradient(centroid(m.mesh, f)), 0);
         double longest = 0;
-        for (int k = 0; k < 3; ++k) longest = std::max(longest, CGAL::squared_distance(m.mesh.point(c[k]), m.mesh.point(c[(k + 1) % 3])));
+        for (int k = 0; k < 3; ++k)
+            longest = std::max(longest, CGAL::squared_distance(m.mesh.point(c[k]), m.mesh.point(c[(k + 1) % 3])));
         EXPECT_LT(longest, 9 * edge * edge);
         thin += std::sqrt(area.squared_length()) < 0.2 * longest ? 1 : 0;
     }
@@ -142,7 +146,8 @@ TEST_P(EveryObject, GradientIsThatOfTheValue) {
     EXPECT_LE(odd, m.mesh.number_of_vertices() / 100);
 }
 
-INSTANTIATE_TEST_SUITE_P(Shapes, EveryObject, testing::ValuesIn(made_object_names()), [](const auto& name) { return name.param; });
+INSTANTIATE_TEST_SUITE_P(Shapes, EveryObject, testing::ValuesIn(made_object_names()),
+                         [](const auto& name) { return name.param; });
 
 TEST(MakeMesh, AreaAndVolumeConvergeToTheFormulas) {
     for (const std::string& name : made_object_names()) {

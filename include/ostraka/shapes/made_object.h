@@ -15,10 +15,10 @@ namespace ostraka {
 /// A solid of an object, blended into those before it.
 struct Member {
     SolidPointer solid;
-    double blend = 0;      ///< width of the smooth union (or of the smooth cut), mm; 0 gives a crease
-    bool carves = false;   ///< cut away instead of added; the walls it leaves belong to the nearest other member
+    double blend = 0;     ///< width of the smooth union (or of the smooth cut), mm; 0 gives a crease
+    bool carves = false;  ///< cut away instead of added; the walls it leaves belong to the nearest other member
     struct Stretch {
-        double until;      ///< parameter of the solid up to which the part reaches
+        double until;  ///< parameter of the solid up to which the part reaches
         int part;
     };
     std::vector<Stretch> stretches;  ///< in increasing order; the last reaches to the end
@@ -42,12 +42,13 @@ class MadeObject {
 public:
     std::string name, object_class, description;
     std::string unit = "mm";
-    std::vector<std::string> parts;                 ///< the index is the label; each part is one connected patch
+    std::vector<std::string> parts;  ///< the index is the label; each part is one connected patch
     std::vector<std::array<std::uint8_t, 3>> part_colours;
     int genus = 0;
-    std::size_t minimum_vertices = 300;             ///< fewer cannot hold the shape
-    double thinnest = std::numeric_limits<double>::infinity();  ///< thinnest wall or gap, mm: a coarser lattice would tear or bridge it
-    std::optional<double> exact_area, exact_volume; ///< where a formula is known
+    std::size_t minimum_vertices = 300;  ///< fewer cannot hold the shape
+    double thinnest =
+        std::numeric_limits<double>::infinity();     ///< thinnest wall or gap, mm: a coarser lattice would tear or bridge it
+    std::optional<double> exact_area, exact_volume;  ///< where a formula is known
     std::vector<Member> members;
     std::vector<Relief> reliefs;
     std::vector<Cut> cuts;

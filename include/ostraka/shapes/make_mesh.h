@@ -14,7 +14,8 @@ struct MakeOptions {
     std::uint64_t seed = 1;          ///< turns and shifts the lattice, so that seeds give independent meshes of one object
     double noise = 0;                ///< vertices are moved along the normal by up to this share of the mean edge length
 
-    template <class Visitor> void describe(Visitor& visit) {
+    template <class Visitor>
+    void describe(Visitor& visit) {
         visit("vertices", vertices, "number of vertices wanted (met to 1 %)", Range{4, 5e7});
         visit("seed", seed, "turns and shifts the lattice and draws the noise: another seed, another mesh of the same object",
               Range{0, 9007199254740992.0});
@@ -23,9 +24,9 @@ struct MakeOptions {
 };
 
 struct MadeMesh {
-    Mesh mesh;                               ///< closed, oriented, manifold, of the object's genus
-    std::vector<std::int32_t> face_labels;   ///< part at the surface point nearest to the face's centroid
-    std::vector<std::int32_t> vertex_labels; ///< part at the vertex (before noise)
+    Mesh mesh;                                ///< closed, oriented, manifold, of the object's genus
+    std::vector<std::int32_t> face_labels;    ///< part at the surface point nearest to the face's centroid
+    std::vector<std::int32_t> vertex_labels;  ///< part at the vertex (before noise)
 };
 
 /// Meshes the object's surface with triangles of even size. Time and memory grow linearly with the number of vertices.
