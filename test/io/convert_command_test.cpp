@@ -3,6 +3,7 @@
 #include "ostraka/core/json.h"
 #include "scratch.h"
 
+#include <gtest/gtest.h>
 #include <unistd.h>
 
 using namespace ostraka;

@@ -4,6 +4,7 @@
 #include "ostraka/core/json.h"
 #include "scratch.h"
 
+#include <gtest/gtest.h>
 #include <cstring>
 
 using namespace ostraka;

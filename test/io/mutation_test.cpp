@@ -4,6 +4,7 @@
 #include "ostraka/core/error.h"
 #include "scratch.h"
 
+#include <gtest/gtest.h>
 #include <cmath>
 
 using namespace ostraka;

@@ -3,6 +3,7 @@
 #include "ostraka/core/error.h"
 #include "scratch.h"
 
+#include <gtest/gtest.h>
 #include <cstring>
 
 using namespace ostraka;

@@ -3,6 +3,7 @@
 #include "ostraka/core/error.h"
 #include "scratch.h"
 
+#include <gtest/gtest.h>
 using namespace ostraka;
 using namespace ostraka::test;
 
