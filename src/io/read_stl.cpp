@@ -95,6 +95,12 @@ PolygonSoup read_binary(std::string_view bytes, const std::string& file) {
     return soup;
 }
 
+/// Words of the format may be written in capitals.
+bool same_word(std::string_view word, std::string_view lower) {
+    return std::equal(word.begin(), word.end(), lower.begin(), lower.end(),
+                      [](unsigned char a, char b) { return std::tolower(a) == b; });
+}
+
 class AsciiStl {
 public:
     AsciiStl(std::string_view text, const std::string& file) : reader_(text, file, 0), merge_(soup_.points) {}
@@ -103,14 +109,14 @@ public:
         bool in_solid = false;
         while (reader_.skip_space()) {
             const char* at = reader_.position();
-            const std::string word = keyword();
-            if (word == "solid" && !in_solid) {
+            const std::string_view word = keyword();
+            if (same_word(word, "solid") && !in_solid) {
                 reader_.rest_of_line();
                 in_solid = true;
-            } else if (word == "endsolid" && in_solid) {
+            } else if (same_word(word, "endsolid") && in_solid) {
                 reader_.rest_of_line();
                 in_solid = false;
-            } else if (word == "facet" && in_solid) {
+            } else if (same_word(word, "facet") && in_solid) {
                 facet();
             } else {
                 reader_.fail("unexpected word " + in_quotes(word), "a text STL file has solid, facet, endsolid", at);
@@ -122,19 +128,16 @@ public:
     }
 
 private:
-    std::string keyword() {
+    std::string_view keyword() {
         if (!reader_.skip_space()) reader_.fail("the file ends inside a facet", "the file is cut off");
-        std::string text(reader_.word());
-        std::transform(text.begin(), text.end(), text.begin(),
-                       [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-        return text;
+        return reader_.word();
     }
 
     void expect(const char* wanted) {
         reader_.skip_space();
         const char* at = reader_.position();
-        const std::string word = keyword();
-        if (word != wanted) reader_.fail("expected " + std::string(wanted) + " instead of " + in_quotes(word), {}, at);
+        const std::string_view word = keyword();
+        if (!same_word(word, wanted)) reader_.fail("expected " + std::string(wanted) + " instead of " + in_quotes(word), {}, at);
     }
 
     void facet() {
@@ -145,9 +148,9 @@ private:
         for (;;) {
             reader_.skip_space();
             const char* at = reader_.position();
-            const std::string word = keyword();
-            if (word == "endloop") break;
-            if (word != "vertex") reader_.fail("expected vertex or endloop instead of " + in_quotes(word), {}, at);
+            const std::string_view word = keyword();
+            if (same_word(word, "endloop")) break;
+            if (!same_word(word, "vertex")) reader_.fail("expected vertex or endloop instead of " + in_quotes(word), {}, at);
             std::array<double, 3> point{};
             for (double& x : point) {
                 reader_.skip_space();
@@ -177,13 +180,11 @@ PolygonSoup read_stl(std::string& bytes, const std::string& file) {
     const bool size_fits = bytes.size() >= header_size && bytes.size() == header_size + facet_count(bytes) * facet_size;
     if (!size_fits) {
         TextReader reader(bytes, file, 0);
-        std::string word;
+        std::string_view word;
         if (reader.skip_space()) word = reader.word();
-        std::transform(word.begin(), word.end(), word.begin(),
-                       [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
         // A binary header is padded with zero bytes or blanks and has a triangle count; text has neither zero.
         const bool text = bytes.find('\0') == std::string::npos;
-        if (word == "solid" && (text || bytes.find("facet") != std::string::npos)) {
+        if (same_word(word, "solid") && (text || bytes.find("facet") != std::string::npos)) {
             normalise_text(bytes);
             return AsciiStl(bytes, file).read();
         }
