@@ -18,35 +18,33 @@ bool may_collapse(const Mesh& mesh, Halfedge h) {
     if (!left && !right) return false;
     if (left && is_ear(mesh, h)) return false;
     if (right && is_ear(mesh, o)) return false;
-    if (left && right && mesh.is_border(u) && mesh.is_border(v)) return false;
+    if (left && right && mesh.is_border(u, false) && mesh.is_border(v, false)) return false;
     const Vertex w = left ? mesh.target(mesh.next(h)) : Mesh::null_vertex();
     const Vertex x = right ? mesh.target(mesh.next(o)) : Mesh::null_vertex();
     if (w == x) return false;
 
-    // Common neighbours: rings have about six vertices, so comparing all pairs is the fastest way; a hub with a large ring is
-    // compared once against the smaller one through find_halfedge of the neighbour's own ring.
-    std::size_t degree_u = 0, degree_v = 0;
-    for_each_incoming(mesh, u, [&](Halfedge) { ++degree_u; });
-    for_each_incoming(mesh, v, [&](Halfedge) { ++degree_v; });
-    const Vertex small = degree_u <= degree_v ? u : v, other = small == u ? v : u;
-    const std::size_t limit = degree_u <= degree_v ? degree_v : degree_u;
+    // Common neighbours, from the end with the smaller ring: both rings are walked side by side until one is closed, so that a
+    // hub of a thousand spokes costs no more than its neighbour.
+    const Halfedge first_u = mesh.opposite(h), first_v = h;
+    Halfedge at_u = first_u, at_v = first_v;
+    std::size_t degree = 0;
+    do {
+        at_u = mesh.opposite(mesh.next(at_u)), at_v = mesh.opposite(mesh.next(at_v));
+        ++degree;
+    } while (at_u != first_u && at_v != first_v);
+    const bool both = at_u == first_u && at_v == first_v;
+    const Halfedge small = at_u == first_u ? first_u : first_v, large = small == first_u ? first_v : first_u;
+    const Vertex other = mesh.target(large);
     std::size_t common = 0;
     for_each_incoming(mesh, small, [&](Halfedge g) {
         const Vertex y = mesh.source(g);
         if (y == other) return;
-        if (y == w || y == x) {
-            ++common;
-            return;
-        }
-        if (limit <= 16) {
-            for_each_incoming(mesh, other, [&](Halfedge k) { common += mesh.source(k) == y; });
-        } else {
-            for_each_incoming(mesh, y, [&](Halfedge k) { common += mesh.source(k) == other; });
-        }
+        if (y == w || y == x) ++common;
+        else for_each_incoming(mesh, y, [&](Halfedge k) { common += mesh.source(k) == other; });
     });
     if (common != static_cast<std::size_t>(left) + static_cast<std::size_t>(right)) return false;
     // Both opposite corners joined by an edge that closes the link: the component is a tetrahedron.
-    return !(left && right && degree_u == 3 && degree_v == 3);
+    return !(left && right && both && degree == 3);
 }
 
 namespace {

@@ -121,7 +121,7 @@ private:
         }
         const Placement* chosen = nullptr;
         for (std::size_t i = 0; i < candidates.count && chosen == nullptr; ++i)
-            if (keeps_shape(h, candidates.list[i].position)) chosen = &candidates.list[i];
+            if (keeps_shape(h, candidates.list[i].position, plan->pinned)) chosen = &candidates.list[i];
         if (chosen == nullptr) return ++refused_shape_, false;
         if (!plan->pinned) mesh_.point(v) = frame_.world(chosen->position);
         merge(h);
@@ -150,14 +150,13 @@ private:
     }
 
     /// No face around the ends of h is turned over, turned too far or squeezed flat when both ends move to x.
-    [[nodiscard]] bool keeps_shape(Halfedge h, const Vector& x) const {
+    [[nodiscard]] bool keeps_shape(Halfedge h, const Vector& x, bool target_stays) const {
         constexpr double thinnest = 0.02;  // area over sum of squared edge lengths, twice; 0.29 for an equilateral triangle
         constexpr double flat = 1e-9;
         const double least_cosine = std::max(1e-3, std::cos(stage_.max_normal_change * M_PI / 180));
         bool fine = true;
         const auto check = [&](Halfedge g) {  // g ends in the vertex that moves
-            if (!fine || mesh_.is_border(g) || mesh_.face(g) == mesh_.face(h) || mesh_.face(g) == mesh_.face(mesh_.opposite(h)))
-                return;
+            if (mesh_.is_border(g) || mesh_.face(g) == mesh_.face(h) || mesh_.face(g) == mesh_.face(mesh_.opposite(h))) return;
             const Vector old = frame_.local(mesh_.point(mesh_.target(g)));
             const Vector p = frame_.local(mesh_.point(mesh_.source(g))),
                          q = frame_.local(mesh_.point(mesh_.target(mesh_.next(g))));
@@ -172,8 +171,15 @@ private:
             if (fine && stage_.good_shapes)
                 fine = length_new >= thinnest * sides_new || length_new * sides_old >= length_old * sides_new;
         };
-        for_each_incoming(mesh_, mesh_.source(h), check);
-        if (fine) for_each_incoming(mesh_, mesh_.target(h), check);
+        const auto check_ring = [&](Halfedge first) {
+            Halfedge g = first;
+            do {
+                check(g);
+                g = mesh_.opposite(mesh_.next(g));
+            } while (fine && g != first);
+        };
+        check_ring(mesh_.opposite(h));
+        if (fine && !target_stays) check_ring(h);
         return fine;
     }
 

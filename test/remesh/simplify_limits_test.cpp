@@ -167,7 +167,29 @@ TEST(SimplifyLimits, WrongRequests) {
     EXPECT_THROW(simplify(empty, options), Error);
 }
 
-// The better metric is nearer to the truth: both put the vertices of a sphere's approximation close to the sphere.
+// A vertex with thousands of neighbours, in a disc and at the tips of a double cone.
+TEST(SimplifyLimits, Hubs) {
+    constexpr Index n = 6000;
+    for (const bool closed : {false, true}) {
+        TriangleSoup soup;
+        for (Index i = 0; i < n; ++i) soup.points.push_back({std::cos(2 * M_PI * i / n), std::sin(2 * M_PI * i / n), 0});
+        soup.points.push_back({0, 0, closed ? 1.0 : 0.0});
+        soup.points.push_back({0, 0, -1});
+        for (Index i = 0; i < n; ++i) {
+            soup.triangles.push_back({i, (i + 1) % n, n});
+            if (closed) soup.triangles.push_back({(i + 1) % n, i, n + 1});
+        }
+        if (!closed) soup.points.pop_back();
+        Mesh mesh = build_mesh(soup);
+        const double area = surface_area(mesh);
+        const SimplifyResult result = down_to(mesh, 60);
+        EXPECT_TRUE(result.reached) << result.stop_reason;
+        EXPECT_TRUE(is_sound(mesh));
+        EXPECT_NEAR(surface_area(mesh) / area, 1, 0.01);
+    }
+}
+
+// Both metrics put the vertices of a sphere's approximation close to the sphere.
 TEST(SimplifyLimits, VolumeOfASphere) {
     for (const char* method : {"qem", "lindstrom-turk"}) {
         Mesh mesh = build_mesh(octahedron_sphere(6));
