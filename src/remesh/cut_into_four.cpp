@@ -64,8 +64,7 @@ void cut_into_four(Mesh& mesh, bool smooth, RefineResult& result) {
         result.parents.push_back({a, b});
     }
     for (Index v = 0; v < smoothed.size(); ++v) mesh.point(Vertex(v)) = smoothed[v];
-    const Vertex none = V > 0 ? Vertex(0) : Mesh::null_vertex();
-    for (Index e = E; e < 2 * E + 3 * F; ++e) mesh.add_edge(none, none);
+    for (Index e = E; e < 2 * E + 3 * F; ++e) mesh.add_edge(Vertex(0), Vertex(1));  // their true ends follow
     for (Index f = F; f < 4 * F; ++f) mesh.add_face();
 
     // Halfedge 2 e runs into the middle of its edge, halfedge 2 (E + e) out of it; the other way round on the opposite side.
