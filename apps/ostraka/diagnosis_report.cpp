@@ -1,5 +1,7 @@
 #include "diagnosis_report.h"
 
+#include <iostream>
+
 namespace ostraka::app {
 
 namespace {
@@ -8,7 +10,8 @@ constexpr std::size_t listed = 100;
 
 JsonValue whole(std::size_t value) { return JsonValue(static_cast<std::uint64_t>(value)); }
 
-template <class Range> JsonValue numbers(const Range& values, JsonAllocator& allocator) {
+template <class Range>
+JsonValue numbers(const Range& values, JsonAllocator& allocator) {
     JsonValue list(rapidjson::kArrayType);
     for (const double value : values) list.PushBack(value, allocator);
     return list;
@@ -67,23 +70,23 @@ JsonValue to_json(const MeshDiagnosis& d, JsonAllocator& allocator) {
     for (const auto& defect : d.defects()) defects.PushBack(json_string(defect, allocator), allocator);
     add_member(result, "sound", JsonValue(d.defects().empty()), allocator);
     add_member(result, "defects", std::move(defects), allocator);
-    for (const auto& [name, count] : std::initializer_list<std::pair<const char*, std::size_t>>{
-             {"vertices", d.vertices},
-             {"edges", d.edges},
-             {"triangles", d.triangles},
-             {"isolated_vertices", d.isolated_vertices},
-             {"duplicate_vertices", d.duplicate_vertices},
-             {"repeated_corner_triangles", d.repeated_corners},
-             {"degenerate_triangles", d.degenerate_triangles},
-             {"thin_triangles", d.thin_triangles},
-             {"duplicate_triangles", d.duplicate_triangles},
-             {"border_edges", d.border_edges},
-             {"nonmanifold_edges", d.nonmanifold_edges},
-             {"nonmanifold_vertices", d.nonmanifold_vertices},
-             {"misoriented_edges", d.misoriented_edges},
-             {"nonorientable_components", d.nonorientable_components},
-             {"inside_out_components", d.inside_out_components},
-             {"cavities", d.cavities}})
+    for (const auto& [name, count] :
+         std::initializer_list<std::pair<const char*, std::size_t>>{{"vertices", d.vertices},
+                                                                    {"edges", d.edges},
+                                                                    {"triangles", d.triangles},
+                                                                    {"isolated_vertices", d.isolated_vertices},
+                                                                    {"duplicate_vertices", d.duplicate_vertices},
+                                                                    {"repeated_corner_triangles", d.repeated_corners},
+                                                                    {"degenerate_triangles", d.degenerate_triangles},
+                                                                    {"thin_triangles", d.thin_triangles},
+                                                                    {"duplicate_triangles", d.duplicate_triangles},
+                                                                    {"border_edges", d.border_edges},
+                                                                    {"nonmanifold_edges", d.nonmanifold_edges},
+                                                                    {"nonmanifold_vertices", d.nonmanifold_vertices},
+                                                                    {"misoriented_edges", d.misoriented_edges},
+                                                                    {"nonorientable_components", d.nonorientable_components},
+                                                                    {"inside_out_components", d.inside_out_components},
+                                                                    {"cavities", d.cavities}})
         add_member(result, name, whole(count), allocator);
     add_member(result, "closed", JsonValue(d.closed()), allocator);
     add_member(result, "manifold", JsonValue(d.manifold()), allocator);
@@ -146,8 +149,9 @@ std::vector<std::vector<std::string>> to_rows(const MeshDiagnosis& d) {
     count("thin triangles", d.thin_triangles);
     count("duplicate vertices", d.duplicate_vertices);
     count("isolated vertices", d.isolated_vertices);
-    add("self-intersections", !d.self_intersections_checked ? "not checked"
-                                                            : (d.self_intersections_complete ? "" : "at least ") + std::to_string(d.self_intersections));
+    add("self-intersections", !d.self_intersections_checked
+                                  ? "not checked"
+                                  : (d.self_intersections_complete ? "" : "at least ") + std::to_string(d.self_intersections));
     add("area", number(d.area, 8));
     add("volume", number(d.volume, 8) + (d.closed() && d.oriented() ? "" : " (a signed sum: not closed and oriented)"));
     add("edge length", number(d.shortest_edge) + " to " + number(d.longest_edge) + ", mean " + number(d.mean_edge));
@@ -164,6 +168,12 @@ std::vector<std::vector<std::string>> to_rows(const MeshDiagnosis& d) {
                                                                    : "closed, oriented, manifold; self-intersections not checked")
                                    : verdict);
     return rows;
+}
+
+void print_rows(const std::vector<std::vector<std::string>>& rows) {
+    std::size_t width = 0;
+    for (const auto& row : rows) width = std::max(width, row[0].size());
+    for (const auto& row : rows) std::cout << row[0] << std::string(width + 2 - row[0].size(), ' ') << row[1] << '\n';
 }
 
 }  // namespace ostraka::app

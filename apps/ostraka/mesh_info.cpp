@@ -98,7 +98,7 @@ int info(const Session& session, const Arguments& arguments) {
         std::string held;
         for (const auto& name : extras) held += (held.empty() ? "" : ", ") + name;
         rows.insert(rows.end() - 1, {"holds", held.empty() ? "nothing but the geometry" : held});
-        std::cout << table({"", ""}, rows);
+        print_rows(rows);
     }
     return sound ? done : answer_is_no;
 }
@@ -107,8 +107,10 @@ int info(const Session& session, const Arguments& arguments) {
 
 void add_mesh_info(CLI::App& mesh, Session& session) {
     auto arguments = std::make_shared<Arguments>();
-    CLI::App* command = session.add(mesh, "info", "count, measure and examine a mesh; exit code 3 if it is not closed, oriented, manifold and free of self-intersections",
-                                    [&session, arguments] { return info(session, *arguments); });
+    CLI::App* command = session.add(
+        mesh, "info",
+        "count, measure and examine a mesh; exit code 3 if it is not closed, oriented, manifold and free of self-intersections",
+        [&session, arguments] { return info(session, *arguments); });
     command->add_option("input", arguments->input, "mesh to read: .ply, .obj, .off, .stl")->required();
     add_flags(command, arguments->options);
 }

@@ -18,7 +18,8 @@ struct Arguments {
 JsonValue step_json(const RepairStep& step, JsonAllocator& allocator) {
     JsonValue value(rapidjson::kObjectType), counts(rapidjson::kObjectType);
     add_member(value, "step", step.name, allocator);
-    for (const auto& [name, count] : step.counts) add_member(counts, name, JsonValue(static_cast<std::uint64_t>(count)), allocator);
+    for (const auto& [name, count] : step.counts)
+        add_member(counts, name, JsonValue(static_cast<std::uint64_t>(count)), allocator);
     add_member(value, "counts", std::move(counts), allocator);
     return value;
 }
@@ -58,21 +59,19 @@ JsonValue result_json(const RepairResult& repaired, const std::vector<std::strin
 void print_table(const RepairResult& repaired) {
     std::vector<std::vector<std::string>> rows;
     for (const auto& step : repaired.steps) {
-        bool first = true;
-        for (const auto& [name, count] : step.counts) {
-            if (count == 0 && step.counts.size() > 1 && !(first && &name == &step.counts.back().first)) continue;
-            rows.push_back({first ? step.name : "", name, std::to_string(count)});
-            first = false;
-        }
-        if (first) rows.push_back({step.name, "nothing to do", ""});
+        const std::size_t before = rows.size();
+        for (const auto& [name, count] : step.counts)
+            if (count > 0) rows.push_back({rows.size() == before ? step.name : "", name, std::to_string(count)});
+        if (rows.size() == before) rows.push_back({step.name, "nothing to do", "-"});
     }
     std::cout << table({"step", "", "count"}, rows) << '\n';
     std::vector<std::vector<std::string>> after;
     for (auto& row : to_rows(repaired.after))
-        if (row[0] == "vertices" || row[0] == "triangles" || row[0] == "components" || row[0] == "border loops" || row[0] == "area" ||
-            row[0] == "volume" || row[0] == "verdict")
+        if (row[0] == "vertices" || row[0] == "triangles" || row[0] == "components" || row[0] == "border loops" ||
+            row[0] == "area" || row[0] == "volume" || row[0] == "verdict")
             after.push_back(row);
-    std::cout << table({"after", ""}, after);
+    std::cout << "after\n";
+    print_rows(after);
 }
 
 int run_repair(const Session& session, const Arguments& arguments) {
@@ -98,8 +97,10 @@ int run_repair(const Session& session, const Arguments& arguments) {
     std::vector<std::string> notes = read.notes;
     notes.insert(notes.end(), repaired.notes.begin(), repaired.notes.end());
     for (auto& note : write_mesh(arguments.output, repaired.mesh, repaired.extras, writing)) notes.push_back(std::move(note));
-    write_map(arguments.vertex_map, "vertex", repaired.vertex_map, repaired.mesh.number_of_vertices(), repaired.maps_by_distance, provenance);
-    write_map(arguments.face_map, "face", repaired.face_map, repaired.mesh.number_of_faces(), repaired.maps_by_distance, provenance);
+    write_map(arguments.vertex_map, "vertex", repaired.vertex_map, repaired.mesh.number_of_vertices(), repaired.maps_by_distance,
+              provenance);
+    write_map(arguments.face_map, "face", repaired.face_map, repaired.mesh.number_of_faces(), repaired.maps_by_distance,
+              provenance);
 
     for (const auto& note : notes) session.note("note: " + note);
     Json document(rapidjson::kObjectType);
@@ -125,8 +126,9 @@ int run_repair(const Session& session, const Arguments& arguments) {
 
 void add_mesh_repair(CLI::App& mesh, Session& session) {
     auto arguments = std::make_shared<Arguments>();
-    CLI::App* command = session.add(mesh, "repair", "make an oriented manifold; exit code 3 if it is still open or intersects itself",
-                                    [&session, arguments] { return run_repair(session, *arguments); });
+    CLI::App* command =
+        session.add(mesh, "repair", "make an oriented manifold; exit code 3 if it is still open or intersects itself",
+                    [&session, arguments] { return run_repair(session, *arguments); });
     command->add_option("input", arguments->input, "mesh to read: .ply, .obj, .off, .stl")->required();
     command->add_option("output", arguments->output, "mesh to write: .ply, .obj, .off, .stl, .glb")->required();
     command->add_option("--vertex-map", arguments->vertex_map, "JSON file to write: old vertex to new vertex, -1 for dropped");

@@ -99,7 +99,8 @@ private:
     std::vector<std::uint8_t> flip_;
 };
 
-void examine_edges(const TriangleSoup& soup, const SoupEdges& edges, const std::vector<Index>& component, MeshDiagnosis& diagnosis) {
+void examine_edges(const TriangleSoup& soup, const SoupEdges& edges, const std::vector<Index>& component,
+                   MeshDiagnosis& diagnosis) {
     FlipParity parity(soup.triangles.size());
     std::vector<Index> apexes;
     double sum = 0, shortest = std::numeric_limits<double>::infinity(), longest = 0;
@@ -161,7 +162,8 @@ void examine_border(const TriangleSoup& soup, const SoupEdges& edges, detail::Di
         while (edge != no_index) {
             border[edge].used = true;
             const Index h = border[edge].halfedge;
-            walk.back().leaving = {1, std::sqrt(CGAL::squared_distance(point(soup, origin(soup, h)), point(soup, target(soup, h))))};
+            walk.back().leaving = {1,
+                                   std::sqrt(CGAL::squared_distance(point(soup, origin(soup, h)), point(soup, target(soup, h))))};
             if (on_walk[at] != 0) {
                 BorderLoop loop;
                 while (true) {
@@ -232,7 +234,8 @@ void measure(const TriangleSoup& soup, const std::vector<Index>& component, cons
         }
         double longest = 0;
         for (std::size_t k = 0; k < 3; ++k)
-            longest = std::max(longest, CGAL::squared_distance(detail::point(soup, corners[k]), detail::point(soup, corners[(k + 1) % 3])));
+            longest = std::max(
+                longest, CGAL::squared_distance(detail::point(soup, corners[k]), detail::point(soup, corners[(k + 1) % 3])));
         if (2 * area < 1e-9 * diagnosis.diagonal * std::sqrt(longest)) ++diagnosis.thin_triangles;
     }
     for (const auto& part : diagnosis.components) {
@@ -342,8 +345,9 @@ MeshDiagnosis diagnose(const TriangleSoup& soup, const DiagnoseOptions& options)
         diagnosis.self_intersections_checked = true;
         diagnosis.self_intersections_complete = found.complete;
         diagnosis.self_intersections = found.pairs.size();
-        diagnosis.self_intersection_examples.assign(found.pairs.begin(),
-                                                    found.pairs.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(10, found.pairs.size())));
+        diagnosis.self_intersection_examples.assign(
+            found.pairs.begin(),
+            found.pairs.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(10, found.pairs.size())));
         lap("self-intersections");
     }
     return diagnosis;

@@ -32,15 +32,18 @@ std::vector<Vector3d> directions(int count) {
 /// The points farthest along each direction and against it.
 std::vector<Vector3d> extreme_points(const std::vector<Array3>& points, const std::vector<Vector3d>& along) {
     std::vector<Index> extreme(2 * along.size(), 0);
-    parallel_for(along.size(), [&](std::size_t d) {
-        const Vector3d n = along[d];
-        double low = std::numeric_limits<double>::infinity(), high = -low;
-        for (Index v = 0; v < points.size(); ++v) {
-            const double height = n[0] * points[v][0] + n[1] * points[v][1] + n[2] * points[v][2];
-            if (height < low) low = height, extreme[2 * d] = v;
-            if (height > high) high = height, extreme[2 * d + 1] = v;
-        }
-    }, 4);
+    parallel_for(
+        along.size(),
+        [&](std::size_t d) {
+            const Vector3d n = along[d];
+            double low = std::numeric_limits<double>::infinity(), high = -low;
+            for (Index v = 0; v < points.size(); ++v) {
+                const double height = n[0] * points[v][0] + n[1] * points[v][1] + n[2] * points[v][2];
+                if (height < low) low = height, extreme[2 * d] = v;
+                if (height > high) high = height, extreme[2 * d + 1] = v;
+            }
+        },
+        4);
     std::sort(extreme.begin(), extreme.end());
     extreme.erase(std::unique(extreme.begin(), extreme.end()), extreme.end());
     std::vector<Vector3d> list;
@@ -49,7 +52,8 @@ std::vector<Vector3d> extreme_points(const std::vector<Array3>& points, const st
 }
 
 std::vector<Vector2d> convex_hull(std::vector<Vector2d> p) {
-    std::sort(p.begin(), p.end(), [](const Vector2d& a, const Vector2d& b) { return a[0] < b[0] || (a[0] == b[0] && a[1] < b[1]); });
+    std::sort(p.begin(), p.end(),
+              [](const Vector2d& a, const Vector2d& b) { return a[0] < b[0] || (a[0] == b[0] && a[1] < b[1]); });
     std::vector<Vector2d> hull;
     const auto left = [&](const Vector2d& q) {
         const Vector2d u = hull.back() - hull[hull.size() - 2], w = q - hull.back();
@@ -132,7 +136,8 @@ OrientedBox oriented_box(const std::vector<Array3>& points) {
         tried.push_back(principal.eigenvectors().col(k).normalized());
     }
     std::vector<Candidate> candidates(tried.size());
-    parallel_for(tried.size(), [&](std::size_t i) { candidates[i] = box_across(tried[i], extreme); }, 16);
+    parallel_for(
+        tried.size(), [&](std::size_t i) { candidates[i] = box_across(tried[i], extreme); }, 16);
     std::stable_sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) { return a.volume < b.volume; });
     candidates.resize(4);
     for (Candidate& best : candidates)
@@ -141,13 +146,15 @@ OrientedBox oriented_box(const std::vector<Array3>& points) {
             for (int k = 0; k < 8; ++k) {
                 const Vector3d u = best.side, w = best.normal.cross(u);
                 const double turn = k * std::numbers::pi / 4;
-                const Candidate next = box_across((best.normal + step * (std::cos(turn) * u + std::sin(turn) * w)).normalized(), extreme);
+                const Candidate next =
+                    box_across((best.normal + step * (std::cos(turn) * u + std::sin(turn) * w)).normalized(), extreme);
                 if (next.volume < better.volume) better = next;
             }
             if (better.volume < best.volume) best = better;
             else step /= 2;
         }
-    const Candidate best = *std::min_element(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) { return a.volume < b.volume; });
+    const Candidate best =
+        *std::min_element(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) { return a.volume < b.volume; });
 
     const std::array<Vector3d, 3> axes{best.side, best.normal.cross(best.side).normalized(), best.normal};
     std::array<double, 3> low, high;

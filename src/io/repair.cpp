@@ -22,7 +22,8 @@ std::size_t count_of(const detail::Counts& counts, const std::string& name) {
 void check_triangles(const TriangleSoup& soup) {
     detail::check_soup(soup);
     if (soup.triangles.empty())
-        fail_input("mesh", soup.points.empty() ? "is empty" : "has " + std::to_string(soup.points.size()) + " points and no faces",
+        fail_input("mesh",
+                   soup.points.empty() ? "is empty" : "has " + std::to_string(soup.points.size()) + " points and no faces",
                    "give a file with faces; points alone are not a surface");
     for (const auto& t : soup.triangles)
         if (!detail::has_no_area(soup, t)) return;
@@ -30,7 +31,8 @@ void check_triangles(const TriangleSoup& soup) {
 }
 
 /// Members of `values` for each new element, like the old element named.
-template <class Value> std::vector<Value> carried(const std::vector<Value>& values, const std::vector<Index>& like) {
+template <class Value>
+std::vector<Value> carried(const std::vector<Value>& values, const std::vector<Index>& like) {
     std::vector<Value> result;
     if (values.empty()) return result;
     result.reserve(like.size());
@@ -112,9 +114,8 @@ void wrap(Worksoup& work, const TriangleSoup& original, const RepairOptions& opt
     });
     result.vertex_map.assign(original.points.size(), no_index);
     result.face_map.assign(original.triangles.size(), no_index);
-    parallel_for(original.triangles.size(), [&](std::size_t t) {
-        result.face_map[t] = new_tree.nearest(middle(original, static_cast<Index>(t))).triangle;
-    });
+    parallel_for(original.triangles.size(),
+                 [&](std::size_t t) { result.face_map[t] = new_tree.nearest(middle(original, static_cast<Index>(t))).triangle; });
     std::vector<std::uint8_t> used(original.points.size(), 0);
     for (const auto& t : original.triangles)
         for (const Index v : t) used[v] = 1;
@@ -157,14 +158,14 @@ RepairResult repair(const TriangleSoup& original, const MeshExtras& extras, cons
     step("turn outwards", detail::turn_outwards(work));
     step("isolated vertices", {{"dropped", work.drop_isolated(options.keep_isolated)}});
     if (options.fill_holes > 0) {
-        step("fill holes", detail::fill_holes(work, {static_cast<std::size_t>(options.fill_holes), options.fill_holes_size, false}));
+        step("fill holes",
+             detail::fill_holes(work, {static_cast<std::size_t>(options.fill_holes), options.fill_holes_size, false}));
         step("turn outwards, once closed", detail::turn_outwards(work));
         const auto& flat = step("fillings without area", detail::flip_degenerate(work));
         if (count_of(flat, "border triangles dropped") > 0) detail::take_apart(work);
     }
     if (work.soup.triangles.empty()) fail_input("mesh", "has no face with an area left", "look at the file's coordinates");
-    if (options.remove_self_intersections)
-        step("self-intersections", detail::remove_self_intersections(work, result.notes));
+    if (options.remove_self_intersections) step("self-intersections", detail::remove_self_intersections(work, result.notes));
     if (options.wrap) {
         wrap(work, original, options, result);
     } else {
@@ -172,11 +173,19 @@ RepairResult repair(const TriangleSoup& original, const MeshExtras& extras, cons
         result.face_map = inverted(work.face_source, work.duplicate_of);
     }
     if (try_build_mesh(work.soup, result.mesh).any())
-        throw Error(ErrorKind::failure, "mesh", "could not be made an oriented manifold", "try --wrap, and please report the file");
+        throw Error(ErrorKind::failure, "mesh", "could not be made an oriented manifold",
+                    "try --wrap, and please report the file");
     result.extras = carry_extras(extras, work);
     result.vertex_source = std::move(work.vertex_source);
     result.face_source = std::move(work.face_source);
     result.after = diagnose(work.soup);
+    if (result.after.border_edges > 0)
+        result.notes.emplace_back(
+            "holes are left (close wider or longer ones with --fill-holes-size 1 --fill-holes N, or use --wrap)");
+    if (result.after.self_intersections > 0)
+        result.notes.emplace_back(options.remove_self_intersections
+                                      ? "intersecting triangles are left (use --wrap)"
+                                      : "triangles intersect (use --remove-self-intersections or --wrap)");
     return result;
 }
 

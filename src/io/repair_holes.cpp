@@ -13,7 +13,7 @@ namespace ostraka::detail {
 namespace {
 
 /// The border of one hole: halfedges of the triangles around it in the order in which those run, that is clockwise seen
-/// from outside. The last ends at the place where the first begins, if not at the same vertex.
+/// from outside. Each ends at the place where the next begins, if not at the same vertex.
 using Hole = std::vector<Index>;
 
 std::vector<Hole> find_holes(const TriangleSoup& soup, const std::vector<Index>& opposite, const std::vector<Index>& place) {
@@ -162,8 +162,9 @@ private:
                     const Vector across = filling_normal(ring[i], ring[m], ring[k]);
                     const double length = std::sqrt(across.squared_length());
                     const Vector direction = length > 0 ? across / length : across;
-                    Weight own{std::max({left.bend, right.bend, 1 - direction * normals[i * n + m], 1 - direction * normals[m * n + k]}),
-                               left.area + right.area + length / 2};
+                    Weight own{
+                        std::max({left.bend, right.bend, 1 - direction * normals[i * n + m], 1 - direction * normals[m * n + k]}),
+                        left.area + right.area + length / 2};
                     if (closing) own.bend = std::max(own.bend, 1 - direction * outside_[ring[k]]);
                     if (length == 0) own.bend = std::max(own.bend, 3.0);  // without area: the last resort
                     if (own < weight[i * n + k]) {
@@ -194,9 +195,26 @@ private:
     std::vector<Vector> outside_;  ///< unit normal of the triangle at the side from a position to the next
 };
 
+/// Diameter of the disc whose area is that of the fan of triangles from the middle of the border: a slit has none.
+double width(const TriangleSoup& soup, const Hole& hole) {
+    Vector middle(0, 0, 0);
+    const Point base = point(soup, origin(soup, hole.front()));
+    for (const Index h : hole) middle += (point(soup, origin(soup, h)) - base) / static_cast<double>(hole.size());
+    double area = 0;
+    for (const Index h : hole) {
+        const Vector a = point(soup, origin(soup, h)) - base - middle, b = point(soup, target(soup, h)) - base - middle;
+        area += std::sqrt(CGAL::cross_product(a, b).squared_length()) / 2;
+    }
+    return 2 * std::sqrt(area / CGAL_PI);
+}
+
 }  // namespace
 
-Counts fill_holes(Worksoup& work, const HoleLimits& limits) {
+namespace {
+
+/// Fills the holes within the limits but for those in `skip` (by their first halfedge). `hole_of` gets the first halfedge of the
+/// hole for each triangle added.
+Counts fill_once(Worksoup& work, const HoleLimits& limits, const std::vector<Index>& skip, std::vector<Index>& hole_of) {
     auto& soup = work.soup;
     const std::vector<Index> opposite = pair_manifold(soup);
     const std::vector<Index> place = same_place(soup.points);
@@ -212,19 +230,17 @@ Counts fill_holes(Worksoup& work, const HoleLimits& limits) {
     std::size_t filled = 0, triangles = 0, too_long = 0, too_wide = 0, refused = 0;
     std::vector<const Hole*> chosen;
     for (const Hole& hole : holes) {
-        CGAL::Bbox_3 box;
         std::size_t touched = 0;
-        for (const Index h : hole) {
-            box += point(soup, origin(soup, h)).bbox();
-            touched += work.touched[origin(soup, h)];
-        }
+        for (const Index h : hole) touched += work.touched[origin(soup, h)];
         if (limits.only_touched && 2 * touched < hole.size()) continue;
+        if (std::binary_search(skip.begin(), skip.end(), hole.front())) continue;
         if (hole.size() > limits.edges) ++too_long;
-        else if (diagonal(box) > limits.share * diagonal(boxes[sets.find(origin(soup, hole[0]))])) ++too_wide;
+        else if (width(soup, hole) > limits.share * diagonal(boxes[sets.find(origin(soup, hole[0]))])) ++too_wide;
         else chosen.push_back(&hole);
     }
     std::vector<std::vector<Triple>> fillings(chosen.size());
-    parallel_for(chosen.size(), [&](std::size_t i) { fillings[i] = HoleFiller(soup, opposite, *chosen[i]).run(); }, 1);
+    parallel_for(
+        chosen.size(), [&](std::size_t i) { fillings[i] = HoleFiller(soup, opposite, *chosen[i]).run(); }, 1);
     for (std::size_t i = 0; i < chosen.size(); ++i) {
         const Hole& hole = *chosen[i];
         if (fillings[i].empty()) {
@@ -236,18 +252,23 @@ Counts fill_holes(Worksoup& work, const HoleLimits& limits) {
         for (const auto& [a, b, c] : fillings[i]) {
             const Index like = hole[a] / 3;  // the triangle beside its first corner
             const auto corner = [&](Index p) { return work.corner_like[hole[p] / 3][hole[p] % 3]; };
-            work.add_triangle({origin(soup, hole[a]), origin(soup, hole[c]), origin(soup, hole[b])}, no_index, work.face_like[like],
-                              {corner(a), corner(c), corner(b)}, work.flipped[like] != 0);
+            hole_of.push_back(hole.front());
+            work.add_triangle({origin(soup, hole[a]), origin(soup, hole[c]), origin(soup, hole[b])}, no_index,
+                              work.face_like[like], {corner(a), corner(c), corner(b)}, work.flipped[like] != 0);
         }
     }
-    // Where a hole closes at two copies of a vertex, its filling joins their fans.
+    // Where a hole goes from one copy of a vertex to another, its filling joins their fans.
     std::size_t rejoined = 0;
     DisjointSets copies(soup.points.size());
     for (std::size_t i = 0; i < chosen.size(); ++i) {
-        const Index first = origin(soup, chosen[i]->front()), last = target(soup, chosen[i]->back());
-        if (fillings[i].empty() || first == last) continue;
-        copies.unite(first, last);
-        ++rejoined;
+        if (fillings[i].empty()) continue;
+        const Hole& hole = *chosen[i];
+        for (std::size_t k = 0; k < hole.size(); ++k) {
+            const Index end = target(soup, hole[k]), start = origin(soup, hole[(k + 1) % hole.size()]);
+            if (copies.find(end) == copies.find(start)) continue;
+            copies.unite(end, start);
+            ++rejoined;
+        }
     }
     if (rejoined > 0) {
         for (auto& t : soup.triangles)
@@ -262,6 +283,31 @@ Counts fill_holes(Worksoup& work, const HoleLimits& limits) {
             {"left: too many edges", too_long},
             {"left: too wide", too_wide},
             {"left: no filling", refused}};
+}
+
+}  // namespace
+
+Counts fill_holes(Worksoup& work, const HoleLimits& limits) {
+    std::vector<Index> skip, hole_of;
+    if (limits.only_touched) return fill_once(work, limits, skip, hole_of);  // the caller examines the result
+    const Worksoup before = work;
+    Counts counts = fill_once(work, limits, skip, hole_of);
+    if (!hole_of.empty()) {
+        // A filling that runs into the surface, or into another one, is worse than a hole.
+        const std::size_t first = before.soup.triangles.size();
+        for (const auto& [a, b] : ostraka::self_intersections(work.soup, 1'000'000).pairs)
+            for (const Index t : {a, b})
+                if (t >= first && t - first < hole_of.size()) skip.push_back(hole_of[t - first]);
+        std::sort(skip.begin(), skip.end());
+        skip.erase(std::unique(skip.begin(), skip.end()), skip.end());
+        if (!skip.empty()) {
+            work = before;
+            hole_of.clear();
+            counts = fill_once(work, limits, skip, hole_of);
+        }
+    }
+    counts.emplace_back("left: a filling would intersect", skip.size());
+    return counts;
 }
 
 }  // namespace ostraka::detail

@@ -21,7 +21,8 @@ struct Worksoup {
     explicit Worksoup(const TriangleSoup& original);
     [[nodiscard]] Index triangle_count() const { return static_cast<Index>(soup.triangles.size()); }
     Index add_vertex(const std::array<double, 3>& place, Index source, Index like, bool is_touched);
-    void add_triangle(const std::array<Index, 3>& corners, Index source, Index like, const std::array<Index, 3>& corners_like, bool is_flipped);
+    void add_triangle(const std::array<Index, 3>& corners, Index source, Index like, const std::array<Index, 3>& corners_like,
+                      bool is_flipped);
     void flip(Index triangle);
     void keep_triangles(const std::vector<std::uint8_t>& keep);
     /// Drops vertices without a triangle but those with `keep`; returns how many.
@@ -44,7 +45,7 @@ Counts turn_outwards(Worksoup& work);
 
 struct HoleLimits {
     std::size_t edges;
-    double share;       ///< of the component's diagonal
+    double share;       ///< widest, as a share of the component's diagonal
     bool only_touched;  ///< only holes made by cutting out
 };
 Counts fill_holes(Worksoup& work, const HoleLimits& limits);

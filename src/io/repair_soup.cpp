@@ -31,8 +31,8 @@ Index Worksoup::add_vertex(const std::array<double, 3>& place, Index source, Ind
     return static_cast<Index>(soup.points.size() - 1);
 }
 
-void Worksoup::add_triangle(const std::array<Index, 3>& corners, Index source, Index like, const std::array<Index, 3>& corners_like,
-                            bool is_flipped) {
+void Worksoup::add_triangle(const std::array<Index, 3>& corners, Index source, Index like,
+                            const std::array<Index, 3>& corners_like, bool is_flipped) {
     soup.triangles.push_back(corners);
     face_source.push_back(source);
     face_like.push_back(like);
@@ -68,9 +68,15 @@ std::size_t Worksoup::drop_isolated(bool keep_original) {
     std::vector<std::uint8_t> keep(soup.points.size(), 0);
     for (const auto& t : soup.triangles)
         for (const Index v : t) keep[v] = 1;
-    if (keep_original)
+    if (keep_original) {  // once: not the copies of vertices that were taken apart and rejoined
+        std::vector<std::uint8_t> present(merged_into.size(), 0);
         for (std::size_t v = 0; v < keep.size(); ++v)
-            if (vertex_source[v] != no_index && merged_into[vertex_source[v]] == vertex_source[v]) keep[v] = 1;
+            if (keep[v] != 0 && vertex_source[v] != no_index) present[vertex_source[v]] = 1;
+        for (std::size_t v = 0; v < keep.size(); ++v) {
+            const Index source = vertex_source[v];
+            if (source != no_index && merged_into[source] == source && present[source] == 0) keep[v] = present[source] = 1;
+        }
+    }
     std::vector<Index> renumbered(soup.points.size(), no_index);
     Index next = 0;
     for (std::size_t v = 0; v < keep.size(); ++v) {
@@ -123,7 +129,8 @@ std::vector<std::uint8_t> vertices_of_open_components(const TriangleSoup& soup) 
 
 /// For each point the point it is merged into: the first one met (in index order) within the distance that was itself kept.
 /// Cells of the distance's size are searched with their neighbours.
-std::vector<Index> merge_near(const std::vector<std::array<double, 3>>& points, const std::vector<std::uint8_t>& candidate, double distance) {
+std::vector<Index> merge_near(const std::vector<std::array<double, 3>>& points, const std::vector<std::uint8_t>& candidate,
+                              double distance) {
     struct Cell {
         long long x, y, z;
         bool operator==(const Cell&) const = default;
@@ -144,14 +151,17 @@ std::vector<Index> merge_near(const std::vector<std::array<double, 3>>& points, 
     std::unordered_map<Cell, std::vector<Index>, Hash> cells;
     for (Index v = 0; v < points.size(); ++v) {
         if (candidate[v] == 0) continue;
-        const auto coordinate = [&](std::size_t k) { return static_cast<long long>(std::min((points[v][k] - low[k]) / distance, 1e18)); };
+        const auto coordinate = [&](std::size_t k) {
+            return static_cast<long long>(std::min((points[v][k] - low[k]) / distance, 1e18));
+        };
         const Cell cell{coordinate(0), coordinate(1), coordinate(2)};
         Index best = no_index;
         for (long long i = 0; i < 27; ++i) {
             const auto found = cells.find({cell.x + i / 9 - 1, cell.y + i / 3 % 3 - 1, cell.z + i % 3 - 1});
             if (found == cells.end()) continue;
             for (const Index other : found->second) {
-                const double dx = points[v][0] - points[other][0], dy = points[v][1] - points[other][1], dz = points[v][2] - points[other][2];
+                const double dx = points[v][0] - points[other][0], dy = points[v][1] - points[other][1],
+                             dz = points[v][2] - points[other][2];
                 if (dx * dx + dy * dy + dz * dz <= distance * distance) best = std::min(best, other);
             }
         }
@@ -242,7 +252,8 @@ Counts drop_bad_triangles(Worksoup& work) {
                 work.duplicate_of[work.face_source[group[j].triangle]] = work.face_source[first];
                 ++duplicates;
             }
-            if (kept[0] != no_index && kept[1] != no_index) opposite_pairs.emplace_back(std::min(kept[0], kept[1]), std::max(kept[0], kept[1]));
+            if (kept[0] != no_index && kept[1] != no_index)
+                opposite_pairs.emplace_back(std::min(kept[0], kept[1]), std::max(kept[0], kept[1]));
             i = j;
         }
     }
@@ -279,7 +290,9 @@ Counts drop_components(Worksoup& work, bool only_largest, double smallest_share)
     std::size_t count = 0, dropped = 0;
     for (Index v = 0; v < share.size(); ++v)
         if (has_triangle[v] != 0 && (largest == no_index || share[v] > share[largest])) largest = v;
-    const auto stays = [&](Index root) { return only_largest ? root == largest : root == largest || share[root] >= smallest_share * total; };
+    const auto stays = [&](Index root) {
+        return only_largest ? root == largest : root == largest || share[root] >= smallest_share * total;
+    };
     for (Index v = 0; v < share.size(); ++v)
         if (has_triangle[v] != 0) ++count, dropped += !stays(v);
     std::vector<std::uint8_t> keep(soup.triangles.size(), 1);

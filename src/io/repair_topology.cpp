@@ -70,7 +70,8 @@ struct Joints {
         const Index t = h / 3, p = previous_halfedge(h), a = origin(soup, h), c = apex(soup, h);
         const auto like = work.corner_like[t];
         const auto added = static_cast<Index>(soup.triangles.size());
-        work.add_triangle({a, m, c}, work.face_source[t], work.face_like[t], {like[h % 3], like[h % 3], like[p % 3]}, work.flipped[t] != 0);
+        work.add_triangle({a, m, c}, work.face_source[t], work.face_like[t], {like[h % 3], like[h % 3], like[p % 3]},
+                          work.flipped[t] != 0);
         soup.triangles[t][h % 3] = m;
         opposite.resize(opposite.size() + 3, no_index);
         join(3 * added + 2, opposite[p]);

@@ -14,7 +14,8 @@ namespace {
 using detail::point;
 
 /// Does segment pq, whose end points lie on the sides `p_side` and `q_side` of the triangle's plane, meet the triangle?
-bool segment_meets(const Point& p, const Point& q, CGAL::Orientation p_side, CGAL::Orientation q_side, const std::array<Point, 3>& t) {
+bool segment_meets(const Point& p, const Point& q, CGAL::Orientation p_side, CGAL::Orientation q_side,
+                   const std::array<Point, 3>& t) {
     if (p_side == q_side && p_side != CGAL::COPLANAR) return false;
     if (p_side == CGAL::COPLANAR && q_side == CGAL::COPLANAR)
         return CGAL::do_intersect(Kernel::Segment_3(p, q), Kernel::Triangle_3(t[0], t[1], t[2]));
@@ -44,7 +45,8 @@ bool disjoint_triangles_meet(const std::array<Point, 3>& s, const std::array<Poi
         return CGAL::do_intersect(Kernel::Triangle_3(s[0], s[1], s[2]), Kernel::Triangle_3(t[0], t[1], t[2]));
     for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t l = (k + 1) % 3;
-        if (segment_meets(s[k], s[l], s_sides[k], s_sides[l], t) || segment_meets(t[k], t[l], t_sides[k], t_sides[l], s)) return true;
+        if (segment_meets(s[k], s[l], s_sides[k], s_sides[l], t) || segment_meets(t[k], t[l], t_sides[k], t_sides[l], s))
+            return true;
     }
     return false;
 }
@@ -101,7 +103,7 @@ SelfIntersections detail::self_intersections(const TriangleSoup& soup, const std
     const TriangleTree tree(soup);
     const PairTest meets(soup, place);
     // Fixed batches and fixed budgets: where the search is given up does not depend on the threads.
-    constexpr std::size_t batch = 2048, tests_of_leaf = 1 << 17, pairs_of_leaf = 1 << 14;
+    constexpr std::size_t batch = 8192, tests_of_leaf = 1 << 17, pairs_of_leaf = 4096;
     const std::size_t most_tests = 400 * soup.triangles.size() + 50'000'000;
     const std::size_t leaves = tree.leaf_count();
     std::vector<std::vector<std::pair<Index, Index>>> found(std::min(batch, leaves));
@@ -109,15 +111,18 @@ SelfIntersections detail::self_intersections(const TriangleSoup& soup, const std
     std::size_t tests = 0;
     for (std::size_t begin = 0; begin < leaves && result.complete; begin += batch) {
         const std::size_t count = std::min(batch, leaves - begin);
-        parallel_for(count, [&](std::size_t i) {
-            found[i].clear();
-            tested[i] = 0;
-            tree.pairs_of_leaf(static_cast<Index>(begin + i), [&](Index a, Index b) {
-                if (without_area[a] != 0 || without_area[b] != 0) return true;
-                if (meets(a, b)) found[i].emplace_back(std::min(a, b), std::max(a, b));
-                return ++tested[i] < tests_of_leaf && found[i].size() < pairs_of_leaf;
-            });
-        }, 64);
+        parallel_for(
+            count,
+            [&](std::size_t i) {
+                found[i].clear();
+                tested[i] = 0;
+                tree.pairs_of_leaf(static_cast<Index>(begin + i), [&](Index a, Index b) {
+                    if (without_area[a] != 0 || without_area[b] != 0) return true;
+                    if (meets(a, b)) found[i].emplace_back(std::min(a, b), std::max(a, b));
+                    return ++tested[i] < tests_of_leaf && found[i].size() < pairs_of_leaf;
+                });
+            },
+            64);
         for (std::size_t i = 0; i < count; ++i) {
             result.pairs.insert(result.pairs.end(), found[i].begin(), found[i].end());
             tests += tested[i];

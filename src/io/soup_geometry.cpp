@@ -19,7 +19,8 @@ bool has_no_area(const TriangleSoup& soup, const std::array<Index, 3>& t) {
 
 std::vector<std::uint8_t> triangles_without_area(const TriangleSoup& soup) {
     std::vector<std::uint8_t> none(soup.triangles.size(), 0);
-    parallel_for(none.size(), [&](std::size_t t) { none[t] = has_no_area(soup, soup.triangles[t]) ? 1 : 0; }, 4096);
+    parallel_for(
+        none.size(), [&](std::size_t t) { none[t] = has_no_area(soup, soup.triangles[t]) ? 1 : 0; }, 4096);
     return none;
 }
 
@@ -45,7 +46,8 @@ bool crossing_parity(const TriangleSoup& soup, const TriangleTree& tree, const s
         if (!clean || component[t] == no_index || component[t] == own) return;
         const auto& [a, b, c] = soup.triangles[t];
         const Point p = point(soup, a), q = point(soup, b), r = point(soup, c);
-        const auto u = CGAL::orientation(from, to, p, q), v = CGAL::orientation(from, to, q, r), w = CGAL::orientation(from, to, r, p);
+        const auto u = CGAL::orientation(from, to, p, q), v = CGAL::orientation(from, to, q, r),
+                   w = CGAL::orientation(from, to, r, p);
         if (u == CGAL::COPLANAR && v == CGAL::COPLANAR && w == CGAL::COPLANAR) return clean = false, void();
         const bool positive = u == CGAL::POSITIVE || v == CGAL::POSITIVE || w == CGAL::POSITIVE;
         const bool negative = u == CGAL::NEGATIVE || v == CGAL::NEGATIVE || w == CGAL::NEGATIVE;
@@ -80,29 +82,32 @@ std::vector<std::uint8_t> enclosed_components(const TriangleSoup& soup, const st
     }
     const TriangleTree tree(soup);
     const double reach = 2 * diagonal(box_of_triangles(soup));
-    parallel_for(inner.size(), [&](std::size_t i) {
-        const Index own = inner[i];
-        // The component's own triangles do not matter, so the ray may start on one of them.
-        const auto& t = soup.triangles[first_triangle[own]];
-        const Point start = CGAL::centroid(point(soup, t[0]), point(soup, t[1]), point(soup, t[2]));
-        // Fixed directions without any special position; the next one is taken if a ray grazes an edge.
-        for (int attempt = 0; attempt < 16; ++attempt) {
-            const double s = 0.7316 + attempt * 0.3947, z = std::cos(1.13 + attempt * 0.717);
-            const double r = std::sqrt(1 - z * z);
-            const Point end = start + reach * Vector(r * std::cos(s), r * std::sin(s), z);
-            std::vector<std::pair<Index, bool>> parity;
-            if (!crossing_parity(soup, tree, component_of_triangle, own, start, end, parity) && attempt < 15) continue;
-            bool inside = false;
-            for (const auto& [other, odd] : parity) {
-                if (!odd || !closed[other]) continue;
-                const auto &a = boxes[own], &b = boxes[other];
-                inside = inside || (a.xmin() >= b.xmin() && a.xmax() <= b.xmax() && a.ymin() >= b.ymin() && a.ymax() <= b.ymax() &&
-                                    a.zmin() >= b.zmin() && a.zmax() <= b.zmax());
+    parallel_for(
+        inner.size(),
+        [&](std::size_t i) {
+            const Index own = inner[i];
+            // The component's own triangles do not matter, so the ray may start on one of them.
+            const auto& t = soup.triangles[first_triangle[own]];
+            const Point start = CGAL::centroid(point(soup, t[0]), point(soup, t[1]), point(soup, t[2]));
+            // Fixed directions without any special position; the next one is taken if a ray grazes an edge.
+            for (int attempt = 0; attempt < 16; ++attempt) {
+                const double s = 0.7316 + attempt * 0.3947, z = std::cos(1.13 + attempt * 0.717);
+                const double r = std::sqrt(1 - z * z);
+                const Point end = start + reach * Vector(r * std::cos(s), r * std::sin(s), z);
+                std::vector<std::pair<Index, bool>> parity;
+                if (!crossing_parity(soup, tree, component_of_triangle, own, start, end, parity) && attempt < 15) continue;
+                bool inside = false;
+                for (const auto& [other, odd] : parity) {
+                    if (!odd || !closed[other]) continue;
+                    const auto &a = boxes[own], &b = boxes[other];
+                    inside = inside || (a.xmin() >= b.xmin() && a.xmax() <= b.xmax() && a.ymin() >= b.ymin() &&
+                                        a.ymax() <= b.ymax() && a.zmin() >= b.zmin() && a.zmax() <= b.zmax());
+                }
+                enclosed[own] = inside ? 1 : 0;
+                break;
             }
-            enclosed[own] = inside ? 1 : 0;
-            break;
-        }
-    }, 8);
+        },
+        8);
     return enclosed;
 }
 

@@ -56,28 +56,35 @@ TriangleTree::TriangleTree(const TriangleSoup& soup) : soup_(soup) {
     scale_ = side > 1e-290 ? 1 / side : 1;
 
     std::vector<std::pair<std::uint64_t, Index>> codes(count);
-    parallel_for(count, [&](std::size_t t) {
-        const auto& [a, b, c] = soup.triangles[t];
-        std::uint64_t code = 0;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const double middle = (soup.points[a][k] - low[k]) / 3 + (soup.points[b][k] - low[k]) / 3 + (soup.points[c][k] - low[k]) / 3;
-            code |= spread(static_cast<std::uint64_t>(std::clamp(middle * scale_, 0.0, 1.0) * 65535)) << k;
-        }
-        codes[t] = {code, static_cast<Index>(t)};
-    }, 4096);
+    parallel_for(
+        count,
+        [&](std::size_t t) {
+            const auto& [a, b, c] = soup.triangles[t];
+            std::uint64_t code = 0;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const double middle =
+                    (soup.points[a][k] - low[k]) / 3 + (soup.points[b][k] - low[k]) / 3 + (soup.points[c][k] - low[k]) / 3;
+                code |= spread(static_cast<std::uint64_t>(std::clamp(middle * scale_, 0.0, 1.0) * 65535)) << k;
+            }
+            codes[t] = {code, static_cast<Index>(t)};
+        },
+        4096);
     order_ = sorted_by_code(codes);
 
     boxes_.resize(count);
-    parallel_for(count, [&](std::size_t i) {
-        const auto& [a, b, c] = soup.triangles[order_[i]];
-        const auto &p = soup.points[a], &q = soup.points[b], &r = soup.points[c];
-        std::array<double, 3> from, to;
-        for (std::size_t k = 0; k < 3; ++k) {
-            from[k] = std::min({p[k], q[k], r[k]});
-            to[k] = std::max({p[k], q[k], r[k]});
-        }
-        boxes_[i] = scaled_box(from, to);
-    }, 4096);
+    parallel_for(
+        count,
+        [&](std::size_t i) {
+            const auto& [a, b, c] = soup.triangles[order_[i]];
+            const auto &p = soup.points[a], &q = soup.points[b], &r = soup.points[c];
+            std::array<double, 3> from, to;
+            for (std::size_t k = 0; k < 3; ++k) {
+                from[k] = std::min({p[k], q[k], r[k]});
+                to[k] = std::max({p[k], q[k], r[k]});
+            }
+            boxes_[i] = scaled_box(from, to);
+        },
+        4096);
     const std::vector<Box>* below = &boxes_;
     do {
         std::vector<Box> level((below->size() + fan - 1) / fan);
@@ -132,7 +139,8 @@ void TriangleTree::pairs_of_leaf(Index leaf, const std::function<bool(Index, Ind
         }
         const unsigned span = 2 * (node.level - 1);  // a node of that level covers 4^level leaves
         for (Index i = end; i-- > begin;)
-            if ((static_cast<std::uint64_t>(i + 1) << span) > leaf && overlap(own, below[i])) stack.push_back({node.level - 1, i});
+            if ((static_cast<std::uint64_t>(i + 1) << span) > leaf && overlap(own, below[i]))
+                stack.push_back({node.level - 1, i});
     }
 }
 
@@ -167,7 +175,8 @@ void TriangleTree::along_segment(const Point& from, const Point& to, const std::
             continue;
         }
         const std::size_t size = level == 1 ? boxes_.size() : levels_[level - 2].size();
-        for (Index i = std::min(static_cast<Index>(size), (number + 1) * fan); i-- > number * fan;) stack.emplace_back(level - 1, i);
+        for (Index i = std::min(static_cast<Index>(size), (number + 1) * fan); i-- > number * fan;)
+            stack.emplace_back(level - 1, i);
     }
 }
 
@@ -180,7 +189,8 @@ TriangleTree::Nearest TriangleTree::nearest(const Point& query) const {
     const auto bound = [&](const Box& box) {  // squared distance in the mesh's unit
         double sum = 0;
         for (std::size_t k = 0; k < 3; ++k) {
-            const double d = std::max({static_cast<double>(box.low[k]) - q[k], q[k] - static_cast<double>(box.high[k]), 0.0}) / scale_;
+            const double d =
+                std::max({static_cast<double>(box.low[k]) - q[k], q[k] - static_cast<double>(box.high[k]), 0.0}) / scale_;
             sum += d * d;
         }
         return sum * (1 - 1e-12);
@@ -231,7 +241,8 @@ double squared_distance_to_triangle(const Point& p, const Point& a, const Point&
         const double height = (p - a) * n;
         return height * height / length;
     }
-    return std::min({squared_distance_to_segment(p, a, b), squared_distance_to_segment(p, b, c), squared_distance_to_segment(p, c, a)});
+    return std::min(
+        {squared_distance_to_segment(p, a, b), squared_distance_to_segment(p, b, c), squared_distance_to_segment(p, c, a)});
 }
 
 }  // namespace ostraka::detail

@@ -1,6 +1,6 @@
+#include "ostraka/io/diagnose.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
-#include "ostraka/io/diagnose.h"
 #include "soups.h"
 
 #include <gtest/gtest.h>
@@ -199,7 +199,8 @@ TEST(SelfIntersections, AgreeWithAllPairsOnRandomTriangles) {
                     for (const auto& y : q) shared += x == y;
                 const bool listed = std::find(found.begin(), found.end(), std::pair{a, b}) != found.end();
                 if (shared == 0) {
-                    EXPECT_EQ(listed, CGAL::do_intersect(Kernel::Triangle_3(p[0], p[1], p[2]), Kernel::Triangle_3(q[0], q[1], q[2])))
+                    EXPECT_EQ(listed,
+                              CGAL::do_intersect(Kernel::Triangle_3(p[0], p[1], p[2]), Kernel::Triangle_3(q[0], q[1], q[2])))
                         << trial << " " << a << " " << b;
                 } else if (shared == 3) {
                     EXPECT_TRUE(listed);
@@ -207,7 +208,8 @@ TEST(SelfIntersections, AgreeWithAllPairsOnRandomTriangles) {
                     // The part shared is more than what joins them if it holds a point away from it: a proper crossing shows
                     // between one triangle and the other shrunk a little away from the shared corners.
                     if (listed) {
-                        EXPECT_TRUE(CGAL::do_intersect(Kernel::Triangle_3(p[0], p[1], p[2]), Kernel::Triangle_3(q[0], q[1], q[2])));
+                        EXPECT_TRUE(
+                            CGAL::do_intersect(Kernel::Triangle_3(p[0], p[1], p[2]), Kernel::Triangle_3(q[0], q[1], q[2])));
                     }
                 }
             }
@@ -215,7 +217,8 @@ TEST(SelfIntersections, AgreeWithAllPairsOnRandomTriangles) {
 }
 
 TEST(SelfIntersections, SharedVertexAndEdge) {
-    const std::vector<Place> p{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {1, 1, -1}, {1, 1, 1}, {-1, -1, 0}, {-1, 0, 1}, {1, 0.5, 0}, {0, 0, 3}};
+    const std::vector<Place> p{{0, 0, 0},   {2, 0, 0},  {0, 2, 0},   {1, 1, -1}, {1, 1, 1},
+                               {-1, -1, 0}, {-1, 0, 1}, {1, 0.5, 0}, {0, 0, 3}};
     EXPECT_EQ(self_intersections({p, {{0, 1, 2}, {0, 3, 4}}}).pairs.size(), 1u);  // pierces through the far side
     EXPECT_EQ(self_intersections({p, {{0, 1, 2}, {0, 5, 6}}}).pairs.size(), 0u);
     EXPECT_EQ(self_intersections({p, {{0, 1, 2}, {0, 1, 7}}}).pairs.size(), 1u);  // folded onto its neighbour

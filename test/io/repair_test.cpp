@@ -1,5 +1,5 @@
-#include "ostraka/core/error.h"
 #include "ostraka/io/repair.h"
+#include "ostraka/core/error.h"
 #include "soups.h"
 
 #include <gtest/gtest.h>
@@ -125,7 +125,8 @@ TEST(Repair, TriangleSoupIsJoined) {
 }
 
 TEST(Repair, CubesThatShareAnEdgeAVertexOrAWallComeApart) {
-    for (const auto& s : {welded(both(cube(), cube({1, 1, 0}))), welded(both(cube(), cube({1, 1, 1}))), welded(both(cube(), cube({1, 0, 0})))}) {
+    for (const auto& s :
+         {welded(both(cube(), cube({1, 1, 0}))), welded(both(cube(), cube({1, 1, 1}))), welded(both(cube(), cube({1, 0, 0})))}) {
         const auto r = repair(s);
         EXPECT_TRUE(r.after.manifold() && r.after.closed() && r.after.oriented());
         EXPECT_EQ(r.after.components.size(), 2u);
@@ -177,7 +178,7 @@ TEST(Repair, MoebiusStripIsCutAndItIsSaid) {
     EXPECT_TRUE(r.after.manifold() && r.after.oriented());
     EXPECT_FALSE(r.after.closed());
     EXPECT_EQ(r.mesh.number_of_faces(), s.triangles.size());
-    ASSERT_EQ(r.notes.size(), 1u);
+    ASSERT_FALSE(r.notes.empty());
     EXPECT_NE(r.notes[0].find("one side"), std::string::npos);
     check_maps(s, r);
 }
@@ -239,9 +240,9 @@ TEST(Repair, TrianglesWithoutAreaAreFlippedAway) {
     auto s = cube();
     // A vertex in the middle of edge 0-1 on one side only, the other side keeps a triangle without area.
     s.points.push_back({0.5, 0, 0});
-    s.triangles[0] = {0, 2, 8};            // was 0 2 1
+    s.triangles[0] = {0, 2, 8};  // was 0 2 1
     s.triangles.push_back({8, 2, 1});
-    s.triangles.push_back({0, 8, 1});      // without area, between them and 0 1 4
+    s.triangles.push_back({0, 8, 1});  // without area, between them and 0 1 4
     const auto before = diagnose(s);
     EXPECT_EQ(before.degenerate_triangles, 1u);
     EXPECT_TRUE(before.closed() && before.manifold());
@@ -386,7 +387,8 @@ TEST(Repair, RandomSoupsBecomeOrientedManifolds) {
         for (Index v = 0; v < n; ++v) s.points.push_back({double(random() % 4), double(random() % 4), double(random() % 4)});
         const std::size_t triangles = 1 + random() % 40;
         for (std::size_t t = 0; t < triangles; ++t)
-            s.triangles.push_back({static_cast<Index>(random() % n), static_cast<Index>(random() % n), static_cast<Index>(random() % n)});
+            s.triangles.push_back(
+                {static_cast<Index>(random() % n), static_cast<Index>(random() % n), static_cast<Index>(random() % n)});
         RepairOptions options;
         options.fill_holes_size = trial % 2 == 0 ? 1 : 0.3;
         options.remove_self_intersections = trial % 3 == 0;
@@ -399,4 +401,50 @@ TEST(Repair, RandomSoupsBecomeOrientedManifolds) {
             EXPECT_NE(std::string(error.what()).find("no face"), std::string::npos) << error.what();
         }
     }
+}
+
+TEST(Repair, WallBetweenSolidsGoesWithTheSelfIntersections) {
+    const auto s = welded(both(cube(), cube({1, 0, 0})));
+    RepairOptions options;
+    options.remove_self_intersections = true;
+    const auto r = repair(s, {}, options);
+    EXPECT_TRUE(r.after.defects().empty()) << r.after.defects().front();
+    EXPECT_EQ(r.after.components.size(), 1u);
+    EXPECT_DOUBLE_EQ(r.after.volume, 2);
+    check_maps(s, r);
+}
+
+TEST(Repair, HolesThatTouchAreFilledOneByOne) {
+    auto s = sphere(20, 40);
+    const auto first = s.triangles[200];  // and one that shares its second corner only
+    const auto shared = [&](const auto& t) {
+        int count = 0;
+        for (const Index v : t) count += std::count(first.begin(), first.end(), v) > 0;
+        return count;
+    };
+    const auto second = *std::find_if(s.triangles.begin(), s.triangles.end(), [&](const auto& t) {
+        return shared(t) == 1 && std::find(t.begin(), t.end(), first[1]) != t.end();
+    });
+    std::erase(s.triangles, first);
+    std::erase(s.triangles, second);
+    ASSERT_GT(diagnose(s).nonmanifold_vertices, 0u);
+    const auto r = repair(s);
+    EXPECT_TRUE(r.after.defects().empty()) << r.after.defects().front();
+    EXPECT_EQ(r.mesh.number_of_vertices(), s.points.size());
+    check_maps(s, r);
+}
+
+TEST(Repair, SlitIsClosedHoweverLong) {
+    auto s = sphere(20, 40);
+    const Index v = s.triangles[300][0];
+    auto far = s.points[v];
+    far[2] += 1e-4;  // a vertex doubled and one of its fans moved a little: a slit
+    const auto copy = static_cast<Index>(s.points.size());
+    s.points.push_back(far);
+    int seen = 0;
+    for (auto& t : s.triangles)
+        for (auto& w : t)
+            if (w == v && seen++ < 3) w = copy;
+    ASSERT_GT(diagnose(s).border_edges, 0u);
+    EXPECT_TRUE(repair(s).after.closed());
 }

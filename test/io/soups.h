@@ -16,7 +16,8 @@ inline TriangleSoup cube(Place low = {0, 0, 0}, double side = 1) {
     TriangleSoup s;
     for (int i = 0; i < 8; ++i)
         s.points.push_back({low[0] + (i & 1 ? side : 0), low[1] + (i & 2 ? side : 0), low[2] + (i & 4 ? side : 0)});
-    s.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+    s.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                   {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
     return s;
 }
 

@@ -12,7 +12,8 @@ namespace ostraka {
 
 struct DiagnoseOptions {
     bool skip_self_intersections = false;  ///< leave out the most expensive check; the verdict is then without it
-    template <class Visitor> void describe(Visitor& visit) {
+    template <class Visitor>
+    void describe(Visitor& visit) {
         visit("skip-self-intersections", skip_self_intersections, "leave out the search for self-intersections", Anything{});
     }
 };
@@ -29,7 +30,7 @@ struct ComponentDiagnosis {
     std::size_t border_edges = 0, nonmanifold_edges = 0, misoriented_edges = 0, nonmanifold_vertices = 0;
     bool orientable = true;
     double area = 0;
-    double volume = 0;  ///< signed; of an open component, relative to the centre of the object's box
+    double volume = 0;        ///< signed; of an open component, relative to the centre of the object's box
     bool inside_out = false;  ///< closed, volume negative, and not a cavity
     bool cavity = false;      ///< closed, volume negative, and wholly inside another closed component
     [[nodiscard]] long long euler() const { return static_cast<long long>(vertices + triangles) - static_cast<long long>(edges); }
@@ -55,17 +56,17 @@ struct MeshDiagnosis {
     std::size_t vertices = 0, triangles = 0, edges = 0;
     // Defects of elements. Triangles that repeat a corner take no part in anything below.
     std::size_t isolated_vertices = 0;
-    std::size_t duplicate_vertices = 0;         ///< vertices at exactly the place of a vertex of lower index
-    std::size_t repeated_corners = 0;           ///< triangles that name a vertex twice
-    std::size_t degenerate_triangles = 0;       ///< other triangles with exactly collinear corners
-    std::size_t thin_triangles = 0;             ///< not degenerate, but lower than 1e-9 of the box diagonal
-    std::size_t duplicate_triangles = 0;        ///< triangles on the same three vertices as one of lower index
+    std::size_t duplicate_vertices = 0;    ///< vertices at exactly the place of a vertex of lower index
+    std::size_t repeated_corners = 0;      ///< triangles that name a vertex twice
+    std::size_t degenerate_triangles = 0;  ///< other triangles with exactly collinear corners
+    std::size_t thin_triangles = 0;        ///< not degenerate, but lower than 1e-9 of the box diagonal
+    std::size_t duplicate_triangles = 0;   ///< triangles on the same three vertices as one of lower index
     // Topology.
-    std::size_t border_edges = 0;          ///< edges of one triangle
-    std::size_t nonmanifold_edges = 0;     ///< edges of more than two
-    std::size_t misoriented_edges = 0;     ///< edges of two triangles that run through it in the same direction
-    std::size_t nonmanifold_vertices = 0;  ///< vertices whose triangles form more than one fan
-    std::vector<BorderLoop> border_loops;  ///< the longest first
+    std::size_t border_edges = 0;                ///< edges of one triangle
+    std::size_t nonmanifold_edges = 0;           ///< edges of more than two
+    std::size_t misoriented_edges = 0;           ///< edges of two triangles that run through it in the same direction
+    std::size_t nonmanifold_vertices = 0;        ///< vertices whose triangles form more than one fan
+    std::vector<BorderLoop> border_loops;        ///< the longest first
     std::vector<ComponentDiagnosis> components;  ///< by their lowest vertex
     std::size_t inside_out_components = 0, nonorientable_components = 0, cavities = 0;
     // Self-intersections: pairs of triangles that share more than the vertices and edges at which they are joined or
