@@ -153,7 +153,7 @@ std::vector<Index> path_through(const Mesh& mesh, const std::vector<Index>& pick
                    std::string(closed ? "a closed path" : "a path") + " through " + std::to_string(points.size()) +
                        " different vertices",
                    closed ? "pick three points or more, farther apart" : "pick two points or more, farther apart");
-    return trace(mesh, points, closed, metric, false, where);
+    return trace(mesh, points, closed, metric, closed, where);
 }
 
 std::vector<bool> lasso(const Mesh& mesh, const std::vector<Index>& picks, Index seed, PathMetric metric,

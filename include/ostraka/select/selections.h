@@ -29,7 +29,8 @@ Index nearest_face(const Mesh& mesh, const Point& point);
 /// The faces connected with `seed` over edges.
 std::vector<bool> component_of(const Mesh& mesh, Index seed);
 
-/// The vertices along shortest edge paths through the picked vertices in turn; closed: first = last. Equal successive picks count
+/// The vertices along shortest edge paths through the picked vertices in turn; closed: first = last, and legs avoid one another
+/// where they can. Equal successive picks count
 /// once. Throws Error (input), starting with `where`, if two picks are not connected or less than two (closed: three) differ.
 std::vector<Index> path_through(const Mesh& mesh, const std::vector<Index>& picks, bool closed, PathMetric metric,
                                 const std::string& where);
