@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <numbers>
 
 using namespace ostraka;
@@ -228,4 +229,15 @@ TEST(Selections, NearestFaceAndVertexSkipWhatHasNoSurface) {
     EXPECT_EQ(nearest_face(mesh, Point(0.1, 0.1, 3)), 0U);
     EXPECT_EQ(nearest_face(mesh, Point(5, 0, 0)), 1U);
     EXPECT_THROW((void)component_of(mesh, 9), Error);
+}
+
+TEST(Recipe, TheShippedOnesFitTheSchema) {
+    std::size_t count = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(Path(OSTRAKA_SOURCE_DIR) / "data")) {
+        const std::string name = entry.path().filename().string();
+        if (!name.ends_with(".recipe.json")) continue;
+        ++count;
+        EXPECT_NO_THROW(validate(read_json(entry.path()), "recipe", name));
+    }
+    EXPECT_GE(count, 2U);
 }
