@@ -30,6 +30,8 @@ public:
     std::function<bool(const SurfaceHit&)> membership(const std::vector<Index>& faces, const Mesh& mesh,
                                                       const std::vector<Index>* origin);
 
+    [[nodiscard]] double target_edge() const { return target_edge_; }
+
 private:
     void cover(std::vector<bool>& selected, const std::vector<Chain>& chains, TransferScore& score);
 

@@ -5,6 +5,7 @@
 #include "ostraka/core/progress.h"
 #include "ostraka/geom/polyline_distance.h"
 #include "region_transfer.h"
+#include "rounding.h"
 #include "scores.h"
 
 #include <algorithm>
@@ -104,6 +105,7 @@ public:
             for (std::size_t i = 0; i < transferred.size(); ++i) trace(i, transferred[i]);
         result_.times.paths = clock.lap();
         const Mesh& mesh = on();
+        if (!options_.refine && options_.cover == "overlapping" && options_.rounding != "path") trace_true_outlines();
         for (std::size_t i = 0; i < transferred.size(); ++i)
             if (set_.annotations[i].type == AnnotationType::region) fill(i, transferred[i]);
         result_.times.regions = clock.lap();
@@ -251,6 +253,47 @@ private:
         }
     }
 
+    /// The outlines drawn exactly, and how many regions share each curve of them.
+    void trace_true_outlines() {
+        true_steps_.resize(chains_.size());
+        for (std::size_t i = 0; i < chains_.size(); ++i) {
+            if (set_.annotations[i].type != AnnotationType::region) continue;
+            TransferScore ignored;  // the same places were settled, and counted, for the paths
+            for (const Chain& chain : chains_[i])
+                for (const ChainTracer::Step& step : tracer_.trace_curves(chain, ignored)) true_steps_[i].push_back(step);
+        }
+        curve_users_.assign(tracer_.curves().size(), 0);
+        for (const auto& steps : true_steps_)
+            for (const ChainTracer::Step& step : steps) ++curve_users_[step.curve];
+    }
+
+    void round(std::size_t i, std::vector<bool>& selected, double source_area) {
+        std::vector<SurfaceCurve> curves;
+        std::set<Index> shared;  // vertices along outlines that other regions have in common with this one
+        for (const ChainTracer::Step& step : true_steps_[i]) {
+            const SurfaceCurve& curve = tracer_.curves()[step.curve];
+            if (curve_users_[step.curve] > 1)
+                for (const Index f : curve.faces)
+                    for (const Vertex v : corners(target_, Face(f))) shared.insert(v);
+            curves.push_back(curve);
+            if (step.backwards) {
+                std::reverse(curves.back().nodes.begin(), curves.back().nodes.end());
+                std::reverse(curves.back().faces.begin(), curves.back().faces.end());
+            }
+        }
+        std::vector<std::pair<Index, double>> shares = left_shares(target_, curves, 2);
+        const auto is_shared = [&](const std::pair<Index, double>& entry) {
+            const auto vertices = corners(target_, Face(entry.first));
+            return std::any_of(vertices.begin(), vertices.end(), [&](Vertex v) { return shared.count(v) > 0; });
+        };
+        shares.erase(std::remove_if(shares.begin(), shares.end(), is_shared), shares.end());
+        RoundingGoal goal;
+        goal.area = source_area;
+        goal.perimeter = length_of(segments_of(source_, set_.annotations[i]));
+        goal.edge = regions_.target_edge();
+        round_region(target_, selected, shares, goal, options_.rounding == "balanced");
+    }
+
     void fill(std::size_t i, Annotation& to) {
         const Annotation& from = set_.annotations[i];
         TransferScore& score = result_.scores[i];
@@ -258,8 +301,11 @@ private:
             for (Index f = 0; f < on().number_of_faces(); ++f) to.faces.push_back(f);
             return;
         }
-        to.faces = faces_of(regions_.fill(from.faces, traced_[i], chains_[i], on(),
-                                          result_.refined ? &result_.refined->face_origin : nullptr, score));
+        std::vector<bool> selected =
+            regions_.fill(from.faces, traced_[i], chains_[i], on(), result_.refined ? &result_.refined->face_origin : nullptr, score);
+        if (i < true_steps_.size() && !true_steps_[i].empty() && !score.voted && std::find(selected.begin(), selected.end(), true) != selected.end())
+            round(i, selected, area_of(source_, from.faces));
+        to.faces = faces_of(selected);
         if (!to.faces.empty()) return;
         // Nothing but a trace is left: the longest one stands for the region.
         std::vector<Index> line;
@@ -291,6 +337,8 @@ private:
     RegionTransfer regions_;
     std::vector<std::vector<Chain>> chains_;
     std::vector<std::vector<TracedChain>> traced_;
+    std::vector<std::vector<ChainTracer::Step>> true_steps_;
+    std::vector<int> curve_users_;
     TransferResult result_;
 };
 

@@ -4,6 +4,7 @@
 #include "ostraka/core/mesh.h"
 #include "ostraka/geom/surface_trace.h"
 
+#include <utility>
 #include <vector>
 
 namespace ostraka {
@@ -20,5 +21,10 @@ struct InsertedCurves {
 /// Nodes with the same element and the same place become one vertex. New faces stand where their old face stood.
 /// Linear in the mesh plus O(k log k) per face with k nodes. Throws Error (input) for a node out of range.
 InsertedCurves insert_curves(const Mesh& mesh, const std::vector<SurfaceCurve>& curves);
+
+/// For each face that the curves run through, the share of its area that lies to their left, without changing the mesh; for
+/// `rings` rings of faces around them, 1 or 0. Ascending by face. A piece that crosses another one inside a face is left out of
+/// the account. Cost as above, for these faces only.
+std::vector<std::pair<Index, double>> left_shares(const Mesh& mesh, const std::vector<SurfaceCurve>& curves, int rings = 0);
 
 }  // namespace ostraka

@@ -15,6 +15,7 @@ struct TransferOptions {
     CorrespondenceOptions correspondence;
     std::string metric = "euclidean";
     std::string spikes = "prune";
+    std::string rounding = "balanced";
     std::string cover = "overlapping";
     bool refine = false;
     bool overlap = true;
@@ -26,6 +27,10 @@ struct TransferOptions {
               Choices{"euclidean", "segment", "combined"});
         visit("spikes", spikes, "prune spikes of an outline, avoid used vertices while tracing it, or keep them",
               Choices{"prune", "avoid", "keep"});
+        visit("rounding", rounding,
+              "faces that the true outline crosses: as the edge paths leave them (path), to the side that holds most of them (area), or so "
+              "that area and perimeter are met as well (balanced); outlines shared by regions stay as the paths leave them",
+              Choices{"path", "area", "balanced"});
         visit("cover", cover, "the transferred region overlaps the source region, encloses it or is enclosed by it",
               Choices{"overlapping", "enclosing", "enclosed"});
         visit("refine", refine, "insert vertices on the target so that outlines are exact", Anything{});

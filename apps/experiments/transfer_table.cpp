@@ -1,0 +1,292 @@
+#include "experiments.h"
+
+#include "ostraka/core/file.h"
+#include "ostraka/io/mesh_file.h"
+#include "ostraka/remesh/refine.h"
+#include "ostraka/remesh/remesh.h"
+#include "ostraka/remesh/simplify.h"
+#include "ostraka/shapes/make_mesh.h"
+#include "ostraka/transfer/transfer.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <iostream>
+#include <map>
+#include <queue>
+#include <sstream>
+
+namespace ostraka::experiments {
+
+std::vector<Index> disc(const Mesh& mesh, Vertex seed, double share) {
+    std::vector<double> distance(mesh.number_of_vertices(), std::numeric_limits<double>::infinity());
+    std::priority_queue<std::pair<double, Index>, std::vector<std::pair<double, Index>>, std::greater<>> queue;
+    distance[seed] = 0;
+    queue.emplace(0.0, seed);
+    while (!queue.empty()) {
+        const auto [d, v] = queue.top();
+        queue.pop();
+        if (d > distance[v]) continue;
+        for (const Halfedge h : CGAL::halfedges_around_source(Vertex(v), mesh)) {
+            const Vertex w = mesh.target(h);
+            const double next = d + std::sqrt(CGAL::squared_distance(mesh.point(Vertex(v)), mesh.point(w)));
+            if (next >= distance[w]) continue;
+            distance[w] = next;
+            queue.emplace(next, w);
+        }
+    }
+    std::vector<std::pair<double, Index>> order;
+    for (const Face f : mesh.faces()) {
+        double sum = 0;
+        for (const Vertex v : corners(mesh, f)) sum += distance[v];
+        order.emplace_back(sum, f);
+    }
+    std::sort(order.begin(), order.end());
+    std::vector<Index> faces;
+    const double wanted = share * surface_area(mesh);
+    double area = 0;
+    for (const auto& [d, f] : order) {
+        if (area >= wanted) break;
+        area += face_area(mesh, Face(f));
+        faces.push_back(f);
+    }
+    std::sort(faces.begin(), faces.end());
+    return faces;
+}
+
+namespace {
+
+constexpr double shares[] = {0.005, 0.025, 0.1, 0.3};
+constexpr int seeds_per_size = 3;
+
+std::string name_of(std::size_t vertices) {
+    if (vertices % 1000000 == 0) return std::to_string(vertices / 1000000) + "M";
+    if (vertices % 1000 == 0) return std::to_string(vertices / 1000) + "K";
+    return std::to_string(vertices);
+}
+
+Mesh simplified(const Mesh& mesh, std::size_t vertices) {
+    Mesh copy = mesh;
+    if (copy.number_of_vertices() <= vertices) return copy;
+    SimplifyOptions options;
+    options.vertices = vertices;
+    simplify(copy, options);
+    return copy;
+}
+
+struct Ladder {
+    std::string object;
+    std::string kind;  ///< "decimated", "subdivided", "independent"
+    std::map<std::string, Mesh> rungs;
+};
+
+class Table {
+public:
+    explicit Table(const TableOptions& options) : options_(options) {}
+
+    void run() {
+        for (const std::string& name : options_.made) {
+            const MadeObject& object = made_object(name);
+            const auto make = [&](std::size_t n, std::uint64_t seed) {
+                MakeOptions making;
+                making.vertices = n;
+                making.seed = seed;
+                return make_mesh(object, making).mesh;
+            };
+            const Mesh full = make(options_.full, 1);
+            std::map<std::string, Mesh> independent;
+            if (!options_.no_independent) {
+                independent.emplace("full", full);
+                for (const std::size_t n : options_.rungs) independent.emplace(name_of(n), make(n, 1 + n));
+            }
+            all_kinds(name, full, std::move(independent), &object);
+        }
+        for (const std::string& file : options_.scans) {
+            Mesh full = read_mesh(file).mesh;
+            RefineOptions refining;
+            refining.scheme = "loop";
+            refining.levels = 1;
+            while (full.number_of_vertices() < options_.full) refine(full, refining);
+            full = simplified(full, options_.full);
+            std::map<std::string, Mesh> independent;
+            if (!options_.no_independent) {
+                independent.emplace("full", full);
+                for (const std::size_t n : options_.rungs) {
+                    RemeshOptions remeshing;
+                    remeshing.vertices = n;
+                    independent.emplace(name_of(n), remesh(full, remeshing).mesh);
+                }
+            }
+            all_kinds(Path(file).stem().string(), full, std::move(independent), nullptr);
+        }
+        print();
+    }
+
+private:
+    void all_kinds(const std::string& name, const Mesh& full, std::map<std::string, Mesh> independent, const MadeObject* truth) {
+        std::vector<std::size_t> down = options_.rungs;
+        std::sort(down.rbegin(), down.rend());
+        Ladder decimated{name, "decimated", {}};
+        const Mesh* last = &decimated.rungs.emplace("full", full).first->second;
+        for (const std::size_t n : down) last = &decimated.rungs.emplace(name_of(n), simplified(*last, n)).first->second;
+        std::cerr << name << ": decimated\n";
+        measure(decimated, truth);
+        // The subdivision chain starts at the annotated rung.
+        Ladder subdivided{name, "subdivided", {}};
+        const std::string home = name_of(options_.rungs.front());
+        last = &subdivided.rungs.emplace(home, decimated.rungs.at(home)).first->second;
+        std::vector<std::size_t> up = options_.rungs;
+        std::sort(up.begin(), up.end());
+        for (const std::size_t n : up) {
+            if (n <= options_.rungs.front()) continue;
+            Mesh finer = *last;
+            RefineOptions refining;
+            refining.vertices = n;
+            refine(finer, refining);
+            last = &subdivided.rungs.emplace(name_of(n), std::move(finer)).first->second;
+        }
+        decimated.rungs.clear();
+        std::cerr << name << ": subdivided\n";
+        measure(subdivided, nullptr);
+        subdivided.rungs.clear();
+        if (!independent.empty()) {
+            std::cerr << name << ": independent\n";
+            measure({name, "independent", std::move(independent)}, truth);
+        }
+    }
+
+    static AnnotationSet discs(const Mesh& mesh) {
+        AnnotationSet set;
+        int id = 0;
+        for (const double share : shares)
+            for (int k = 0; k < seeds_per_size; ++k) {
+                Annotation region;
+                region.id = id++;
+                // Seeds spread over the index range, the same for every size.
+                const auto seed = static_cast<Index>((2 * k + 1) * mesh.number_of_vertices() / (2 * seeds_per_size));
+                region.faces = disc(mesh, Vertex(seed), share);
+                set.annotations.push_back(std::move(region));
+            }
+        return set;
+    }
+
+    void measure(const Ladder& ladder, const MadeObject*) {
+        const std::string home = name_of(options_.rungs.front());
+        const Mesh& source = ladder.rungs.at(home);
+        const AnnotationSet set = discs(source);
+        const SurfaceSearch source_search(source);
+        const double source_edge = mean_edge_length(source);
+        for (const auto& [name, target] : ladder.rungs) {
+            if (name == home) continue;
+            const SurfaceSearch search(target);
+            const double edge = std::max(source_edge, mean_edge_length(target));
+            for (const std::string metric : {"segment", "euclidean", "combined", "segment balanced", "euclidean balanced", "combined balanced", "refine"}) {
+                if (!options_.metric.empty() && metric.find(options_.metric) == std::string::npos) continue;
+                TransferOptions options;
+                options.refine = metric == "refine";
+                options.rounding = metric.find("balanced") != std::string::npos ? "balanced" : "path";
+                if (!options.refine) options.metric = metric.substr(0, metric.find(' '));
+                const auto start = std::chrono::steady_clock::now();
+                const TransferResult there = transfer(source, set, search, options);
+                double seconds = there.times.correspondence + there.times.paths + there.times.regions;
+                add(ladder, home + " -> " + name, metric, there.scores, seconds, edge);
+                TransferOptions returning = options;
+                returning.refine = false;
+                returning.overlap = false;
+                const Mesh& on = there.refined ? there.refined->mesh : target;
+                TransferResult back = transfer(on, there.annotations, source_search, returning);
+                seconds = back.times.correspondence + back.times.paths + back.times.regions;
+                // The way there and back is judged against the region it started from, face by face.
+                for (TransferScore& score : back.scores) {
+                    const auto& origin = set.annotations.at(static_cast<std::size_t>(score.id));
+                    score.source_area = there.scores.at(static_cast<std::size_t>(score.id)).source_area;
+                    score.source_length = there.scores.at(static_cast<std::size_t>(score.id)).source_length;
+                    if (const Annotation* home_again = back.annotations.find(score.id)) {
+                        std::vector<Index> common;
+                        std::set_intersection(origin.faces.begin(), origin.faces.end(), home_again->faces.begin(), home_again->faces.end(),
+                                              std::back_inserter(common));
+                        double area = 0;
+                        for (const Index f : common) area += face_area(source, Face(f));
+                        score.overlap = area / (score.source_area + score.target_area - area);
+                        score.wrong_side = score.source_area + score.target_area - 2 * area;
+                    }
+                }
+                add(ladder, home + " -> " + name + " -> " + home, metric, back.scores, seconds, edge);
+                std::cerr << "  " << home << " <-> " << name << " " << metric << " "
+                          << std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() << " s\n";
+            }
+        }
+    }
+
+    struct Sum {
+        double seconds = 0, area = 0, perimeter = 0, perimeter_by_area = 0, area_by_perimeter = 0, circularity = 0, mean = 0, overlap = 0, wrong = 0;
+        double worst_overlap = 1, worst_wrong = 0;
+        int count = 0, lost = 0, voted = 0;
+    };
+    using Key = std::tuple<std::string, std::string, double, std::string>;  // kind, pair, share, metric
+
+    void add(const Ladder& ladder, const std::string& pair, const std::string& metric, const std::vector<TransferScore>& scores, double seconds, double edge) {
+        for (const TransferScore& score : scores) {
+            const double share = shares[score.id / seeds_per_size];
+            Sum& sum = sums_[{ladder.kind, pair, share, metric}];
+            const Distortions d = distortions(score);
+            if (score.outcome != "kept" || !score.overlap) {
+                ++sum.lost;
+                continue;
+            }
+            const double wrong = *score.wrong_side / (edge * score.source_length);
+            sum.seconds += seconds / static_cast<double>(scores.size());
+            sum.area += d.area;
+            sum.perimeter += d.perimeter;
+            sum.perimeter_by_area += d.perimeter_by_area;
+            sum.area_by_perimeter += d.area_by_perimeter;
+            sum.circularity += d.circularity;
+            sum.mean += d.mean;
+            sum.overlap += *score.overlap;
+            sum.wrong += wrong;
+            sum.worst_overlap = std::min(sum.worst_overlap, *score.overlap);
+            sum.worst_wrong = std::max(sum.worst_wrong, wrong);
+            sum.voted += score.voted ? 1 : 0;
+            ++sum.count;
+            csv_ << ladder.object << ',' << ladder.kind << ',' << pair << ',' << metric << ',' << share << ',' << seconds << ',' << d.area << ',' << d.perimeter
+                 << ',' << d.perimeter_by_area << ',' << d.area_by_perimeter << ',' << d.circularity << ',' << *score.overlap << ',' << wrong << ','
+                 << score.hausdorff << '\n';
+        }
+    }
+
+    void print() {
+        std::cout << "Mean distortions in percent over objects and places; time in seconds for all regions of an object; "
+                     "wrong side in units of (larger mean edge) x (outline length).\n\n"
+                     "| resolutions | S -> T | share % | metric | time | A | P | P/A | A/P | C | average | overlap (worst) | wrong side (worst) | n (lost, voted) |\n"
+                     "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+        for (const auto& [key, sum] : sums_) {
+            const auto& [kind, pair, share, metric] = key;
+            const int n = std::max(1, sum.count);
+            const auto mean = [n](double x) {
+                char text[32];
+                std::snprintf(text, sizeof text, "%.4f", 100 * x / n);
+                return std::string(text);
+            };
+            char tail[160];
+            std::snprintf(tail, sizeof tail, "%.5f (%.5f) | %.3f (%.3f) | %d (%d, %d) |", sum.overlap / n, sum.worst_overlap, sum.wrong / n, sum.worst_wrong,
+                          sum.count, sum.lost, sum.voted);
+            char time[32];
+            std::snprintf(time, sizeof time, "%.3f", sum.seconds / n * (sizeof shares / sizeof *shares) * seeds_per_size);
+            std::cout << "| " << kind << " | " << pair << " | " << 100 * share << " | " << metric << " | " << time << " | " << mean(sum.area) << " | "
+                      << mean(sum.perimeter) << " | " << mean(sum.perimeter_by_area) << " | " << mean(sum.area_by_perimeter) << " | "
+                      << mean(sum.circularity) << " | " << mean(sum.mean) << " | " << tail << "\n";
+        }
+        if (!options_.csv.empty())
+            write_file(options_.csv, "object,resolutions,pair,metric,share,seconds,A,P,P/A,A/P,C,overlap,wrong_side,hausdorff\n" + csv_.str());
+    }
+
+    const TableOptions& options_;
+    std::map<Key, Sum> sums_;
+    std::ostringstream csv_;
+};
+
+}  // namespace
+
+void transfer_table(const TableOptions& options) { Table(options).run(); }
+
+}  // namespace ostraka::experiments

@@ -1,0 +1,47 @@
+// Faces cut along curves, one at a time.
+#pragma once
+
+#include "ostraka/remesh/insert_curves.h"
+
+#include <map>
+#include <utility>
+#include <vector>
+
+namespace ostraka {
+
+/// Gives each node of the curves a vertex (old vertices keep their index, new ones are counted on) and cuts single faces.
+class FaceCutter {
+public:
+    FaceCutter(const Mesh& mesh, const std::vector<SurfaceCurve>& curves);
+
+    /// Vertex at each node, per curve.
+    [[nodiscard]] const std::vector<std::vector<Index>>& node_vertex() const { return node_vertex_; }
+    /// Faces that curves cross or touch with a node on an edge, ascending.
+    [[nodiscard]] std::vector<Index> faces() const;
+    /// The triangles that a face becomes; crossings of curves inside it may add points.
+    std::vector<std::array<Index, 3>> cut(Index face);
+    /// Points of the new vertices, in the order of their index.
+    [[nodiscard]] const std::vector<Point>& new_points() const { return points_; }
+    [[nodiscard]] const Point& point(Index v) const {
+        return v < mesh_.number_of_vertices() ? mesh_.point(Vertex(v)) : points_[v - mesh_.number_of_vertices()];
+    }
+
+private:
+    /// What happens inside one face.
+    struct Cut {
+        std::vector<Index> inner;                       ///< vertices strictly inside
+        std::vector<std::pair<Index, Index>> segments;  ///< pieces of curves, by vertex
+    };
+    Index add_point(const Point& p);
+    void place_nodes(const std::vector<SurfaceCurve>& curves);
+    [[nodiscard]] std::vector<Index> border(Index face) const;
+    bool triangulate(Index face, const Cut& cut, const std::vector<Index>& chain, bool with_curves, std::vector<std::array<Index, 3>>& triangles);
+
+    const Mesh& mesh_;
+    std::vector<Point> points_;
+    std::vector<std::vector<Index>> node_vertex_;
+    std::map<Index, std::vector<std::pair<double, Index>>> on_edge_;  ///< vertices on an edge, by parameter
+    std::map<Index, Cut> cuts_;
+};
+
+}  // namespace ostraka
