@@ -7,6 +7,7 @@
 #include <iostream>
 #include <new>
 
+// NOLINTNEXTLINE(bugprone-exception-escape): what stands outside the try and in the catches throws only without any memory left
 int main(int argc, char** argv) {
     using namespace ostraka;
     // A closed pipe or a full disk shall be an error with words, not a signal.

@@ -24,7 +24,8 @@ std::optional<PlyType> parse_type(std::string_view word) {
 PlyType type_word(TextReader& reader) {
     const std::string_view word = reader.word();
     const auto type = parse_type(word);
-    if (!type) reader.fail("unknown property type " + in_quotes(word), "use char, uchar, short, ushort, int, uint, float or double");
+    if (!type)
+        reader.fail("unknown property type " + in_quotes(word), "use char, uchar, short, ushort, int, uint, float or double");
     return *type;
 }
 

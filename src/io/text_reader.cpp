@@ -60,7 +60,8 @@ double TextReader::number(const char* what) {
         const auto again = std::from_chars(position_, end_, wide);
         if (again.ec != std::errc() || std::fabs(wide) > static_cast<long double>(std::numeric_limits<double>::max())) {
             position_ = first;
-            fail(std::string(what) + " " + in_quotes(word()) + " is out of the range of a double", "correct or rescale it", first);
+            fail(std::string(what) + " " + in_quotes(word()) + " is out of the range of a double", "correct or rescale it",
+                 first);
         }
         value = static_cast<double>(wide);
         stop = again.ptr;
