@@ -1,6 +1,7 @@
 #include "experiments.h"
 
 #include "ostraka/core/file.h"
+#include "ostraka/core/parallel.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/remesh/refine.h"
 #include "ostraka/remesh/remesh.h"
@@ -170,7 +171,74 @@ private:
         return set;
     }
 
-    void measure(const Ladder& ladder, const MadeObject*) {
+    /// Parts of a made object by their labels at the faces' centroids, transferred and compared with the parts themselves: each
+    /// target face is sampled by 16 smaller triangles whose centroids, followed to the true surface, tell their part.
+    void measure_truth(const Ladder& ladder, const MadeObject& object) {
+        const std::string home = name_of(options_.rungs.front());
+        const Mesh& source = ladder.rungs.at(home);
+        const SurfaceSearch source_search(source);
+        AnnotationSet set;
+        for (std::size_t label = 0; label < object.parts.size(); ++label) {
+            Annotation region;
+            region.id = static_cast<int>(label);
+            region.tag = object.parts[label];
+            for (const Face f : source.faces())
+                if (object.part(object.project(centroid(source, f))) == region.id) region.faces.push_back(f);
+            if (!region.faces.empty()) set.annotations.push_back(std::move(region));
+        }
+        for (const auto& [name, target] : ladder.rungs) {
+            // Shares of each target face that truly belong to each part.
+            std::vector<std::map<int, double>> truth(target.number_of_faces());
+            parallel_for(target.number_of_faces(), [&](std::size_t i) {
+                const Face f(static_cast<Index>(i));
+                const auto [a, b, c] = corners(target, f);
+                constexpr int k = 4;
+                for (int u = 0; u < k; ++u)
+                    for (int v = 0; u + v < k; ++v)
+                        for (int half = 0; half < (u + v + 1 < k ? 2 : 1); ++half) {
+                            const double s = (u + (half == 0 ? 1.0 : 2.0) / 3) / k, t = (v + (half == 0 ? 1.0 : 2.0) / 3) / k;
+                            const Point p = target.point(a) + s * (target.point(b) - target.point(a)) + t * (target.point(c) - target.point(a));
+                            truth[i][object.part(object.project(p))] += 1.0 / (k * k);
+                        }
+            });
+            std::map<int, double> true_area;
+            const double whole = surface_area(target);
+            for (const Face f : target.faces())
+                for (const auto& [part, share] : truth[f]) true_area[part] += share * face_area(target, f);
+            const auto judge = [&](const AnnotationSet& result, const std::string& pair, const std::string& metric) {
+                for (const Annotation& region : result.annotations) {
+                    double area = 0, common = 0;
+                    for (const Index f : region.faces) {
+                        const double face = face_area(target, Face(f));
+                        area += face;
+                        if (const auto found = truth[f].find(region.id); found != truth[f].end()) common += found->second * face;
+                    }
+                    const double share = true_area[region.id] / whole;
+                    const double overlap = common / (area + true_area[region.id] - common);
+                    const char* bin = share >= 0.1 ? "10 % and more" : share >= 0.025 ? "2.5 to 10 %" : share >= 0.005 ? "0.5 to 2.5 %" : "below 0.5 %";
+                    auto& entry = truth_[{ladder.kind, pair, bin, metric}];
+                    entry.push_back(overlap);
+                    truth_csv_ << ladder.object << ',' << ladder.kind << ',' << pair << ',' << metric << ',' << region.tag << ',' << share << ',' << overlap << '\n';
+                }
+            };
+            if (name == home) {
+                judge(set, home + " as annotated", "-");
+                continue;
+            }
+            if (target.number_of_vertices() > 300000) continue;
+            const SurfaceSearch search(target);
+            for (const std::string rounding : {"path", "area", "balanced"}) {
+                TransferOptions options;
+                options.rounding = rounding;
+                options.overlap = false;
+                const TransferResult there = transfer(source, set, search, options);
+                judge(there.annotations, home + " -> " + name, rounding);
+            }
+        }
+    }
+
+    void measure(const Ladder& ladder, const MadeObject* truth) {
+        if (truth != nullptr) measure_truth(ladder, *truth);
         const std::string home = name_of(options_.rungs.front());
         const Mesh& source = ladder.rungs.at(home);
         const AnnotationSet set = discs(source);
@@ -276,12 +344,28 @@ private:
                       << mean(sum.perimeter) << " | " << mean(sum.perimeter_by_area) << " | " << mean(sum.area_by_perimeter) << " | "
                       << mean(sum.circularity) << " | " << mean(sum.mean) << " | " << tail << "\n";
         }
+        if (!truth_.empty()) {
+            std::cout << "\nOverlap (intersection over union) with the analytic parts of the made objects.\n\n"
+                         "| resolutions | S -> T | part's share of the area | rounding | parts | mean overlap | worst |\n|---|---|---|---|---|---|---|\n";
+            for (const auto& [key, list] : truth_) {
+                double sum = 0;
+                for (const double x : list) sum += x;
+                char line[200];
+                std::snprintf(line, sizeof line, "| %zu | %.5f | %.5f |", list.size(), sum / static_cast<double>(list.size()),
+                              *std::min_element(list.begin(), list.end()));
+                std::cout << "| " << std::get<0>(key) << " | " << std::get<1>(key) << " | " << std::get<2>(key) << " | " << std::get<3>(key) << " " << line << "\n";
+            }
+            if (!options_.csv.empty())
+                write_file(options_.csv + ".truth.csv", "object,resolutions,pair,rounding,part,share,overlap\n" + truth_csv_.str());
+        }
         if (!options_.csv.empty())
             write_file(options_.csv, "object,resolutions,pair,metric,share,seconds,A,P,P/A,A/P,C,overlap,wrong_side,hausdorff\n" + csv_.str());
     }
 
     const TableOptions& options_;
     std::map<Key, Sum> sums_;
+    std::map<std::tuple<std::string, std::string, std::string, std::string>, std::vector<double>> truth_;  ///< kind, pair, size, rounding
+    std::ostringstream truth_csv_;
     std::ostringstream csv_;
 };
 

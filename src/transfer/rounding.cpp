@@ -95,7 +95,7 @@ void round_region(const Mesh& mesh, std::vector<bool>& selected, const std::vect
         const Move* best = nullptr;
         for (const Move& move : moves) {
             if (!move.possible) continue;
-            const double gain = now - misfit(area + move.area, perimeter + move.perimeter) - move.wrong / (goal.edge * goal.perimeter);
+            const double gain = now - misfit(area + move.area, perimeter + move.perimeter) - 6 * move.wrong / (goal.edge * goal.perimeter);
             if (gain > best_gain) {
                 best_gain = gain;
                 best = &move;

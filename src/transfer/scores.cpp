@@ -15,35 +15,39 @@ double mean_target_edge(const Mesh& target) {
 }
 }  // namespace
 
-double overlapping_area(const Mesh& source, const std::vector<Index>& region, const SurfaceSearch& target,
-                        const CorrespondenceOptions& options, const std::function<bool(const SurfaceHit&)>& contains) {
+double overlapping_area(const Mesh& mesh, const std::vector<Index>& region, const SurfaceSearch& other, const CorrespondenceOptions& options,
+                        std::size_t most_inner, const std::function<bool(const SurfaceHit&)>& contains) {
     // Vertices on the outline and their neighbours make the band that is sampled finely.
-    std::vector<bool> near(source.number_of_vertices(), false);
+    std::vector<bool> near(mesh.number_of_vertices(), false);
     std::vector<Index> rim;
-    for (const Outline& outline : extract_outlines(source, region))
+    for (const Outline& outline : extract_outlines(mesh, region))
         for (const Index v : outline) rim.push_back(v);
     for (const Index v : rim) {
         near[v] = true;
-        for (const Halfedge h : CGAL::halfedges_around_source(Vertex(v), source)) near[source.target(h)] = true;
+        for (const Halfedge h : CGAL::halfedges_around_source(Vertex(v), mesh)) near[mesh.target(h)] = true;
     }
-    const double fine = 0.3 * mean_target_edge(target.mesh());
-    const double reach = options.max_distance * box_diagonal(target.mesh());
+    const double fine = 0.3 * mean_target_edge(other.mesh());
+    const double reach = options.max_distance * box_diagonal(other.mesh());
     const double min_cosine = std::cos(options.max_angle * CGAL_PI / 180);
-    std::vector<double> inside(region.size(), 0);
+    const std::size_t stride = std::max<std::size_t>(1, (region.size() + most_inner - 1) / std::max<std::size_t>(1, most_inner));
+    std::vector<double> inside(region.size(), -1), area_of(region.size(), 0);
     parallel_for(
         region.size(),
         [&](std::size_t i) {
             const Face f(region[i]);
-            const auto [a, b, c] = corners(source, f);
-            const Vector area = area_vector(source, f);
+            const auto [a, b, c] = corners(mesh, f);
+            const Vector area = area_vector(mesh, f);
             const double length = std::sqrt(area.squared_length());
+            area_of[i] = length;
             if (!(length > 0)) return;
             const Vector normal = area / length;
             int k = 1;
-            if (near[a] || near[b] || near[c]) {
-                const double size = std::sqrt(std::max({CGAL::squared_distance(source.point(a), source.point(b)),
-                                                        CGAL::squared_distance(source.point(b), source.point(c)),
-                                                        CGAL::squared_distance(source.point(c), source.point(a))}));
+            const bool in_band = near[a] || near[b] || near[c];
+            if (!in_band && i % stride != 0) return;
+            if (in_band) {
+                const double size = std::sqrt(std::max({CGAL::squared_distance(mesh.point(a), mesh.point(b)),
+                                                        CGAL::squared_distance(mesh.point(b), mesh.point(c)),
+                                                        CGAL::squared_distance(mesh.point(c), mesh.point(a))}));
                 k = std::clamp(static_cast<int>(std::ceil(size / fine)), 2, 8);
             }
             int hits = 0;
@@ -53,16 +57,27 @@ double overlapping_area(const Mesh& source, const std::vector<Index>& region, co
                         // Centroids of the k * k equal triangles of a regular subdivision.
                         const double s = (u + (half == 0 ? 1.0 : 2.0) / 3) / k, t = (v + (half == 0 ? 1.0 : 2.0) / 3) / k;
                         const Point p =
-                            source.point(a) + s * (source.point(b) - source.point(a)) + t * (source.point(c) - source.point(a));
-                        const auto hit = target.closest_compatible(p, normal, min_cosine, reach);
+                            mesh.point(a) + s * (mesh.point(b) - mesh.point(a)) + t * (mesh.point(c) - mesh.point(a));
+                        const auto hit = other.closest_compatible(p, normal, min_cosine, reach);
                         if (hit && contains(*hit)) ++hits;
                     }
             inside[i] = length * hits / (k * k);
         },
         64);
-    double sum = 0;
-    for (const double x : inside) sum += x;
-    return sum;
+    // Faces that were passed over share the lot of those inside that were not.
+    double sum = 0, passed_over = 0, inner = 0, inner_inside = 0;
+    for (std::size_t i = 0; i < region.size(); ++i) {
+        if (inside[i] < 0) {
+            passed_over += area_of[i];
+            continue;
+        }
+        sum += inside[i];
+        const auto vertices = corners(mesh, Face(region[i]));
+        if (std::any_of(vertices.begin(), vertices.end(), [&](Vertex v) { return near[v]; })) continue;
+        inner += area_of[i];
+        inner_inside += inside[i];
+    }
+    return sum + (inner > 0 ? passed_over * inner_inside / inner : passed_over);
 }
 
 std::vector<bool> region_by_vote(const Mesh& source, const SurfaceSearch& source_search, const std::vector<Index>& region,

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <set>
 
 namespace ostraka {
@@ -339,6 +340,7 @@ private:
     std::vector<std::vector<TracedChain>> traced_;
     std::vector<std::vector<ChainTracer::Step>> true_steps_;
     std::vector<int> curve_users_;
+    std::unique_ptr<SurfaceSearch> source_search_;  ///< built when a score needs it
     TransferResult result_;
 };
 
@@ -387,11 +389,20 @@ void Transfer::score(const Annotation& from, Annotation& to, TransferScore& scor
         score.wrong_side = 0;
         return;
     }
-    const double common =
-        overlapping_area(source_, from.faces, search_, options_.correspondence,
+    // From both sides, since the surfaces differ: what of the source region arrived inside, what of the target region came from
+    // inside.
+    if (!source_search_) source_search_ = std::make_unique<SurfaceSearch>(source_);
+    const std::size_t most_inner = std::max<std::size_t>(20000, from.faces.size());
+    const double arrived =
+        overlapping_area(source_, from.faces, search_, options_.correspondence, most_inner,
                          regions_.membership(to.faces, on(), result_.refined ? &result_.refined->face_origin : nullptr));
+    std::vector<bool> in_source(source_.number_of_faces(), false);
+    for (const Index f : from.faces) in_source[f] = true;
+    const double came = overlapping_area(on(), to.faces, *source_search_, options_.correspondence, most_inner,
+                                         [&](const SurfaceHit& hit) { return static_cast<bool>(in_source[hit.face]); });
+    const double common = (arrived + came) / 2;
     score.overlap = common / (score.source_area + score.target_area - common);
-    score.wrong_side = std::max(0.0, score.source_area - common) + std::max(0.0, score.target_area - common);
+    score.wrong_side = std::max(0.0, score.source_area - arrived) + std::max(0.0, score.target_area - came);
 }
 
 }  // namespace
