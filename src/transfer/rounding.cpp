@@ -115,4 +115,29 @@ void round_region(const Mesh& mesh, std::vector<bool>& selected, const std::vect
     }
 }
 
+void round_shared(const Mesh& mesh, std::vector<std::vector<bool>>& selected, std::vector<SharedFace> faces) {
+    std::sort(faces.begin(), faces.end(),
+              [](const SharedFace& a, const SharedFace& b) { return std::make_pair(a.face, a.region) < std::make_pair(b.face, b.region); });
+    double change = 0;
+    for (int pass = 0; pass < 8; ++pass) {
+        bool any = false;
+        for (auto first = faces.begin(); first != faces.end();) {
+            const auto last = std::find_if(first, faces.end(), [&](const SharedFace& x) { return x.face != first->face; });
+            const Index f = first->face;
+            const auto taker = std::find_if(first, last, [](const SharedFace& x) { return x.share > 0.5; });
+            std::vector<std::size_t> owners;
+            for (auto x = first; x != last; ++x)
+                if (x->share < 0.5 && selected[x->region][f]) owners.push_back(x->region);
+            first = last;
+            if (taker == last || selected[taker->region][f] || owners.size() > 1) continue;
+            if (!can_flip(mesh, selected[taker->region], Face(f), change)) continue;
+            if (!owners.empty() && !can_flip(mesh, selected[owners.front()], Face(f), change)) continue;
+            selected[taker->region][f] = true;
+            if (!owners.empty()) selected[owners.front()][f] = false;
+            any = true;
+        }
+        if (!any) break;
+    }
+}
+
 }  // namespace ostraka

@@ -24,4 +24,15 @@ struct RoundingGoal {
 void round_region(const Mesh& mesh, std::vector<bool>& selected, const std::vector<std::pair<Index, double>>& shares, const RoundingGoal& goal,
                   bool balance);
 
+/// A face near an outline that several regions share, and which share of it lies inside one of them.
+struct SharedFace {
+    Index face;
+    std::size_t region;
+    double share;
+};
+
+/// The same along outlines that regions share: a face goes over to the region that holds most of it, and the one that had it gives
+/// it up in the same move, so that regions that partition the surface still do. Topologies stay. `faces` need not be sorted.
+void round_shared(const Mesh& mesh, std::vector<std::vector<bool>>& selected, std::vector<SharedFace> faces);
+
 }  // namespace ostraka

@@ -107,8 +107,7 @@ public:
         result_.times.paths = clock.lap();
         const Mesh& mesh = on();
         if (!options_.refine && options_.cover == "overlapping" && options_.rounding != "path") trace_true_outlines();
-        for (std::size_t i = 0; i < transferred.size(); ++i)
-            if (set_.annotations[i].type == AnnotationType::region) fill(i, transferred[i]);
+        fill_all(transferred);
         result_.times.regions = clock.lap();
         Progress progress("scores", transferred.size());
         for (std::size_t i = 0; i < transferred.size(); ++i) {
@@ -287,6 +286,8 @@ private:
             const auto vertices = corners(target_, Face(entry.first));
             return std::any_of(vertices.begin(), vertices.end(), [&](Vertex v) { return shared.count(v) > 0; });
         };
+        for (const auto& entry : shares)
+            if (is_shared(entry)) shared_faces_.push_back({entry.first, i, entry.second});
         shares.erase(std::remove_if(shares.begin(), shares.end(), is_shared), shares.end());
         RoundingGoal goal;
         goal.area = source_area;
@@ -295,17 +296,28 @@ private:
         round_region(target_, selected, shares, goal, options_.rounding == "balanced");
     }
 
-    void fill(std::size_t i, Annotation& to) {
-        const Annotation& from = set_.annotations[i];
+    void fill_all(std::vector<Annotation>& transferred) {
+        std::vector<std::vector<bool>> selected(transferred.size());
+        for (std::size_t i = 0; i < transferred.size(); ++i) {
+            const Annotation& from = set_.annotations[i];
+            if (from.type != AnnotationType::region || from.all) continue;
+            TransferScore& score = result_.scores[i];
+            selected[i] = regions_.fill(from.faces, traced_[i], chains_[i], on(), result_.refined ? &result_.refined->face_origin : nullptr, score);
+            const bool any = std::find(selected[i].begin(), selected[i].end(), true) != selected[i].end();
+            if (any && !score.voted && i < true_steps_.size() && !true_steps_[i].empty()) round(i, selected[i], area_of(source_, from.faces));
+        }
+        round_shared(target_, selected, std::move(shared_faces_));
+        for (std::size_t i = 0; i < transferred.size(); ++i)
+            if (set_.annotations[i].type == AnnotationType::region) finish(i, transferred[i], selected[i]);
+    }
+
+    /// Writes the faces of a region down, or what is left of it where there are none.
+    void finish(std::size_t i, Annotation& to, const std::vector<bool>& selected) {
         TransferScore& score = result_.scores[i];
-        if (from.all) {
+        if (set_.annotations[i].all) {
             for (Index f = 0; f < on().number_of_faces(); ++f) to.faces.push_back(f);
             return;
         }
-        std::vector<bool> selected =
-            regions_.fill(from.faces, traced_[i], chains_[i], on(), result_.refined ? &result_.refined->face_origin : nullptr, score);
-        if (i < true_steps_.size() && !true_steps_[i].empty() && !score.voted && std::find(selected.begin(), selected.end(), true) != selected.end())
-            round(i, selected, area_of(source_, from.faces));
         to.faces = faces_of(selected);
         if (!to.faces.empty()) return;
         // Nothing but a trace is left: the longest one stands for the region.
@@ -340,6 +352,7 @@ private:
     std::vector<std::vector<TracedChain>> traced_;
     std::vector<std::vector<ChainTracer::Step>> true_steps_;
     std::vector<int> curve_users_;
+    std::vector<SharedFace> shared_faces_;
     std::unique_ptr<SurfaceSearch> source_search_;  ///< built when a score needs it
     TransferResult result_;
 };
