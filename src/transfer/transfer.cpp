@@ -4,6 +4,7 @@
 #include "ostraka/annotation/outline.h"
 #include "ostraka/core/progress.h"
 #include "ostraka/geom/polyline_distance.h"
+#include "ostraka/measure/measure.h"
 #include "region_transfer.h"
 #include "rounding.h"
 #include "scores.h"
@@ -13,6 +14,7 @@
 #include <cmath>
 #include <memory>
 #include <set>
+#include <tuple>
 
 namespace ostraka {
 
@@ -121,6 +123,15 @@ public:
         result_.annotations.up = set_.up;
         for (std::size_t i = 0; i < transferred.size(); ++i)
             if (result_.scores[i].outcome != "lost") result_.annotations.annotations.push_back(std::move(transferred[i]));
+        refresh_measures(mesh, result_.annotations);
+        // What lost a pin cannot be measured anew: the old value stays, marked.
+        for (const auto& [annotation, attribute, value] : lost_pins_)
+            if (Annotation* to = result_.annotations.find(annotation))
+                for (Attribute& moved : to->attributes)
+                    if (moved.id == attribute) {
+                        moved.measure.stale = true;
+                        moved.measure.value = value;
+                    }
         return std::move(result_);
     }
 
@@ -353,6 +364,7 @@ private:
     std::vector<std::vector<ChainTracer::Step>> true_steps_;
     std::vector<int> curve_users_;
     std::vector<SharedFace> shared_faces_;
+    std::vector<std::tuple<int, int, std::optional<double>>> lost_pins_;  ///< annotation, attribute, value before
     std::unique_ptr<SurfaceSearch> source_search_;  ///< built when a score needs it
     TransferResult result_;
 };
@@ -360,7 +372,6 @@ private:
 void Transfer::attributes(const Annotation& from, Annotation& to, const Mesh&) {
     for (const Attribute& attribute : from.attributes) {
         Attribute moved = attribute;
-        if (attribute.type == AttributeType::descriptor) moved.descriptor.stale = true;
         if (attribute.type == AttributeType::measure) {
             moved.measure.points.clear();
             moved.measure.locations.clear();
@@ -375,8 +386,10 @@ void Transfer::attributes(const Annotation& from, Annotation& to, const Mesh&) {
                 // Face indices of a refined mesh are new: there the nearest vertex stands alone.
                 if (!result_.refined) moved.measure.locations.push_back({place.place.face, place.place.barycentric});
             }
-            if (!complete) add_note(to.note, "measure '" + attribute.name + "' lost a pin");
-            moved.measure.stale = true;
+            if (!complete) {
+                add_note(to.note, "measure '" + attribute.name + "' lost a pin");
+                lost_pins_.emplace_back(from.id, attribute.id, attribute.measure.value);
+            }
         }
         to.attributes.push_back(std::move(moved));
     }

@@ -1,0 +1,35 @@
+// The smallest resolution at which an annotation survives.
+#pragma once
+
+#include "ostraka/transfer/transfer.h"
+
+#include <cstdint>
+
+namespace ostraka {
+
+struct SurvivalOptions {
+    TransferOptions transfer;
+    double ratio = 0.7;
+    double area_error = 0.25;
+    std::uint64_t least = 20;
+    template <class Visitor>
+    void describe(Visitor& visit) {
+        visit("ratio", ratio, "vertices of each resolution tried, relative to the one before", Range{0.1, 0.95});
+        visit("area-error", area_error, "a region survives while its area changes by less than this share", Range{0.001, 1});
+        visit("least", least, "smallest number of vertices tried", Range{4, 1e9});
+    }
+};
+
+struct Survival {
+    int id = 0;
+    std::string tag;
+    std::size_t vertices = 0;  ///< the smallest resolution tried down to which the annotation was kept throughout
+    std::string end;           ///< what became of it at the next one; empty if it survived all
+};
+
+/// Simplifies the mesh step by step and transfers the annotations from the full mesh to each step. An annotation survives while it
+/// keeps its type, no outline or point of it vanishes, and, if it is a region, its area stays within the bound. The answer is
+/// exact to one step of the ratio. Costs about 1 / (1 - ratio) times one simplification and one transfer.
+std::vector<Survival> smallest_resolutions(const Mesh& mesh, const AnnotationSet& annotations, const SurvivalOptions& options = {});
+
+}  // namespace ostraka

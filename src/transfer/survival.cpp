@@ -1,0 +1,50 @@
+#include "ostraka/transfer/survival.h"
+
+#include "ostraka/core/progress.h"
+#include "ostraka/remesh/simplify.h"
+
+#include <cmath>
+
+namespace ostraka {
+
+std::vector<Survival> smallest_resolutions(const Mesh& mesh, const AnnotationSet& annotations, const SurvivalOptions& options) {
+    check_options(options, "annotation survival");
+    TransferOptions transferring = options.transfer;
+    transferring.overlap = false;
+    transferring.refine = false;
+    transferring.force = true;  // the same object, however coarse
+    // Coarse surfaces lie farther away than the usual reach.
+    transferring.correspondence.max_distance = std::max(transferring.correspondence.max_distance, 0.1);
+    std::vector<Survival> survivals;
+    for (const Annotation& annotation : annotations.annotations) survivals.push_back({annotation.id, annotation.tag, mesh.number_of_vertices(), ""});
+    Mesh coarse = mesh;
+    const double steps = std::log(static_cast<double>(options.least) / static_cast<double>(mesh.number_of_vertices())) / std::log(options.ratio);
+    Progress progress("resolutions", static_cast<std::size_t>(std::max(1.0, steps)));
+    std::size_t alive = survivals.size();
+    while (alive > 0) {
+        SimplifyOptions simplifying;
+        simplifying.vertices = static_cast<std::uint64_t>(options.ratio * static_cast<double>(coarse.number_of_vertices()));
+        if (simplifying.vertices < options.least) break;
+        const SimplifyResult simplified = simplify(coarse, simplifying);
+        if (!simplified.reached) break;
+        const SurfaceSearch search(coarse);
+        const TransferResult result = transfer(mesh, annotations, search, transferring);
+        for (std::size_t i = 0; i < survivals.size(); ++i) {
+            if (!survivals[i].end.empty()) continue;
+            const TransferScore& score = result.scores[i];
+            char text[64];
+            if (score.outcome != "kept") survivals[i].end = score.outcome;
+            else if (!score.note.empty()) survivals[i].end = score.note;
+            else if (score.source_type == AnnotationType::region && distortions(score).area > options.area_error) {
+                std::snprintf(text, sizeof text, "area off by %.3g %%", 100 * distortions(score).area);
+                survivals[i].end = text;
+            }
+            if (survivals[i].end.empty()) survivals[i].vertices = coarse.number_of_vertices();
+            else --alive;
+        }
+        progress.advance();
+    }
+    return survivals;
+}
+
+}  // namespace ostraka
