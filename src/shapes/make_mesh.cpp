@@ -7,6 +7,7 @@
 #include "ostraka/core/parallel.h"
 
 #include <algorithm>
+#include <map>
 #include <numeric>
 
 namespace ostraka {
@@ -68,6 +69,45 @@ shapes::Triangles marched(const MadeObject& object, double vertices, std::uint64
                 "ask for more vertices or use another seed");
 }
 
+/// Where parts meet in a narrow strip, centroids can cut a few faces off from their part: patches of fewer than four faces
+/// take the label most common around them (the smallest of equally common ones), unless they are all there is of the part.
+void join_crumbs(const Mesh& mesh, std::vector<std::int32_t>& labels, std::size_t parts) {
+    constexpr std::size_t crumb = 4;
+    const std::vector<std::int32_t> before = labels;
+    std::vector<bool> seen(labels.size(), false), has_patch(parts, false);
+    std::vector<std::vector<Face>> crumbs;
+    for (const Face start : mesh.faces()) {
+        if (seen[start.idx()]) continue;
+        const std::int32_t label = before[start.idx()];
+        std::vector<Face> patch{start};
+        seen[start.idx()] = true;
+        for (std::size_t i = 0; i < patch.size(); ++i) {
+            for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(patch[i]))) {
+                const Face next = mesh.face(mesh.opposite(h));
+                if (seen[next.idx()] || before[next.idx()] != label) continue;
+                seen[next.idx()] = true;
+                patch.push_back(next);
+            }
+        }
+        if (patch.size() < crumb) crumbs.push_back(std::move(patch));
+        else has_patch[static_cast<std::size_t>(label)] = true;
+    }
+    for (const auto& patch : crumbs) {
+        const std::int32_t label = before[patch.front().idx()];
+        if (!has_patch[static_cast<std::size_t>(label)]) continue;
+        std::map<std::int32_t, int> around;
+        for (const Face face : patch) {
+            for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(face))) {
+                const std::int32_t other = before[mesh.face(mesh.opposite(h)).idx()];
+                if (other != label) ++around[other];
+            }
+        }
+        const auto most =
+            std::max_element(around.begin(), around.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+        for (const Face face : patch) labels[face.idx()] = most->first;
+    }
+}
+
 }  // namespace
 
 MadeMesh make_mesh(const MadeObject& object, const MakeOptions& options) {
@@ -99,6 +139,7 @@ MadeMesh make_mesh(const MadeObject& object, const MakeOptions& options) {
     soup.triangles = std::move(even.faces);
     even = {};
     made.mesh = build_mesh(soup);
+    join_crumbs(made.mesh, made.face_labels, object.parts.size());
     return made;
 }
 

@@ -12,9 +12,9 @@ using Maker = shapes::ObjectPointer (*)();
 const std::map<std::string, Maker>& makers() {
     static const std::map<std::string, Maker> list{
         {"box", shapes::make_box_object},      {"capsule", shapes::make_capsule},
-        {"cylinder", shapes::make_cylinder_object},
-        {"sphere", shapes::make_sphere},
-        {"teapot", shapes::make_teapot},
+        {"chair", shapes::make_chair},         {"cylinder", shapes::make_cylinder_object},
+        {"hand", shapes::make_hand},           {"sphere", shapes::make_sphere},
+        {"statuette", shapes::make_statuette}, {"teapot", shapes::make_teapot},
         {"torus", shapes::make_torus_object},  {"vase", shapes::make_vase}};
     return list;
 }

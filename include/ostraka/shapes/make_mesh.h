@@ -24,8 +24,9 @@ struct MakeOptions {
 };
 
 struct MadeMesh {
-    Mesh mesh;                                ///< closed, oriented, manifold, of the object's genus
-    std::vector<std::int32_t> face_labels;    ///< part at the surface point nearest to the face's centroid
+    Mesh mesh;                              ///< closed, oriented, manifold, of the object's genus
+    std::vector<std::int32_t> face_labels;  ///< part at the face's centroid carried onto the surface; crumbs of up to three faces
+                                            ///< join their surroundings
     std::vector<std::int32_t> vertex_labels;  ///< part at the vertex (before noise)
 };
 

@@ -1,0 +1,53 @@
+// Made furniture: a chair with arms.
+#include "builder.h"
+
+namespace ostraka::shapes {
+
+ObjectPointer make_chair() {
+    auto object = std::make_unique<MadeObject>();
+    object->name = "chair";
+    object->object_class = "armchair";
+    object->description = "chair with back, two arms on supports and four legs";
+    object->genus = 2;  // an opening under each arm
+    object->minimum_vertices = 1500;
+    object->thinnest = 18;
+    const int seat = add_part(*object, "seat", {190, 140, 90}), back = add_part(*object, "back", {160, 100, 60});
+    add_member(*object, make_box({{0, 0, 440}, Eigen::Matrix3d::Identity()}, {240, 230, 22}, 16), seat, 0);
+    // The back leans by 10 degrees; it stands on the rear edge of the seat.
+    const Eigen::Matrix3d lean = turned(-10, Vector3d::UnitY());
+    add_member(*object, make_box({{-258, 0, 670}, lean}, {20, 215, 250}, 16), back, 14);
+    for (const double side : {1.0, -1.0}) {
+        const bool left = side > 0;
+        const int arm = add_part(*object, left ? "left arm" : "right arm", left ? Colour3{80, 120, 170} : Colour3{90, 150, 190});
+        const int support =
+            add_part(*object, left ? "left support" : "right support", left ? Colour3{170, 70, 60} : Colour3{200, 100, 80});
+        add_member(*object,
+                   make_tube({{{-262, side * 205, 668}, 20},
+                              {{-120, side * 226, 676}, 20},
+                              {{40, side * 236, 672}, 22},
+                              {{190, side * 232, 660}, 24}}),
+                   arm, 14);
+        add_member(*object,
+                   make_tube({{{150, side * 205, 440}, 15},
+                              {{156, side * 220, 520}, 17},
+                              {{150, side * 228, 600}, 15},
+                              {{150, side * 230, 655}, 15}}),
+                   support, 12);
+    }
+    const char* names[4] = {"front left leg", "front right leg", "rear left leg", "rear right leg"};
+    const Colour3 colours[4] = {{90, 140, 80}, {120, 165, 95}, {70, 115, 75}, {140, 180, 120}};
+    for (int i = 0; i < 4; ++i) {
+        const double front = i < 2 ? 1 : -1, side = i % 2 == 0 ? 1 : -1;
+        const int leg = add_part(*object, names[i], colours[i]);
+        add_member(*object,
+                   make_tube({{{front * 190, side * 180, 430}, 26},
+                              {{front * 202, side * 188, 280}, 24},
+                              {{front * 216, side * 198, 130}, 19},
+                              {{front * 228, side * 206, 17}, 17}}),
+                   leg, 16);
+    }
+    object->finish();
+    return object;
+}
+
+}  // namespace ostraka::shapes
