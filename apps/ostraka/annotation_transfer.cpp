@@ -1,6 +1,7 @@
 #include "command.h"
 
 #include "ostraka/annotation/annotation_file.h"
+#include "ostraka/annotation/colouring.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/transfer/transfer.h"
 
@@ -14,7 +15,7 @@ namespace {
 
 struct TransferCommand {
     std::string source, annotations, target, output;
-    std::string back, refined, map;
+    std::string back, refined, map, ply;
     bool no_overlap = false;
     ReadAnnotationsOptions reading;
     TransferOptions options;
@@ -114,14 +115,15 @@ int run(const Session& session, TransferCommand& command) {
     check_options(command.options, "annotation transfer");
     const std::vector<Path> inputs{command.source, command.annotations, command.target};
     std::vector<Path> outputs{command.output};
-    for (const std::string* more : {&command.back, &command.refined, &command.map})
+    for (const std::string* more : {&command.back, &command.refined, &command.map, &command.ply})
         if (!more->empty()) outputs.emplace_back(*more);
     check_outputs(inputs, outputs);
     if (command.options.refine != !command.refined.empty())
         fail_usage("--refine inserts vertices on the target",
                    "give --refine together with --refined-mesh FILE for the mesh that results");
     if (!command.map.empty() && command.refined.empty()) fail_usage("--map goes with --refine", "leave it out or refine");
-    if (!command.refined.empty()) check_mesh_extension(command.refined);
+    for (const std::string* mesh : {&command.refined, &command.ply})
+        if (!mesh->empty()) check_mesh_extension(*mesh);
 
     const auto start = std::chrono::steady_clock::now();
     const MeshFile source = read_mesh(command.source);
@@ -152,6 +154,13 @@ int run(const Session& session, TransferCommand& command) {
         }
     }
     write_annotations(command.output, there.annotations, on, there.refined ? command.refined : command.target, provenance);
+
+    if (!command.ply.empty()) {
+        WriteOptions writing;
+        writing.comment = provenance.to_line();
+        for (const std::string& note : write_mesh(command.ply, on, colour_by_annotation(on, there.annotations), writing))
+            session.note(command.ply + ": " + note);
+    }
 
     std::optional<TransferResult> back;
     if (!command.back.empty()) {
@@ -198,6 +207,8 @@ void add_annotation_transfer(CLI::App& annotation, Session& session) {
     app->add_option("target", command->target, "the mesh at another resolution")->required();
     app->add_option("output", command->output, "the annotations on the target (*.ant.json)")->required();
     app->add_option("--back", command->back, "transfer them back to the source as well, into this file, and score that");
+    app->add_option("--ply", command->ply,
+                    "write the target in the colours of its annotations (PLY or another format with colours)");
     app->add_option("--refined-mesh", command->refined, "with --refine: the target with the inserted vertices");
     app->add_option("--map", command->map, "with --refine: new face -> old face, as JSON");
     app->add_flag("--no-overlap", command->no_overlap, "do not measure the overlap (the slowest score)");
