@@ -69,6 +69,7 @@ void round_region(const Mesh& mesh, std::vector<bool>& selected, const std::vect
         for (const Halfedge h : CGAL::halfedges_around_face(mesh.halfedge(f), mesh))
             if (!is_selected(mesh, selected, mesh.opposite(h))) perimeter += edge_length(mesh, h);
     }
+    const double wanted = goal.coarser ? std::min(goal.perimeter, perimeter) : goal.perimeter;
     // What a flip of each face would change; only faces around the last flip need to be asked again.
     struct Move {
         Index face;
@@ -88,7 +89,7 @@ void round_region(const Mesh& mesh, std::vector<bool>& selected, const std::vect
         moves.push_back({f, 0, 0, 0, false});
         update(moves.back(), share);
     }
-    const auto misfit = [&](double a, double p) { return 20 * std::abs(a / goal.area - 1) + std::abs(p / goal.perimeter - 1); };
+    const auto misfit = [&](double a, double p) { return 20 * std::abs(a / goal.area - 1) + std::abs(p - wanted) / goal.perimeter; };
     for (std::size_t step = 0; step < 2 * moves.size(); ++step) {
         const double now = misfit(area, perimeter);
         double best_gain = 1e-12;

@@ -13,6 +13,7 @@ struct RoundingGoal {
     double area = 0;       ///< of the source region
     double perimeter = 0;  ///< of the source region's outline
     double edge = 0;       ///< typical edge length of the target
+    bool coarser = false;  ///< the target cannot show the outline's detail: a shorter outline is as good, and no teeth are added
 };
 
 /// Moves single faces across the outline of `selected`, never changing the topology of the region. `shares` tells of the faces

@@ -304,6 +304,7 @@ private:
         goal.area = source_area;
         goal.perimeter = length_of(segments_of(source_, set_.annotations[i]));
         goal.edge = regions_.target_edge();
+        goal.coarser = goal.edge > 1.5 * mean_edge_length(source_);
         round_region(target_, selected, shares, goal, options_.rounding == "balanced");
     }
 
