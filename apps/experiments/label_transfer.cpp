@@ -22,7 +22,8 @@ std::vector<int> read_labels(const Path& file, std::size_t faces) {
     std::istringstream text(read_file(file));
     std::vector<int> labels;
     for (int label = 0; text >> label;) labels.push_back(label);
-    if (labels.size() != faces) fail_input(file.string(), "has " + std::to_string(labels.size()) + " labels for " + std::to_string(faces) + " faces");
+    if (labels.size() != faces)
+        fail_input(file.string(), "has " + std::to_string(labels.size()) + " labels for " + std::to_string(faces) + " faces");
     return labels;
 }
 
@@ -88,7 +89,8 @@ void label_transfer(const LabelOptions& options) {
         const std::string number = model.stem().string(), group = model.parent_path().filename().string();
         const Mesh mesh = read_mesh(model).mesh;
         const SurfaceSearch home(mesh);
-        const std::vector<int> labels = read_labels(Path(options.labels) / group / number / (number + "_0.seg"), mesh.number_of_faces());
+        const std::vector<int> labels =
+            read_labels(Path(options.labels) / group / number / (number + "_0.seg"), mesh.number_of_faces());
         const AnnotationSet set = regions_of(labels);
         for (const double factor : {2.0, 0.25}) {
             RemeshOptions remeshing;
@@ -105,7 +107,8 @@ void label_transfer(const LabelOptions& options) {
             kept /= surface_area(mesh);
             kept_of[factor].emplace_back(kept, group + "/" + number);
             csv << group << '/' << number << ',' << factor << ',' << kept << ',' << there.bare << ',' << there.twice << '\n';
-            std::cerr << group << '/' << number << " x" << factor << " kept " << kept << " bare " << there.bare << " twice " << there.twice << '\n';
+            std::cerr << group << '/' << number << " x" << factor << " kept " << kept << " bare " << there.bare << " twice "
+                      << there.twice << '\n';
         }
     }
     std::cout << "| vertices | models | mean area that keeps its label % | worst % | worst model |\n|---|---|---|---|---|\n";
@@ -114,8 +117,8 @@ void label_transfer(const LabelOptions& options) {
         for (const auto& [kept, name] : list) sum += kept;
         const auto worst = *std::min_element(list.begin(), list.end());
         char line[200];
-        std::snprintf(line, sizeof line, "| x %g | %zu | %.3f | %.3f | %s |\n", factor, list.size(), 100 * sum / static_cast<double>(list.size()),
-                      100 * worst.first, worst.second.c_str());
+        std::snprintf(line, sizeof line, "| x %g | %zu | %.3f | %.3f | %s |\n", factor, list.size(),
+                      100 * sum / static_cast<double>(list.size()), 100 * worst.first, worst.second.c_str());
         std::cout << line;
     }
     if (!options.csv.empty()) write_file(options.csv, csv.str());

@@ -16,9 +16,12 @@ int main(int argc, char** argv) {
     tool.add_option("--threads", threads, "number of threads, 0 for all cores")->check(CLI::Range(0, 1024));
 
     experiments::TableOptions table;
-    CLI::App* table_command = tool.add_subcommand("table", "distortions per metric, size and pair of resolutions (thesis, Table 2.1)");
+    CLI::App* table_command =
+        tool.add_subcommand("table", "distortions per metric, size and pair of resolutions (thesis, Table 2.1)");
     table_command->add_option("--made", table.made, "made objects to use")->delimiter(',');
-    table_command->add_option("--scan", table.scans, "mesh files of scans to use; they are subdivided smoothly to the full resolution")->delimiter(',');
+    table_command
+        ->add_option("--scan", table.scans, "mesh files of scans to use; they are subdivided smoothly to the full resolution")
+        ->delimiter(',');
     table_command->add_option("--full", table.full, "vertices of the full resolution")->capture_default_str();
     table_command->add_option("--rungs", table.rungs, "other resolutions, the first is the one annotated")->delimiter(',');
     table_command->add_option("--metric", table.metric, "only the rows whose metric contains this");

@@ -219,7 +219,8 @@ void add_annotation_transfer(CLI::App& annotation, Session& session) {
     visitor("spikes", command->options.spikes, "prune spikes of an outline, avoid used vertices while tracing it, or keep them",
             Choices{"prune", "avoid", "keep"});
     visitor("rounding", command->options.rounding,
-            "faces that the true outline crosses: as the paths leave them (path), to the side that holds most of them (area), or so that area and "
+            "faces that the true outline crosses: as the paths leave them (path), to the side that holds most of them (area), or "
+            "so that area and "
             "perimeter are met as well (balanced)",
             Choices{"path", "area", "balanced"});
     visitor("cover", command->options.cover,

@@ -58,7 +58,8 @@ void FaceCutter::place_nodes(const std::vector<SurfaceCurve>& curves) {
             } else if (node.kind == SurfaceNode::Kind::edge) {
                 if (node.element >= mesh_.number_of_edges()) missing("edge", node.element);
                 const auto near = edge_vertex.lower_bound({node.element, node.parameter - same});
-                if (near != edge_vertex.end() && std::get<0>(near->first) == node.element && std::get<1>(near->first) <= node.parameter + same) {
+                if (near != edge_vertex.end() && std::get<0>(near->first) == node.element &&
+                    std::get<1>(near->first) <= node.parameter + same) {
                     v = near->second;
                 } else {
                     v = add_point(node.point);
@@ -67,7 +68,8 @@ void FaceCutter::place_nodes(const std::vector<SurfaceCurve>& curves) {
                 }
             } else {
                 if (node.element >= mesh_.number_of_faces()) missing("face", node.element);
-                const auto [entry, fresh] = face_vertex.emplace(std::make_tuple(node.element, node.barycentric[1], node.barycentric[2]), 0);
+                const auto [entry, fresh] =
+                    face_vertex.emplace(std::make_tuple(node.element, node.barycentric[1], node.barycentric[2]), 0);
                 if (fresh) {
                     entry->second = add_point(node.point);
                     cuts_[node.element].inner.push_back(entry->second);
@@ -113,12 +115,14 @@ std::vector<std::array<Index, 3>> FaceCutter::cut(Index face) {
     }
     // A face without area has no plane to triangulate in: its border is cut as a fan, which needs no geometry.
     if (!cut.inner.empty())
-        throw Error(ErrorKind::failure, "face " + std::to_string(face), "cannot be cut: it has no area to speak of", "repair the mesh first");
+        throw Error(ErrorKind::failure, "face " + std::to_string(face), "cannot be cut: it has no area to speak of",
+                    "repair the mesh first");
     for (std::size_t i = 1; i + 1 < chain.size(); ++i) triangles.push_back({chain[0], chain[i], chain[i + 1]});
     return triangles;
 }
 
-bool FaceCutter::triangulate(Index face, const Cut& cut, const std::vector<Index>& chain, bool with_curves, std::vector<std::array<Index, 3>>& triangles) {
+bool FaceCutter::triangulate(Index face, const Cut& cut, const std::vector<Index>& chain, bool with_curves,
+                             std::vector<std::array<Index, 3>>& triangles) {
     const auto [a, b, c] = corners(mesh_, Face(face));
     const Point& origin = mesh_.point(a);
     const double scale = std::sqrt(CGAL::squared_distance(origin, mesh_.point(b)));
@@ -150,7 +154,8 @@ bool FaceCutter::triangulate(Index face, const Cut& cut, const std::vector<Index
     if (triangulation.number_of_vertices() != known) return false;
     if (with_curves)
         for (const auto& [v, w] : cut.segments)
-            if (handle.count(v) > 0 && handle.count(w) > 0 && rim.count({v, w}) == 0) triangulation.insert_constraint(handle[v], handle[w]);
+            if (handle.count(v) > 0 && handle.count(w) > 0 && rim.count({v, w}) == 0)
+                triangulation.insert_constraint(handle[v], handle[w]);
     if (triangulation.number_of_vertices() != known) {
         // Crossings of curves made new vertices.
         std::set<Triangulation::Vertex_handle> old;

@@ -41,10 +41,12 @@ InsertedCurves insert_curves(const Mesh& mesh, const std::vector<SurfaceCurve>& 
 
 namespace {
 
-/// Area to the left of the directed pieces, as a share of a face's area; negative if no piece bounds anything in it. `whole_edges`
-/// gets, for each old edge that no curve meets, whether the face beyond it lies to the left (1) or to the right (0).
-double left_share(const FaceCutter& cutter, const std::vector<std::array<Index, 3>>& triangles, const std::map<std::pair<Index, Index>, int>& net,
-                  const std::array<Vertex, 3>& old_corners, std::vector<std::tuple<Index, Index, double>>& whole_edges) {
+/// Area to the left of the directed pieces, as a share of a face's area; negative if no piece bounds anything in it.
+/// `whole_edges` gets, for each old edge that no curve meets, whether the face beyond it lies to the left (1) or to the right
+/// (0).
+double left_share(const FaceCutter& cutter, const std::vector<std::array<Index, 3>>& triangles,
+                  const std::map<std::pair<Index, Index>, int>& net, const std::array<Vertex, 3>& old_corners,
+                  std::vector<std::tuple<Index, Index, double>>& whole_edges) {
     enum { unknown, left, right };
     std::vector<int> side(triangles.size(), unknown);
     std::map<std::pair<Index, Index>, std::size_t> owner;  // directed edge -> triangle on its left
@@ -83,7 +85,8 @@ double left_share(const FaceCutter& cutter, const std::vector<std::array<Index, 
     double sum = 0, inside = 0;
     for (std::size_t t = 0; t < triangles.size(); ++t) {
         const auto& [a, b, c] = triangles[t];
-        const double area = std::sqrt(CGAL::cross_product(cutter.point(b) - cutter.point(a), cutter.point(c) - cutter.point(a)).squared_length());
+        const double area =
+            std::sqrt(CGAL::cross_product(cutter.point(b) - cutter.point(a), cutter.point(c) - cutter.point(a)).squared_length());
         sum += area;
         if (side[t] == left) inside += area;
     }

@@ -46,8 +46,8 @@ bool can_flip(const Mesh& mesh, const std::vector<bool>& selected, Face f, doubl
 
 }  // namespace
 
-void round_region(const Mesh& mesh, std::vector<bool>& selected, const std::vector<std::pair<Index, double>>& shares, const RoundingGoal& goal,
-                  bool balance) {
+void round_region(const Mesh& mesh, std::vector<bool>& selected, const std::vector<std::pair<Index, double>>& shares,
+                  const RoundingGoal& goal, bool balance) {
     double change = 0;
     if (!balance || !(goal.area > 0) || !(goal.perimeter > 0)) {
         // A flip may open the way for its neighbours.
@@ -89,14 +89,17 @@ void round_region(const Mesh& mesh, std::vector<bool>& selected, const std::vect
         moves.push_back({f, 0, 0, 0, false});
         update(moves.back(), share);
     }
-    const auto misfit = [&](double a, double p) { return 20 * std::abs(a / goal.area - 1) + std::abs(p - wanted) / goal.perimeter; };
+    const auto misfit = [&](double a, double p) {
+        return 20 * std::abs(a / goal.area - 1) + std::abs(p - wanted) / goal.perimeter;
+    };
     for (std::size_t step = 0; step < 2 * moves.size(); ++step) {
         const double now = misfit(area, perimeter);
         double best_gain = 1e-12;
         const Move* best = nullptr;
         for (const Move& move : moves) {
             if (!move.possible) continue;
-            const double gain = now - misfit(area + move.area, perimeter + move.perimeter) - 6 * move.wrong / (goal.edge * goal.perimeter);
+            const double gain =
+                now - misfit(area + move.area, perimeter + move.perimeter) - 6 * move.wrong / (goal.edge * goal.perimeter);
             if (gain > best_gain) {
                 best_gain = gain;
                 best = &move;
@@ -117,8 +120,9 @@ void round_region(const Mesh& mesh, std::vector<bool>& selected, const std::vect
 }
 
 void round_shared(const Mesh& mesh, std::vector<std::vector<bool>>& selected, std::vector<SharedFace> faces) {
-    std::sort(faces.begin(), faces.end(),
-              [](const SharedFace& a, const SharedFace& b) { return std::make_pair(a.face, a.region) < std::make_pair(b.face, b.region); });
+    std::sort(faces.begin(), faces.end(), [](const SharedFace& a, const SharedFace& b) {
+        return std::make_pair(a.face, a.region) < std::make_pair(b.face, b.region);
+    });
     double change = 0;
     for (int pass = 0; pass < 8; ++pass) {
         bool any = false;

@@ -15,8 +15,9 @@ double mean_target_edge(const Mesh& target) {
 }
 }  // namespace
 
-double overlapping_area(const Mesh& mesh, const std::vector<Index>& region, const SurfaceSearch& other, const CorrespondenceOptions& options,
-                        std::size_t most_inner, const std::function<bool(const SurfaceHit&)>& contains) {
+double overlapping_area(const Mesh& mesh, const std::vector<Index>& region, const SurfaceSearch& other,
+                        const CorrespondenceOptions& options, std::size_t most_inner,
+                        const std::function<bool(const SurfaceHit&)>& contains) {
     // Vertices on the outline and their neighbours make the band that is sampled finely.
     std::vector<bool> near(mesh.number_of_vertices(), false);
     std::vector<Index> rim;
@@ -56,8 +57,7 @@ double overlapping_area(const Mesh& mesh, const std::vector<Index>& region, cons
                     for (int half = 0; half < (u + v + 1 < k ? 2 : 1); ++half) {
                         // Centroids of the k * k equal triangles of a regular subdivision.
                         const double s = (u + (half == 0 ? 1.0 : 2.0) / 3) / k, t = (v + (half == 0 ? 1.0 : 2.0) / 3) / k;
-                        const Point p =
-                            mesh.point(a) + s * (mesh.point(b) - mesh.point(a)) + t * (mesh.point(c) - mesh.point(a));
+                        const Point p = mesh.point(a) + s * (mesh.point(b) - mesh.point(a)) + t * (mesh.point(c) - mesh.point(a));
                         const auto hit = other.closest_compatible(p, normal, min_cosine, reach);
                         if (hit && contains(*hit)) ++hits;
                     }

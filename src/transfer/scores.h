@@ -7,11 +7,12 @@
 
 namespace ostraka {
 
-/// Area of a region of `mesh` whose places on the other mesh lie in the corresponding region there, as `contains` tells. Faces near
-/// the region's outline are sampled by up to 64 smaller triangles each, finer than the other mesh's faces; the others at their
-/// centroids, or, of more than `most_inner` of them, every so many.
-double overlapping_area(const Mesh& mesh, const std::vector<Index>& region, const SurfaceSearch& other, const CorrespondenceOptions& options,
-                        std::size_t most_inner, const std::function<bool(const SurfaceHit&)>& contains);
+/// Area of a region of `mesh` whose places on the other mesh lie in the corresponding region there, as `contains` tells. Faces
+/// near the region's outline are sampled by up to 64 smaller triangles each, finer than the other mesh's faces; the others at
+/// their centroids, or, of more than `most_inner` of them, every so many.
+double overlapping_area(const Mesh& mesh, const std::vector<Index>& region, const SurfaceSearch& other,
+                        const CorrespondenceOptions& options, std::size_t most_inner,
+                        const std::function<bool(const SurfaceHit&)>& contains);
 
 /// The region's faces found one by one: those target faces whose centroid has its nearest compatible point in the region.
 std::vector<bool> region_by_vote(const Mesh& source, const SurfaceSearch& source_search, const std::vector<Index>& region,

@@ -16,9 +16,11 @@ std::vector<Survival> smallest_resolutions(const Mesh& mesh, const AnnotationSet
     // Coarse surfaces lie farther away than the usual reach.
     transferring.correspondence.max_distance = std::max(transferring.correspondence.max_distance, 0.1);
     std::vector<Survival> survivals;
-    for (const Annotation& annotation : annotations.annotations) survivals.push_back({annotation.id, annotation.tag, mesh.number_of_vertices(), ""});
+    for (const Annotation& annotation : annotations.annotations)
+        survivals.push_back({annotation.id, annotation.tag, mesh.number_of_vertices(), ""});
     Mesh coarse = mesh;
-    const double steps = std::log(static_cast<double>(options.least) / static_cast<double>(mesh.number_of_vertices())) / std::log(options.ratio);
+    const double steps =
+        std::log(static_cast<double>(options.least) / static_cast<double>(mesh.number_of_vertices())) / std::log(options.ratio);
     Progress progress("resolutions", static_cast<std::size_t>(std::max(1.0, steps)));
     std::size_t alive = survivals.size();
     while (alive > 0) {

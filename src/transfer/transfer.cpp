@@ -314,9 +314,11 @@ private:
             const Annotation& from = set_.annotations[i];
             if (from.type != AnnotationType::region || from.all) continue;
             TransferScore& score = result_.scores[i];
-            selected[i] = regions_.fill(from.faces, traced_[i], chains_[i], on(), result_.refined ? &result_.refined->face_origin : nullptr, score);
+            selected[i] = regions_.fill(from.faces, traced_[i], chains_[i], on(),
+                                        result_.refined ? &result_.refined->face_origin : nullptr, score);
             const bool any = std::find(selected[i].begin(), selected[i].end(), true) != selected[i].end();
-            if (any && !score.voted && i < true_steps_.size() && !true_steps_[i].empty()) round(i, selected[i], area_of(source_, from.faces));
+            if (any && !score.voted && i < true_steps_.size() && !true_steps_[i].empty())
+                round(i, selected[i], area_of(source_, from.faces));
         }
         round_shared(target_, selected, std::move(shared_faces_));
         for (std::size_t i = 0; i < transferred.size(); ++i)
@@ -366,7 +368,7 @@ private:
     std::vector<int> curve_users_;
     std::vector<SharedFace> shared_faces_;
     std::vector<std::tuple<int, int, std::optional<double>>> lost_pins_;  ///< annotation, attribute, value before
-    std::unique_ptr<SurfaceSearch> source_search_;  ///< built when a score needs it
+    std::unique_ptr<SurfaceSearch> source_search_;                        ///< built when a score needs it
     TransferResult result_;
 };
 

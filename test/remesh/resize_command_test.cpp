@@ -3,7 +3,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/io/mesh_file.h"
 #include "scratch.h"
-#include "test_meshes.h"
+#include "meshes.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,10 @@
 #include "ostraka/transfer/transfer.h"
+#include "ostraka/transfer/survival.h"
 
+#include "meshes.h"
 #include "ostraka/annotation/outline.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
-#include "remesh/test_meshes.h"
 
 #include <gtest/gtest.h>
 
@@ -255,6 +256,75 @@ TEST(Transfer, SameForAnyNumberOfThreadsAndScale) {
     }
     const TransferResult far = transfer_to(at(4, 1, {1e6, 0, 0}), set, at(5, 1, {1e6, 0, 0}));
     EXPECT_NEAR(*far.scores[0].overlap, *one.scores[0].overlap, 1e-3);
+}
+
+TEST(Transfer, RoundingPutsLessOnTheWrongSideAndMeetsAreaAndPerimeter) {
+    const Mesh source = build_mesh(octahedron_sphere(5)), target = build_mesh(rotated(octahedron_sphere(6), 0.3));
+    const AnnotationSet set = set_of({region(1, source, cap), region(2, source, band)});
+    const auto scores = [&](const char* rounding) {
+        TransferOptions options;
+        options.rounding = rounding;
+        return transfer_to(source, set, target, options).scores;
+    };
+    const auto path = scores("path"), area = scores("area"), balanced = scores("balanced");
+    for (std::size_t i = 0; i < 2; ++i) {
+        EXPECT_LT(*area[i].wrong_side, *path[i].wrong_side);
+        EXPECT_LE(*balanced[i].wrong_side, *path[i].wrong_side);
+        EXPECT_LT(distortions(balanced[i]).area + distortions(balanced[i]).perimeter,
+                  distortions(path[i]).area + distortions(path[i]).perimeter);
+        EXPECT_LT(distortions(balanced[i]).area, 1e-3);
+    }
+}
+
+TEST(Transfer, RoundingKeepsThePartitionOfThreeRegions) {
+    const Mesh source = build_mesh(octahedron_sphere(4)), target = build_mesh(rotated(octahedron_sphere(5), 0.3));
+    const auto third = [](int k) {
+        return [k](const Point& p) {
+            return static_cast<int>(std::floor((std::atan2(p.y(), p.x()) + M_PI) / (2 * M_PI) * 2.9999)) == k;
+        };
+    };
+    const AnnotationSet set = set_of({region(1, source, third(0)), region(2, source, third(1)), region(3, source, third(2))});
+    for (const char* rounding : {"path", "area", "balanced"}) {
+        TransferOptions options;
+        options.rounding = rounding;
+        std::vector<int> owners(target.number_of_faces(), 0);
+        for (const Annotation& annotation : transfer_to(source, set, target, options).annotations.annotations)
+            for (const Index f : annotation.faces) ++owners[f];
+        for (const int count : owners) EXPECT_EQ(count, 1) << rounding;
+    }
+}
+
+TEST(Transfer, MeasuresMoveWithTheirPinsAndAreTakenAnew) {
+    const Mesh source = build_mesh(octahedron_sphere(4)), target = build_mesh(rotated(octahedron_sphere(5), 0.3));
+    Annotation top = region(1, source, cap);
+    Attribute ruler;
+    ruler.name = "axis";
+    ruler.type = AttributeType::measure;
+    ruler.measure = {"ruler", {4, 5}, {}, std::nullopt, 99.0, "mm", false};  // the poles
+    Attribute area;
+    area.id = 1;
+    area.name = "area";
+    area.type = AttributeType::descriptor;
+    area.descriptor.values = {99.0};
+    top.attributes = {ruler, area};
+    const Annotation moved = transfer_to(source, set_of({top}), target).annotations.annotations.at(0);
+    ASSERT_EQ(moved.attributes.size(), 2U);
+    EXPECT_FALSE(moved.attributes[0].measure.stale);
+    EXPECT_NEAR(moved.attributes[0].measure.value.value(), 2, 1e-9);
+    EXPECT_EQ(moved.attributes[0].measure.locations.size(), 2U);
+    EXPECT_NEAR(moved.attributes[1].descriptor.values.at(0), measure_region(target, moved.faces).area, 1e-12);
+}
+
+TEST(Survival, SmallerRegionsNeedMoreVertices) {
+    const Mesh mesh = build_mesh(octahedron_sphere(5));
+    const AnnotationSet set = set_of({region(1, mesh, [](const Point& p) { return p.z() > 0; }),
+                                      region(2, mesh, [](const Point& p) { return p.z() > 0.8; }),
+                                      region(3, mesh, [](const Point& p) { return p.z() > 0.99; })});
+    const auto survivals = smallest_resolutions(mesh, set);
+    ASSERT_EQ(survivals.size(), 3U);
+    EXPECT_LE(survivals[0].vertices, survivals[1].vertices);
+    EXPECT_LT(survivals[1].vertices, survivals[2].vertices);
+    EXPECT_FALSE(survivals[2].end.empty());
 }
 
 TEST(Transfer, OtherUnitsAndPositionsAreRefusedWithTheirSize) {

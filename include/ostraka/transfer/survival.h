@@ -27,9 +27,10 @@ struct Survival {
     std::string end;           ///< what became of it at the next one; empty if it survived all
 };
 
-/// Simplifies the mesh step by step and transfers the annotations from the full mesh to each step. An annotation survives while it
-/// keeps its type, no outline or point of it vanishes, and, if it is a region, its area stays within the bound. The answer is
+/// Simplifies the mesh step by step and transfers the annotations from the full mesh to each step. An annotation survives while
+/// it keeps its type, no outline or point of it vanishes, and, if it is a region, its area stays within the bound. The answer is
 /// exact to one step of the ratio. Costs about 1 / (1 - ratio) times one simplification and one transfer.
-std::vector<Survival> smallest_resolutions(const Mesh& mesh, const AnnotationSet& annotations, const SurvivalOptions& options = {});
+std::vector<Survival> smallest_resolutions(const Mesh& mesh, const AnnotationSet& annotations,
+                                           const SurvivalOptions& options = {});
 
 }  // namespace ostraka

@@ -28,7 +28,8 @@ struct TransferOptions {
         visit("spikes", spikes, "prune spikes of an outline, avoid used vertices while tracing it, or keep them",
               Choices{"prune", "avoid", "keep"});
         visit("rounding", rounding,
-              "faces that the true outline crosses: as the edge paths leave them (path), to the side that holds most of them (area), or so "
+              "faces that the true outline crosses: as the edge paths leave them (path), to the side that holds most of them "
+              "(area), or so "
               "that area and perimeter are met as well (balanced); outlines shared by regions stay as the paths leave them",
               Choices{"path", "area", "balanced"});
         visit("cover", cover, "the transferred region overlaps the source region, encloses it or is enclosed by it",
