@@ -21,6 +21,7 @@ struct SurfaceSearch::Tree {
     const Mesh* mesh;
     AabbTree aabb;
     double typical_edge = 0;
+    double diagonal = 0;
 };
 
 SurfaceSearch::SurfaceSearch(const Mesh& mesh, bool closest) : tree_(std::make_unique<Tree>()) {
@@ -37,12 +38,15 @@ SurfaceSearch::SurfaceSearch(const Mesh& mesh, bool closest) : tree_(std::make_u
     else tree_->aabb.do_not_accelerate_distance_queries();
     const double mean_area = surface_area(mesh) / static_cast<double>(faces.size());
     tree_->typical_edge = std::sqrt(mean_area * 4 / std::sqrt(3.0));
+    tree_->diagonal = box_diagonal(mesh);
 }
 
 SurfaceSearch::~SurfaceSearch() = default;
 SurfaceSearch::SurfaceSearch(SurfaceSearch&&) noexcept = default;
 
 const Mesh& SurfaceSearch::mesh() const { return *tree_->mesh; }
+double SurfaceSearch::typical_edge() const { return tree_->typical_edge; }
+double SurfaceSearch::diagonal() const { return tree_->diagonal; }
 
 Vector SurfaceSearch::normal(Index face) const {
     const Vector a = area_vector(*tree_->mesh, Face(face));

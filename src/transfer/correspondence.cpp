@@ -35,11 +35,8 @@ struct Reach {
 };
 
 Reach reach_of(const SurfaceSearch& target, const CorrespondenceOptions& options) {
-    const double diagonal = box_diagonal(target.mesh());
-    const double far = options.max_distance * diagonal;
-    const double edge =
-        std::sqrt(4 / std::sqrt(3.0) * surface_area(target.mesh()) / static_cast<double>(target.mesh().number_of_faces()));
-    return {std::min(far, 2 * edge), far, std::cos(options.max_angle * CGAL_PI / 180)};
+    const double far = options.max_distance * target.diagonal();
+    return {std::min(far, 2 * target.typical_edge()), far, std::cos(options.max_angle * CGAL_PI / 180)};
 }
 
 Correspondence find_one(const Mesh& source, Index vertex, const SurfaceSearch& target, const CorrespondenceOptions& options,

@@ -69,9 +69,7 @@ std::vector<Index> diameter_path(const std::vector<Index>& walk) {
 
 RegionTransfer::RegionTransfer(const Mesh& source, const SurfaceSearch& target, const TransferOptions& options)
     : source_(source), search_(target), options_(options) {
-    const Mesh& mesh = target.mesh();
-    target_edge_ = std::sqrt(4 / std::sqrt(3.0) * surface_area(mesh) /
-                             static_cast<double>(std::max<std::size_t>(1, mesh.number_of_faces())));
+    target_edge_ = target.typical_edge();
 }
 
 RegionTransfer::~RegionTransfer() = default;
@@ -155,7 +153,7 @@ std::vector<bool> RegionTransfer::fill(const std::vector<Index>& region, const s
         if (patch.bounded) continue;
         unbounded = true;
         const auto hit = search_.closest_compatible(centroid(source_, Face(patch.face)), area_vector(source_, Face(patch.face)),
-                                                    0, options_.correspondence.max_distance * box_diagonal(search_.mesh()));
+                                                    0, options_.correspondence.max_distance * search_.diagonal());
         if (!hit) continue;
         Index start = hit->face;
         if (origin != nullptr)

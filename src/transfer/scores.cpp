@@ -8,13 +8,6 @@
 
 namespace ostraka {
 
-namespace {
-double mean_target_edge(const Mesh& target) {
-    return std::sqrt(4 / std::sqrt(3.0) * surface_area(target) /
-                     static_cast<double>(std::max<std::size_t>(1, target.number_of_faces())));
-}
-}  // namespace
-
 double overlapping_area(const Mesh& mesh, const std::vector<Index>& region, const SurfaceSearch& other,
                         const CorrespondenceOptions& options, std::size_t most_inner,
                         const std::function<bool(const SurfaceHit&)>& contains) {
@@ -27,8 +20,8 @@ double overlapping_area(const Mesh& mesh, const std::vector<Index>& region, cons
         near[v] = true;
         for (const Halfedge h : CGAL::halfedges_around_source(Vertex(v), mesh)) near[mesh.target(h)] = true;
     }
-    const double fine = 0.3 * mean_target_edge(other.mesh());
-    const double reach = options.max_distance * box_diagonal(other.mesh());
+    const double fine = 0.3 * other.typical_edge();
+    const double reach = options.max_distance * other.diagonal();
     const double min_cosine = std::cos(options.max_angle * CGAL_PI / 180);
     const std::size_t stride = std::max<std::size_t>(1, (region.size() + most_inner - 1) / std::max<std::size_t>(1, most_inner));
     std::vector<double> inside(region.size(), -1), area_of(region.size(), 0);

@@ -27,6 +27,9 @@ public:
     SurfaceSearch(SurfaceSearch&&) noexcept;
 
     [[nodiscard]] const Mesh& mesh() const;
+    /// Edge length of an equilateral triangle with the faces' mean area, and the diagonal of the mesh's box.
+    [[nodiscard]] double typical_edge() const;
+    [[nodiscard]] double diagonal() const;
     /// Unit normal of a face.
     [[nodiscard]] Vector normal(Index face) const;
 
