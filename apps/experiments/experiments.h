@@ -15,7 +15,7 @@ struct TableOptions {
     std::vector<std::size_t> rungs{50000, 5000, 100000, 1000000};
     std::string metric;
     std::string csv;
-    bool no_independent = false;
+    bool no_independent = false, truth_only = false;
 };
 void transfer_table(const TableOptions& options);
 

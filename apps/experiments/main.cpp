@@ -26,6 +26,7 @@ int main(int argc, char** argv) {
     table_command->add_option("--rungs", table.rungs, "other resolutions, the first is the one annotated")->delimiter(',');
     table_command->add_option("--metric", table.metric, "only the rows whose metric contains this");
     table_command->add_option("--csv", table.csv, "raw rows");
+    table_command->add_flag("--truth-only", table.truth_only, "only the overlap with the parts of the made objects");
     table_command->add_flag("--no-independent", table.no_independent, "leave out independently meshed resolutions");
 
     experiments::LabelOptions labels;

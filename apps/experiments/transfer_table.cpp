@@ -134,6 +134,10 @@ private:
         for (const std::size_t n : down) last = &decimated.rungs.emplace(name_of(n), simplified(*last, n)).first->second;
         std::cerr << name << ": decimated\n";
         measure(decimated, truth);
+        if (options_.truth_only) {
+            if (!independent.empty() && truth != nullptr) measure({name, "independent", std::move(independent)}, truth);
+            return;
+        }
         // The subdivision chain starts at the annotated rung.
         Ladder subdivided{name, "subdivided", {}};
         const std::string home = name_of(options_.rungs.front());
@@ -173,8 +177,33 @@ private:
         return set;
     }
 
-    /// Parts of a made object by their labels at the faces' centroids, transferred and compared with the parts themselves: each
-    /// target face is sampled by 16 smaller triangles whose centroids, followed to the true surface, tell their part.
+    /// What truly belongs to each part on a mesh of a made object: each face is sampled by 16 smaller triangles whose centroids,
+    /// followed to the true surface, tell their part.
+    struct Truth {
+        const Mesh* mesh;
+        std::vector<std::map<int, double>> shares;
+        std::map<int, double> areas;
+        double whole = 0;
+    };
+    static Truth truth_of(const Mesh& mesh, const MadeObject& object) {
+        Truth truth{&mesh, std::vector<std::map<int, double>>(mesh.number_of_faces()), {}, surface_area(mesh)};
+        parallel_for(mesh.number_of_faces(), [&](std::size_t i) {
+            const auto [a, b, c] = corners(mesh, Face(static_cast<Index>(i)));
+            constexpr int k = 4;
+            for (int u = 0; u < k; ++u)
+                for (int v = 0; u + v < k; ++v)
+                    for (int half = 0; half < (u + v + 1 < k ? 2 : 1); ++half) {
+                        const double s = (u + (half == 0 ? 1.0 : 2.0) / 3) / k, t = (v + (half == 0 ? 1.0 : 2.0) / 3) / k;
+                        const Point p = mesh.point(a) + s * (mesh.point(b) - mesh.point(a)) + t * (mesh.point(c) - mesh.point(a));
+                        truth.shares[i][object.part(object.project(p))] += 1.0 / (k * k);
+                    }
+        });
+        for (const Face f : mesh.faces())
+            for (const auto& [part, share] : truth.shares[f]) truth.areas[part] += share * face_area(mesh, f);
+        return truth;
+    }
+
+    /// Parts by their labels at the faces' centroids, transferred and compared with the parts themselves.
     void measure_truth(const Ladder& ladder, const MadeObject& object) {
         const std::string home = name_of(options_.rungs.front());
         const Mesh& source = ladder.rungs.at(home);
@@ -188,64 +217,49 @@ private:
                 if (object.part(object.project(centroid(source, f))) == region.id) region.faces.push_back(f);
             if (!region.faces.empty()) set.annotations.push_back(std::move(region));
         }
-        for (const auto& [name, target] : ladder.rungs) {
-            // Shares of each target face that truly belong to each part.
-            std::vector<std::map<int, double>> truth(target.number_of_faces());
-            parallel_for(target.number_of_faces(), [&](std::size_t i) {
-                const Face f(static_cast<Index>(i));
-                const auto [a, b, c] = corners(target, f);
-                constexpr int k = 4;
-                for (int u = 0; u < k; ++u)
-                    for (int v = 0; u + v < k; ++v)
-                        for (int half = 0; half < (u + v + 1 < k ? 2 : 1); ++half) {
-                            const double s = (u + (half == 0 ? 1.0 : 2.0) / 3) / k, t = (v + (half == 0 ? 1.0 : 2.0) / 3) / k;
-                            const Point p = target.point(a) + s * (target.point(b) - target.point(a)) +
-                                            t * (target.point(c) - target.point(a));
-                            truth[i][object.part(object.project(p))] += 1.0 / (k * k);
-                        }
-            });
-            std::map<int, double> true_area;
-            const double whole = surface_area(target);
-            for (const Face f : target.faces())
-                for (const auto& [part, share] : truth[f]) true_area[part] += share * face_area(target, f);
-            const auto judge = [&](const AnnotationSet& result, const std::string& pair, const std::string& metric) {
-                for (const Annotation& region : result.annotations) {
-                    double area = 0, common = 0;
-                    for (const Index f : region.faces) {
-                        const double face = face_area(target, Face(f));
-                        area += face;
-                        if (const auto found = truth[f].find(region.id); found != truth[f].end()) common += found->second * face;
-                    }
-                    const double share = true_area[region.id] / whole;
-                    const double overlap = common / (area + true_area[region.id] - common);
-                    const char* bin = share >= 0.1     ? "10 % and more"
-                                      : share >= 0.025 ? "2.5 to 10 %"
-                                      : share >= 0.005 ? "0.5 to 2.5 %"
-                                                       : "below 0.5 %";
-                    auto& entry = truth_[{ladder.kind, pair, bin, metric}];
-                    entry.push_back(overlap);
-                    truth_csv_ << ladder.object << ',' << ladder.kind << ',' << pair << ',' << metric << ',' << region.tag << ','
-                               << share << ',' << overlap << '\n';
+        const auto judge = [&](const Truth& truth, const AnnotationSet& result, const std::string& pair,
+                               const std::string& rounding) {
+            for (const Annotation& region : result.annotations) {
+                if (region.faces.empty()) continue;
+                double area = 0, common = 0;
+                for (const Index f : region.faces) {
+                    const double face = face_area(*truth.mesh, Face(f));
+                    area += face;
+                    if (const auto found = truth.shares[f].find(region.id); found != truth.shares[f].end())
+                        common += found->second * face;
                 }
-            };
-            if (name == home) {
-                judge(set, home + " as annotated", "-");
-                continue;
+                const double true_area = truth.areas.at(region.id), share = true_area / truth.whole;
+                const double overlap = common / (area + true_area - common);
+                const char* bin = share >= 0.1     ? "10 % and more"
+                                  : share >= 0.025 ? "2.5 to 10 %"
+                                  : share >= 0.005 ? "0.5 to 2.5 %"
+                                                   : "below 0.5 %";
+                truth_[{ladder.kind, pair, bin, rounding}].push_back(overlap);
+                truth_csv_ << ladder.object << ',' << ladder.kind << ',' << pair << ',' << rounding << ',' << region.tag << ','
+                           << share << ',' << overlap << '\n';
             }
-            if (target.number_of_vertices() > 300000) continue;
+        };
+        const Truth home_truth = truth_of(source, object);
+        judge(home_truth, set, home + " as annotated", "-");
+        for (const auto& [name, target] : ladder.rungs) {
+            if (name == home || target.number_of_vertices() > 300000) continue;
+            const Truth truth = truth_of(target, object);
             const SurfaceSearch search(target);
             for (const std::string rounding : {"path", "area", "balanced"}) {
                 TransferOptions options;
                 options.rounding = rounding;
                 options.overlap = false;
                 const TransferResult there = transfer(source, set, search, options);
-                judge(there.annotations, home + " -> " + name, rounding);
+                judge(truth, there.annotations, home + " -> " + name, rounding);
+                judge(home_truth, transfer(target, there.annotations, source_search, options).annotations,
+                      home + " -> " + name + " -> " + home, rounding);
             }
         }
     }
 
     void measure(const Ladder& ladder, const MadeObject* truth) {
         if (truth != nullptr) measure_truth(ladder, *truth);
+        if (options_.truth_only) return;
         const std::string home = name_of(options_.rungs.front());
         const Mesh& source = ladder.rungs.at(home);
         const AnnotationSet set = discs(source);
