@@ -1,7 +1,7 @@
 #include "ostraka/remesh/remesh.h"
 
-#include "ostraka/core/error.h"
 #include "meshes.h"
+#include "ostraka/core/error.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // The built command as people run it.
+#include "meshes.h"
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/core/error.h"
 #include "ostraka/io/mesh_file.h"
 #include "scratch.h"
-#include "meshes.h"
 
 #include <gtest/gtest.h>
 

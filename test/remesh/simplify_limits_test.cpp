@@ -1,7 +1,7 @@
 // Where simplification ends, and what it refuses.
+#include "meshes.h"
 #include "ostraka/core/error.h"
 #include "ostraka/remesh/simplify.h"
-#include "meshes.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 #include "ostraka/remesh/simplify.h"
 
-#include "ostraka/core/error.h"
 #include "meshes.h"
+#include "ostraka/core/error.h"
 
 #include <gtest/gtest.h>
 
