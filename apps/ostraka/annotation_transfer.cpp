@@ -6,6 +6,7 @@
 #include "ostraka/transfer/transfer.h"
 
 #include <chrono>
+#include <cmath>
 #include <iostream>
 #include <memory>
 
@@ -72,7 +73,8 @@ JsonValue scores_to_json(const std::vector<TransferScore>& scores, JsonAllocator
     return list;
 }
 
-std::string percent(double share) { return number(100 * share, 3); }
+/// Less than 1e-9 % is what rounding leaves of nothing.
+std::string percent(double share) { return std::abs(share) < 1e-11 ? "0" : number(100 * share, 3); }
 
 void print_scores(const std::string& title, const std::vector<TransferScore>& scores) {
     std::vector<std::vector<std::string>> rows;
