@@ -8,6 +8,19 @@
 
 namespace ostraka {
 
+Distortions distortions(const TransferScore& score) {
+    const auto off = [](double target, double source) { return source > 0 ? std::abs(target / source - 1) : 0.0; };
+    const double a = score.source_area, b = score.target_area, p = score.source_length, q = score.target_length;
+    Distortions d{};
+    d.area = off(b, a);
+    d.perimeter = off(q, p);
+    d.perimeter_by_area = b > 0 && a > 0 ? off(q / b, p / a) : 0;
+    d.area_by_perimeter = q > 0 && p > 0 ? off(b / q, a / p) : 0;
+    d.circularity = b > 0 && a > 0 ? off(q * q / b, p * p / a) : 0;
+    d.mean = (d.area + d.perimeter + d.perimeter_by_area + d.area_by_perimeter + d.circularity) / 5;
+    return d;
+}
+
 double overlapping_area(const Mesh& mesh, const std::vector<Index>& region, const SurfaceSearch& other,
                         const CorrespondenceOptions& options, std::size_t most_inner,
                         const std::function<bool(const SurfaceHit&)>& contains) {
@@ -71,6 +84,19 @@ double overlapping_area(const Mesh& mesh, const std::vector<Index>& region, cons
         inner_inside += inside[i];
     }
     return sum + (inner > 0 ? passed_over * inner_inside / inner : passed_over);
+}
+
+void score_overlap(const RegionOn& source, const RegionOn& target, const CorrespondenceOptions& options,
+                   const std::function<bool(const SurfaceHit&)>& in_target, TransferScore& score) {
+    const std::size_t most_inner = std::max<std::size_t>(20000, source.faces.size());
+    std::vector<bool> in_source(source.mesh.number_of_faces(), false);
+    for (const Index f : source.faces) in_source[f] = true;
+    const double arrived = overlapping_area(source.mesh, source.faces, target.search, options, most_inner, in_target);
+    const double came = overlapping_area(target.mesh, target.faces, source.search, options, most_inner,
+                                         [&](const SurfaceHit& hit) { return static_cast<bool>(in_source[hit.face]); });
+    const double common = (arrived + came) / 2;
+    score.overlap = common / (score.source_area + score.target_area - common);
+    score.wrong_side = std::max(0.0, score.source_area - arrived) + std::max(0.0, score.target_area - came);
 }
 
 std::vector<bool> region_by_vote(const Mesh& source, const SurfaceSearch& source_search, const std::vector<Index>& region,

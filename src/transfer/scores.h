@@ -14,6 +14,17 @@ double overlapping_area(const Mesh& mesh, const std::vector<Index>& region, cons
                         const CorrespondenceOptions& options, std::size_t most_inner,
                         const std::function<bool(const SurfaceHit&)>& contains);
 
+/// A region of a mesh, with the search tree of the surface it was made for (for a refined target: that of the target itself).
+struct RegionOn {
+    const Mesh& mesh;
+    const std::vector<Index>& faces;
+    const SurfaceSearch& search;
+};
+/// Overlap and wrong side of a score, from both sides, since the surfaces differ: what of the source region arrived inside, and
+/// what of the target region came from inside.
+void score_overlap(const RegionOn& source, const RegionOn& target, const CorrespondenceOptions& options,
+                   const std::function<bool(const SurfaceHit&)>& in_target, TransferScore& score);
+
 /// The region's faces found one by one: those target faces whose centroid has its nearest compatible point in the region.
 std::vector<bool> region_by_vote(const Mesh& source, const SurfaceSearch& source_search, const std::vector<Index>& region,
                                  const Mesh& target, const CorrespondenceOptions& options);

@@ -18,19 +18,6 @@
 
 namespace ostraka {
 
-Distortions distortions(const TransferScore& score) {
-    const auto off = [](double target, double source) { return source > 0 ? std::abs(target / source - 1) : 0.0; };
-    const double a = score.source_area, b = score.target_area, p = score.source_length, q = score.target_length;
-    Distortions d{};
-    d.area = off(b, a);
-    d.perimeter = off(q, p);
-    d.perimeter_by_area = b > 0 && a > 0 ? off(q / b, p / a) : 0;
-    d.area_by_perimeter = q > 0 && p > 0 ? off(b / q, a / p) : 0;
-    d.circularity = b > 0 && a > 0 ? off(q * q / b, p * p / a) : 0;
-    d.mean = (d.area + d.perimeter + d.perimeter_by_area + d.area_by_perimeter + d.circularity) / 5;
-    return d;
-}
-
 namespace {
 
 class Clock {
@@ -418,20 +405,9 @@ void Transfer::score(const Annotation& from, Annotation& to, TransferScore& scor
         score.wrong_side = 0;
         return;
     }
-    // From both sides, since the surfaces differ: what of the source region arrived inside, what of the target region came from
-    // inside.
     if (!source_search_) source_search_ = std::make_unique<SurfaceSearch>(source_);
-    const std::size_t most_inner = std::max<std::size_t>(20000, from.faces.size());
-    const double arrived =
-        overlapping_area(source_, from.faces, search_, options_.correspondence, most_inner,
-                         regions_.membership(to.faces, on(), result_.refined ? &result_.refined->face_origin : nullptr));
-    std::vector<bool> in_source(source_.number_of_faces(), false);
-    for (const Index f : from.faces) in_source[f] = true;
-    const double came = overlapping_area(on(), to.faces, *source_search_, options_.correspondence, most_inner,
-                                         [&](const SurfaceHit& hit) { return static_cast<bool>(in_source[hit.face]); });
-    const double common = (arrived + came) / 2;
-    score.overlap = common / (score.source_area + score.target_area - common);
-    score.wrong_side = std::max(0.0, score.source_area - arrived) + std::max(0.0, score.target_area - came);
+    score_overlap({source_, from.faces, *source_search_}, {on(), to.faces, search_}, options_.correspondence,
+                  regions_.membership(to.faces, on(), result_.refined ? &result_.refined->face_origin : nullptr), score);
 }
 
 }  // namespace
