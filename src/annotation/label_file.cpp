@@ -150,7 +150,8 @@ std::array<int, 3> distinct_colour(std::size_t index) {
     const std::array<std::array<double, 3>, 6> table{
         {{value, t, p}, {q, value, p}, {p, value, t}, {p, q, value}, {t, p, value}, {value, p, q}}};
     const auto& rgb = table[static_cast<std::size_t>(sector) % 6];
-    return {static_cast<int>(255 * rgb[0] + 0.5), static_cast<int>(255 * rgb[1] + 0.5), static_cast<int>(255 * rgb[2] + 0.5)};
+    const auto byte = [](double part) { return static_cast<int>(std::lround(255 * part)); };
+    return {byte(rgb[0]), byte(rgb[1]), byte(rgb[2])};
 }
 
 }  // namespace ostraka

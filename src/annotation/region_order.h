@@ -19,6 +19,7 @@ inline std::vector<const Annotation*> regions_largest_first(const Mesh& mesh, co
     }
     std::stable_sort(regions.begin(), regions.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
     std::vector<const Annotation*> order;
+    order.reserve(regions.size());
     for (const auto& [area, annotation] : regions) order.push_back(annotation);
     return order;
 }

@@ -61,7 +61,7 @@ public:
     }
 
 private:
-    void line(int indent) { text += '\n', text.append(static_cast<std::size_t>(2 * indent), ' '); }
+    void line(int indent) { text += '\n', text.append(2 * static_cast<std::size_t>(indent), ' '); }
     void plain(const JsonValue& v) {
         if (v.IsDouble() && !std::isfinite(v.GetDouble()))
             throw Error(ErrorKind::failure, "JSON output", "a number is not finite", "report this as a defect");
