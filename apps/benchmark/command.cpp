@@ -1,0 +1,134 @@
+// The built command as a whole: wall time, processor time, peak memory.
+#include "benchmarks.h"
+
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <map>
+#include <string>
+
+namespace ostraka::bench {
+
+namespace {
+
+struct Run {
+    int exit_code = -1;
+    double seconds = 0, processor_seconds = 0, peak_bytes = 0;
+};
+
+double seconds(const timeval& time) { return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec); }
+
+/// A child's peak counts from the moment it splits from this process, so this process must be smaller than what is measured.
+Run run_command(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), OSTRAKA_COMMAND);
+    std::vector<char*> pointers;
+    for (std::string& argument : arguments) pointers.push_back(argument.data());
+    pointers.push_back(nullptr);
+    const auto start = std::chrono::steady_clock::now();
+    const pid_t child = ::fork();
+    if (child == 0) {
+        const int nowhere = ::open("/dev/null", O_WRONLY);
+        ::dup2(nowhere, STDOUT_FILENO);
+        ::execv(pointers.front(), pointers.data());
+        ::_exit(127);
+    }
+    Run run;
+    int status = 0;
+    rusage usage{};
+    if (child < 0 || ::wait4(child, &status, 0, &usage) != child || !WIFEXITED(status)) return run;
+    run.exit_code = WEXITSTATUS(status);
+    run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    run.processor_seconds = seconds(usage.ru_utime) + seconds(usage.ru_stime);
+    run.peak_bytes = 1024.0 * static_cast<double>(usage.ru_maxrss);
+    return run;
+}
+
+std::string path_of(const std::string& name) { return (scratch_folder() / name).string(); }
+
+/// The teapot as the command makes it: binary PLY with labels (and, where it is not refined, colours).
+bool make_teapot(const std::string& name, std::size_t vertices, int seed) {
+    static std::map<std::string, bool> made;
+    const auto [known, is_new] = made.try_emplace(name, false);
+    if (!is_new) return known->second;
+    const Making making = making_of(vertices);
+    const std::string coarse = making.levels > 0 ? "coarse.ply" : name;
+    known->second = run_command({"mesh", "make", "teapot", path_of(coarse), "--vertices", std::to_string(making.vertices),
+                                 "--seed", std::to_string(seed), "--quiet"})
+                        .exit_code == 0;
+    if (making.levels > 0)
+        known->second = known->second && run_command({"mesh", "refine", path_of(coarse), path_of(name), "--levels",
+                                                      std::to_string(making.levels), "--quiet"})
+                                                 .exit_code == 0;
+    return known->second;
+}
+
+void report(benchmark::State& state, const Run& run, std::size_t vertices) {
+    state.SetIterationTime(run.seconds);
+    state.counters["cpu_s"] = run.processor_seconds;
+    state.counters["peak_MB"] = run.peak_bytes / 1e6;
+    state.counters["peak_B_per_vertex"] = run.peak_bytes / static_cast<double>(vertices);
+}
+
+void measure_command(benchmark::State& state, const std::vector<std::string>& arguments, std::size_t vertices) {
+    for ([[maybe_unused]] const auto lap : state) {
+        rusage own{};
+        ::getrusage(RUSAGE_SELF, &own);
+        const Run run = run_command(arguments);
+        if (run.exit_code != 0) state.SkipWithError(("exit code " + std::to_string(run.exit_code)).c_str());
+        else if (run.peak_bytes < 2048.0 * static_cast<double>(own.ru_maxrss))
+            state.SkipWithError("this process is too large for a measurement: run the command benchmarks alone");
+        report(state, run, vertices);
+    }
+}
+
+void transfer_command(benchmark::State& state, std::size_t vertices, const std::vector<std::string>& more) {
+    const std::string name = "target" + std::to_string(vertices) + ".ply";
+    if (!make_teapot("source.ply", 50'000, 1) || !make_teapot(name, vertices, 2) ||
+        run_command({"annotation", "apply", path_of("source.ply"), path_of("source.ant.json"), "--from-ply-labels", "--quiet"})
+                .exit_code != 0) {
+        state.SkipWithError("the inputs could not be made");
+        return;
+    }
+    std::vector<std::string> arguments{
+        "annotation", "transfer", path_of("source.ply"), path_of("source.ant.json"), path_of(name), path_of("result.ant.json"),
+        "--quiet"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    measure_command(state, arguments, vertices);
+}
+
+void million_command(benchmark::State& state, std::vector<std::string> arguments, const std::vector<std::string>& more) {
+    if (!make_teapot("target1000000.ply", 1'000'000, 2)) {
+        state.SkipWithError("the input could not be made");
+        return;
+    }
+    arguments.push_back(path_of("target1000000.ply"));
+    for (const std::string& argument : more) arguments.push_back(argument);
+    measure_command(state, arguments, 1'000'000);
+}
+
+}  // namespace
+
+void register_command_benchmarks() {
+    const auto add = [](const std::string& name, auto run) {
+        benchmark::RegisterBenchmark(("command/" + name).c_str(), run)
+            ->UseManualTime()
+            ->Iterations(1)
+            ->Unit(benchmark::kMillisecond);
+    };
+    for (const std::size_t vertices : {1'000'000, 8'000'000})
+        for (const bool overlap : {false, true})
+            add("transfer" + std::string(overlap ? "" : "_without_overlap") + "/" + std::to_string(vertices),
+                [vertices, overlap](benchmark::State& state) {
+                    transfer_command(state, vertices,
+                                     overlap ? std::vector<std::string>{} : std::vector<std::string>{"--no-overlap"});
+                });
+    add("mesh_info/1000000", [](benchmark::State& state) { million_command(state, {"mesh", "info"}, {"--quiet"}); });
+    add("render/1000000", [](benchmark::State& state) {
+        million_command(state, {"render"}, {path_of("million.png"), "--quiet"});
+    });
+}
+
+}  // namespace ostraka::bench

@@ -1,0 +1,81 @@
+// Queries on a target of a million vertices, asked from every vertex of the source.
+#include "benchmarks.h"
+#include "ostraka/core/parallel.h"
+
+#include <cmath>
+#include <map>
+#include <string>
+
+namespace ostraka::bench {
+
+namespace {
+
+constexpr std::size_t target_vertices = 1'000'000;
+
+enum class Query {
+    near_line,     ///< along the normal, two target edges both ways: what a transfer asks first
+    far_line,      ///< along the normal, 2 % of the diagonal both ways: what it asks where nothing is near
+    closest_point  ///< a single one
+};
+
+struct Asker {
+    std::vector<Point> points;
+    std::vector<Vector> normals;
+    double near = 0, far = 0;
+};
+
+const Asker& asker() {
+    static const Asker made = [] {
+        Asker result;
+        const Mesh& mesh = source().mesh;
+        for (const Vertex v : mesh.vertices()) {
+            result.points.push_back(mesh.point(v));
+            result.normals.push_back(vertex_normal(mesh, v));
+        }
+        result.near = 2 * mean_edge_length(target(target_vertices));
+        result.far = 0.02 * box_diagonal(mesh);
+        return result;
+    }();
+    return made;
+}
+
+Index ask(const SurfaceSearch& search, const Asker& from, Query query, std::size_t i) {
+    if (query == Query::closest_point) return search.closest(from.points[i]).face;
+    const auto hits = search.line_hits(from.points[i], from.normals[i], query == Query::near_line ? from.near : from.far);
+    return hits.empty() ? no_index : hits.front().face;
+}
+
+void run_queries(benchmark::State& state, Query query, int thread_count) {
+    const Asker& from = asker();
+    const SurfaceSearch& search = target_search(target_vertices);
+    std::vector<Index> faces(from.points.size());
+    set_threads(thread_count);
+    for ([[maybe_unused]] const auto lap : state)
+        parallel_for(
+            faces.size(), [&](std::size_t i) { faces[i] = ask(search, from, query, i); }, 64);
+    set_threads(0);
+    state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * faces.size()));
+
+    std::size_t answered = 0;
+    for (const Index face : faces) answered += face != no_index;
+    state.counters["answered"] = static_cast<double>(answered) / static_cast<double>(faces.size());
+    if (query != Query::near_line && answered < 0.99 * static_cast<double>(faces.size()))
+        state.SkipWithError("more than 1 % of the queries found nothing");
+    static std::map<Query, std::vector<Index>> reference;
+    if (reference.try_emplace(query, faces).first->second != faces)
+        state.SkipWithError("the answers depend on the number of threads");
+}
+
+}  // namespace
+
+void register_query_benchmarks() {
+    const std::pair<const char*, Query> queries[] = {
+        {"near_line", Query::near_line}, {"far_line", Query::far_line}, {"closest_point", Query::closest_point}};
+    for (const auto& [name, query] : queries)
+        for (const int thread_count : {1, 2})
+            with_both_times(benchmark::RegisterBenchmark(
+                (std::string("query/") + name + "/threads:" + std::to_string(thread_count)).c_str(),
+                [query = query, thread_count](benchmark::State& state) { run_queries(state, query, thread_count); }));
+}
+
+}  // namespace ostraka::bench
