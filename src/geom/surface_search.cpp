@@ -22,6 +22,17 @@ struct SurfaceSearch::Tree {
     AabbTree aabb;
     double typical_edge = 0;
     double diagonal = 0;
+
+    /// Nearest-point queries start from a near place on the surface, looked up in a k-d tree. One face in four gives such a
+    /// place: all of them would take 250 bytes a vertex more while the tree is built and make queries no faster.
+    void prepare_hints(const std::vector<Face>& faces) {
+        constexpr std::size_t step = 4;
+        std::vector<AabbTree::Point_and_primitive_id> hints;
+        hints.reserve(faces.size() / step + 1);
+        for (std::size_t i = 0; i < faces.size(); i += step)
+            hints.emplace_back(mesh->point(mesh->target(mesh->halfedge(faces[i]))), faces[i]);
+        aabb.accelerate_distance_queries(hints.begin(), hints.end());
+    }
 };
 
 SurfaceSearch::SurfaceSearch(const Mesh& mesh, bool closest) : tree_(std::make_unique<Tree>()) {
@@ -34,8 +45,8 @@ SurfaceSearch::SurfaceSearch(const Mesh& mesh, bool closest) : tree_(std::make_u
     if (faces.empty()) fail_input("mesh", "has no face with an area", "check its scale or repair it");
     tree_->aabb.insert(faces.begin(), faces.end(), mesh);
     tree_->aabb.build();
-    if (closest) tree_->aabb.accelerate_distance_queries();
-    else tree_->aabb.do_not_accelerate_distance_queries();
+    tree_->aabb.do_not_accelerate_distance_queries();
+    if (closest) tree_->prepare_hints(faces);
     const double mean_area = surface_area(mesh) / static_cast<double>(faces.size());
     tree_->typical_edge = std::sqrt(mean_area * 4 / std::sqrt(3.0));
     tree_->diagonal = box_diagonal(mesh);
