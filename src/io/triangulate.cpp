@@ -38,7 +38,8 @@ std::string counted(std::size_t count, const std::string& what) { return std::to
 
 }  // namespace
 
-TriangulatedSoup triangulate(PolygonSoup&& polygons) {
+TriangulatedSoup triangulate(PolygonSoup&& given) {
+    PolygonSoup polygons = std::move(given);  // so that the corners are freed on return, not when the caller ends
     TriangulatedSoup result;
     result.notes = std::move(polygons.notes);
     result.soup.points = std::move(polygons.points);
