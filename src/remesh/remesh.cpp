@@ -20,6 +20,13 @@ namespace {
 /// Side of the equilateral triangles that cover `area` with `vertices` vertices: two triangles a vertex, sqrt(3)/4 L^2 each.
 double edge_length_for(double area, double vertices) { return std::sqrt(2 * area / (std::sqrt(3.0) * vertices)); }
 
+/// Edges are first cut into pieces of the wanted length. Where triangles are needles (one point far away is enough), their edges
+/// are long and their area, which sets that length, is next to nothing: the pieces would fill the memory before they are merged.
+bool too_many_pieces(const Mesh& mesh, double length, double wanted) {
+    const auto edges = static_cast<double>(mesh.number_of_edges());
+    return !(mean_edge_length(mesh) * edges / length <= 1e6 + 10 * (edges + 3 * wanted));
+}
+
 void mark_features(const Mesh& mesh, double degrees, Mesh::Property_map<Edge, bool>& constrained) {
     const double cosine = std::cos(degrees * M_PI / 180);
     for (const Edge e : mesh.edges()) {
@@ -83,6 +90,11 @@ RemeshResult remesh(const Mesh& mesh, const RemeshOptions& options) {
     // Borders, features and curvature shift the count: measured once, corrected once.
     constexpr double accepted = 0.03;
     for (int attempt = 0; attempt < 3; ++attempt) {
+        if (too_many_pieces(old, length, wanted)) {
+            if (attempt > 0) break;
+            fail_input("mesh", "has triangles too long and thin to be cut into equal ones",
+                       "remove points that lie far away, or repair it");
+        }
         result.mesh = old;
         run_rounds(result.mesh, length, options);
         result.remeshed = result.mesh.number_of_vertices();

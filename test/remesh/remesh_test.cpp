@@ -54,6 +54,16 @@ TEST(Remesh, TheSameTwice) {
     EXPECT_EQ(mesh_checksum(remesh(mesh, options).mesh), mesh_checksum(remesh(mesh, options).mesh));
 }
 
+TEST(Remesh, APointFarAwayIsAnErrorNotAHang) {
+    for (const double far : {1e9, 1e18}) {
+        TriangleSoup soup = torus(48, 24);
+        soup.points[5][1] = far;
+        RemeshOptions options;
+        options.vertices = 150;
+        EXPECT_THROW(remesh(build_mesh(soup), options), Error);
+    }
+}
+
 TEST(Remesh, NothingToRemesh) {
     RemeshOptions options;
     options.vertices = 100;

@@ -33,7 +33,8 @@ struct RemeshResult {
 /// Isotropic remeshing (Botsch and Kobbelt, "A remeshing approach to multiresolution modeling", 2004; the CGAL implementation) to
 /// edges of equal length, projected onto the old surface, then a few collapses or halved edges to meet the number, and a last
 /// projection. No property, annotation or index is carried over. Isolated vertices are dropped. Deterministic. Throws Error
-/// (input) for a mesh without area, Error (usage) for an impossible number.
+/// (input) for a mesh without area or of needles so thin that cutting them up would never end, Error (usage) for an impossible
+/// number.
 RemeshResult remesh(const Mesh& mesh, const RemeshOptions& options);
 
 }  // namespace ostraka
