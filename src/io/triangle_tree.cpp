@@ -215,10 +215,13 @@ TriangleTree::Nearest TriangleTree::nearest(const Point& query) const {
         const auto& below = entry.level == 1 ? boxes_ : levels_[entry.level - 2];
         std::array<Entry, fan> children;
         std::size_t n = 0;
-        for (Index i = entry.number * fan; i < std::min(static_cast<Index>(below.size()), (entry.number + 1) * fan); ++i)
-            children[n++] = {bound(below[i]), entry.level - 1, i};
-        std::sort(children.begin(), children.begin() + static_cast<std::ptrdiff_t>(n),
-                  [](const Entry& x, const Entry& y) { return x.bound > y.bound; });
+        const Index end = std::min(static_cast<Index>(below.size()), (entry.number + 1) * fan);
+        for (Index i = entry.number * fan; i < end; ++i) {  // farthest first, so that the nearest is popped next
+            const Entry child{bound(below[i]), entry.level - 1, i};
+            std::size_t at = n++;
+            for (; at > 0 && children[at - 1].bound < child.bound; --at) children[at] = children[at - 1];
+            children[at] = child;
+        }
         for (std::size_t i = 0; i < n; ++i) stack.push_back(children[i]);
     }
     return best;
