@@ -345,7 +345,7 @@ private:
             ++sum.count;
             csv_ << ladder.object << ',' << ladder.kind << ',' << pair << ',' << metric << ',' << share << ',' << seconds << ','
                  << d.area << ',' << d.perimeter << ',' << d.perimeter_by_area << ',' << d.area_by_perimeter << ','
-                 << d.circularity << ',' << *score.overlap << ',' << wrong << ',' << score.hausdorff << '\n';
+                 << d.circularity << ',' << *score.overlap << ',' << wrong << ',' << score.hausdorff.value_or(-1) << '\n';
         }
     }
 

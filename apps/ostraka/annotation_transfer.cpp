@@ -55,7 +55,7 @@ JsonValue score_to_json(const TransferScore& score, JsonAllocator& allocator) {
         add("sourceLength", JsonValue(score.source_length));
         add("targetLength", JsonValue(score.target_length));
     }
-    add("hausdorff", JsonValue(score.hausdorff));
+    if (score.hausdorff) add("hausdorff", JsonValue(*score.hausdorff));
     JsonValue places(rapidjson::kObjectType);
     const std::pair<const char*, std::size_t> counts[] = {
         {"vertices", score.vertices},          {"byRay", score.by_ray},        {"byClosestPoint", score.by_closest_point},
@@ -94,8 +94,8 @@ void print_scores(const std::string& title, const std::vector<TransferScore>& sc
         const auto if_region = [&](double share) { return region ? percent(share) : std::string("-"); };
         rows.push_back({std::to_string(s.id), s.tag, to_string(s.target_type), if_region(d.area),
                         s.source_length > 0 && s.outcome == "kept" ? percent(d.perimeter) : "-", if_region(d.perimeter_by_area),
-                        if_region(d.area_by_perimeter), if_region(d.circularity), if_region(d.mean), number(s.hausdorff, 3),
-                        s.overlap && region ? number(*s.overlap, 5) : "-",
+                        if_region(d.area_by_perimeter), if_region(d.circularity), if_region(d.mean),
+                        s.hausdorff ? number(*s.hausdorff, 3) : "-", s.overlap && region ? number(*s.overlap, 5) : "-",
                         std::to_string(s.by_ray) + "/" + std::to_string(s.vertices), remarks});
     }
     std::cout << title << "\n"
@@ -108,6 +108,7 @@ Provenance provenance_of(const TransferCommand& command, const std::vector<Path>
     Provenance provenance;
     provenance.command = "annotation transfer";
     provenance.options = list_options(command.options);
+    if (command.reading.force_mesh) provenance.options.emplace_back("force-mesh", "true");
     for (const Path& input : inputs) provenance.add_input(input);
     return provenance;
 }
@@ -115,6 +116,7 @@ Provenance provenance_of(const TransferCommand& command, const std::vector<Path>
 int run(const Session& session, TransferCommand& command) {
     command.options.overlap = !command.no_overlap;
     check_options(command.options, "annotation transfer");
+    if (command.output.empty()) fail_usage("the output has no name", "name a file (*.ant.json)");
     const std::vector<Path> inputs{command.source, command.annotations, command.target};
     std::vector<Path> outputs{command.output};
     for (const std::string* more : {&command.back, &command.refined, &command.map, &command.ply})
@@ -126,6 +128,9 @@ int run(const Session& session, TransferCommand& command) {
     if (!command.map.empty() && command.refined.empty()) fail_usage("--map goes with --refine", "leave it out or refine");
     for (const std::string* mesh : {&command.refined, &command.ply})
         if (!mesh->empty()) check_mesh_extension(*mesh);
+    if (const std::string kind = extension(command.refined); kind == ".stl" || kind == ".glb")
+        fail_usage("annotations need a mesh whose vertices keep their order, which " + kind + " files do not",
+                   "write a .ply, .obj or .off");
 
     const auto start = std::chrono::steady_clock::now();
     const MeshFile source = read_mesh(command.source);
@@ -137,8 +142,19 @@ int run(const Session& session, TransferCommand& command) {
     const double tree = seconds_since(tree_start);
     TransferResult there = transfer(source.mesh, set, search, command.options);
 
-    const Provenance provenance = provenance_of(command, inputs);
     const Mesh& on = there.refined ? there.refined->mesh : target.mesh;
+    std::optional<TransferResult> back;
+    if (!command.back.empty()) {
+        const SurfaceSearch home(source.mesh);
+        TransferOptions options = command.options;
+        options.refine = false;
+        back = transfer(on, there.annotations, home, options);
+    }
+
+    // All work is done: what is written now is complete.
+    const Provenance provenance = provenance_of(command, inputs);
+    for (const auto* notes : {&source.notes, &target.notes, &set.notes})
+        for (const std::string& note : *notes) session.note(note);
     if (there.refined) {
         WriteOptions writing;
         writing.comment = provenance.to_line();
@@ -157,20 +173,12 @@ int run(const Session& session, TransferCommand& command) {
     }
     write_annotations(command.output, there.annotations, on, there.refined ? command.refined : command.target, provenance);
 
+    if (back) write_annotations(command.back, back->annotations, source.mesh, command.source, provenance);
     if (!command.ply.empty()) {
         WriteOptions writing;
         writing.comment = provenance.to_line();
         for (const std::string& note : write_mesh(command.ply, on, colour_by_annotation(on, there.annotations), writing))
             session.note(command.ply + ": " + note);
-    }
-
-    std::optional<TransferResult> back;
-    if (!command.back.empty()) {
-        const SurfaceSearch home(source.mesh);
-        TransferOptions options = command.options;
-        options.refine = false;
-        back = transfer(on, there.annotations, home, options);
-        write_annotations(command.back, back->annotations, source.mesh, command.source, provenance);
     }
 
     if (session.json) {
@@ -194,7 +202,8 @@ int run(const Session& session, TransferCommand& command) {
                      number(there.times.correspondence, 3) + " s, paths " + number(there.times.paths, 3) + " s, regions " +
                      number(there.times.regions, 3) + " s, scores " + number(there.times.scores, 3) + " s");
     }
-    return done;
+    const auto is_lost = [](const TransferScore& score) { return score.outcome == "lost"; };
+    return std::any_of(there.scores.begin(), there.scores.end(), is_lost) ? answer_is_no : done;
 }
 
 }  // namespace

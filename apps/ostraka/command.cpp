@@ -38,13 +38,27 @@ std::size_t width(const std::string& text) {
     for (const char c : text) count += (static_cast<unsigned char>(c) & 0xC0) != 0x80;
     return count;
 }
+/// Text of annotations and files is data: no control character reaches the terminal, no cell outgrows it.
+std::string printable(const std::string& text) {
+    std::string clean;
+    std::size_t columns = 0;
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        if ((byte & 0xC0) != 0x80 && ++columns > 100) return clean + "...";
+        clean += byte < 32 || byte == 127 ? '?' : c;
+    }
+    return clean;
+}
 bool is_number(const std::string& text) {
     return !text.empty() && (std::isdigit(static_cast<unsigned char>(text.front())) != 0 || text.front() == '-') &&
            text.find_first_of("0123456789") != std::string::npos;
 }
 }  // namespace
 
-std::string table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows) {
+std::string table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& raw_rows) {
+    std::vector<std::vector<std::string>> rows = raw_rows;
+    for (auto& row : rows)
+        for (auto& cell : row) cell = printable(cell);
     std::vector<std::size_t> widths(header.size());
     for (std::size_t c = 0; c < header.size(); ++c) {
         widths[c] = width(header[c]);

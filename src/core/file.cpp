@@ -127,20 +127,29 @@ void write_file(const Path& file, std::string_view bytes) {
     output.commit();
 }
 
+namespace {
+/// The same text for every spelling of a place, whether anything stands there or not.
+Path one_spelling(const Path& file) {
+    std::error_code code;
+    const Path whole = std::filesystem::absolute(file, code);
+    const Path place = std::filesystem::weakly_canonical(whole, code);
+    return code ? whole.lexically_normal() : place.lexically_normal();
+}
+}  // namespace
+
 void check_outputs(const std::vector<Path>& inputs, const std::vector<Path>& outputs) {
     std::error_code code;
     for (std::size_t i = 0; i < outputs.size(); ++i) {
         const Path& output = outputs[i];
         if (output.empty()) continue;
-        const Path place = std::filesystem::weakly_canonical(output, code);
+        const Path place = one_spelling(output);
         for (const Path& input : inputs) {
             if (input.empty()) continue;
-            if (std::filesystem::equivalent(output, input, code) ||
-                (!place.empty() && place == std::filesystem::weakly_canonical(input, code)))
+            if (std::filesystem::equivalent(output, input, code) || place == one_spelling(input))
                 fail_usage("output " + output.string() + " is also an input", "choose another name for the output");
         }
         for (std::size_t j = 0; j < i; ++j)
-            if (!outputs[j].empty() && place == std::filesystem::weakly_canonical(outputs[j], code))
+            if (!outputs[j].empty() && place == one_spelling(outputs[j]))
                 fail_usage("two outputs have the name " + output.string(), "give each output its own name");
         const Path folder = output.has_parent_path() ? output.parent_path() : Path(".");
         if (!std::filesystem::is_directory(folder, code))

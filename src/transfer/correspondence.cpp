@@ -90,6 +90,8 @@ namespace {
 struct Moments {
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d skewness = Eigen::Vector3d::Zero();  ///< third central moment along x, y, z over the standard deviation cubed
+    double volume = 0;                                   ///< signed, about the centre, as a share of area times extent
 };
 
 Moments moments(const Mesh& mesh) {
@@ -111,6 +113,23 @@ Moments moments(const Mesh& mesh) {
     if (area > 0) {
         m.centre /= area;
         m.covariance = m.covariance / area - m.centre * m.centre.transpose();
+    }
+    double extent = 0;
+    for (const Face f : mesh.faces()) {
+        const auto [a, b, c] = corners(mesh, f);
+        const Eigen::Vector3d p = position(a) - m.centre, q = position(b) - m.centre, r = position(c) - m.centre,
+                              g = (p + q + r) / 3;
+        const double w = face_area(mesh, f);
+        m.skewness += w * Eigen::Vector3d(g.array().cube());
+        m.volume += p.dot(q.cross(r)) / 6;
+        extent = std::max(extent, g.norm());
+    }
+    if (area > 0 && extent > 0) {
+        m.volume /= area * extent;
+        for (int i = 0; i < 3; ++i) {
+            const double deviation = std::sqrt(std::max(0.0, m.covariance(i, i)));
+            m.skewness[i] = deviation > 1e-6 * extent ? m.skewness[i] / (area * deviation * deviation * deviation) : 0;
+        }
     }
     m.centre += origin;
     return m;
@@ -181,6 +200,16 @@ Alignment compare_alignment(const Mesh& source, const Mesh& target) {
                       "there first",
                       percent(result.offset).c_str(), d.x(), d.y(), d.z());
         result.problem = text;
+    } else if (std::min(std::abs(s.volume), std::abs(t.volume)) > 1e-3 && s.volume * t.volume < 0) {
+        result.problem = "one of the meshes is inside out; run: ostraka mesh repair";
+    } else {
+        for (int i = 0; i < 3; ++i) {
+            if (std::min(std::abs(s.skewness[i]), std::abs(t.skewness[i])) < 0.15 || s.skewness[i] * t.skewness[i] > 0) continue;
+            std::snprintf(text, sizeof text,
+                          "the meshes are not aligned: along %c one is turned round or mirrored; register them first", "xyz"[i]);
+            result.problem = text;
+            break;
+        }
     }
     return result;
 }

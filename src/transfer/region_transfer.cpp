@@ -115,6 +115,29 @@ std::vector<Patch> patches_of(const Mesh& mesh, const std::vector<Index>& faces)
     return patches;
 }
 
+/// Where all outlines vanished, a patch that is most of its component has lost its holes, not its area: it counts as unbounded.
+void free_large_patches(const Mesh& mesh, const std::vector<Index>& region, std::vector<Patch>& patches) {
+    std::vector<bool> selected(mesh.number_of_faces(), false), seen(mesh.number_of_faces(), false);
+    for (const Index f : region) selected[f] = true;
+    for (Patch& patch : patches) {
+        if (seen[patch.face] || !patch.bounded) continue;
+        std::vector<Face> component{Face(patch.face)};
+        seen[patch.face] = true;
+        double inside = 0, all = 0;
+        for (std::size_t i = 0; i < component.size(); ++i) {
+            const double area = face_area(mesh, component[i]);
+            all += area;
+            if (selected[component[i]]) inside += area;
+            for (const Halfedge h : CGAL::halfedges_around_face(mesh.halfedge(component[i]), mesh)) {
+                if (mesh.is_border(mesh.opposite(h)) || seen[mesh.face(mesh.opposite(h))]) continue;
+                seen[mesh.face(mesh.opposite(h))] = true;
+                component.push_back(mesh.face(mesh.opposite(h)));
+            }
+        }
+        if (inside > all / 2) patch.bounded = false;
+    }
+}
+
 }  // namespace
 
 std::vector<bool> RegionTransfer::fill(const std::vector<Index>& region, const std::vector<TracedChain>& traced,
@@ -135,7 +158,8 @@ std::vector<bool> RegionTransfer::fill(const std::vector<Index>& region, const s
             length += std::sqrt(CGAL::squared_distance(mesh.point(mesh.source(h)), mesh.point(mesh.target(h))));
         }
     }
-    const std::vector<Patch> patches = patches_of(source_, region);
+    std::vector<Patch> patches = patches_of(source_, region);
+    if (edges.empty()) free_large_patches(source_, region, patches);
     const auto is_bounded = [](const Patch& patch) { return patch.bounded; };
     if (vanished > 0 && vanished < traced.size())
         score.note += (score.note.empty() ? "" : "; ") + std::to_string(vanished) + " of " + std::to_string(traced.size()) +

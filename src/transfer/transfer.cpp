@@ -116,8 +116,13 @@ public:
             if (Annotation* to = result_.annotations.find(annotation))
                 for (Attribute& moved : to->attributes)
                     if (moved.id == attribute) {
-                        moved.measure.stale = true;
-                        moved.measure.value = value;
+                        if (moved.type == AttributeType::measure) {
+                            moved.measure.stale = true;
+                            moved.measure.value = value;
+                        } else {
+                            moved.descriptor.stale = true;
+                            moved.descriptor.values = {*value};
+                        }
                     }
         return std::move(result_);
     }
@@ -186,7 +191,7 @@ private:
         std::vector<Index> line = chain.path;
         if (line.empty()) line = diameter_path(chain.walk);
         else if (chain.closed) line.push_back(line.front());
-        if (!line.empty()) to.polylines.push_back(std::move(line));
+        if (line.size() >= 2) to.polylines.push_back(std::move(line));
     }
 
     /// Curves of all annotations become edges at once; then each chain is read off the refined mesh.
@@ -308,8 +313,21 @@ private:
                 round(i, selected[i], area_of(source_, from.faces));
         }
         round_shared(target_, selected, std::move(shared_faces_));
-        for (std::size_t i = 0; i < transferred.size(); ++i)
+        for (std::size_t i = 0; i < transferred.size(); ++i) {
             if (set_.annotations[i].type == AnnotationType::region) finish(i, transferred[i], selected[i]);
+            if (set_.annotations[i].type == AnnotationType::line) finish_line(i, transferred[i]);
+        }
+    }
+
+    /// A line that is shorter than the target's edges becomes a point.
+    void finish_line(std::size_t i, Annotation& to) {
+        if (!to.polylines.empty()) return;
+        for (const TracedChain& chain : traced_[i])
+            if (!chain.walk.empty()) to.points.push_back(chain.walk.front());
+        if (to.points.empty()) return;
+        to.type = AnnotationType::point;
+        result_.scores[i].outcome = "became a point";
+        add_note(to.note, "was a line, too short for this mesh");
     }
 
     /// Writes the faces of a region down, or what is left of it where there are none.
@@ -379,6 +397,14 @@ void Transfer::attributes(const Annotation& from, Annotation& to, const Mesh&) {
             if (!complete) {
                 add_note(to.note, "measure '" + attribute.name + "' lost a pin");
                 lost_pins_.emplace_back(from.id, attribute.id, attribute.measure.value);
+                if (moved.measure.points.size() < 2) {
+                    // No measure without two pins: the value stays, as a descriptor that is out of date.
+                    moved.type = AttributeType::descriptor;
+                    if (attribute.measure.value) moved.descriptor.values = {*attribute.measure.value};
+                    moved.descriptor.unit = attribute.measure.unit;
+                    moved.measure = {};
+                    if (!attribute.measure.value) continue;
+                }
             }
         }
         to.attributes.push_back(std::move(moved));
@@ -391,7 +417,8 @@ void Transfer::score(const Annotation& from, Annotation& to, TransferScore& scor
     const Segments a = segments_of(source_, from), b = segments_of(on(), to);
     score.source_length = length_of(a);
     score.target_length = length_of(b);
-    score.hausdorff = score.outcome == "lost" ? 0 : hausdorff_distance(a, b);
+    if (a.empty() == b.empty()) score.hausdorff = hausdorff_distance(a, b);
+    else if (score.outcome == "kept") add_note(score.note, b.empty() ? "its outline vanished" : "it got an outline");
     if (from.type != AnnotationType::region) {
         if (from.type == AnnotationType::point && to.points.size() > std::set<Index>(to.points.begin(), to.points.end()).size())
             add_note(score.note, "several points fell on one vertex");
@@ -401,8 +428,11 @@ void Transfer::score(const Annotation& from, Annotation& to, TransferScore& scor
     score.target_area = area_of(on(), to.faces);
     if (!options_.overlap || to.faces.empty()) return;
     if (from.all) {
-        score.overlap = 1;
-        score.wrong_side = 0;
+        // All of one mesh is all of the other, if they are the same object.
+        if (distortions(score).area < 0.05) {
+            score.overlap = 1;
+            score.wrong_side = 0;
+        }
         return;
     }
     if (!source_search_) source_search_ = std::make_unique<SurfaceSearch>(source_);

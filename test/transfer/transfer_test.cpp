@@ -77,7 +77,7 @@ TEST(Transfer, OntoItselfIsTheIdentity) {
             EXPECT_EQ(result.annotations.annotations[1].polylines, line.polylines) << name;
             EXPECT_EQ(result.annotations.annotations[2].points, points.points) << name;
             EXPECT_NEAR(*result.scores[0].overlap, 1, 1e-9) << name;
-            EXPECT_NEAR(result.scores[0].hausdorff, 0, 1e-9 * box_diagonal(mesh)) << name;
+            EXPECT_NEAR(result.scores[0].hausdorff.value_or(-1), 0, 1e-9 * box_diagonal(mesh)) << name;
         }
     }
 }
@@ -97,7 +97,7 @@ TEST(Transfer, RegionsKeepTheirAreaAcrossResolutions) {
                     EXPECT_EQ(score.outcome, "kept");
                     EXPECT_FALSE(score.voted);
                     EXPECT_LT(*score.wrong_side, 0.5 * edge * score.source_length) << metric << " " << spikes;
-                    EXPECT_LT(score.hausdorff, 2 * edge);
+                    EXPECT_LT(score.hausdorff.value_or(1e9), 2 * edge);
                     EXPECT_GT(*score.overlap, 0.9);
                 }
             }
@@ -162,6 +162,46 @@ TEST(Transfer, RegionTooSmallBecomesAPointOrALineAndSaysSo) {
     EXPECT_FALSE(result.annotations.annotations[0].note.empty());
     EXPECT_EQ(result.annotations.annotations[1].type, AnnotationType::line);
     EXPECT_EQ(result.scores[1].outcome, "became a line");
+}
+
+TEST(Transfer, ShortLinesBecomePointsAndLostPinsLeaveAStaleValue) {
+    const Mesh source = build_mesh(octahedron_sphere(5)), target = build_mesh(octahedron_sphere(2));
+    Annotation line;
+    line.id = 4;
+    line.type = AnnotationType::line;
+    const Halfedge h = source.halfedge(Face(700));
+    line.polylines = {{source.source(h), source.target(h)}};
+    const TransferResult result = transfer_to(source, set_of({line}), target);
+    ASSERT_EQ(result.annotations.annotations.size(), 1U);
+    EXPECT_EQ(result.annotations.annotations[0].type, AnnotationType::point);
+    EXPECT_EQ(result.scores[0].outcome, "became a point");
+
+    // A pin on a part that the target does not have.
+    const Mesh two = build_mesh(joined(octahedron_sphere(3), moved(octahedron_sphere(2), 1, {5, 0, 0}))),
+               one = build_mesh(octahedron_sphere(3));
+    Annotation cap_region = region(1, two, [](const Point& p) { return p.z() > 0.6 && p.x() < 2; });
+    Attribute ruler;
+    ruler.name = "width";
+    ruler.type = AttributeType::measure;
+    ruler.measure = {"ruler", {static_cast<Index>(two.number_of_vertices() - 1), 4}, {}, std::nullopt, 1.5, "mm", false};
+    cap_region.attributes = {ruler};
+    TransferOptions force;
+    force.force = true;
+    const auto carried = transfer_to(two, set_of({cap_region}), one, force).annotations.annotations;
+    ASSERT_EQ(carried.size(), 1U);
+    ASSERT_EQ(carried[0].attributes.size(), 1U);
+    EXPECT_EQ(carried[0].attributes[0].type, AttributeType::descriptor);
+    EXPECT_TRUE(carried[0].attributes[0].descriptor.stale);
+    EXPECT_EQ(carried[0].attributes[0].descriptor.values, std::vector<double>{1.5});
+}
+
+TEST(Transfer, RegionWhoseSmallHoleVanishesCoversItsComponent) {
+    const Mesh source = build_mesh(octahedron_sphere(5)), target = build_mesh(octahedron_sphere(2));
+    const AnnotationSet set = set_of({region(1, source, [](const Point& p) { return p.z() < 0.998; })});
+    const TransferResult result = transfer_to(source, set, target);
+    EXPECT_EQ(result.scores[0].outcome, "kept");
+    EXPECT_EQ(result.annotations.annotations.at(0).faces.size(), target.number_of_faces());
+    EXPECT_FALSE(result.scores[0].hausdorff);
 }
 
 TEST(Transfer, SeveralOutlinesAndPatches) {
@@ -344,6 +384,18 @@ TEST(Transfer, OtherUnitsAndPositionsAreRefusedWithTheirSize) {
     for (auto& p : turned.points) p = {p[0], 0.8 * p[1] - 0.6 * p[2], 0.6 * p[1] + 0.8 * p[2]};
     EXPECT_NE(refusal(turned).find("degrees"), std::string::npos);
     EXPECT_EQ(refusal(torus(50, 30)), "");
+}
+
+TEST(Transfer, InsideOutAndMirroredTargetsAreRefused) {
+    TriangleSoup lopsided = octahedron_sphere(4);
+    for (auto& p : lopsided.points) p[0] += 0.5 * p[0] * p[0];
+    const Mesh source = build_mesh(lopsided);
+    TriangleSoup flipped = lopsided, mirrored = lopsided;
+    for (auto& t : flipped.triangles) std::swap(t[0], t[1]);
+    for (auto& p : mirrored.points) p[0] = 0.3333 - p[0];
+    for (auto& t : mirrored.triangles) std::swap(t[0], t[1]);
+    for (const TriangleSoup& soup : {flipped, mirrored}) EXPECT_THROW(transfer_to(source, set_of({}), build_mesh(soup)), Error);
+    EXPECT_NO_THROW(transfer_to(source, set_of({}), source));
 }
 
 TEST(Transfer, AnnotationOfAnotherMeshIsRefused) {

@@ -49,7 +49,7 @@ struct TransferScore {
     std::string note;                             ///< what else is to be known, in words
     double source_area = 0, target_area = 0;      ///< of regions
     double source_length = 0, target_length = 0;  ///< perimeter of regions, length of lines
-    double hausdorff = 0;              ///< between the outlines (lines, points); two-sided, over vertices and edge midpoints
+    std::optional<double> hausdorff;   ///< between the outlines (lines, points), two-sided; nothing if one of them has none
     std::optional<double> overlap;     ///< intersection over union of the areas
     std::optional<double> wrong_side;  ///< area put on the wrong side of the outline, both ways added
     std::size_t vertices = 0;          ///< outline vertices, line vertices or points of the source
