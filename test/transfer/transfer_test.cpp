@@ -169,7 +169,7 @@ TEST(Transfer, ShortLinesBecomePointsAndLostPinsLeaveAStaleValue) {
     Annotation line;
     line.id = 4;
     line.type = AnnotationType::line;
-    const Halfedge h = source.halfedge(Face(700));
+    const Halfedge h = source.halfedge(Vertex(4));  // at a pole, which both meshes have
     line.polylines = {{source.source(h), source.target(h)}};
     const TransferResult result = transfer_to(source, set_of({line}), target);
     ASSERT_EQ(result.annotations.annotations.size(), 1U);
