@@ -138,17 +138,17 @@ int run(const Session& session, TransferCommand& command) {
     const MeshFile target = read_mesh(command.target);
     const double reading = seconds_since(start);
     const auto tree_start = std::chrono::steady_clock::now();
-    const SurfaceSearch search(target.mesh);
+    const auto search = in_file(command.target, [&] { return std::make_unique<SurfaceSearch>(target.mesh); });
     const double tree = seconds_since(tree_start);
-    TransferResult there = transfer(source.mesh, set, search, command.options);
+    TransferResult there = in_file(command.target, [&] { return transfer(source.mesh, set, *search, command.options); });
 
     const Mesh& on = there.refined ? there.refined->mesh : target.mesh;
     std::optional<TransferResult> back;
     if (!command.back.empty()) {
-        const SurfaceSearch home(source.mesh);
+        const auto home = in_file(command.source, [&] { return std::make_unique<SurfaceSearch>(source.mesh); });
         TransferOptions options = command.options;
         options.refine = false;
-        back = transfer(on, there.annotations, home, options);
+        back = transfer(on, there.annotations, *home, options);
     }
 
     // All work is done: what is written now is complete.

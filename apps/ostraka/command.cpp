@@ -1,5 +1,8 @@
 #include "command.h"
 
+#include "ostraka/core/error.h"
+#include "ostraka/core/file.h"
+
 #include <cctype>
 #include <cstdio>
 #include <iostream>
@@ -12,12 +15,37 @@ CLI::App* Session::add(CLI::App& parent, const std::string& name, const std::str
     command->add_flag("--quiet", quiet, "no notes and no progress bar");
     command->add_option("--threads", threads, "number of threads, 0 for all cores; results do not depend on it")
         ->check(CLI::Range(0, 1024));
-    command->callback([this, run = std::move(run)] { action = run; });
+    command->callback([this, run = std::move(run)] {
+        action = [run] {
+            OutputTransaction outputs;
+            const int code = run();
+            // Where the report could not be given, nothing is replaced.
+            check_standard_output();
+            outputs.commit();
+            return code;
+        };
+    });
     return command;
 }
 
 void Session::note(const std::string& text) const {
-    if (!quiet) std::cerr << text << '\n';
+    if (!quiet) std::cerr << printable(text) << '\n';
+}
+
+void check_standard_output() {
+    std::cout.flush();
+    if (!std::cout) throw Error(ErrorKind::failure, "standard output", "cannot be written", "free some space or mend the pipe");
+}
+
+std::string printable(const std::string& text, std::size_t most) {
+    std::string clean;
+    std::size_t columns = 0;
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        if ((byte & 0xC0) != 0x80 && ++columns > most) return clean + "...";
+        clean += byte < 32 || byte == 127 ? '?' : c;
+    }
+    return clean;
 }
 
 void Session::print_report(const Provenance& provenance, Json& document, JsonValue& result, JsonValue* run) const {
@@ -38,17 +66,6 @@ std::size_t width(const std::string& text) {
     for (const char c : text) count += (static_cast<unsigned char>(c) & 0xC0) != 0x80;
     return count;
 }
-/// Text of annotations and files is data: no control character reaches the terminal, no cell outgrows it.
-std::string printable(const std::string& text) {
-    std::string clean;
-    std::size_t columns = 0;
-    for (const char c : text) {
-        const auto byte = static_cast<unsigned char>(c);
-        if ((byte & 0xC0) != 0x80 && ++columns > 100) return clean + "...";
-        clean += byte < 32 || byte == 127 ? '?' : c;
-    }
-    return clean;
-}
 bool is_number(const std::string& text) {
     return !text.empty() && (std::isdigit(static_cast<unsigned char>(text.front())) != 0 || text.front() == '-') &&
            text.find_first_of("0123456789") != std::string::npos;
@@ -58,7 +75,7 @@ bool is_number(const std::string& text) {
 std::string table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& raw_rows) {
     std::vector<std::vector<std::string>> rows = raw_rows;
     for (auto& row : rows)
-        for (auto& cell : row) cell = printable(cell);
+        for (auto& cell : row) cell = printable(cell, 100);
     std::vector<std::size_t> widths(header.size());
     for (std::size_t c = 0; c < header.size(); ++c) {
         widths[c] = width(header[c]);

@@ -1,6 +1,7 @@
 // What every command of the tool shares: the flags, the report, the exit code.
 #pragma once
 
+#include "ostraka/core/error.h"
 #include "ostraka/core/options.h"
 #include "ostraka/core/provenance.h"
 
@@ -55,6 +56,23 @@ template <class Options>
 void add_flags(CLI::App* app, Options& options) {
     FlagVisitor visitor{app};
     options.describe(visitor);
+}
+
+/// Text of annotations and files is data: no control character reaches the terminal, at most `most` columns.
+std::string printable(const std::string& text, std::size_t most = 10000);
+/// Throws Error (failure) if what was printed so far did not arrive.
+void check_standard_output();
+
+/// Calls `work`; what it finds wrong with an input is said with the name of the file it came from.
+template <class Work>
+auto in_file(const std::string& file, Work&& work) {
+    try {
+        return work();
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::input || error.where().starts_with(file)) throw;
+        throw Error(error.kind(), error.where().empty() || error.where() == "mesh" ? file : file + ", " + error.where(),
+                    error.problem(), error.remedy());
+    }
 }
 
 /// A table for people: columns padded, numbers right-aligned.

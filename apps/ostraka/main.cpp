@@ -34,15 +34,13 @@ int main(int argc, char** argv) {
         tool.parse(argc, argv);
         set_threads(session.threads);
         if (session.quiet) Progress::switch_off();
-        const int code = session.action ? session.action() : app::done;
-        std::cout.flush();
-        if (!std::cout)
-            throw Error(ErrorKind::failure, "standard output", "cannot be written", "free some space or mend the pipe");
-        return code;
+        return session.action ? session.action() : app::done;
     } catch (const CLI::ParseError& error) {
-        return tool.exit(error) == 0 ? app::done : app::wrong_usage;
+        if (tool.exit(error) != 0) return app::wrong_usage;
+        std::cout.flush();
+        return std::cout ? app::done : app::failed;
     } catch (const Error& error) {
-        std::cerr << "ostraka: " << error.what() << '\n';
+        std::cerr << "ostraka: " << app::printable(error.what()) << '\n';
         return error.kind() == ErrorKind::usage ? app::wrong_usage : app::failed;
     } catch (const std::bad_alloc&) {
         std::cerr << "ostraka: out of memory (close other programs or use a smaller mesh)\n";

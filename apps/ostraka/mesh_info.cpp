@@ -65,7 +65,7 @@ int info(const Session& session, const Arguments& arguments) {
     const std::vector<std::string> extras = names_of(polygons.extras);
     const TriangulatedSoup triangles = triangulate(std::move(polygons));
     lap("triangulate");
-    const MeshDiagnosis diagnosis = diagnose(triangles.soup, arguments.options);
+    const MeshDiagnosis diagnosis = in_file(arguments.input, [&] { return diagnose(triangles.soup, arguments.options); });
     seconds.insert(seconds.end(), diagnosis.seconds.begin(), diagnosis.seconds.end());
     const bool sound = diagnosis.defects().empty() && degenerate == 0;
 

@@ -82,12 +82,7 @@ int run_repair(const Session& session, const Arguments& arguments) {
     check_outputs({arguments.input}, outputs);
     check_options(arguments.options, "mesh repair");
     const TriangulatedSoup read = triangulate(read_polygons(arguments.input));
-    RepairResult repaired;
-    try {
-        repaired = repair(read.soup, read.extras, arguments.options);
-    } catch (const Error& error) {  // the library does not know the file
-        throw Error(error.kind(), arguments.input + ", " + error.where(), error.problem(), error.remedy());
-    }
+    const RepairResult repaired = in_file(arguments.input, [&] { return repair(read.soup, read.extras, arguments.options); });
     Provenance provenance;
     provenance.command = "mesh repair";
     provenance.options = list_options(arguments.options);

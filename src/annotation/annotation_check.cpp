@@ -124,6 +124,11 @@ void check_selection(const Annotation& annotation, const Mesh& mesh, const std::
 void check_annotations(const AnnotationSet& set, const Mesh& mesh, const std::string& where) {
     if (mesh.has_garbage())
         throw Error(ErrorKind::failure, where, "the mesh has removed elements", "collect the mesh's garbage first");
+    if (set.up) {
+        const double length = std::hypot((*set.up)[0], (*set.up)[1], (*set.up)[2]);
+        if (!(length > 0 && std::isfinite(length)))
+            fail(where, "/up", "the direction has no length", "give a vector that is not zero, or leave it out");
+    }
     std::set<int> ids;
     for (std::size_t i = 0; i < set.annotations.size(); ++i) {
         const Annotation& annotation = set.annotations[i];

@@ -23,6 +23,19 @@ struct Descriptor {
     int number;
     ~Descriptor() { ::close(number); }
 };
+
+thread_local OutputTransaction* open_transaction = nullptr;
+
+/// What a link points to, whether that exists or not.
+Path behind_links(Path file) {
+    std::error_code code;
+    for (int step = 0; step < 40 && std::filesystem::is_symlink(file, code); ++step) {
+        const Path target = std::filesystem::read_symlink(file, code);
+        if (code) break;
+        file = target.is_absolute() ? target : file.parent_path() / target;
+    }
+    return file;
+}
 }  // namespace
 
 std::string read_file(const Path& file) {
@@ -31,6 +44,8 @@ std::string read_file(const Path& file) {
     struct stat status {};
     if (::fstat(descriptor.number, &status) != 0) fail_input(file.string(), "cannot be examined: " + reason());
     if (S_ISDIR(status.st_mode)) fail_input(file.string(), "is a folder", "name a file");
+    // Some devices never end.
+    if (S_ISCHR(status.st_mode) && ::isatty(descriptor.number) == 0) fail_input(file.string(), "is a device", "name a file");
     std::string bytes;
     try {
         if (S_ISREG(status.st_mode)) bytes.resize(static_cast<std::size_t>(status.st_size));
@@ -59,15 +74,11 @@ std::string read_file(const Path& file) {
     return bytes;
 }
 
-AtomicFile::AtomicFile(Path file) : file_(std::move(file)) {
+// A link keeps pointing where it points: what is replaced is the file behind it.
+AtomicFile::AtomicFile(Path file) : file_(behind_links(std::move(file))) {
     std::error_code code;
     if (std::filesystem::is_directory(file_, code))
         throw Error(ErrorKind::failure, file_.string(), "is a folder", "name a file to write");
-    // A link keeps pointing where it points: what is replaced is the file behind it.
-    if (std::filesystem::is_symlink(file_, code)) {
-        const Path target = std::filesystem::weakly_canonical(file_, code);
-        if (!code) file_ = target;
-    }
     // A device or a pipe (/dev/null, /dev/stdout) is written to, not replaced by a file.
     if (std::filesystem::exists(file_, code) && !std::filesystem::is_regular_file(file_, code)) {
         stream_ = std::fopen(file_.c_str(), "wb");
@@ -75,7 +86,8 @@ AtomicFile::AtomicFile(Path file) : file_(std::move(file)) {
             throw Error(ErrorKind::failure, file_.string(), "cannot be written: " + reason(), "check its rights");
         return;
     }
-    std::string pattern = file_.string() + ".XXXXXX";
+    // Not the file's own name with an ending: that may be as long as names can be.
+    std::string pattern = (file_.parent_path() / ".ostraka-XXXXXX").string();
     const int descriptor = ::mkstemp(pattern.data());
     if (descriptor < 0) {
         const std::string why = reason();
@@ -113,11 +125,29 @@ void AtomicFile::commit() {
     const std::string why = flushed ? "" : reason();
     const bool closed = std::fclose(stream_) == 0;
     stream_ = nullptr;
-    if (!flushed || !closed || (!direct && ::rename(temporary_.c_str(), file_.c_str()) != 0)) {
+    const bool waits = flushed && closed && !direct && open_transaction != nullptr;
+    if (waits) open_transaction->waiting_.emplace_back(temporary_, file_);
+    else if (!flushed || !closed || (!direct && ::rename(temporary_.c_str(), file_.c_str()) != 0)) {
         const std::string cause = flushed ? reason() : why;
         if (!direct) ::unlink(temporary_.c_str());
         throw Error(ErrorKind::failure, file_.string(), "cannot be written: " + cause,
                     "free some space; an earlier file of that name is untouched");
+    }
+}
+
+OutputTransaction::OutputTransaction() : outer_(open_transaction) { open_transaction = this; }
+
+OutputTransaction::~OutputTransaction() {
+    open_transaction = outer_;
+    for (const auto& [temporary, file] : waiting_) ::unlink(temporary.c_str());
+}
+
+void OutputTransaction::commit() {
+    while (!waiting_.empty()) {
+        const auto& [temporary, file] = waiting_.front();
+        if (::rename(temporary.c_str(), file.c_str()) != 0)
+            throw Error(ErrorKind::failure, file.string(), "cannot be written: " + reason(), "check the rights of its folder");
+        waiting_.erase(waiting_.begin());
     }
 }
 

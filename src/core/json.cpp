@@ -8,11 +8,14 @@
 #include <rapidjson/stringbuffer.h>
 #include <rapidjson/writer.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <stdexcept>
+#include <string_view>
+#include <vector>
 
 namespace ostraka {
 
@@ -48,6 +51,51 @@ bool nested_too_deep(std::string_view text) {
         } else if (c == ']' || c == '}') --depth;
     }
     return false;
+}
+
+/// Where an object has two members of one name, readers differ in which they take.
+void refuse_twins(const JsonValue& value, const std::string& where) {
+    if (value.IsArray()) {
+        for (const auto& element : value.GetArray()) {
+            if (!element.IsObject() && !element.IsArray()) continue;
+            refuse_twins(element, where);
+        }
+        return;
+    }
+    if (!value.IsObject()) return;
+    std::vector<std::string_view> names;
+    for (const auto& member : value.GetObject()) {
+        names.emplace_back(member.name.GetString(), member.name.GetStringLength());
+        refuse_twins(member.value, where);
+    }
+    std::sort(names.begin(), names.end());
+    const auto twin = std::adjacent_find(names.begin(), names.end());
+    if (twin != names.end())
+        fail_input(where, "the member \"" + std::string(*twin) + "\" stands twice in one object", "keep one of the two");
+}
+
+/// Text that is not UTF-8 (a file name may be anything) with U+FFFD for each byte that does not fit.
+std::string as_utf8(std::string_view text) {
+    std::string result;
+    for (std::size_t i = 0; i < text.size();) {
+        const auto byte = static_cast<unsigned char>(text[i]);
+        const std::size_t length = byte < 0x80                   ? 1
+                                   : byte >= 0xC2 && byte < 0xE0 ? 2
+                                   : byte >= 0xE0 && byte < 0xF0 ? 3
+                                   : byte >= 0xF0 && byte < 0xF5 ? 4
+                                                                 : 0;
+        bool good = length > 0 && i + length <= text.size();
+        for (std::size_t k = 1; good && k < length; ++k) good = (static_cast<unsigned char>(text[i + k]) & 0xC0) == 0x80;
+        if (good && length > 2) {  // overlong forms, surrogates, beyond U+10FFFF
+            const auto second = static_cast<unsigned char>(text[i + 1]);
+            good = !(byte == 0xE0 && second < 0xA0) && !(byte == 0xED && second >= 0xA0) && !(byte == 0xF0 && second < 0x90) &&
+                   !(byte == 0xF4 && second >= 0x90);
+        }
+        if (good) result.append(text.substr(i, length));
+        else result += "\xEF\xBF\xBD";
+        i += good ? length : 1;
+    }
+    return result;
 }
 
 /// Arrays of plain numbers and strings go on one line, everything else on lines of its own.
@@ -115,6 +163,7 @@ Json parse_json(std::string_view text, const std::string& where) {
         fail_input(where + ", " + place(text, document.GetErrorOffset()),
                    std::string("not valid JSON: ") + rapidjson::GetParseError_En(document.GetParseError()),
                    "mend or regenerate the file");
+    refuse_twins(document, where);
     return document;
 }
 
@@ -169,7 +218,8 @@ void validate(const JsonValue& value, const std::string& schema, const std::stri
 }
 
 JsonValue json_string(std::string_view text, JsonAllocator& allocator) {
-    return JsonValue(text.data(), static_cast<rapidjson::SizeType>(text.size()), allocator);
+    const std::string valid = as_utf8(text);
+    return JsonValue(valid.data(), static_cast<rapidjson::SizeType>(valid.size()), allocator);
 }
 
 void add_member(JsonValue& object, std::string_view name, JsonValue value, JsonAllocator& allocator) {

@@ -90,7 +90,10 @@ private:
 
     static double bounding(const std::vector<Pin>& pins, const Measure& measure, const std::string& where) {
         if (!measure.direction) fail_input(where, "has no direction", "add one");
-        const Vector direction((*measure.direction)[0], (*measure.direction)[1], (*measure.direction)[2]);
+        // Scaled first: squares of huge and tiny numbers are neither.
+        const auto& [x, y, z] = *measure.direction;
+        const double scale = std::max({std::abs(x), std::abs(y), std::abs(z)});
+        const Vector direction(x / scale, y / scale, z / scale);
         const double length = std::sqrt(direction.squared_length());
         if (!(length > 0)) fail_input(where, "has a direction without length", "give a vector that is not zero");
         double low = std::numeric_limits<double>::infinity(), high = -low;

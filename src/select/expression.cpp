@@ -38,6 +38,17 @@ void ExpressionEvaluator::fail(const std::string& at, const std::string& what, c
     fail_input(where_, "at " + at + ": " + what, remedy);
 }
 
+std::pair<std::string, const JsonValue*> ExpressionEvaluator::only_kind(const JsonValue& expression,
+                                                                        const std::string& at) const {
+    const auto found = kind_of(expression);
+    for (const auto& member : expression.GetObject()) {
+        const std::string name(member.name.GetString(), member.name.GetStringLength());
+        if (name != "frame" && name != found.first)
+            fail(at, "selects by two kinds, " + found.first + " and " + name, "join them by union, intersection or difference");
+    }
+    return found;
+}
+
 Frame ExpressionEvaluator::frame_of(const JsonValue& object, Frame around) {
     const JsonValue* frame = find_member(object, "frame");
     return frame == nullptr ? around : Frame{std::string(frame->GetString()) == "box"};
@@ -105,7 +116,7 @@ const Annotation& ExpressionEvaluator::earlier(const JsonValue& id, AnnotationTy
 
 std::vector<bool> ExpressionEvaluator::faces(const JsonValue& expression, Frame around, const std::string& at) const {
     const Frame frame = frame_of(expression, around);
-    const auto [kind, value] = kind_of(expression);
+    const auto [kind, value] = only_kind(expression, at);
     if (is_volume(kind)) return faces_within(mesh_, volume(kind, *value, frame, at));
     std::vector<bool> result(mesh_.number_of_faces(), false);
     if (kind == "all") {
@@ -149,7 +160,7 @@ std::vector<bool> ExpressionEvaluator::faces(const JsonValue& expression, Frame 
 
 std::vector<Index> ExpressionEvaluator::vertices(const JsonValue& expression, Frame around, const std::string& at) const {
     const Frame frame = frame_of(expression, around);
-    const auto [kind, value] = kind_of(expression);
+    const auto [kind, value] = only_kind(expression, at);
     if (is_volume(kind)) return vertices_within(mesh_, volume(kind, *value, frame, at));
     std::vector<Index> result;
     if (kind == "vertices") {
@@ -176,7 +187,7 @@ std::vector<Index> ExpressionEvaluator::vertices(const JsonValue& expression, Fr
 std::vector<std::vector<Index>> ExpressionEvaluator::polylines(const JsonValue& expression, Frame around,
                                                                const std::string& at) const {
     const Frame frame = frame_of(expression, around);
-    const auto [kind, value] = kind_of(expression);
+    const auto [kind, value] = only_kind(expression, at);
     if (kind == "path") {
         const JsonValue* closed = find_member(*value, "closed");
         return {path_through(mesh_, picks((*value)["points"], frame, at + "/path/points"), closed != nullptr && closed->GetBool(),

@@ -38,6 +38,8 @@ private:
     std::function<bool(const Point&)> volume(const std::string& kind, const JsonValue& value, Frame frame,
                                              const std::string& at) const;
     const Annotation& earlier(const JsonValue& id, AnnotationType type, const std::string& at) const;
+    /// The kind and its value; an expression of two kinds is refused.
+    std::pair<std::string, const JsonValue*> only_kind(const JsonValue& expression, const std::string& at) const;
     [[noreturn]] void fail(const std::string& at, const std::string& what, const std::string& remedy) const;
 
     const Mesh& mesh_;

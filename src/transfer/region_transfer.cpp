@@ -163,7 +163,7 @@ std::vector<bool> RegionTransfer::fill(const std::vector<Index>& region, const s
     const auto is_bounded = [](const Patch& patch) { return patch.bounded; };
     if (vanished > 0 && vanished < traced.size())
         score.note += (score.note.empty() ? "" : "; ") + std::to_string(vanished) + " of " + std::to_string(traced.size()) +
-                      " outlines vanished";
+                      " pieces of its outline vanished";
     // Nothing but vanished outlines: the region is no larger than the target's faces, unless a patch never had an outline.
     if (edges.empty() && std::all_of(patches.begin(), patches.end(), is_bounded))
         return std::vector<bool>(mesh.number_of_faces(), false);

@@ -8,8 +8,9 @@
 namespace ostraka {
 
 /// Area of a region of `mesh` whose places on the other mesh lie in the corresponding region there, as `contains` tells. Faces
-/// near the region's outline are sampled by up to 64 smaller triangles each, finer than the other mesh's faces; the others at
-/// their centroids, or, of more than `most_inner` of them, every so many.
+/// near the region's outline are sampled by up to 64 smaller triangles each, finer than the other mesh's faces (four, if these
+/// agree, where no corner is on the outline); the others at their centroids, or, of more than `most_inner` of them, every so
+/// many.
 double overlapping_area(const Mesh& mesh, const std::vector<Index>& region, const SurfaceSearch& other,
                         const CorrespondenceOptions& options, std::size_t most_inner,
                         const std::function<bool(const SurfaceHit&)>& contains);
@@ -32,5 +33,7 @@ std::vector<bool> region_by_vote(const Mesh& source, const SurfaceSearch& source
 /// Outline of a region, or the edges of a line, or points as segments without length.
 using Segments = std::vector<std::pair<Point, Point>>;
 Segments segments_of(const Mesh& mesh, const Annotation& annotation);
+double length_of(const Segments& segments);
+double area_of(const Mesh& mesh, const std::vector<Index>& faces);
 
 }  // namespace ostraka

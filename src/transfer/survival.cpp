@@ -23,12 +23,14 @@ std::vector<Survival> smallest_resolutions(const Mesh& mesh, const AnnotationSet
         std::log(static_cast<double>(options.least) / static_cast<double>(mesh.number_of_vertices())) / std::log(options.ratio);
     Progress progress("resolutions", static_cast<std::size_t>(std::max(1.0, steps)));
     std::size_t alive = survivals.size();
+    bool tried = false;
     while (alive > 0) {
         SimplifyOptions simplifying;
         simplifying.vertices = static_cast<std::uint64_t>(options.ratio * static_cast<double>(coarse.number_of_vertices()));
         if (simplifying.vertices < options.least) break;
         const SimplifyResult simplified = simplify(coarse, simplifying);
         if (!simplified.reached) break;
+        tried = true;
         const SurfaceSearch search(coarse);
         const TransferResult result = transfer(mesh, annotations, search, transferring);
         for (std::size_t i = 0; i < survivals.size(); ++i) {
@@ -46,6 +48,8 @@ std::vector<Survival> smallest_resolutions(const Mesh& mesh, const AnnotationSet
         }
         progress.advance();
     }
+    if (!tried)
+        for (Survival& survival : survivals) survival.end = "no smaller resolution could be made";
     return survivals;
 }
 

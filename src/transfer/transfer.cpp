@@ -1,12 +1,13 @@
 #include "ostraka/transfer/transfer.h"
 
+#include "attribute_carrier.h"
 #include "chain_tracer.h"
 #include "ostraka/annotation/outline.h"
 #include "ostraka/core/progress.h"
 #include "ostraka/geom/polyline_distance.h"
 #include "ostraka/measure/measure.h"
+#include "outline_rounding.h"
 #include "region_transfer.h"
-#include "rounding.h"
 #include "scores.h"
 
 #include <algorithm>
@@ -14,7 +15,6 @@
 #include <cmath>
 #include <memory>
 #include <set>
-#include <tuple>
 
 namespace ostraka {
 
@@ -32,18 +32,6 @@ public:
 private:
     std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
-
-double length_of(const Segments& segments) {
-    double sum = 0;
-    for (const auto& [a, b] : segments) sum += std::sqrt(CGAL::squared_distance(a, b));
-    return sum;
-}
-
-double area_of(const Mesh& mesh, const std::vector<Index>& faces) {
-    double sum = 0;
-    for (const Index f : faces) sum += face_area(mesh, Face(f));
-    return sum;
-}
 
 std::vector<Index> faces_of(const std::vector<bool>& selected) {
     std::vector<Index> faces;
@@ -95,12 +83,15 @@ public:
             for (std::size_t i = 0; i < transferred.size(); ++i) trace(i, transferred[i]);
         result_.times.paths = clock.lap();
         const Mesh& mesh = on();
-        if (!options_.refine && options_.cover == "overlapping" && options_.rounding != "path") trace_true_outlines();
-        fill_all(transferred);
+        std::optional<OutlineRounding> rounding;
+        if (!options_.refine && options_.cover == "overlapping" && options_.rounding != "path")
+            rounding.emplace(source_, set_, target_, chains_, tracer_);
+        fill_all(transferred, rounding ? &*rounding : nullptr);
         result_.times.regions = clock.lap();
+        AttributeCarrier attributes(tracer_, result_.refined.has_value());
         Progress progress("scores", transferred.size());
         for (std::size_t i = 0; i < transferred.size(); ++i) {
-            attributes(set_.annotations[i], transferred[i], mesh);
+            attributes.carry(set_.annotations[i], transferred[i]);
             score(set_.annotations[i], transferred[i], result_.scores[i]);
             progress.advance();
         }
@@ -111,19 +102,7 @@ public:
         for (std::size_t i = 0; i < transferred.size(); ++i)
             if (result_.scores[i].outcome != "lost") result_.annotations.annotations.push_back(std::move(transferred[i]));
         refresh_measures(mesh, result_.annotations);
-        // What lost a pin cannot be measured anew: the old value stays, marked.
-        for (const auto& [annotation, attribute, value] : lost_pins_)
-            if (Annotation* to = result_.annotations.find(annotation))
-                for (Attribute& moved : to->attributes)
-                    if (moved.id == attribute) {
-                        if (moved.type == AttributeType::measure) {
-                            moved.measure.stale = true;
-                            moved.measure.value = value;
-                        } else {
-                            moved.descriptor.stale = true;
-                            moved.descriptor.values = {*value};
-                        }
-                    }
+        attributes.keep_old_values(result_.annotations);
         return std::move(result_);
     }
 
@@ -256,51 +235,7 @@ private:
         }
     }
 
-    /// The outlines drawn exactly, and how many regions share each curve of them.
-    void trace_true_outlines() {
-        true_steps_.resize(chains_.size());
-        for (std::size_t i = 0; i < chains_.size(); ++i) {
-            if (set_.annotations[i].type != AnnotationType::region) continue;
-            TransferScore ignored;  // the same places were settled, and counted, for the paths
-            for (const Chain& chain : chains_[i])
-                for (const ChainTracer::Step& step : tracer_.trace_curves(chain, ignored)) true_steps_[i].push_back(step);
-        }
-        curve_users_.assign(tracer_.curves().size(), 0);
-        for (const auto& steps : true_steps_)
-            for (const ChainTracer::Step& step : steps) ++curve_users_[step.curve];
-    }
-
-    void round(std::size_t i, std::vector<bool>& selected, double source_area) {
-        std::vector<SurfaceCurve> curves;
-        std::set<Index> shared;  // vertices along outlines that other regions have in common with this one
-        for (const ChainTracer::Step& step : true_steps_[i]) {
-            const SurfaceCurve& curve = tracer_.curves()[step.curve];
-            if (curve_users_[step.curve] > 1)
-                for (const Index f : curve.faces)
-                    for (const Vertex v : corners(target_, Face(f))) shared.insert(v);
-            curves.push_back(curve);
-            if (step.backwards) {
-                std::reverse(curves.back().nodes.begin(), curves.back().nodes.end());
-                std::reverse(curves.back().faces.begin(), curves.back().faces.end());
-            }
-        }
-        std::vector<std::pair<Index, double>> shares = left_shares(target_, curves, 2);
-        const auto is_shared = [&](const std::pair<Index, double>& entry) {
-            const auto vertices = corners(target_, Face(entry.first));
-            return std::any_of(vertices.begin(), vertices.end(), [&](Vertex v) { return shared.count(v) > 0; });
-        };
-        for (const auto& entry : shares)
-            if (is_shared(entry)) shared_faces_.push_back({entry.first, i, entry.second});
-        shares.erase(std::remove_if(shares.begin(), shares.end(), is_shared), shares.end());
-        RoundingGoal goal;
-        goal.area = source_area;
-        goal.perimeter = length_of(segments_of(source_, set_.annotations[i]));
-        goal.edge = regions_.target_edge();
-        goal.coarser = goal.edge > 1.5 * mean_edge_length(source_);
-        round_region(target_, selected, shares, goal, options_.rounding == "balanced");
-    }
-
-    void fill_all(std::vector<Annotation>& transferred) {
+    void fill_all(std::vector<Annotation>& transferred, OutlineRounding* rounding) {
         std::vector<std::vector<bool>> selected(transferred.size());
         for (std::size_t i = 0; i < transferred.size(); ++i) {
             const Annotation& from = set_.annotations[i];
@@ -309,10 +244,10 @@ private:
             selected[i] = regions_.fill(from.faces, traced_[i], chains_[i], on(),
                                         result_.refined ? &result_.refined->face_origin : nullptr, score);
             const bool any = std::find(selected[i].begin(), selected[i].end(), true) != selected[i].end();
-            if (any && !score.voted && i < true_steps_.size() && !true_steps_[i].empty())
-                round(i, selected[i], area_of(source_, from.faces));
+            if (any && !score.voted && rounding != nullptr)
+                rounding->round(i, selected[i], regions_.target_edge(), options_.rounding == "balanced");
         }
-        round_shared(target_, selected, std::move(shared_faces_));
+        if (rounding != nullptr) rounding->round_shared_outlines(selected);
         for (std::size_t i = 0; i < transferred.size(); ++i) {
             if (set_.annotations[i].type == AnnotationType::region) finish(i, transferred[i], selected[i]);
             if (set_.annotations[i].type == AnnotationType::line) finish_line(i, transferred[i]);
@@ -357,7 +292,6 @@ private:
         if (score.outcome != "lost") add_note(to.note, "was a region, too small for this mesh");
     }
 
-    void attributes(const Annotation& from, Annotation& to, const Mesh& mesh);
     void score(const Annotation& from, Annotation& to, TransferScore& score);
 
     const Mesh& source_;
@@ -369,47 +303,9 @@ private:
     RegionTransfer regions_;
     std::vector<std::vector<Chain>> chains_;
     std::vector<std::vector<TracedChain>> traced_;
-    std::vector<std::vector<ChainTracer::Step>> true_steps_;
-    std::vector<int> curve_users_;
-    std::vector<SharedFace> shared_faces_;
-    std::vector<std::tuple<int, int, std::optional<double>>> lost_pins_;  ///< annotation, attribute, value before
-    std::unique_ptr<SurfaceSearch> source_search_;                        ///< built when a score needs it
+    std::unique_ptr<SurfaceSearch> source_search_;  ///< built when a score needs it
     TransferResult result_;
 };
-
-void Transfer::attributes(const Annotation& from, Annotation& to, const Mesh&) {
-    for (const Attribute& attribute : from.attributes) {
-        Attribute moved = attribute;
-        if (attribute.type == AttributeType::measure) {
-            moved.measure.points.clear();
-            moved.measure.locations.clear();
-            bool complete = true;
-            for (const Index v : attribute.measure.points) {
-                const Correspondence& place = tracer_.place(v);
-                if (place.vertex == no_index) {
-                    complete = false;
-                    continue;
-                }
-                moved.measure.points.push_back(place.vertex);
-                // Face indices of a refined mesh are new: there the nearest vertex stands alone.
-                if (!result_.refined) moved.measure.locations.push_back({place.place.face, place.place.barycentric});
-            }
-            if (!complete) {
-                add_note(to.note, "measure '" + attribute.name + "' lost a pin");
-                lost_pins_.emplace_back(from.id, attribute.id, attribute.measure.value);
-                if (moved.measure.points.size() < 2) {
-                    // No measure without two pins: the value stays, as a descriptor that is out of date.
-                    moved.type = AttributeType::descriptor;
-                    if (attribute.measure.value) moved.descriptor.values = {*attribute.measure.value};
-                    moved.descriptor.unit = attribute.measure.unit;
-                    moved.measure = {};
-                    if (!attribute.measure.value) continue;
-                }
-            }
-        }
-        to.attributes.push_back(std::move(moved));
-    }
-}
 
 void Transfer::score(const Annotation& from, Annotation& to, TransferScore& score) {
     score.target_type = to.type;

@@ -35,6 +35,40 @@ TEST(AtomicFile, FollowsLinksAndWritesToDevices) {
     EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
 }
 
+TEST(AtomicFile, TakesTheLongestNameAndFollowsLinksToNothing) {
+    const Scratch scratch;
+    const Path longest = scratch / std::string(255, 'n');
+    write_file(longest, "1");
+    EXPECT_EQ(read_file(longest), "1");
+    std::filesystem::create_symlink("not-yet.txt", scratch / "link.txt");
+    write_file(scratch / "link.txt", "2");
+    EXPECT_TRUE(std::filesystem::is_symlink(scratch / "link.txt"));
+    EXPECT_EQ(read_file(scratch / "not-yet.txt"), "2");
+}
+
+TEST(OutputTransaction, ShowsAllFilesOrNone) {
+    const Scratch scratch;
+    const Path earlier = scratch.file("a.txt", "earlier");
+    {
+        const OutputTransaction outputs;
+        write_file(earlier, "later");
+        write_file(scratch / "b.txt", "new");
+        EXPECT_THROW(write_file(scratch / "none" / "c.txt", "x"), Error);
+    }
+    EXPECT_EQ(read_file(earlier), "earlier");
+    EXPECT_EQ(test::count_files(scratch.path()), 1U);
+    {
+        OutputTransaction outputs;
+        write_file(earlier, "later");
+        write_file(scratch / "b.txt", "new");
+        EXPECT_EQ(read_file(earlier), "earlier");
+        outputs.commit();
+    }
+    EXPECT_EQ(read_file(earlier), "later");
+    EXPECT_EQ(read_file(scratch / "b.txt"), "new");
+    EXPECT_EQ(test::count_files(scratch.path()), 2U);
+}
+
 TEST(AtomicFile, RefusesFoldersAndMissingFolders) {
     const Scratch scratch;
     EXPECT_THROW(write_file(scratch.path(), "x"), Error);
@@ -60,6 +94,7 @@ TEST(ReadFile, GivesAllBytesOrSaysWhyNot) {
     EXPECT_EQ(read_file(scratch.file("a", bytes)), bytes);
     EXPECT_THROW(read_file(scratch / "missing"), Error);
     EXPECT_THROW(read_file(scratch.path()), Error);
+    EXPECT_THROW(read_file("/dev/zero"), Error);
 }
 
 TEST(Sha256, MatchesThePublishedVectors) {

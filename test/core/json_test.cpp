@@ -16,6 +16,21 @@ TEST(Json, ErrorNamesLineAndColumn) {
 
 TEST(Json, DeepNestingIsRefused) { EXPECT_THROW(parse_json(std::string(100000, '['), "deep"), Error); }
 
+TEST(Json, AMemberThatStandsTwiceIsRefused) {
+    EXPECT_THROW(parse_json(R"([{"a": {"b": 1, "c": 2, "b": 1}}])", "twins"), Error);
+    EXPECT_NO_THROW(parse_json(R"([{"b": 1}, {"b": 1}, {"a": {"b": 1}}])", "no twins"));
+}
+
+TEST(Json, TextThatIsNotUtf8IsReadableAfterWriting) {
+    Json document(rapidjson::kArrayType);
+    for (const char* text : {"caf\xE9.ply", "\xC3\xA9", "\xED\xA0\x80", "\xF0\x9F\x8F\xBA", "\xE2\x82", "\xC0\xAF"})
+        document.PushBack(json_string(text, document.GetAllocator()), document.GetAllocator());
+    const Json again = parse_json(to_text(document), "again");
+    EXPECT_STREQ(again[0].GetString(), "caf\xEF\xBF\xBD.ply");
+    EXPECT_STREQ(again[1].GetString(), "\xC3\xA9");
+    EXPECT_STREQ(again[3].GetString(), "\xF0\x9F\x8F\xBA");
+}
+
 TEST(Json, NumbersSurviveARoundTrip) {
     const Json value = parse_json("[0.1, 1e-300, 123456789.123456789, -0.0, 3]", "numbers");
     const std::string text = to_text(value);

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace ostraka {
@@ -15,9 +16,9 @@ using Path = std::filesystem::path;
 std::string read_file(const Path& file);
 
 /// A file that appears under its name only when complete: bytes go to a temporary file beside it, `commit` flushes
-/// them to the disk and renames; without `commit` (an exception, say) the temporary file is removed and whatever
-/// stood under the name stays. Devices and pipes (/dev/null, /dev/stdout) are written to directly. Throws Error (failure) when
-/// the folder is missing or the disk is full.
+/// them to the disk and renames, or leaves the renaming to the OutputTransaction that is open; without `commit` (an exception,
+/// say) the temporary file is removed and whatever stood under the name stays. Devices and pipes (/dev/null, /dev/stdout) are
+/// written to directly. Throws Error (failure) when the folder is missing or the disk is full.
 class AtomicFile {
 public:
     explicit AtomicFile(Path file);
@@ -32,6 +33,23 @@ private:
     Path file_;
     Path temporary_;
     std::FILE* stream_ = nullptr;
+};
+
+/// Several outputs that appear together or not at all: while one is open on this thread, files that AtomicFile commits are on
+/// the disk but wait under their temporary names until `commit` renames them all; without it they are removed.
+class OutputTransaction {
+public:
+    OutputTransaction();
+    ~OutputTransaction();
+    OutputTransaction(const OutputTransaction&) = delete;
+    OutputTransaction& operator=(const OutputTransaction&) = delete;
+
+    void commit();
+
+private:
+    friend class AtomicFile;
+    std::vector<std::pair<Path, Path>> waiting_;  ///< temporary name, name
+    OutputTransaction* outer_;
 };
 
 /// Writes `bytes` atomically to `file`.

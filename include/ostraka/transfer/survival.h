@@ -24,7 +24,7 @@ struct Survival {
     int id = 0;
     std::string tag;
     std::size_t vertices = 0;  ///< the smallest resolution tried down to which the annotation was kept throughout
-    std::string end;           ///< what became of it at the next one; empty if it survived all
+    std::string end;           ///< what became of it at the next one; empty if it survived all; says so if none could be tried
 };
 
 /// Simplifies the mesh step by step and transfers the annotations from the full mesh to each step. An annotation survives while

@@ -29,8 +29,7 @@ struct TransferOptions {
               Choices{"prune", "avoid", "keep"});
         visit("rounding", rounding,
               "faces that the true outline crosses: as the edge paths leave them (path), to the side that holds most of them "
-              "(area), or so "
-              "that area and perimeter are met as well (balanced); outlines shared by regions stay as the paths leave them",
+              "(area), or so that area and perimeter are met as well (balanced)",
               Choices{"path", "area", "balanced"});
         visit("cover", cover, "the transferred region overlaps the source region, encloses it or is enclosed by it",
               Choices{"overlapping", "enclosing", "enclosed"});

@@ -1,0 +1,56 @@
+#include "attribute_carrier.h"
+
+namespace ostraka {
+
+void AttributeCarrier::carry(const Annotation& from, Annotation& to) {
+    for (const Attribute& attribute : from.attributes) {
+        Attribute moved = attribute;
+        if (attribute.type == AttributeType::measure) {
+            moved.measure.points.clear();
+            moved.measure.locations.clear();
+            bool complete = true;
+            for (const Index v : attribute.measure.points) {
+                const Correspondence& place = tracer_.place(v);
+                if (place.vertex == no_index) {
+                    complete = false;
+                    continue;
+                }
+                moved.measure.points.push_back(place.vertex);
+                // Face indices of a refined mesh are new: there the nearest vertex stands alone.
+                if (!refined_) moved.measure.locations.push_back({place.place.face, place.place.barycentric});
+            }
+            if (!complete) {
+                to.note += (to.note.empty() ? "" : "; ") + ("measure '" + attribute.name + "' lost a pin");
+                lost_pins_.emplace_back(from.id, attribute.id, attribute.measure.value);
+                if (moved.measure.points.size() < 2) {
+                    // No measure without two pins: the value stays, as a descriptor that is out of date.
+                    moved.type = AttributeType::descriptor;
+                    if (attribute.measure.value) moved.descriptor.values = {*attribute.measure.value};
+                    moved.descriptor.unit = attribute.measure.unit;
+                    moved.measure = {};
+                    if (!attribute.measure.value) continue;
+                }
+            }
+        }
+        to.attributes.push_back(std::move(moved));
+    }
+}
+
+void AttributeCarrier::keep_old_values(AnnotationSet& set) const {
+    for (const auto& [annotation, attribute, value] : lost_pins_) {
+        Annotation* to = set.find(annotation);
+        if (to == nullptr) continue;
+        for (Attribute& moved : to->attributes) {
+            if (moved.id != attribute) continue;
+            if (moved.type == AttributeType::measure) {
+                moved.measure.stale = true;
+                moved.measure.value = value;
+            } else {
+                moved.descriptor.stale = true;
+                moved.descriptor.values = {*value};
+            }
+        }
+    }
+}
+
+}  // namespace ostraka

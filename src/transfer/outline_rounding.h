@@ -1,0 +1,37 @@
+// Transferred regions rounded to the outlines as they truly run.
+#pragma once
+
+#include "chain_tracer.h"
+#include "ostraka/annotation/annotation.h"
+#include "rounding.h"
+
+#include <vector>
+
+namespace ostraka {
+
+class OutlineRounding {
+public:
+    /// Draws the outlines of all regions of `set` across the target's faces; `chains` are theirs, by annotation.
+    OutlineRounding(const Mesh& source, const AnnotationSet& set, const Mesh& target,
+                    const std::vector<std::vector<Chain>>& chains, ChainTracer& tracer);
+
+    /// Rounds what only this region borders on; faces along outlines that regions share are put aside. `edge` is the typical
+    /// edge length of the target.
+    void round(std::size_t region, std::vector<bool>& selected, double edge, bool balance);
+    /// Rounds what was put aside, for all regions in one move.
+    void round_shared_outlines(std::vector<std::vector<bool>>& selected) {
+        round_shared(target_, selected, std::move(put_aside_));
+    }
+
+private:
+    const Mesh& source_;
+    const AnnotationSet& set_;
+    const Mesh& target_;
+    const ChainTracer& tracer_;
+    double source_edge_;
+    std::vector<std::vector<ChainTracer::Step>> steps_;  ///< by annotation
+    std::vector<int> users_;                             ///< by curve: how many regions it bounds
+    std::vector<SharedFace> put_aside_;
+};
+
+}  // namespace ostraka
