@@ -18,7 +18,7 @@ int main(int argc, char** argv) {
     experiments::TableOptions table;
     CLI::App* table_command =
         tool.add_subcommand("table", "distortions per metric, size and pair of resolutions (thesis, Table 2.1)");
-    table_command->add_option("--made", table.made, "made objects to use")->delimiter(',');
+    table_command->add_option("--made", table.made, "made objects to use, or none")->delimiter(',');
     table_command
         ->add_option("--scan", table.scans, "mesh files of scans to use; they are subdivided smoothly to the full resolution")
         ->delimiter(',');

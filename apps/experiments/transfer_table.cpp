@@ -87,6 +87,7 @@ public:
 
     void run() {
         for (const std::string& name : options_.made) {
+            if (name == "none") continue;
             const MadeObject& object = made_object(name);
             const auto make = [&](std::size_t n, std::uint64_t seed) {
                 MakeOptions making;
