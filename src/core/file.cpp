@@ -224,6 +224,9 @@ std::string sha256(std::string_view bytes) {
 }
 
 std::string sha256_of_file(const Path& file) {
+    // Content and checksum are read one after the other: a pipe gives its bytes once.
+    std::error_code code;
+    if (std::filesystem::is_fifo(file, code)) fail_input(file.string(), "is a pipe", "write it to a file first");
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"), &std::fclose);
     if (!stream) fail_input(file.string(), "cannot be opened: " + reason(), "check the path and its rights");
     Sha256 hash;
