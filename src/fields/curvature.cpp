@@ -1,0 +1,170 @@
+#include "ostraka/fields/curvature.h"
+
+#include "neighbourhood.h"
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace ostraka {
+
+namespace {
+
+std::vector<Vector> unit_normals(const Mesh& mesh) {
+    std::vector<Vector> normals(mesh.number_of_faces(), Vector(0, 0, 0));
+    parallel_for(normals.size(), [&](std::size_t f) {
+        const Vector a = area_vector(mesh, Face(static_cast<Index>(f)));
+        const double length = std::sqrt(a.squared_length());
+        if (length > 0) normals[f] = a / length;
+    });
+    return normals;
+}
+
+/// What an edge between two faces with area holds.
+struct EdgeCurvature {
+    double mean = 0;         ///< l b / 2 (Cohen-Steiner and Morvan 2003)
+    Vector vector{0, 0, 0};  ///< half the sum of the two conormals (Sullivan 2008), of length l sin(b / 2)
+};
+
+EdgeCurvature edge_curvature(const Mesh& mesh, const std::vector<Vector>& normals, Edge edge) {
+    EdgeCurvature result;
+    const Halfedge h = mesh.halfedge(edge), o = mesh.opposite(h);
+    if (mesh.is_border(h) || mesh.is_border(o)) return result;
+    const Vector &left = normals[mesh.face(h)], &right = normals[mesh.face(o)];
+    if (left == CGAL::NULL_VECTOR || right == CGAL::NULL_VECTOR) return result;
+    const Vector e = mesh.point(mesh.target(h)) - mesh.point(mesh.source(h));
+    const double length = std::sqrt(e.squared_length());
+    if (!(length > 0)) return result;
+    const double angle = std::atan2(CGAL::cross_product(left, right) * e / length, left * right);
+    result.mean = length * angle / 2;
+    result.vector = CGAL::cross_product(e, left - right) / 2;
+    return result;
+}
+
+double angle_at(const Mesh& mesh, Halfedge h) {  // at the target of h, in the face of h
+    const Point& p = mesh.point(mesh.target(h));
+    const Vector a = mesh.point(mesh.source(h)) - p, b = mesh.point(mesh.target(mesh.next(h))) - p;
+    return std::atan2(std::sqrt(CGAL::cross_product(a, b).squared_length()), a * b);
+}
+
+/// Angle deficit; 0 at the border and for isolated vertices.
+double deficit(const Mesh& mesh, Vertex vertex) {
+    if (mesh.is_isolated(vertex) || mesh.is_border(vertex)) return 0;
+    double sum = 0;
+    for (const Halfedge h : mesh.halfedges_around_target(mesh.halfedge(vertex))) sum += angle_at(mesh, h);
+    return 2 * std::numbers::pi - sum;
+}
+
+/// What falls to each face: half of its edges, its angles' shares of the deficits.
+struct FaceShares {
+    CurvatureIntegrals integrals;
+    std::vector<Vector> vector;
+};
+
+FaceShares face_shares(const Mesh& mesh) {
+    const std::vector<Vector> normals = unit_normals(mesh);
+    std::vector<EdgeCurvature> edges(mesh.number_of_edges());
+    std::vector<double> deficits(mesh.number_of_vertices());
+    parallel_for(edges.size(), [&](std::size_t e) { edges[e] = edge_curvature(mesh, normals, Edge(static_cast<Index>(e))); });
+    parallel_for(deficits.size(), [&](std::size_t v) { deficits[v] = deficit(mesh, Vertex(static_cast<Index>(v))); });
+    FaceShares shares;
+    shares.integrals.mean.assign(mesh.number_of_faces(), 0);
+    shares.integrals.gaussian = shares.integrals.mean;
+    shares.vector.assign(mesh.number_of_faces(), Vector(0, 0, 0));
+    parallel_for(shares.vector.size(), [&](std::size_t f) {
+        for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(Face(static_cast<Index>(f))))) {
+            const EdgeCurvature& edge = edges[mesh.edge(h)];
+            shares.integrals.mean[f] += edge.mean / 2;
+            shares.vector[f] += edge.vector / 2;
+            const double missing = deficits[mesh.target(h)], around = 2 * std::numbers::pi - missing;
+            if (missing != 0 && around > 0) shares.integrals.gaussian[f] += missing * angle_at(mesh, h) / around;
+        }
+    });
+    return shares;
+}
+
+/// A third of what falls to the faces around each vertex.
+struct VertexShares {
+    std::vector<double> mean, gaussian, area;
+    std::vector<Vector> mean_vector, area_vector;
+};
+
+VertexShares vertex_shares(const Mesh& mesh) {
+    const FaceShares faces = face_shares(mesh);
+    const std::size_t count = mesh.number_of_vertices();
+    VertexShares shares;
+    shares.mean.assign(count, 0);
+    shares.gaussian = shares.area = shares.mean;
+    shares.mean_vector.assign(count, Vector(0, 0, 0));
+    shares.area_vector = shares.mean_vector;
+    parallel_for(count, [&](std::size_t i) {
+        const Vertex v(static_cast<Index>(i));
+        if (mesh.is_isolated(v)) return;
+        for (const Face face : mesh.faces_around_target(mesh.halfedge(v))) {
+            if (face == Mesh::null_face()) continue;
+            const Vector a = ostraka::area_vector(mesh, face) / 3;
+            shares.area_vector[i] += a;
+            shares.area[i] += std::sqrt(a.squared_length());
+            shares.mean[i] += faces.integrals.mean[face] / 3;
+            shares.gaussian[i] += faces.integrals.gaussian[face] / 3;
+            shares.mean_vector[i] += faces.vector[face] / 3;
+        }
+    });
+    return shares;
+}
+
+}  // namespace
+
+Curvature curvature(const Mesh& mesh, const CurvatureOptions& options) {
+    check_options(options, "curvature");
+    const VertexShares shares = vertex_shares(mesh);
+    const double radius = options.scale * box_diagonal(mesh);
+    Curvature result;
+    result.mean.assign(mesh.number_of_vertices(), 0);
+    result.gaussian = result.mean;
+    parallel_for(
+        result.mean.size(),
+        [&](std::size_t i) {
+            if (!(radius > 0)) {
+                if (!(shares.area[i] > 0)) return;
+                result.mean[i] = shares.mean[i] / shares.area[i];
+                result.gaussian[i] = shares.gaussian[i] / shares.area[i];
+                return;
+            }
+            const double squared_radius = radius * radius;
+            Vector h(0, 0, 0), a(0, 0, 0);
+            double gaussian = 0, area = 0;
+            this_threads_neighbourhood().walk(mesh, Vertex(static_cast<Index>(i)), radius, [&](Vertex v, double squared) {
+                const double share = 1 - squared / squared_radius, w = share * share;
+                h += w * shares.mean_vector[v];
+                a += w * shares.area_vector[v];
+                gaussian += w * shares.gaussian[v];
+                area += w * shares.area[v];
+            });
+            const double projected = a.squared_length();
+            if (projected > 0) result.mean[i] = h * a / projected;
+            if (area > 0) result.gaussian[i] = gaussian / area;
+        },
+        4096);
+    return result;
+}
+
+CurvatureIntegrals curvature_integrals(const Mesh& mesh) { return face_shares(mesh).integrals; }
+
+RegionCurvature region_curvature(const Mesh& mesh, const CurvatureIntegrals& integrals, const std::vector<Index>& faces) {
+    if (integrals.mean.size() != mesh.number_of_faces())
+        fail_usage("the integrals are those of another mesh", "compute them anew");
+    RegionCurvature result;
+    for (const Index face : faces) {
+        if (face >= mesh.number_of_faces())
+            fail_usage("face " + std::to_string(face) + " is not one of the " + std::to_string(mesh.number_of_faces()) + " faces",
+                       "was it selected on another mesh?");
+        result.area += face_area(mesh, Face(face));
+        result.mean_integral += integrals.mean[face];
+        result.gaussian_integral += integrals.gaussian[face];
+    }
+    return result;
+}
+
+}  // namespace ostraka

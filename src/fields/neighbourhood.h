@@ -1,0 +1,58 @@
+// The vertices inside a ball that are connected with its centre there.
+#pragma once
+
+#include "ostraka/core/mesh.h"
+
+#include <vector>
+
+namespace ostraka {
+
+/// Walks balls on one mesh without allocating anew; one for each thread.
+class Neighbourhood {
+public:
+    /// Calls visit(vertex, squared distance) for `centre` and every vertex nearer than `radius` that a chain of edges inside the
+    /// ball joins to it; the order depends on the mesh alone.
+    template <class Visit>
+    void walk(const Mesh& mesh, Vertex centre, double radius, Visit&& visit) {
+        if (stamps_.size() < mesh.number_of_vertices()) stamps_.resize(mesh.number_of_vertices(), 0);
+        if (++stamp_ == 0) {
+            std::fill(stamps_.begin(), stamps_.end(), 0);
+            stamp_ = 1;
+        }
+        const Point& middle = mesh.point(centre);
+        const double limit = radius * radius;
+        front_.assign(1, centre);
+        stamps_[centre] = stamp_;
+        visit(centre, 0.0);
+        for (std::size_t i = 0; i < front_.size(); ++i) {
+            const Halfedge first = mesh.halfedge(front_[i]);
+            if (first == Mesh::null_halfedge()) return;
+            Halfedge h = first;  // halfedges into the vertex, around it
+            do {
+                const Vertex next = mesh.source(h);
+                if (stamps_[next] != stamp_) {
+                    stamps_[next] = stamp_;
+                    const double squared = CGAL::squared_distance(mesh.point(next), middle);
+                    if (squared < limit) {
+                        front_.push_back(next);
+                        visit(next, squared);
+                    }
+                }
+                h = mesh.opposite(mesh.next(h));
+            } while (h != first);
+        }
+    }
+
+private:
+    std::vector<std::uint32_t> stamps_;
+    std::uint32_t stamp_ = 0;
+    std::vector<Vertex> front_;
+};
+
+/// One for each thread; what a walk gives does not depend on the walks before it.
+inline Neighbourhood& this_threads_neighbourhood() {
+    static thread_local Neighbourhood neighbourhood;
+    return neighbourhood;
+}
+
+}  // namespace ostraka

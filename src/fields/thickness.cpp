@@ -1,0 +1,158 @@
+#include "ostraka/fields/thickness.h"
+
+#include "neighbourhood.h"
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/geom/surface_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+namespace ostraka {
+
+namespace {
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+/// A ray of the cone: its direction relative to the axis and its weight.
+struct ConeRay {
+    double x, y, z, weight;
+};
+
+/// Directions spread evenly over the cone (Vogel's spiral on the sphere); weights fall to a quarter towards the rim.
+std::vector<ConeRay> cone_rays(int count, double opening) {
+    const double half = opening / 2 * std::numbers::pi / 180, lowest = std::cos(half);
+    std::vector<ConeRay> rays;
+    for (int i = 0; i < count; ++i) {
+        const double z = 1 - (1 - lowest) * (i + 0.5) / count, r = std::sqrt(std::max(0.0, 1 - z * z));
+        const double turn = i * std::numbers::pi * (3 - std::sqrt(5.0)), share = half > 0 ? std::acos(z) / half : 0;
+        rays.push_back({r * std::cos(turn), r * std::sin(turn), z, std::exp2(-2 * share * share)});
+    }
+    return rays;
+}
+
+/// Area vectors of the vertices averaged over balls, so that single faces do not tilt the cone.
+std::vector<Vector> smooth_normals(const Mesh& mesh, double radius) {
+    std::vector<Vector> shares(mesh.number_of_vertices(), Vector(0, 0, 0)), result = shares;
+    parallel_for(shares.size(), [&](std::size_t i) {
+        const Vertex v(static_cast<Index>(i));
+        if (mesh.is_isolated(v)) return;
+        for (const Face face : mesh.faces_around_target(mesh.halfedge(v)))
+            if (face != Mesh::null_face()) shares[i] += area_vector(mesh, face);
+    });
+    if (!(radius > 0)) return shares;
+    parallel_for(
+        result.size(),
+        [&](std::size_t i) {
+            this_threads_neighbourhood().walk(mesh, Vertex(static_cast<Index>(i)), radius, [&](Vertex v, double squared) {
+                result[i] += (1 - squared / (radius * radius)) * shares[v];
+            });
+        },
+        4096);
+    return result;
+}
+
+/// Weighted mean of the lengths within one standard deviation of their median (Shapira, Shamir and Cohen-Or 2008, section 3).
+double robust_mean(const std::vector<double>& lengths, const std::vector<double>& weights) {
+    std::vector<double> sorted = lengths;
+    const std::size_t middle = sorted.size() / 2;
+    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(middle), sorted.end());
+    const double median = sorted[middle];
+    double mean = 0, square = 0;
+    for (const double x : lengths) mean += x / static_cast<double>(lengths.size());
+    for (const double x : lengths) square += (x - mean) * (x - mean) / static_cast<double>(lengths.size());
+    const double deviation = std::sqrt(square);
+    double sum = 0, weight = 0;
+    for (std::size_t i = 0; i < lengths.size(); ++i)
+        if (std::abs(lengths[i] - median) <= deviation || lengths[i] == median) {
+            sum += weights[i] * lengths[i];
+            weight += weights[i];
+        }
+    return sum / weight;
+}
+
+class Caster {
+public:
+    explicit Caster(const Mesh& mesh) : search_(mesh, false), diagonal_(search_.diagonal()) {}
+
+    /// The way from `origin` to the first face, other than the one it starts from, that the ray leaves the solid through;
+    /// `expected` says how far is looked at first.
+    [[nodiscard]] std::optional<double> way(const Point& origin, Index start, const Vector& direction, double expected) const {
+        const double least = 1e-9 * diagonal_;
+        for (double reach = std::max(expected, diagonal_ / 64);; reach *= 4) {
+            reach = std::min(reach, 1.01 * diagonal_);
+            // The segment of the query runs both ways: its middle stands half way along the ray.
+            for (const SurfaceHit& hit : search_.line_hits(origin + direction * (reach / 2), direction, reach / 2)) {
+                const double way = hit.distance + reach / 2;
+                if (hit.face != start && way > least && search_.normal(hit.face) * direction > 0) return way;
+            }
+            if (reach > diagonal_) return {};
+        }
+    }
+
+private:
+    SurfaceSearch search_;
+    double diagonal_;
+};
+
+}  // namespace
+
+std::vector<double> thickness(const Mesh& mesh, const ThicknessOptions& options) {
+    check_options(options, "thickness");
+    std::vector<double> result(mesh.number_of_faces(), none);
+    if (result.empty() || !(surface_area(mesh) > 0)) return result;
+    const std::vector<ConeRay> rays = cone_rays(options.rays, options.cone);
+    const std::vector<Vector> normals = smooth_normals(mesh, options.scale * box_diagonal(mesh));
+    const Caster caster(mesh);
+    parallel_for(
+        result.size(),
+        [&](std::size_t f) {
+            const Face face(static_cast<Index>(f));
+            Vector axis(0, 0, 0);
+            for (const Vertex v : corners(mesh, face)) axis -= normals[v];
+            if (!(options.scale > 0)) axis = -area_vector(mesh, face);
+            const double length = std::sqrt(axis.squared_length());
+            if (!(length > 0)) return;
+            axis = axis / length;
+            const Vector across = std::abs(axis.x()) < 0.6 ? Vector(0, -axis.z(), axis.y()) : Vector(axis.z(), 0, -axis.x());
+            const Vector u = across / std::sqrt(across.squared_length()), w = CGAL::cross_product(axis, u);
+            std::vector<double> lengths, weights;
+            double expected = 0;
+            const Point origin = centroid(mesh, face);
+            for (const ConeRay& ray : rays) {
+                const auto way = caster.way(origin, static_cast<Index>(f), ray.x * u + ray.y * w + ray.z * axis, expected);
+                if (!way) continue;
+                expected = 1.5 * *way;
+                lengths.push_back(*way);
+                weights.push_back(ray.weight);
+            }
+            if (2 * lengths.size() >= rays.size()) result[f] = robust_mean(lengths, weights);
+        },
+        64);
+    return result;
+}
+
+std::vector<double> vertices_from_faces(const Mesh& mesh, const std::vector<double>& face_values) {
+    if (face_values.size() != mesh.number_of_faces())
+        fail_usage(std::to_string(face_values.size()) + " values for " + std::to_string(mesh.number_of_faces()) + " faces",
+                   "give one value a face");
+    std::vector<double> result(mesh.number_of_vertices(), none);
+    parallel_for(result.size(), [&](std::size_t i) {
+        const Vertex v(static_cast<Index>(i));
+        if (mesh.is_isolated(v)) return;
+        double sum = 0, weight = 0;
+        for (const Face face : mesh.faces_around_target(mesh.halfedge(v))) {
+            if (face == Mesh::null_face() || !std::isfinite(face_values[face])) continue;
+            const double area = face_area(mesh, face);
+            sum += area * face_values[face];
+            weight += area;
+        }
+        if (weight > 0) result[i] = sum / weight;
+    });
+    return result;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,167 @@
+#include "ostraka/geom/geodesic.h"
+
+#include "ostraka/core/error.h"
+#include "surface_patch.h"
+
+#include <CGAL/Surface_mesh_shortest_path.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <queue>
+
+namespace ostraka {
+
+namespace {
+
+using Traits = CGAL::Surface_mesh_shortest_path_traits<Kernel, Mesh>;
+using ExactSearch = CGAL::Surface_mesh_shortest_path<Traits>;
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+double distance(const Point& a, const Point& b) { return std::sqrt(CGAL::squared_distance(a, b)); }
+
+/// Lengths of the shortest edge paths from vertices that start with the given lengths, at most `limit`.
+std::vector<double> edge_distances(const Mesh& mesh, const std::vector<std::pair<Vertex, double>>& start, double limit) {
+    std::vector<double> lengths(mesh.number_of_vertices(), infinite);
+    using Entry = std::pair<double, Index>;
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
+    const auto meet = [&](Vertex v, double length) {
+        if (length > limit || length >= lengths[v]) return;
+        lengths[v] = length;
+        front.emplace(length, v);
+    };
+    for (const auto& [v, length] : start) meet(v, length);
+    while (!front.empty()) {
+        const auto [length, index] = front.top();
+        front.pop();
+        if (length > lengths[index] || mesh.is_isolated(Vertex(index))) continue;
+        for (const Halfedge h : mesh.halfedges_around_target(mesh.halfedge(Vertex(index))))
+            meet(mesh.source(h), length + distance(mesh.point(Vertex(index)), mesh.point(mesh.source(h))));
+    }
+    return lengths;
+}
+
+std::vector<Face> faces_at(const Mesh& mesh, const SurfaceNode& node) {
+    std::vector<Face> faces;
+    const auto range = [](const char* what, std::size_t index, std::size_t count) {
+        if (index >= count)
+            fail_usage(std::string("a place on ") + what + ' ' + std::to_string(index) + " of " + std::to_string(count),
+                       "was it taken on another mesh?");
+    };
+    switch (node.kind) {
+        case SurfaceNode::Kind::face:
+            range("face", node.element, mesh.number_of_faces());
+            faces.emplace_back(node.element);
+            break;
+        case SurfaceNode::Kind::edge:
+            range("edge", node.element, mesh.number_of_edges());
+            for (const Index side : {0U, 1U})
+                if (const Halfedge h = mesh.halfedge(Edge(node.element), side); !mesh.is_border(h)) faces.push_back(mesh.face(h));
+            break;
+        case SurfaceNode::Kind::vertex:
+            range("vertex", node.element, mesh.number_of_vertices());
+            if (!mesh.is_isolated(Vertex(node.element)))
+                for (const Face face : mesh.faces_around_target(mesh.halfedge(Vertex(node.element))))
+                    if (face != Mesh::null_face()) faces.push_back(face);
+    }
+    return faces;
+}
+
+/// The vertices from which edge paths start, with the straight way to each.
+std::vector<std::pair<Vertex, double>> gates(const Mesh& mesh, const SurfaceNode& node, const std::vector<Face>& faces) {
+    if (node.kind == SurfaceNode::Kind::vertex) return {{Vertex(node.element), 0.0}};
+    std::vector<std::pair<Vertex, double>> list;
+    for (const Face face : faces)
+        for (const Vertex v : corners(mesh, face)) list.emplace_back(v, distance(node.point, mesh.point(v)));
+    return list;
+}
+
+/// The node by a face of the patch and its barycentric coordinates there, beginning with the last corner as CGAL does.
+std::pair<Face, Traits::Barycentric_coordinates> place_in(const Mesh& mesh, const SurfacePatch& patch, const SurfaceNode& node,
+                                                          Face face) {
+    const auto place = std::lower_bound(patch.faces.begin(), patch.faces.end(), static_cast<Index>(face)) - patch.faces.begin();
+    std::array<double, 3> weights{0, 0, 0};
+    const auto corner = corners(mesh, face);
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (node.kind == SurfaceNode::Kind::face) weights[k] = node.barycentric[k];
+        if (node.kind == SurfaceNode::Kind::vertex) weights[k] = corner[k] == Vertex(node.element) ? 1 : 0;
+        if (node.kind == SurfaceNode::Kind::edge) {
+            const Halfedge h = mesh.halfedge(Edge(node.element), 0);
+            weights[k] = corner[k] == mesh.source(h) ? 1 - node.parameter : corner[k] == mesh.target(h) ? node.parameter : 0;
+        }
+    }
+    return {Face(static_cast<Index>(place)), Traits::Barycentric_coordinates{{weights[2], weights[0], weights[1]}}};
+}
+
+double distance_to_face(const Mesh& mesh, Face face, const Point& p) {
+    const auto corner = corners(mesh, face);
+    const auto weights = nearest_barycentric(mesh.point(corner[0]), mesh.point(corner[1]), mesh.point(corner[2]), p);
+    return distance(point_at(mesh, face, weights), p);
+}
+
+}  // namespace
+
+std::vector<double> geodesic_distances(const Mesh& mesh, const std::vector<Index>& sources, double limit) {
+    if (sources.empty()) fail_usage("there is no vertex to measure distances from", "give one");
+    if (!(limit >= 0)) fail_usage("distances up to a limit of " + std::to_string(limit), "use a limit of 0 or more");
+    std::vector<Face> start;
+    std::vector<Point> places;
+    std::vector<std::pair<Vertex, double>> gates;
+    std::vector<double> result(mesh.number_of_vertices(), infinite);
+    for (const Index source : sources) {
+        if (source >= mesh.number_of_vertices())
+            fail_usage("vertex " + std::to_string(source) + " is not one of the " + std::to_string(mesh.number_of_vertices()),
+                       "was it picked on another mesh?");
+        result[source] = 0;
+        const std::vector<Face> around = faces_at(mesh, surface_node(mesh, Vertex(source)));
+        start.insert(start.end(), around.begin(), around.end());
+        places.push_back(mesh.point(Vertex(source)));
+        gates.emplace_back(Vertex(source), 0.0);
+    }
+    if (start.empty()) return result;
+    std::vector<Index> faces;
+    if (std::isfinite(limit)) {
+        const NearPoints near(places, limit);
+        faces = grow_faces(mesh, start, [&](Face face) { return near(mesh, face); });
+    } else {
+        faces = grow_faces(mesh, start, [](Face) { return true; });
+    }
+    const SurfacePatch patch = cut_out(mesh, std::move(faces), places.front());
+    ExactSearch search(patch.mesh);
+    for (const Vertex v : patch.mesh.vertices())
+        if (result[patch.vertices[v]] == 0) search.add_source_point(v);
+    search.build_sequence_tree();
+    const std::vector<double> along_edges = edge_distances(mesh, gates, limit);
+    for (std::size_t v = 0; v < result.size(); ++v) result[v] = std::min(result[v], along_edges[v]);
+    for (const Vertex v : patch.mesh.vertices()) {
+        const double exact = patch.scale * search.shortest_distance_to_source_points(v).first;
+        if (exact >= 0 && exact <= limit) result[patch.vertices[v]] = std::min(result[patch.vertices[v]], exact);
+    }
+    return result;
+}
+
+double geodesic_distance(const Mesh& mesh, const SurfaceNode& from, const SurfaceNode& to) {
+    const std::vector<Face> start = faces_at(mesh, from), end = faces_at(mesh, to);
+    for (const Face a : start)
+        if (std::find(end.begin(), end.end(), a) != end.end()) return distance(from.point, to.point);
+    if (from.kind == to.kind && from.element == to.element && from.kind == SurfaceNode::Kind::vertex) return 0;
+    if (start.empty() || end.empty()) return infinite;
+    const std::vector<double> lengths = edge_distances(mesh, gates(mesh, from, start), infinite);
+    double shortest = infinite;
+    for (const auto& [v, way] : gates(mesh, to, end)) shortest = std::min(shortest, lengths[v] + way);
+    if (!std::isfinite(shortest)) return infinite;
+    // A curve of that length stays in the ellipsoid around both places.
+    const double sum = shortest * (1 + 1e-9);
+    const auto met = [&](Face face) {  // a face whose distances are no numbers is kept
+        return !(distance_to_face(mesh, face, from.point) + distance_to_face(mesh, face, to.point) > sum);
+    };
+    const SurfacePatch patch = cut_out(mesh, grow_faces(mesh, start, met), from.point);
+    ExactSearch search(patch.mesh);
+    const auto source = place_in(mesh, patch, from, start.front());
+    search.add_source_point(source.first, source.second);
+    const auto target = place_in(mesh, patch, to, end.front());
+    const double exact = patch.scale * search.shortest_distance_to_source_points(target.first, target.second).first;
+    return exact >= 0 ? std::min(exact, shortest) : shortest;
+}
+
+}  // namespace ostraka
