@@ -89,6 +89,7 @@ void add_mesh_make(CLI::App& mesh, Session& session);                  // mesh_m
 void add_annotation(CLI::App& annotation, Session& session);           // annotation.cpp: apply, list, check
 void add_annotation_transfer(CLI::App& annotation, Session& session);  // annotation_transfer.cpp
 void add_annotation_survival(CLI::App& annotation, Session& session);  // annotation_survival.cpp
+void add_relation(CLI::App& relation, Session& session);               // relation.cpp
 void add_render(CLI::App& tool, Session& session);                     // render.cpp
 
 }  // namespace ostraka::app

@@ -21,6 +21,8 @@ int main(int argc, char** argv) {
     mesh->require_subcommand(1);
     CLI::App* annotation = tool.add_subcommand("annotation", "annotate meshes and carry annotations between them");
     annotation->require_subcommand(1);
+    CLI::App* relation = tool.add_subcommand("relation", "relationships among annotations");
+    relation->require_subcommand(1);
     app::add_mesh_info(*mesh, session);
     app::add_mesh_convert(*mesh, session);
     app::add_mesh_repair(*mesh, session);
@@ -29,6 +31,7 @@ int main(int argc, char** argv) {
     app::add_annotation(*annotation, session);
     app::add_annotation_transfer(*annotation, session);
     app::add_annotation_survival(*annotation, session);
+    app::add_relation(*relation, session);
     app::add_render(tool, session);
     try {
         tool.parse(argc, argv);

@@ -1,0 +1,303 @@
+// ostraka relation extract | add | check | export
+#include "command.h"
+
+#include "ostraka/annotation/annotation_file.h"
+#include "ostraka/io/mesh_file.h"
+#include "ostraka/relation/check.h"
+#include "ostraka/relation/topology.h"
+
+#include <charconv>
+#include <iostream>
+#include <memory>
+
+namespace ostraka::app {
+
+namespace {
+
+/// What every one of these commands reads.
+struct Inputs {
+    std::string mesh, annotations, graph;
+    ReadAnnotationsOptions options;
+
+    void add_to(CLI::App& command) {
+        command.add_option("mesh", mesh, "mesh file")->required();
+        command.add_option("annotations", annotations, "its annotations (.ant.json)")->required();
+    }
+    [[nodiscard]] Provenance provenance(const std::string& name) const {
+        Provenance result{name, list_options(options), {}};
+        for (const std::string& file : {mesh, annotations, graph})
+            if (!file.empty()) result.add_input(file);
+        return result;
+    }
+    void check(const std::string& output) const {
+        std::vector<Path> inputs{mesh, annotations};
+        if (!graph.empty()) inputs.emplace_back(graph);
+        check_outputs(inputs, {output});
+    }
+    [[nodiscard]] Mesh read(const Session& session, AnnotationSet& set, RelationGraph& relations) const {
+        MeshFile file = read_mesh(mesh);
+        for (const auto& note : file.notes) session.note("note: " + note);
+        set = read_annotations(annotations, file.mesh, options);
+        for (const auto& note : set.notes) session.note("note: " + note);
+        if (!graph.empty()) relations = read_graph(graph, set);
+        return std::move(file.mesh);
+    }
+};
+
+std::string name_of(const AnnotationSet& set, int id) {
+    const Annotation* annotation = set.find(id);
+    return std::to_string(id) + (annotation == nullptr ? "" : " " + annotation->tag);
+}
+
+std::string members_of(const AnnotationSet& set, const Relationship& relationship) {
+    std::string text;
+    for (const int id : relationship.annotations)
+        text += (text.empty() ? "" : relationship.directed ? " > " : ", ") + name_of(set, id);
+    return text;
+}
+
+std::string measured(const RelationParameters& parameters) {
+    std::string text;
+    for (const auto& deviation : parameters.deviations) {
+        text += (text.empty() ? "" : "; ") + deviation.quantity;
+        if (deviation.value) text += " " + number(*deviation.value, 4);
+        if (deviation.tolerance) text += " (at most " + number(*deviation.tolerance, 4) + ")";
+        if (!deviation.unit.empty()) text += " " + deviation.unit;
+    }
+    return text;
+}
+
+void print_graph(const Session& session, const Provenance& provenance, const AnnotationSet& set, const RelationGraph& graph,
+                 const ContainmentOrder* order) {
+    Json document(rapidjson::kObjectType);
+    auto& allocator = document.GetAllocator();
+    JsonValue result(rapidjson::kObjectType), tree(rapidjson::kArrayType), list(rapidjson::kArrayType);
+    std::string text = "the whole shape\n";
+    if (order != nullptr) {
+        for (const auto& [place, depth] : containment_tree(*order)) {
+            const Annotation& annotation = set.annotations[place];
+            JsonValue entry(rapidjson::kObjectType);
+            add_member(entry, "annotation", JsonValue(annotation.id), allocator);
+            add_member(entry, "tag", annotation.tag, allocator);
+            add_member(entry, "depth", JsonValue(static_cast<std::uint64_t>(depth)), allocator);
+            if (const auto parent = order->parent[place])
+                add_member(entry, "parent", JsonValue(set.annotations[*parent].id), allocator);
+            tree.PushBack(entry, allocator);
+            text += std::string(2 * depth + 2, ' ') + std::to_string(annotation.id) + " " + printable(annotation.tag) + " (" +
+                    to_string(annotation.type) + ")\n";
+        }
+        add_member(result, "tree", std::move(tree), allocator);
+    }
+    std::vector<std::vector<std::string>> rows;
+    for (const auto& relationship : graph.relationships) {
+        list.PushBack(relationship_to_json(relationship, allocator), allocator);
+        rows.push_back({std::to_string(relationship.id), relationship.type + (relationship.is_constraint ? " !" : ""),
+                        relationship.origin, members_of(set, relationship), measured(relationship.parameters)});
+    }
+    add_member(result, "relationships", std::move(list), allocator);
+    if (session.json) session.print_report(provenance, document, result);
+    else std::cout << (order == nullptr ? "" : text + "\n") << table({"id", "type", "origin", "annotations", "measured"}, rows);
+}
+
+struct Extract {
+    Inputs inputs;
+    std::string output;
+
+    int run(const Session& session) const {
+        inputs.check(output);
+        const Provenance provenance = inputs.provenance("relation extract");
+        AnnotationSet set;
+        RelationGraph old, graph;
+        const Mesh mesh = inputs.read(session, set, old);
+        for (auto& relationship : old.relationships)
+            if (relationship.origin != "extracted") graph.relationships.push_back(std::move(relationship));
+        const Topology found = in_file(inputs.annotations, [&] { return topology(mesh, set); });
+        for (auto& relationship : relationships_of(found, set, free_id(graph))) add(session, graph, std::move(relationship));
+        write_graph(output, graph, set, provenance);
+        print_graph(session, provenance, set, graph, &found.order);
+        return done;
+    }
+
+private:
+    /// What is stated already is not said again.
+    static void add(const Session& session, RelationGraph& graph, Relationship relationship) {
+        for (const auto& known : graph.relationships)
+            if (known.origin != "extracted" && known.type == relationship.type && !known.is_constraint &&
+                known.annotations == relationship.annotations) {
+                session.note("note: relationship " + std::to_string(known.id) + " (" + known.type + ") is stated already");
+                return;
+            }
+        relationship.id = free_id(graph);
+        graph.relationships.push_back(std::move(relationship));
+    }
+};
+
+struct Add {
+    Inputs inputs;
+    std::string output, type, constraint, attribute;
+    std::vector<std::string> members, tolerances;
+    double weight = 1;
+    bool directed = false, is_constraint = false, own_type = false;
+
+    int run(const Session& session) const {
+        inputs.check(output);
+        Provenance provenance = inputs.provenance("relation add");
+        provenance.options.emplace_back("type", type);
+        AnnotationSet set;
+        RelationGraph graph;
+        (void)inputs.read(session, set, graph);
+        Relationship relationship = make(set);
+        relationship.id = free_id(graph);
+        graph.relationships.push_back(std::move(relationship));
+        write_graph(output, graph, set, provenance);
+        print_graph(session, provenance, set, graph, nullptr);
+        return done;
+    }
+
+private:
+    [[nodiscard]] int find(const AnnotationSet& set, const std::string& name) const {
+        int id = 0;
+        const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), id);
+        if (error == std::errc() && end == name.data() + name.size()) return id;
+        const Annotation* found = nullptr;
+        for (const auto& annotation : set.annotations) {
+            if (annotation.tag != name) continue;
+            if (found != nullptr)
+                fail_input(inputs.annotations, "has more than one annotation '" + name + "'", "name it by its id");
+            found = &annotation;
+        }
+        if (found == nullptr) fail_input(inputs.annotations, "has no annotation '" + name + "'", "see 'ostraka annotation list'");
+        return found->id;
+    }
+
+    [[nodiscard]] Relationship make(const AnnotationSet& set) const {
+        Relationship relationship;
+        const RelationType* known = find_relation_type(type);
+        if (known == nullptr && !own_type)
+            fail_usage("'" + type + "' is not a known type of relationship",
+                       "did you mean '" + nearest_relation_type(type) + "'? --own-type adds a type of your own");
+        relationship.type = known == nullptr ? type : known->name;
+        relationship.directed = directed || (known != nullptr && known->directed);
+        for (const auto& name : members) relationship.annotations.push_back(find(set, name));
+        relationship.is_constraint = is_constraint || !constraint.empty() || (known != nullptr && !known->geometric);
+        relationship.weight = weight;
+        relationship.constraint = constraint;
+        relationship.origin = "stated";
+        relationship.parameters.attribute = attribute;
+        for (const auto& text : tolerances) {
+            const std::size_t sign = text.find('=');
+            double value = 0;
+            const char* end = text.data() + text.size();
+            if (sign == std::string::npos || std::from_chars(text.data() + sign + 1, end, value).ptr != end ||
+                sign + 1 == text.size())
+                fail_usage("'" + text + "' is not a tolerance", "write QUANTITY=NUMBER, e.g. angle=5");
+            if (!(value >= 0)) fail_usage("the tolerance '" + text + "' is negative", "use 0 or more");
+            const std::string quantity = text.substr(0, sign);
+            relationship.parameters.deviations.push_back({quantity, {}, value, quantity == "angle" ? "degree" : ""});
+        }
+        return relationship;
+    }
+};
+
+struct Check {
+    Inputs inputs;
+
+    int run(const Session& session) const {
+        const Provenance provenance = inputs.provenance("relation check");
+        AnnotationSet set;
+        RelationGraph graph;
+        const Mesh mesh = inputs.read(session, set, graph);
+        const std::vector<RelationCheck> checks = in_file(inputs.annotations, [&] { return check_relations(mesh, set, graph); });
+        Json document(rapidjson::kObjectType);
+        auto& allocator = document.GetAllocator();
+        JsonValue result(rapidjson::kObjectType), list(rapidjson::kArrayType);
+        std::vector<std::vector<std::string>> rows;
+        std::array<std::uint64_t, 3> counts{};
+        for (std::size_t i = 0; i < checks.size(); ++i) {
+            Relationship relationship = graph.relationships[i];
+            relationship.parameters = checks[i].parameters;
+            const std::string verdict = to_string(checks[i].verdict);
+            JsonValue entry = relationship_to_json(relationship, allocator);
+            add_member(entry, "verdict", verdict, allocator);
+            add_member(entry, "text", checks[i].text, allocator);
+            list.PushBack(entry, allocator);
+            ++counts.at(static_cast<std::size_t>(checks[i].verdict));
+            rows.push_back({std::to_string(relationship.id), verdict, relationship.type, members_of(set, relationship),
+                            measured(relationship.parameters), checks[i].text});
+        }
+        for (const Verdict verdict : {Verdict::holds, Verdict::fails, Verdict::unknown})
+            add_member(result, to_string(verdict), JsonValue(counts.at(static_cast<std::size_t>(verdict))), allocator);
+        add_member(result, "relationships", std::move(list), allocator);
+        if (session.json) session.print_report(provenance, document, result);
+        else
+            std::cout << table({"id", "verdict", "type", "annotations", "measured", "remark"}, rows) << counts[0] << " hold, "
+                      << counts[1] << " fail, " << counts[2] << " unknown\n";
+        return counts[1] == 0 ? done : answer_is_no;
+    }
+};
+
+struct Export {
+    Inputs inputs;
+    std::string output;
+
+    int run(const Session& session) const {
+        inputs.check(output);
+        if (extension(output) != ".dot" && extension(output) != ".gv")
+            fail_usage("'" + output + "' is not a Graphviz file", "end its name in .dot or .gv");
+        AnnotationSet set;
+        RelationGraph graph;
+        (void)inputs.read(session, set, graph);
+        AtomicFile file(output);
+        file.write(graph_to_dot(graph, set));
+        file.commit();
+        session.note(std::to_string(graph.relationships.size()) + " relationships among " +
+                     std::to_string(set.annotations.size()) + " annotations");
+        return done;
+    }
+};
+
+}  // namespace
+
+void add_relation(CLI::App& relation, Session& session) {
+    const auto extract = std::make_shared<Extract>();
+    CLI::App* command = session.add(relation, "extract", "find relationships among annotations",
+                                    [&session, extract] { return extract->run(session); });
+    extract->inputs.add_to(*command);
+    command->add_option("output", extract->output, "graph to write (.graph.json)")->required();
+    command->add_option("--graph", extract->inputs.graph, "graph whose stated relationships are kept");
+    add_flags(command, extract->inputs.options);
+
+    const auto add = std::make_shared<Add>();
+    command = session.add(relation, "add", "state a relationship", [&session, add] { return add->run(session); });
+    add->inputs.add_to(*command);
+    command->add_option("output", add->output, "graph to write (.graph.json)")->required();
+    command->add_option("--graph", add->inputs.graph, "graph it is added to; without it a new one begins");
+    command->add_option("--type", add->type, "type, e.g. adjacency, \"mirror symmetry\", proportion")->required();
+    command->add_option("--annotation", add->members, "id or tag of a member, once for each; the first is the subject")
+        ->required();
+    command->add_flag("--own-type", add->own_type, "the type is one of your own");
+    command->add_flag("--directed", add->directed, "the first annotation is the subject");
+    command->add_flag("--constraint", add->is_constraint, "the relationship is a constraint on deformations");
+    command->add_option("--parameters", add->constraint, "JSON object with the parameters of the constraint");
+    command->add_option("--weight", add->weight, "weight of the constraint")->check(CLI::NonNegativeNumber);
+    command->add_option("--tolerance", add->tolerances, "QUANTITY=NUMBER that a check shall allow, e.g. angle=5");
+    command->add_option("--attribute", add->attribute, "name of the attribute that is equal");
+    add_flags(command, add->inputs.options);
+
+    const auto check = std::make_shared<Check>();
+    command = session.add(relation, "check", "tell which relationships hold on a mesh; exit code 3 if one fails",
+                          [&session, check] { return check->run(session); });
+    check->inputs.add_to(*command);
+    command->add_option("graph", check->inputs.graph, "graph (.graph.json)")->required();
+    add_flags(command, check->inputs.options);
+
+    const auto exported = std::make_shared<Export>();
+    command =
+        session.add(relation, "export", "write a graph for Graphviz", [&session, exported] { return exported->run(session); });
+    exported->inputs.add_to(*command);
+    command->add_option("graph", exported->inputs.graph, "graph (.graph.json)")->required();
+    command->add_option("output", exported->output, "file to write (.dot, .gv)")->required();
+    add_flags(command, exported->inputs.options);
+}
+
+}  // namespace ostraka::app

@@ -1,0 +1,102 @@
+#include "ostraka/relation/check.h"
+
+#include "ostraka/relation/topology.h"
+
+#include <set>
+
+namespace ostraka {
+
+std::string to_string(Verdict verdict) {
+    return verdict == Verdict::holds ? "holds" : verdict == Verdict::fails ? "fails" : "unknown";
+}
+
+namespace {
+
+using EdgeSet = std::set<std::pair<Index, Index>>;
+
+EdgeSet edges_of(const Annotation& annotation) {
+    EdgeSet edges;
+    for (const auto& chain : annotation.polylines)
+        for (std::size_t i = 1; i < chain.size(); ++i) edges.insert(std::minmax(chain[i - 1], chain[i]));
+    return edges;
+}
+
+template <class Sorted>
+std::size_t missing(const Sorted& inner, const Sorted& outer) {
+    std::vector<typename Sorted::value_type> left;
+    std::set_difference(inner.begin(), inner.end(), outer.begin(), outer.end(), std::back_inserter(left));
+    return left.size();
+}
+
+/// Per cent of the elements of `inner` (faces, edges or vertices, by the rule that applies) that are not in `outer`; 100 where no
+/// rule allows containment.
+double outside(const Mesh& mesh, const Annotation& inner, const Annotation& outer) {
+    const auto share = [](std::size_t part, std::size_t whole) {
+        return whole == 0 ? 100.0 : 100.0 * double(part) / double(whole);
+    };
+    const bool into_region = outer.type == AnnotationType::region;
+    if (inner.type == AnnotationType::region)
+        return into_region ? share(missing(inner.faces, outer.faces), inner.faces.size()) : 100;
+    if (inner.type == AnnotationType::line && outer.type == AnnotationType::point) return 100;
+    if (inner.type == AnnotationType::line && outer.type == AnnotationType::line) {
+        const EdgeSet edges = edges_of(inner);
+        if (!edges.empty()) return share(missing(edges, edges_of(outer)), edges.size());
+    }
+    const std::vector<Index> vertices = touched_vertices(mesh, inner);
+    return share(missing(vertices, touched_vertices(mesh, outer)), vertices.size());
+}
+
+void conclude(RelationCheck& check, double value, const std::string& quantity, const std::string& unit, bool holds) {
+    check.parameters.deviations = {{quantity, value, {}, unit}};
+    check.verdict = holds ? Verdict::holds : Verdict::fails;
+}
+
+}  // namespace
+
+std::vector<RelationCheck> check_relations(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph) {
+    check_graph(graph, set, "graph");
+    std::map<std::pair<int, int>, double> adjacent;
+    const Topology found = topology(mesh, set);
+    for (const auto& pair : found.adjacent) {
+        const int a = set.annotations[pair.a].id, b = set.annotations[pair.b].id;
+        adjacent[std::minmax(a, b)] = pair.length;
+    }
+    std::vector<RelationCheck> checks;
+    for (const auto& relationship : graph.relationships) {
+        RelationCheck check;
+        check.parameters = relationship.parameters;
+        std::vector<const Annotation*> members;
+        for (const int id : relationship.annotations) members.push_back(set.find(id));
+        if (relationship.is_constraint || find_relation_type(relationship.type) == nullptr) {
+            check.text =
+                relationship.is_constraint ? "a constraint: the fit of a deformation tells" : "a type of its own: experts tell";
+        } else if (relationship.type == "containment") {
+            const double share = outside(mesh, *members[1], *members[0]);
+            conclude(check, share, "outside", "%", share == 0);
+            if (share > 0) check.text = "part of the second lies outside of the first";
+        } else if (relationship.type == "equal selections") {
+            double share = 0;
+            for (const Annotation* member : members)
+                share = std::max({share, outside(mesh, *member, *members[0]), outside(mesh, *members[0], *member)});
+            conclude(check, share, "not common", "%", share == 0);
+            if (share > 0) check.text = "the selections differ";
+        } else if (relationship.type == "adjacency") {
+            const auto entry = adjacent.find(std::minmax(relationship.annotations[0], relationship.annotations[1]));
+            const bool holds = entry != adjacent.end();
+            conclude(check, holds ? entry->second : 0, "shared length", set.unit, holds);
+            if (!holds) {
+                const bool regions = members[0]->type == AnnotationType::region && members[1]->type == AnnotationType::region;
+                const bool apart = regions && missing(members[0]->faces, members[1]->faces) == members[0]->faces.size();
+                check.text = !regions ? "only regions are adjacent"
+                             : apart  ? "their outlines share no edge"
+                                      : "they have faces in common";
+            }
+        } else {
+            check.text = "cannot be measured";
+        }
+        checks.push_back(std::move(check));
+    }
+    return checks;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,173 @@
+// Types of relationships and what a graph must satisfy.
+#include "ostraka/relation/graph.h"
+
+#include "ostraka/core/error.h"
+
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <set>
+#include <tuple>
+
+namespace ostraka {
+
+const std::vector<RelationType>& relation_types() {
+    static const std::vector<RelationType> types = [] {
+        std::vector<RelationType> list{
+            {"containment", 2, 2, true, true},        {"equal selections", 2, 0, true, false},
+            {"adjacency", 2, 2, true, false},         {"mirror symmetry", 1, 2, true, false},
+            {"co-axiality", 2, 0, true, false},       {"co-linearity", 1, 0, true, false},
+            {"co-planarity", 1, 0, true, false},      {"same level", 2, 0, true, false},
+            {"parallel axes", 2, 0, true, false},     {"perpendicular axes", 2, 2, true, false},
+            {"horizontal support", 2, 2, true, true}, {"side contact", 2, 2, true, false},
+            {"part similarity", 2, 0, true, false},   {"equal attributes", 2, 0, true, false},
+        };
+        // Low-level constraints of the thesis's solver (section 4.2) and the high-level ones of chapter 5.
+        for (const char* name : {"closeness",
+                                 "edge strain",
+                                 "triangle strain",
+                                 "tetrahedron strain",
+                                 "area",
+                                 "volume",
+                                 "bending",
+                                 "line",
+                                 "plane",
+                                 "circle",
+                                 "sphere",
+                                 "similarity",
+                                 "rigid",
+                                 "rectangle",
+                                 "parallelogram",
+                                 "laplacian",
+                                 "laplacian displacement",
+                                 "angle",
+                                 "length",
+                                 "structural continuity",
+                                 "proportion"})
+            list.push_back({name, 1, 0, false, false});
+        return list;
+    }();
+    return types;
+}
+
+namespace {
+
+std::string lower(std::string text) {
+    for (char& c : text)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return text;
+}
+
+/// Levenshtein's distance of two words.
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        std::size_t diagonal = row[0];
+        row[0] = i;
+        for (std::size_t j = 1; j <= b.size(); ++j)
+            diagonal = std::exchange(row[j], std::min({row[j] + 1, row[j - 1] + 1, diagonal + (a[i - 1] != b[j - 1] ? 1 : 0)}));
+    }
+    return row.back();
+}
+
+bool finite(const std::array<double, 3>& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
+
+void check_direction(const std::array<double, 3>& v, const char* what, const std::string& place) {
+    if (!finite(v) || !(std::hypot(v[0], v[1], v[2]) > 0))
+        fail_input(place, std::string("has no direction in '") + what + "'", "give three finite numbers that are not all zero");
+}
+
+void check_members(const Relationship& relationship, const AnnotationSet& set, const std::string& place) {
+    std::set<int> seen;
+    for (const int id : relationship.annotations) {
+        if (set.find(id) == nullptr)
+            fail_input(place, "names annotation " + std::to_string(id) + ", which does not exist",
+                       "use ids that 'ostraka annotation list' shows");
+        if (!seen.insert(id).second)
+            fail_input(place, "names annotation " + std::to_string(id) + " twice", "name each annotation once");
+    }
+    if (relationship.annotations.empty()) fail_input(place, "has no annotations", "name those it is about");
+    const RelationType* type = find_relation_type(relationship.type);
+    if (type == nullptr) return;
+    const std::size_t count = relationship.annotations.size();
+    if (count < type->least || (type->most > 0 && count > type->most)) {
+        const std::string least = std::to_string(type->least), most = std::to_string(type->most);
+        fail_input(place,
+                   "'" + type->name + "' is said of " + std::to_string(count) + (count == 1 ? " annotation" : " annotations"),
+                   "name " + (type->most == 0             ? least + " or more"
+                              : type->least == type->most ? least
+                                                          : least + " to " + most));
+    }
+    if (type->geometric && relationship.directed != type->directed)
+        fail_input(place, "'" + type->name + (type->directed ? "' has a direction" : "' has no direction"),
+                   type->directed ? "set isDirected to true; the first annotation is the subject" : "set isDirected to false");
+}
+
+}  // namespace
+
+const RelationType* find_relation_type(const std::string& name) {
+    const std::string wanted = lower(name);
+    for (const auto& type : relation_types())
+        if (type.name == wanted) return &type;
+    return nullptr;
+}
+
+std::string nearest_relation_type(const std::string& name) {
+    const std::string wanted = lower(name).substr(0, 100);
+    const RelationType* best = nullptr;
+    std::size_t least = std::numeric_limits<std::size_t>::max();
+    for (const auto& type : relation_types()) {
+        const std::size_t distance = edit_distance(wanted, type.name);
+        if (distance < least) least = distance, best = &type;
+    }
+    return best->name;
+}
+
+int free_id(const RelationGraph& graph) {
+    int id = -1;
+    for (const auto& relationship : graph.relationships) id = std::max(id, relationship.id);
+    if (id == std::numeric_limits<int>::max()) fail_input("graph", "has no free id", "number the relationships anew");
+    return id + 1;
+}
+
+void check_graph(const RelationGraph& graph, const AnnotationSet& set, const std::string& where) {
+    std::set<int> ids;
+    std::map<std::tuple<std::string, std::vector<int>, bool, std::string, std::string>, int> said;
+    for (const auto& relationship : graph.relationships) {
+        const std::string place = where + ", relationship " + std::to_string(relationship.id);
+        if (!ids.insert(relationship.id).second)
+            fail_input(place, "its id is used twice", "give each relationship an id of its own");
+        if (relationship.type.empty()) fail_input(place, "has no type", "name one");
+        check_members(relationship, set, place);
+        if (relationship.is_constraint && !(std::isfinite(relationship.weight) && relationship.weight >= 0))
+            fail_input(place, "its weight is negative or not a number", "use a weight of 0 or more");
+        if (!relationship.constraint.empty() && !parse_json(relationship.constraint, place).IsObject())
+            fail_input(place, "its constraint is not a JSON object", "give the parameters as {\"name\": value, ...}");
+        if (!relationship.constraint.empty() && !relationship.is_constraint)
+            fail_input(place, "has a constraint, but is none", "set isConstraint to true");
+        const RelationParameters& parameters = relationship.parameters;
+        for (const auto& deviation : parameters.deviations) {
+            if (deviation.tolerance && !(std::isfinite(*deviation.tolerance) && *deviation.tolerance >= 0))
+                fail_input(place, "the tolerance of '" + deviation.quantity + "' is negative or not a number",
+                           "use a tolerance of 0 or more");
+            if (deviation.value && !std::isfinite(*deviation.value))
+                fail_input(place, "the deviation of '" + deviation.quantity + "' is not a finite number", "leave it out");
+        }
+        if (parameters.plane) check_direction(parameters.plane->direction, "plane", place);
+        if (parameters.axis) check_direction(parameters.axis->direction, "axis", place);
+        if (parameters.up) check_direction(*parameters.up, "up", place);
+        for (const auto& part : {parameters.plane, parameters.axis})
+            if (part && !finite(part->point)) fail_input(place, "has a point that is not finite", "give three finite numbers");
+        if (relationship.type == "equal attributes" && parameters.attribute.empty())
+            fail_input(place, "does not say which attribute is equal", "name it in parameters.attribute");
+        std::vector<int> members = relationship.annotations;
+        if (!relationship.directed) std::sort(members.begin(), members.end());
+        const auto [entry, added] = said.emplace(std::make_tuple(relationship.type, members, relationship.is_constraint,
+                                                                 relationship.constraint, parameters.attribute),
+                                                 relationship.id);
+        if (!added) fail_input(place, "says the same as relationship " + std::to_string(entry->second), "remove one of them");
+    }
+}
+
+}  // namespace ostraka
