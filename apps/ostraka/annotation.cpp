@@ -108,7 +108,7 @@ struct Outputs {
 
 struct Apply {
     std::vector<std::string> files;
-    std::string names;
+    std::string names, edit;
     bool mesh_labels = false;
     Outputs outputs;
 
@@ -120,9 +120,13 @@ struct Apply {
         const std::string source = mesh_labels ? "" : files[1];
         const std::string& output = files.back();
         outputs.check();
-        check_outputs(given({mesh_file, source, names}), given({output, outputs.ply, outputs.labels}));
+        if (!edit.empty() && (mesh_labels || !is_json(source)))
+            fail_usage("--edit goes with a recipe", "give a recipe whose steps edit the annotations");
+        check_outputs(given({mesh_file, source, names, edit}), given({output, outputs.ply, outputs.labels}));
         Provenance provenance{"annotation apply", {}, {}};
-        for (const Path& file : given({mesh_file, source, names})) provenance.add_input(file);
+        for (const Path& file : given({mesh_file, source, names, edit})) provenance.add_input(file);
+        if (is_json(source))
+            for (const Path& file : files_named_by(read_json(source), Path(source).parent_path())) provenance.add_input(file);
         if (mesh_labels) provenance.options.emplace_back("from-ply-labels", "true");
         const MeshFile file = read_mesh(mesh_file);
         for (const auto& note : file.notes) session.note("note: " + note);
@@ -138,7 +142,11 @@ private:
         std::vector<std::int32_t> labels = file.extras.face_labels;
         if (labels.empty() && !file.extras.vertex_labels.empty())
             labels = face_labels_from_vertices(file.mesh, file.extras.vertex_labels);
-        if (!source.empty() && is_json(source)) return apply_recipe(Path(source), file.mesh, labels);
+        if (!source.empty() && is_json(source)) {
+            RecipeStart start{labels, {}, Path(source).parent_path()};
+            if (!edit.empty()) start.annotations = read_annotations(edit, file.mesh);
+            return follow_recipe(read_json(source), file.mesh, std::move(start), source);
+        }
         if (!source.empty()) labels = read_labels(source, file.mesh.number_of_faces(), file.triangle_polygon);
         if (labels.empty())
             fail_input(mesh_file, "has no labels",
@@ -270,6 +278,7 @@ void add_annotation(CLI::App& annotation, Session& session) {
     command->add_flag("--from-ply-labels", apply->mesh_labels,
                       "take the labels of the mesh file itself instead of a recipe or label file");
     command->add_option("--names", apply->names, "JSON file with names of the labels");
+    command->add_option("--edit", apply->edit, "annotations that the recipe's steps edit and add to");
     apply->outputs.add_to(*command);
 
     const auto examined = std::make_shared<Examined>();

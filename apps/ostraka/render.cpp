@@ -148,6 +148,33 @@ bool units_differ(const std::vector<Scene>& scenes) {
     return units.size() > 1;
 }
 
+/// As recipes take it, so that pixels of this picture can be picked.
+JsonValue camera_json(const Pane& pane, const Rendering& rendering, JsonAllocator& allocator) {
+    const PictureCamera& camera = pane.camera;
+    const auto list = [&](std::initializer_list<double> numbers) {
+        JsonValue array(rapidjson::kArrayType);
+        for (const double x : numbers) array.PushBack(x, allocator);
+        return array;
+    };
+    const bool parallel = camera.distance == 0;
+    const Point eye =
+        camera.centre + (parallel ? std::max(pane.width, pane.height) / camera.scale : camera.distance) * camera.toward;
+    JsonValue result(rapidjson::kObjectType);
+    add_member(result, "frame", "mesh", allocator);
+    add_member(result, "eye", list({eye.x(), eye.y(), eye.z()}), allocator);
+    add_member(result, "target", list({camera.centre.x(), camera.centre.y(), camera.centre.z()}), allocator);
+    add_member(result, "up", list({camera.up.x(), camera.up.y(), camera.up.z()}), allocator);
+    add_member(result, "projection", parallel ? "orthographic" : "perspective", allocator);
+    add_member(result, "pixelsPerUnit", JsonValue(camera.scale), allocator);
+    JsonValue size(rapidjson::kArrayType);
+    size.PushBack(rendering.picture.width, allocator).PushBack(rendering.picture.height, allocator);
+    add_member(result, "picture", std::move(size), allocator);
+    JsonValue box(rapidjson::kArrayType);
+    for (const int x : {pane.left, pane.top, pane.width, pane.height}) box.PushBack(x, allocator);
+    add_member(result, "pane", std::move(box), allocator);
+    return result;
+}
+
 JsonValue report(const std::vector<Scene>& scenes, const Rendering& rendering, const Path& picture, JsonAllocator& allocator) {
     JsonValue result(rapidjson::kObjectType);
     add_member(result, "picture", picture.filename().string(), allocator);
@@ -165,6 +192,7 @@ JsonValue report(const std::vector<Scene>& scenes, const Rendering& rendering, c
         if (pane.bar_length > 0) add_member(entry, "scaleBar", JsonValue(pane.bar_length), allocator);
         add_member(entry, "markers", JsonValue(static_cast<std::uint64_t>(scene.markers.size())), allocator);
         add_member(entry, "markersShown", JsonValue(static_cast<std::uint64_t>(pane.markers_shown)), allocator);
+        add_member(entry, "camera", camera_json(pane, rendering, allocator), allocator);
         panes.PushBack(entry, allocator);
     }
     add_member(result, "panes", std::move(panes), allocator);

@@ -15,6 +15,21 @@ namespace {
 using Primitive = CGAL::AABB_face_graph_triangle_primitive<Mesh>;
 using Traits = CGAL::AABB_traits<Kernel, Primitive>;
 using AabbTree = CGAL::AABB_tree<Traits>;
+
+/// Goes down the tree until a face that counts is met.
+struct Obstacle {
+    const AabbTree& tree;
+    const std::function<bool(Index)>& ignored;
+    bool met = false;
+
+    [[nodiscard]] bool go_further() const { return !met; }
+    void intersection(const Kernel::Segment_3& segment, const Primitive& face) {
+        met = !ignored(face.id()) && tree.traits().do_intersect_object()(segment, face);
+    }
+    [[nodiscard]] bool do_intersect(const Kernel::Segment_3& segment, const CGAL::AABB_node<Traits>& node) const {
+        return tree.traits().do_intersect_object()(segment, node.bbox());
+    }
+};
 }  // namespace
 
 struct SurfaceSearch::Tree {
@@ -94,6 +109,12 @@ std::vector<SurfaceHit> SurfaceSearch::line_hits(const Point& origin, const Vect
         return std::make_pair(std::abs(x.distance), x.face) < std::make_pair(std::abs(y.distance), y.face);
     });
     return hits;
+}
+
+bool SurfaceSearch::blocked(const Point& from, const Point& to, const std::function<bool(Index)>& ignored) const {
+    Obstacle obstacle{tree_->aabb, ignored};
+    tree_->aabb.traversal(Kernel::Segment_3(from, to), obstacle);
+    return obstacle.met;
 }
 
 SurfaceHit SurfaceSearch::closest(const Point& query) const {

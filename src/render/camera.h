@@ -1,9 +1,11 @@
 // From pixels to rays and back, in the surface's own coordinates (see surface.h).
 #pragma once
 
-#include "ostraka/render/view.h"
+#include "ostraka/render/camera.h"
 
 #include <Eigen/Core>
+
+#include <functional>
 
 namespace ostraka::detail {
 
@@ -47,5 +49,17 @@ struct Camera {
         return true;
     }
 };
+
+/// Places the camera so that all points fill a pane of this size but for a margin; `point(i)` gives `count` points. Independent
+/// of their order.
+Camera fit_camera(std::size_t count, const std::function<Eigen::Vector3d(std::size_t)>& point, const View& view,
+                  const std::array<double, 3>& up, double width, double height, bool perspective);
+
+/// The same camera in the mesh's coordinates: `middle` is the origin of the surface's own, `unit` the length of their unit.
+PictureCamera in_mesh_coordinates(const Camera& camera, const std::array<double, 3>& middle, double unit);
+
+/// Height of the strip under an object that its scale bar takes, and the size that a picture's marks have.
+inline constexpr double bar_strip = 44;
+double mark_size(int width, int height);
 
 }  // namespace ostraka::detail

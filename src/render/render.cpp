@@ -44,53 +44,6 @@ struct Plan {
     Camera camera;
 };
 
-Eigen::Vector3d vector(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
-
-/// Tangent of half the angle under which the smaller side of a pane is seen in perspective: 30 degrees in all.
-const double half_view = std::tan(15 * std::numbers::pi / 180);
-
-/// Places the camera so that the whole surface fills the pane but for a margin.
-Camera fit_camera(const Surface& surface, const View& view, const std::array<double, 3>& up, const Pane& pane, bool perspective) {
-    const ViewAxes axes = view_axes(view, up);
-    Camera camera;
-    camera.right = vector(axes.right);
-    camera.up = vector(axes.up);
-    camera.toward = vector(axes.toward);
-    camera.middle_x = pane.width / 2.0;
-    camera.middle_y = pane.height / 2.0;
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    Eigen::Array3d low(infinity, infinity, infinity), high(-infinity, -infinity, -infinity);
-    for (const Index v : surface.used_points()) {
-        const Eigen::Vector3d p = surface.point(v);
-        const Eigen::Array3d local(p.dot(camera.right), p.dot(camera.up), p.dot(camera.toward));
-        low = low.min(local);
-        high = high.max(local);
-    }
-    if (surface.used_points().empty()) {
-        low = -1;
-        high = 1;
-    }
-    const Eigen::Array3d middle = (low + high) / 2;
-    camera.centre = middle[0] * camera.right + middle[1] * camera.up + middle[2] * camera.toward;
-    constexpr double margin = 0.92;   // share of the pane that the object may fill
-    constexpr double smallest = 0.1;  // what is seen end on is not blown up further
-    const double width = margin * pane.width, height = margin * pane.height;
-    if (!perspective) {
-        camera.scale = std::min(width / std::max(high[0] - low[0], smallest), height / std::max(high[1] - low[1], smallest));
-        return camera;
-    }
-    const double focal = std::min(pane.width, pane.height) / 2.0 / half_view;
-    double distance = (high[2] - low[2]) / 2 + smallest;
-    for (const Index v : surface.used_points()) {
-        const Eigen::Vector3d p = surface.point(v) - camera.centre;
-        const double aside = std::max(std::abs(p.dot(camera.right)) / (width / 2), std::abs(p.dot(camera.up)) / (height / 2));
-        distance = std::max(distance, p.dot(camera.toward) + aside * focal);
-    }
-    camera.distance = distance;
-    camera.scale = focal / distance;
-    return camera;
-}
-
 /// One scale for the panes of one scene, or of all scenes.
 void share_scale(std::vector<Plan>& plans, const std::vector<std::unique_ptr<Surface>>& surfaces, bool all) {
     double largest = 0;
@@ -183,7 +136,7 @@ Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options)
     style.background = parse_colour(options.background);
     std::vector<Plan> plans = plan_panes(scenes, options);
     if (scenes.empty() || scenes.size() > 64) fail_usage("a picture shows 1 to 64 objects", "make several pictures");
-    style.size = std::clamp(std::min(size.width, size.height) / 900.0, 0.4, 8.0);
+    style.size = detail::mark_size(size.width, size.height);
     if (!options.transparent && style.background.red * 0.3 + style.background.green * 0.59 + style.background.blue * 0.11 < 110)
         style.ink = {235, 235, 235};
 
@@ -209,7 +162,7 @@ Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options)
     const bool six = options.views == "six";
     const std::size_t columns = column_count(plans.size(), six, scenes.size());
     const std::size_t rows = (plans.size() + columns - 1) / columns;
-    const double strip = options.no_scale_bar ? 0 : 44 * style.size, caption = any_caption ? 30 * style.size : 0;
+    const double strip = options.no_scale_bar ? 0 : detail::bar_strip * style.size, caption = any_caption ? 30 * style.size : 0;
     const double cell_width = side_left / static_cast<double>(columns), cell_height = size.height / static_cast<double>(rows);
     for (std::size_t i = 0; i < plans.size(); ++i) {
         Pane& pane = plans[i].pane;
@@ -217,7 +170,11 @@ Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options)
         pane.top = static_cast<int>(cell_height * static_cast<double>(i / columns));
         pane.width = std::max(1, static_cast<int>(cell_width));
         pane.height = std::max(1, static_cast<int>(cell_height - strip - caption));
-        plans[i].camera = fit_camera(*surfaces[pane.scene], plans[i].view, up, pane, options.projection == "perspective");
+        const Surface& surface = *surfaces[pane.scene];
+        const auto& points = scenes[pane.scene].mesh.points;
+        plans[i].camera = detail::fit_camera(
+            surface.used_points().size(), [&](std::size_t k) { return surface.to_local(points[surface.used_points()[k]]); },
+            plans[i].view, up, pane.width, pane.height, options.projection == "perspective");
     }
     share_scale(plans, surfaces, options.fit == "all");
 
@@ -244,6 +201,7 @@ Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options)
         Camera sheet_camera = plan.camera;
         sheet_camera.middle_x += pane.left;
         sheet_camera.middle_y += pane.top;
+        pane.camera = detail::in_mesh_coordinates(sheet_camera, surface.middle(), surface.unit_length());
         canvas.clip(pane.left, pane.top, pane.width, pane.height);
         detail::draw_lines(canvas, scene, surface, sheet_camera, drawn_size);
         pane.markers_shown = detail::draw_markers(canvas, scene, surface, sheet_camera, small);

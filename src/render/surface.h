@@ -48,6 +48,8 @@ public:
     [[nodiscard]] Eigen::Vector3d to_local(const std::array<double, 3>& point) const;
     /// Length of one unit of these coordinates in the mesh's unit.
     [[nodiscard]] double unit_length() const { return unit_length_; }
+    /// The origin of these coordinates in the mesh's.
+    [[nodiscard]] const std::array<double, 3>& middle() const { return middle_; }
 
 private:
     [[nodiscard]] Eigen::Vector3f corner_normal(Index vertex, const Eigen::Vector3f& normal, float crease_cosine) const;

@@ -15,6 +15,14 @@ using std::to_string;
 
 bool is_volume(const std::string& kind) { return kind == "box" || kind == "sphere" || kind == "halfspace"; }
 
+bool is_drawn(const std::string& kind) { return kind == "rectangle" || kind == "polygon"; }
+
+/// What is hidden counts only where it is asked for.
+bool visible_only(const JsonValue& value) {
+    const JsonValue* visible = find_member(value, "visible");
+    return visible == nullptr || visible->GetBool();
+}
+
 PathMetric metric_of(const JsonValue& value) {
     const JsonValue* metric = find_member(value, "metric");
     return path_metric(metric == nullptr ? "euclidean" : metric->GetString());
@@ -63,6 +71,14 @@ Point ExpressionEvaluator::point(const JsonValue& list, Frame frame) const {
 
 Index ExpressionEvaluator::vertex(const JsonValue& pick, Frame frame, const std::string& at) const {
     if (pick.IsArray()) return nearest_vertex(mesh_, point(pick, frame));
+    if (pick.IsObject()) {
+        const SurfaceHit hit = seen(pick, frame, at);
+        const auto corner = corners(mesh_, Face(hit.face));
+        return *std::min_element(corner.begin(), corner.end(), [&](Vertex a, Vertex b) {
+            return std::make_pair(CGAL::squared_distance(mesh_.point(a), hit.point), a) <
+                   std::make_pair(CGAL::squared_distance(mesh_.point(b), hit.point), b);
+        });
+    }
     if (pick.GetUint() >= mesh_.number_of_vertices())
         fail(at, "vertex " + to_string(pick.GetUint()) + " of a mesh with " + to_string(mesh_.number_of_vertices()) + " vertices",
              "pick by coordinates, or another vertex");
@@ -71,6 +87,7 @@ Index ExpressionEvaluator::vertex(const JsonValue& pick, Frame frame, const std:
 
 Index ExpressionEvaluator::face(const JsonValue& pick, Frame frame, const std::string& at) const {
     if (pick.IsArray()) return nearest_face(mesh_, point(pick, frame));
+    if (pick.IsObject()) return seen(pick, frame, at).face;
     if (pick.GetUint() >= mesh_.number_of_faces())
         fail(at, "face " + to_string(pick.GetUint()) + " of a mesh with " + to_string(mesh_.number_of_faces()) + " faces",
              "pick by coordinates, or another face");
@@ -118,6 +135,11 @@ std::vector<bool> ExpressionEvaluator::faces(const JsonValue& expression, Frame 
     const Frame frame = frame_of(expression, around);
     const auto [kind, value] = only_kind(expression, at);
     if (is_volume(kind)) return faces_within(mesh_, volume(kind, *value, frame, at));
+    if (is_drawn(kind)) {
+        const ScreenCamera from = camera(*value, frame, at + '/' + kind);
+        return faces_seen(mesh_, from.camera, screen_area(kind, *value, from, at + '/' + kind),
+                          visible_only(*value) ? &search() : nullptr);
+    }
     std::vector<bool> result(mesh_.number_of_faces(), false);
     if (kind == "all") {
         result.assign(mesh_.number_of_faces(), true);
@@ -125,8 +147,17 @@ std::vector<bool> ExpressionEvaluator::faces(const JsonValue& expression, Frame 
         for (rapidjson::SizeType i = 0; i < value->Size(); ++i)
             result[face((*value)[i], frame, at + "/faces/" + to_string(i))] = true;
     } else if (kind == "lasso") {
-        result = lasso(mesh_, picks((*value)["points"], frame, at + "/lasso/points"),
-                       face((*value)["seed"], frame, at + "/lasso/seed"), metric_of(*value), where_ + ", at " + at + "/lasso");
+        const JsonValue& pick = (*value)["seed"];
+        const Index seed = face(pick, frame, at + "/lasso/seed");
+        std::optional<Point> place;
+        if (pick.IsObject()) place = seen(pick, frame, at + "/lasso/seed").point;
+        if (pick.IsArray()) {
+            const auto [a, b, c] = corners(mesh_, Face(seed));
+            place =
+                point_at(mesh_, seed, nearest_barycentric(mesh_.point(a), mesh_.point(b), mesh_.point(c), point(pick, frame)));
+        }
+        result = lasso(mesh_, picks((*value)["points"], frame, at + "/lasso/points"), seed, metric_of(*value),
+                       where_ + ", at " + at + "/lasso", place);
     } else if (kind == "component") {
         result = component_of(mesh_, face((*value)["seed"], frame, at + "/component/seed"));
     } else if (kind == "labels") {
@@ -162,6 +193,11 @@ std::vector<Index> ExpressionEvaluator::vertices(const JsonValue& expression, Fr
     const Frame frame = frame_of(expression, around);
     const auto [kind, value] = only_kind(expression, at);
     if (is_volume(kind)) return vertices_within(mesh_, volume(kind, *value, frame, at));
+    if (is_drawn(kind)) {
+        const ScreenCamera from = camera(*value, frame, at + '/' + kind);
+        return vertices_seen(mesh_, from.camera, screen_area(kind, *value, from, at + '/' + kind),
+                             visible_only(*value) ? &search() : nullptr);
+    }
     std::vector<Index> result;
     if (kind == "vertices") {
         result = picks(*value, frame, at + "/vertices");

@@ -1,10 +1,16 @@
 // Selection expressions of recipes: one JSON object each, nested by the set operations.
 #pragma once
 
+#include "camera_reader.h"
+
 #include "ostraka/annotation/annotation.h"
 #include "ostraka/core/json.h"
+#include "ostraka/geom/surface_search.h"
+#include "ostraka/select/screen.h"
 
 #include <functional>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,11 +22,21 @@ struct Frame {
     bool box = false;
 };
 
+/// What a recipe says once for all its expressions.
+struct Surroundings {
+    const JsonValue* cameras = nullptr;  ///< named ones
+    Frame frame;                         ///< of those
+    std::array<double, 3> up{0, 0, 1};   ///< of cameras that do not say
+    Path folder;                         ///< of the files that expressions name
+};
+
 /// Evaluates expressions on one mesh. `set` holds the annotations made so far. All errors name file and JSON pointer.
 class ExpressionEvaluator {
 public:
     ExpressionEvaluator(const Mesh& mesh, const std::vector<std::int32_t>& face_labels, const AnnotationSet& set,
                         std::string where);
+    /// Named cameras; `surroundings.cameras` must outlive the evaluator.
+    void look_from(const Surroundings& surroundings) { surroundings_ = surroundings; }
 
     std::vector<bool> faces(const JsonValue& expression, Frame frame, const std::string& at) const;
     std::vector<Index> vertices(const JsonValue& expression, Frame frame, const std::string& at) const;
@@ -37,6 +53,14 @@ private:
     std::vector<Index> picks(const JsonValue& list, Frame frame, const std::string& at) const;
     std::function<bool(const Point&)> volume(const std::string& kind, const JsonValue& value, Frame frame,
                                              const std::string& at) const;
+    /// The camera of an expression or pick, by name or in place.
+    [[nodiscard]] ScreenCamera camera(const JsonValue& owner, Frame frame, const std::string& at) const;
+    /// What a pick by pixel sees.
+    SurfaceHit seen(const JsonValue& pick, Frame frame, const std::string& at) const;
+    ScreenArea screen_area(const std::string& kind, const JsonValue& value, const ScreenCamera& camera,
+                           const std::string& at) const;
+    /// Built when the first ray is needed.
+    const SurfaceSearch& search() const;
     const Annotation& earlier(const JsonValue& id, AnnotationType type, const std::string& at) const;
     /// The kind and its value; an expression of two kinds is refused.
     std::pair<std::string, const JsonValue*> only_kind(const JsonValue& expression, const std::string& at) const;
@@ -47,6 +71,9 @@ private:
     const AnnotationSet& set_;
     std::string where_;
     CGAL::Bbox_3 bounds_;
+    Surroundings surroundings_;
+    mutable std::optional<SurfaceSearch> search_;
+    mutable std::map<std::string, ScreenCamera> cameras_;  ///< those with a name
 };
 
 /// The kind of an expression (its member that is not "frame") and its value.

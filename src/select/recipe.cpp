@@ -7,6 +7,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/measure/measure.h"
 
+#include <algorithm>
 #include <set>
 
 namespace ostraka {
@@ -17,20 +18,29 @@ using std::to_string;
 
 std::array<double, 3> vector_of(const JsonValue& list) { return {list[0].GetDouble(), list[1].GetDouble(), list[2].GetDouble()}; }
 
+AnnotationType type_of(const std::string& name) {
+    return name == "point" ? AnnotationType::point : name == "line" ? AnnotationType::line : AnnotationType::region;
+}
+
 /// Members of a recipe must all be understood: a misspelt one would silently change the outcome.
 class Cook {
 public:
-    Cook(const Mesh& mesh, const std::vector<std::int32_t>& face_labels, std::string where)
-        : mesh_(mesh), where_(std::move(where)), evaluator_(mesh, face_labels, set_, where_) {}
+    Cook(const Mesh& mesh, RecipeStart start, std::string where)
+        : mesh_(mesh),
+          where_(std::move(where)),
+          face_labels_(std::move(start.face_labels)),
+          set_(std::move(start.annotations)),
+          folder_(std::move(start.folder)),
+          evaluator_(mesh, face_labels_, set_, where_) {}
 
     AnnotationSet follow(const JsonValue& recipe) {
         if (const JsonValue* name = find_member(recipe, "class")) set_.object_class = name->GetString();
         if (const JsonValue* unit = find_member(recipe, "unit")) set_.unit = unit->GetString();
         if (const JsonValue* up = find_member(recipe, "up")) set_.up = vector_of(*up);
         const Frame frame = ExpressionEvaluator::frame_of(recipe, Frame{});
+        evaluator_.look_from({find_member(recipe, "cameras"), frame, set_.up.value_or(std::array<double, 3>{0, 0, 1}), folder_});
         const JsonValue& steps = recipe["annotations"];
-        for (rapidjson::SizeType i = 0; i < steps.Size(); ++i)
-            set_.annotations.push_back(step(steps[i], frame, "/annotations/" + to_string(i)));
+        for (rapidjson::SizeType i = 0; i < steps.Size(); ++i) step(steps[i], frame, "/annotations/" + to_string(i));
         if (!set_.object_class.empty()) ensure_root(set_, mesh_);
         check_annotations(set_, mesh_, where_);
         const RefreshResult measured = refresh_measures(mesh_, set_);
@@ -43,33 +53,159 @@ private:
         fail_input(where_, "at " + at + ": " + what, remedy);
     }
 
-    Annotation step(const JsonValue& step, Frame around, const std::string& at) {
+    void step(const JsonValue& step, Frame around, const std::string& at) {
         const Frame frame = ExpressionEvaluator::frame_of(step, around);
+        const JsonValue* given = find_member(step, "action");
+        const std::string action = given == nullptr ? "make" : given->GetString();
+        if (action == "make") make(step, frame, at);
+        else edit(action, step, frame, at);
+    }
+
+    /// Faces, poly-lines or points of a step, in an annotation of this type.
+    Annotation selected(AnnotationType type, const JsonValue& select, Frame frame, const std::string& here) {
         Annotation annotation;
-        annotation.id = step["id"].GetInt();
-        annotation.tag = std::string(step["tag"].GetString(), step["tag"].GetStringLength());
-        annotation.colour = distinct_colour(set_.annotations.size());
-        if (const JsonValue* colour = find_member(step, "colour"))
-            for (rapidjson::SizeType k = 0; k < 3; ++k) annotation.colour[k] = (*colour)[k].GetInt();
-        const JsonValue& select = step["select"];
-        const std::string type = step["type"].GetString(), here = at + "/select";
-        if (type == "region") {
+        annotation.type = type;
+        if (type == AnnotationType::region) {
             annotation.faces = flagged(evaluator_.faces(select, frame, here));
             annotation.all = kind_of(select).first == "all";
             if (annotation.faces.empty())
                 fail(here, "selects no face", "the volume or the set misses the surface: look at the numbers and the frame");
-        } else if (type == "line") {
-            annotation.type = AnnotationType::line;
+        } else if (type == AnnotationType::line) {
             annotation.polylines = evaluator_.polylines(select, frame, here);
         } else {
-            annotation.type = AnnotationType::point;
             annotation.points = evaluator_.vertices(select, frame, here);
             if (annotation.points.empty())
                 fail(here, "selects no vertex", "the volume or the set misses the vertices: look at the numbers and the frame");
         }
+        return annotation;
+    }
+
+    void set_looks(Annotation& annotation, const JsonValue& step) const {
+        if (const JsonValue* tag = find_member(step, "tag"))
+            annotation.tag = std::string(tag->GetString(), tag->GetStringLength());
+        if (const JsonValue* colour = find_member(step, "colour"))
+            for (rapidjson::SizeType k = 0; k < 3; ++k) annotation.colour[k] = (*colour)[k].GetInt();
+    }
+
+    void make(const JsonValue& step, Frame frame, const std::string& at) {
+        for (const char* name : {"tag", "type", "select"})
+            if (find_member(step, name) == nullptr)
+                fail(at, std::string("a new annotation without \"") + name + "\"",
+                     "add it, or name the action that edits an older one");
+        const int id = step["id"].GetInt();
+        if (set_.find(id) != nullptr)
+            fail(at + "/id", "the id " + to_string(id) + " is taken",
+                 "give each annotation its own, or say how to edit the older one");
+        Annotation annotation = selected(type_of(step["type"].GetString()), step["select"], frame, at + "/select");
+        annotation.id = id;
+        annotation.colour = distinct_colour(set_.annotations.size());
+        set_looks(annotation, step);
         if (const JsonValue* attributes = find_member(step, "attributes"))
             add_attributes(annotation, *attributes, frame, at + "/attributes");
-        return annotation;
+        set_.annotations.push_back(std::move(annotation));
+    }
+
+    void edit(const std::string& action, const JsonValue& step, Frame frame, const std::string& at) {
+        const int id = step["id"].GetInt();
+        Annotation* found = set_.find(id);
+        if (found == nullptr)
+            fail(at + "/id", "no annotation has the id " + to_string(id), "edit one that is there at this step");
+        const JsonValue* select = find_member(step, "select");
+        const bool changes = action != "delete" && action != "retag";
+        if (changes && select == nullptr) fail(at, "the action '" + action + "' without \"select\"", "say what to " + action);
+        if (!changes && select != nullptr) fail(at + "/select", "the action '" + action + "' selects nothing", "leave it out");
+        if (const JsonValue* type = find_member(step, "type"); type != nullptr && type_of(type->GetString()) != found->type)
+            fail(at + "/type", "annotation " + to_string(id) + " is a " + to_string(found->type), "an edit keeps the type");
+        if (action == "delete") {
+            for (const char* name : {"tag", "colour", "attributes"})
+                if (find_member(step, name) != nullptr)
+                    fail(at + '/' + name, "the action 'delete' keeps nothing", "leave it out");
+            std::erase_if(set_.annotations, [&](const Annotation& a) { return a.id == id; });
+            return;
+        }
+        if (action == "retag" && find_member(step, "tag") == nullptr && find_member(step, "colour") == nullptr &&
+            find_member(step, "attributes") == nullptr)
+            fail(at, "the action 'retag' changes nothing", "give a tag, a colour or attributes");
+        Annotation annotation = *found;
+        if (changes) {
+            const std::string here = at + "/select";
+            const Annotation part = selected(annotation.type, *select, frame, here);
+            change(annotation, action, part);
+            if (annotation.faces.empty() && annotation.polylines.empty() && annotation.points.empty())
+                fail(here, "leaves nothing of annotation " + to_string(id), "select less, or use the action 'delete'");
+            for (Attribute& attribute : annotation.attributes)
+                if (attribute.type == AttributeType::measure && attribute.measure.tool == "bounding" &&
+                    attribute.measure.direction) {
+                    const auto pins = extremes(mesh_, annotation, *attribute.measure.direction);
+                    attribute.measure.points.assign(pins.begin(), pins.end());
+                    attribute.measure.locations.clear();
+                }
+        }
+        set_looks(annotation, step);
+        if (const JsonValue* attributes = find_member(step, "attributes")) {
+            for (const auto& attribute : attributes->GetArray())
+                std::erase_if(annotation.attributes, [&](const Attribute& a) { return a.id == attribute["id"].GetInt(); });
+            Annotation fresh = annotation;
+            fresh.attributes.clear();
+            add_attributes(fresh, *attributes, frame, at + "/attributes");
+            for (Attribute& attribute : fresh.attributes) annotation.attributes.push_back(std::move(attribute));
+        }
+        *set_.find(id) = std::move(annotation);
+    }
+
+    void change(Annotation& annotation, const std::string& action, const Annotation& part) const {
+        const bool add = action == "add to";
+        if (action == "replace") {
+            annotation.faces = part.faces;
+            annotation.polylines = part.polylines;
+            annotation.points = part.points;
+            annotation.all = part.all;
+        } else if (annotation.type == AnnotationType::region) {
+            std::vector<bool> flags = face_flags(mesh_, annotation.faces);
+            for (const Index face : part.faces) flags[face] = add;
+            annotation.faces = flagged(flags);
+            annotation.all = annotation.all && annotation.faces.size() == mesh_.number_of_faces();
+        } else if (annotation.type == AnnotationType::point) {
+            const std::set<Index> before(annotation.points.begin(), annotation.points.end()),
+                named(part.points.begin(), part.points.end());
+            if (!add) std::erase_if(annotation.points, [&](Index v) { return named.contains(v); });
+            for (const Index v : part.points)
+                if (add && !before.contains(v)) annotation.points.push_back(v);
+        } else if (add) {
+            annotation.polylines.insert(annotation.polylines.end(), part.polylines.begin(), part.polylines.end());
+        } else {
+            annotation.polylines = without_edges(annotation.polylines, part.polylines);
+        }
+    }
+
+    /// What is left of poly-lines when the edges of others are taken out.
+    static std::vector<std::vector<Index>> without_edges(const std::vector<std::vector<Index>>& lines,
+                                                         const std::vector<std::vector<Index>>& others) {
+        std::set<std::pair<Index, Index>> gone;
+        for (const auto& line : others)
+            for (std::size_t i = 0; i + 1 < line.size(); ++i) gone.insert(std::minmax(line[i], line[i + 1]));
+        std::vector<std::vector<Index>> left;
+        for (const auto& line : lines) {
+            const std::size_t before = left.size();
+            std::vector<Index> piece;
+            for (std::size_t i = 0; i + 1 < line.size(); ++i) {
+                if (gone.contains(std::minmax(line[i], line[i + 1]))) {
+                    if (piece.size() > 1) left.push_back(piece);
+                    piece.clear();
+                    continue;
+                }
+                if (piece.empty()) piece.push_back(line[i]);
+                piece.push_back(line[i + 1]);
+            }
+            if (piece.size() > 1) left.push_back(piece);
+            // A closed line that was cut elsewhere goes on over its first vertex.
+            if (left.size() > before + 1 && line.front() == line.back() && left[before].front() == line.front() &&
+                left.back().back() == line.back()) {
+                left.back().insert(left.back().end(), left[before].begin() + 1, left[before].end());
+                left.erase(left.begin() + static_cast<std::ptrdiff_t>(before));
+            }
+        }
+        return left;
     }
 
     /// Attributes stand as in annotation files, except that pins may be given by coordinates, and those of a bounding measure may
@@ -115,24 +251,50 @@ private:
 
     const Mesh& mesh_;
     std::string where_;
+    std::vector<std::int32_t> face_labels_;
     AnnotationSet set_;
+    Path folder_;
     ExpressionEvaluator evaluator_;
 };
 
+void collect_maps(const JsonValue& value, const Path& folder, std::vector<Path>& files) {
+    if (value.IsArray())
+        for (const auto& item : value.GetArray()) collect_maps(item, folder, files);
+    if (!value.IsObject()) return;
+    for (const auto& member : value.GetObject()) {
+        if (std::string(member.name.GetString()) == "threshold" && member.value.IsObject())
+            if (const JsonValue* map = find_member(member.value, "map"); map != nullptr && map->IsString()) {
+                const Path file = folder / map->GetString();
+                if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
+            }
+        collect_maps(member.value, folder, files);
+    }
+}
+
 }  // namespace
 
-AnnotationSet apply_recipe(const JsonValue& recipe, const Mesh& mesh, const std::vector<std::int32_t>& face_labels,
-                           const std::string& where) {
-    if (const JsonValue* format = find_member(recipe, "format");
+std::vector<Path> files_named_by(const JsonValue& recipe, const Path& folder) {
+    std::vector<Path> files;
+    collect_maps(recipe, folder, files);
+    return files;
+}
+
+AnnotationSet follow_recipe(const JsonValue& recipe, const Mesh& mesh, RecipeStart start, const std::string& where) {
+    if (const JsonValue* format = recipe.IsObject() ? find_member(recipe, "format") : nullptr;
         format != nullptr && format->IsString() && std::string(format->GetString()) != "ostraka-recipe")
         fail_input(where, std::string("at /format: the format is '") + format->GetString() + "'",
                    "give a recipe ('ostraka-recipe')");
     validate(recipe, "recipe", where);
-    return Cook(mesh, face_labels, where).follow(recipe);
+    return Cook(mesh, std::move(start), where).follow(recipe);
+}
+
+AnnotationSet apply_recipe(const JsonValue& recipe, const Mesh& mesh, const std::vector<std::int32_t>& face_labels,
+                           const std::string& where) {
+    return follow_recipe(recipe, mesh, RecipeStart{face_labels, {}, {}}, where);
 }
 
 AnnotationSet apply_recipe(const Path& file, const Mesh& mesh, const std::vector<std::int32_t>& face_labels) {
-    return apply_recipe(read_json(file), mesh, face_labels, file.string());
+    return follow_recipe(read_json(file), mesh, RecipeStart{face_labels, {}, file.parent_path()}, file.string());
 }
 
 }  // namespace ostraka

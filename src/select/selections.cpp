@@ -3,12 +3,17 @@
 #include "ostraka/core/error.h"
 #include "ostraka/geom/surface_search.h"
 
+#include "crossing.h"
+
 #include <algorithm>
 #include <limits>
+#include <sstream>
 
 namespace ostraka {
 
 namespace {
+
+constexpr double outline_tolerance = 1e-9;  ///< share of the diagonal: a seed closer to an outline lies on it
 
 /// Flags the faces reached from `seed` without crossing a wall; counts them and the wall edges met.
 struct Flood {
@@ -55,16 +60,18 @@ std::vector<Index> distinct(const std::vector<Index>& picks, bool closed) {
     return result;
 }
 
-/// Path through distinct picks; with `avoid` a leg keeps off the vertices of earlier legs if it can.
-std::vector<Index> trace(const Mesh& mesh, const std::vector<Index>& picks, bool closed, PathMetric metric, bool avoid,
-                         const std::string& where) {
+using Legs = std::vector<std::vector<Index>>;
+
+/// Paths from pick to pick; with `avoid` a leg keeps off the vertices of earlier legs if it can.
+Legs trace(const Mesh& mesh, const std::vector<Index>& picks, bool closed, PathMetric metric, bool avoid,
+           const std::string& where) {
     PathSearch search(mesh);
     std::vector<bool> used(mesh.number_of_vertices(), false);
     if (avoid)
         for (const Index pick : picks) used[pick] = true;
-    std::vector<Index> path{picks.front()};
-    const std::size_t legs = closed ? picks.size() : picks.size() - 1;
-    for (std::size_t i = 0; i < legs; ++i) {
+    Legs legs;
+    const std::size_t count = closed ? picks.size() : picks.size() - 1;
+    for (std::size_t i = 0; i < count; ++i) {
         const std::size_t next = (i + 1) % picks.size();
         PathSearch::Query query;
         query.metric = metric;
@@ -78,10 +85,29 @@ std::vector<Index> trace(const Mesh& mesh, const std::vector<Index>& picks, bool
         if (leg.empty())
             fail_input(where, "no path along the surface joins " + name_of(i, picks) + " and " + name_of(next, picks),
                        "they lie on separate parts of the mesh: pick points on one part");
-        path.insert(path.end(), leg.begin() + 1, leg.end());
         for (const Index vertex : leg) used[vertex] = true;
+        legs.push_back(std::move(leg));
     }
+    return legs;
+}
+
+std::vector<Index> joined(const Legs& legs) {
+    std::vector<Index> path{legs.front().front()};
+    for (const auto& leg : legs) path.insert(path.end(), leg.begin() + 1, leg.end());
     return path;
+}
+
+/// The closed path of a lasso. Legs that meet are searched again so that they avoid one another.
+std::vector<Index> lasso_path(const Mesh& mesh, const std::vector<Index>& points, PathMetric metric, const std::string& where) {
+    const Legs shortest = trace(mesh, points, true, metric, false, where);
+    if (const auto crossing = find_crossing(mesh, shortest)) {
+        std::ostringstream text;
+        text << "the lasso crosses itself: the legs from " << name_of(crossing->one, points) << " and from "
+             << name_of(crossing->other, points) << " cross at vertex " << crossing->vertex << " ("
+             << mesh.point(Vertex(crossing->vertex)) << ")";
+        fail_input(where, text.str(), "pick the points in the order in which they lie around the part");
+    }
+    return joined(touch(shortest) ? trace(mesh, points, true, metric, true, where) : shortest);
 }
 
 }  // namespace
@@ -153,11 +179,11 @@ std::vector<Index> path_through(const Mesh& mesh, const std::vector<Index>& pick
                    std::string(closed ? "a closed path" : "a path") + " through " + std::to_string(points.size()) +
                        " different vertices",
                    closed ? "pick three points or more, farther apart" : "pick two points or more, farther apart");
-    return trace(mesh, points, closed, metric, closed, where);
+    return joined(trace(mesh, points, closed, metric, closed, where));
 }
 
 std::vector<bool> lasso(const Mesh& mesh, const std::vector<Index>& picks, Index seed, PathMetric metric,
-                        const std::string& where) {
+                        const std::string& where, const std::optional<Point>& seed_point) {
     if (seed >= mesh.number_of_faces())
         fail_input(where, "the seed is face " + std::to_string(seed) + " of " + std::to_string(mesh.number_of_faces()),
                    "pick a face of the mesh");
@@ -165,10 +191,18 @@ std::vector<bool> lasso(const Mesh& mesh, const std::vector<Index>& picks, Index
     if (points.size() < 3)
         fail_input(where, "the lasso cannot be closed: it has " + std::to_string(points.size()) + " different vertices",
                    "pick three points or more, farther apart");
-    const std::vector<Index> path = trace(mesh, points, true, metric, true, where);
+    const double diagonal = box_diagonal(mesh);
+    const std::vector<Index> path = lasso_path(mesh, points, metric, where);
     std::vector<bool> wall(mesh.number_of_edges(), false);
-    for (std::size_t i = 0; i + 1 < path.size(); ++i)
-        wall[mesh.edge(find_halfedge(mesh, Vertex(path[i]), Vertex(path[i + 1])))] = true;
+    for (std::size_t i = 0; i + 1 < path.size(); ++i) {
+        const Vertex a(path[i]), b(path[i + 1]);
+        wall[mesh.edge(find_halfedge(mesh, a, b))] = true;
+        if (seed_point && distance_to_segment(*seed_point, mesh.point(a), mesh.point(b)) <= outline_tolerance * diagonal)
+            fail_input(where,
+                       "the seed lies on the outline, between vertices " + std::to_string(path[i]) + " and " +
+                           std::to_string(path[i + 1]),
+                       "put it well within the lasso");
+    }
     Flood inside = flood(mesh, seed, wall);
     if (inside.walls == 0)
         fail_input(where, "the seed lies on another part of the mesh than the lasso", "put the seed within the lasso");

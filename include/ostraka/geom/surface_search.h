@@ -3,6 +3,7 @@
 
 #include "ostraka/core/mesh.h"
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -36,6 +37,9 @@ public:
     /// All faces met by the segment from origin - reach * direction to origin + reach * direction, nearest first
     /// (ties by face index). `direction` is a unit vector.
     [[nodiscard]] std::vector<SurfaceHit> line_hits(const Point& origin, const Vector& direction, double reach) const;
+
+    /// True if the segment meets a face other than those that `ignored` accepts. Exact for the coordinates as given.
+    [[nodiscard]] bool blocked(const Point& from, const Point& to, const std::function<bool(Index)>& ignored) const;
 
     /// The nearest point of the surface; needs at least one face.
     [[nodiscard]] SurfaceHit closest(const Point& query) const;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ostraka/core/options.h"
+#include "ostraka/render/camera.h"
 #include "ostraka/render/colour_scale.h"
 #include "ostraka/render/scene.h"
 
@@ -64,6 +65,7 @@ struct Pane {
     double bar_length = 0;                         ///< of the scale bar in the mesh's unit, 0 if there is none
     double bar_pixels = 0;
     std::size_t markers_shown = 0;  ///< markers that are in sight
+    PictureCamera camera;           ///< in the pixels of the whole picture
 };
 
 struct Rendering {

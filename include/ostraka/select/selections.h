@@ -5,6 +5,7 @@
 #include "ostraka/geom/shortest_path.h"
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,9 +37,9 @@ std::vector<Index> path_through(const Mesh& mesh, const std::vector<Index>& pick
                                 const std::string& where);
 
 /// The faces reached from `seed` without crossing the closed path through the picks. Legs avoid one another where they can.
-/// Throws Error (input) if there is no closed path, if it does not separate the seed's side from the rest, or if the seed lies on
-/// another part of the mesh.
+/// `seed_point` is where in its face the seed is, if that is known. Throws Error (input) if there is no closed path, if it
+/// crosses itself, if it does not separate the seed's side from the rest, if the seed lies on it, or on another part of the mesh.
 std::vector<bool> lasso(const Mesh& mesh, const std::vector<Index>& picks, Index seed, PathMetric metric,
-                        const std::string& where);
+                        const std::string& where, const std::optional<Point>& seed_point = {});
 
 }  // namespace ostraka

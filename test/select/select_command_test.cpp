@@ -1,0 +1,169 @@
+// 'annotation select' and 'annotation apply --edit', as people run them.
+#include "annotation/example_meshes.h"
+#include "mutate.h"
+#include "ostraka/annotation/annotation_file.h"
+#include "ostraka/core/error.h"
+#include "ostraka/io/mesh_file.h"
+#include "ostraka/select/recipe.h"
+#include "scratch.h"
+
+using namespace ostraka;
+using namespace ostraka::example;
+using ostraka::test::run_command;
+using ostraka::test::Scratch;
+
+namespace {
+
+struct Folder : Scratch {
+    Folder() { write_mesh(*this / "ball.ply", spheres(4)); }
+    [[nodiscard]] std::string at(const std::string& name) const { return (*this / name).string(); }
+    [[nodiscard]] test::CommandResult select(const std::string& flags, const std::string& to = "a.ant.json") const {
+        return run_command("annotation select " + at("ball.ply") + " " + at(to) + " " + flags);
+    }
+};
+
+}  // namespace
+
+TEST(SelectCommand, StepsAreRecordedAndReplayedToTheByte) {
+    const Folder folder;
+    const std::string record = " --record " + folder.at("r.recipe.json");
+    const std::vector<std::string> steps{
+        "--class ball --unit mm --tag front --view front --rectangle 400,300,800,600",
+        "--tag cap --sphere 0,0,1,0.5",
+        "--tag girdle --type line --path 1,0,0 0,1,0 -1,0,0 0,-1,0 --closed --metric combined",
+        "--tag spots --type point --vertices 3 @600,428 0,0,1 --view 45,10",
+        "--tag patch --lasso 1,0.3,0.3 1,-0.3,0.3 1,-0.3,-0.3 1,0.3,-0.3 --seed 1,0.02,0.01",
+        "--tag drawn --colour 1,2,3 --polygon 400,300,800,300,600,600 --view top --projection perspective --through",
+        "--action 'remove from' --id 2 --halfspace 0,0,0.9,0,0,1",
+        "--action retag --id 2 --tag ring",
+        "--action delete --id 5",
+        "--tag rest '{\"difference\": [{\"annotation\": 0}, {\"annotation\": 1}]}'"};
+    for (const auto& step : steps) {
+        const auto result = folder.select(step + record);
+        ASSERT_EQ(result.code, 0) << step << "\n" << result.err;
+        EXPECT_EQ(result.err, "") << step;
+        ASSERT_EQ(run_command("annotation apply " + folder.at("ball.ply") + " " + folder.at("r.recipe.json") + " " +
+                              folder.at("replayed.ant.json"))
+                      .code,
+                  0);
+        ASSERT_EQ(read_file(folder / "replayed.ant.json"), read_file(folder / "a.ant.json")) << step;
+    }
+    const Mesh mesh = read_mesh(folder / "ball.ply").mesh;
+    const AnnotationSet set = read_annotations(folder / "a.ant.json", mesh);
+    EXPECT_EQ(set.annotations.size(), 7U);
+    EXPECT_EQ(set.find(2)->tag, "ring");
+    EXPECT_EQ(set.find(6)->colour, (std::array<int, 3>{1, 2, 3}));
+    EXPECT_EQ(run_command("annotation check " + folder.at("ball.ply") + " " + folder.at("a.ant.json")).code, 0);
+}
+
+TEST(SelectCommand, EditsBegunWithoutARecipeReplayOnWhatWasThere) {
+    const Folder folder;
+    ASSERT_EQ(folder.select("--tag cap --sphere 0,0,1,0.5").code, 0);
+    write_file(folder / "before.ant.json", read_file(folder / "a.ant.json"));
+    const auto result = folder.select("--action 'add to' --id 0 --sphere 0,0,-1,0.5 --record " + folder.at("r.recipe.json"));
+    ASSERT_EQ(result.code, 0) << result.err;
+    EXPECT_NE(result.err.find("--edit"), std::string::npos) << "it is said that the recipe alone does not do: " << result.err;
+    const std::string replay =
+        "annotation apply " + folder.at("ball.ply") + " " + folder.at("r.recipe.json") + " " + folder.at("out.ant.json");
+    EXPECT_EQ(run_command(replay).code, 1) << "there is nothing to add to";
+    ASSERT_EQ(run_command(replay + " --edit " + folder.at("before.ant.json")).code, 0);
+    const Mesh mesh = read_mesh(folder / "ball.ply").mesh;
+    EXPECT_EQ(read_annotations(folder / "out.ant.json", mesh).find(0)->faces,
+              read_annotations(folder / "a.ant.json", mesh).find(0)->faces);
+    EXPECT_EQ(run_command(replay + " --edit " + folder.at("out.ant.json")).code, 2) << "an input is never overwritten";
+    EXPECT_EQ(folder.select("--tag x --all --output " + folder.at("other.ant.json")).code, 0);
+    EXPECT_EQ(read_annotations(folder / "a.ant.json", mesh).annotations.size(), 1U) << "--output leaves the file as it is";
+}
+
+TEST(SelectCommand, WhatIsRefusedLeavesTheFilesAsTheyWere) {
+    const Folder folder;
+    const std::string record = " --record " + folder.at("r.recipe.json");
+    ASSERT_EQ(folder.select("--tag cap --sphere 0,0,1,0.5" + record).code, 0);
+    const std::string before = read_file(folder / "a.ant.json"), recipe = read_file(folder / "r.recipe.json");
+    const std::size_t files = test::count_files(folder.path());
+    const auto refuse = [&](const std::string& flags, int code, const std::string& what) {
+        const auto result = folder.select(flags + record);
+        EXPECT_EQ(result.code, code) << flags << "\n" << result.err;
+        EXPECT_NE(result.err.find(what), std::string::npos) << flags << "\n" << result.err;
+        EXPECT_EQ(read_file(folder / "a.ant.json"), before);
+        EXPECT_EQ(read_file(folder / "r.recipe.json"), recipe);
+        EXPECT_EQ(test::count_files(folder.path()), files);
+    };
+    refuse("--tag x", 2, "nothing says what to select");
+    refuse("--tag x --all --sphere 0,0,1,1", 2, "two tools at once");
+    refuse("--sphere 0,0,1,1", 2, "needs a tag");
+    refuse("--tag x --sphere 0,0,1", 2, "takes 4 numbers");
+    refuse("--tag x --sphere 0,zero,1,1", 2, "not a list of numbers");
+    refuse("--tag x --sphere 0,0,9,1", 1, "selects no face");
+    refuse("--tag x --sphere 0,0,1,-1", 1, "minimum");
+    refuse("--tag x --rectangle 5000,0,6000,9", 1, "outside the picture");
+    refuse("--tag x --rectangle 0,0,10,10 --size big", 2, "size 'big'");
+    refuse("--tag x --lasso 0,0,1 1,0,0 0,1,0", 2, "needs a seed");
+    refuse("--tag x --brush 0,0,1", 2, "radius");
+    refuse("--tag x --type point --vertices @1,1", 1, "background");
+    refuse("--tag x --type point --vertices 1,1", 2, "not a pick");
+    refuse("--tag x '{\"sphere\": '", 1, "expression");
+    refuse("--tag x '{\"cube\": 1}'", 1, "cube");
+    refuse("--tag x --all --grow 1 --shrink 1", 2, "both --grow and --shrink");
+    refuse("--tag x --all --id 0", 1, "the id 0 is taken");
+    refuse("--action delete --id 5", 1, "no annotation has the id 5");
+    refuse("--action delete", 2, "needs the annotation's --id");
+    refuse("--tag x --all --colour 1,2", 2, "--colour");
+    const auto same = run_command("annotation select " + folder.at("ball.ply") + " " + folder.at("ball.ply") + " --tag x --all");
+    EXPECT_EQ(same.code, 2) << same.err;
+    const auto apply = run_command("annotation apply " + folder.at("ball.ply") + " " + folder.at("none.seg") + " " +
+                                   folder.at("o.ant.json") + " --edit " + folder.at("a.ant.json"));
+    EXPECT_EQ(apply.code, 2) << apply.err;
+}
+
+TEST(SelectCommand, APictureReportsItsCameras) {
+    const Folder folder;
+    ASSERT_EQ(folder.select("--tag cap --sphere 0,-1,0,0.5").code, 0);
+    const auto picture = run_command("render " + folder.at("ball.ply") + " " + folder.at("p.png") + " --annotations " +
+                                     folder.at("a.ant.json") + " --view front --size 600x500 --json");
+    ASSERT_EQ(picture.code, 0) << picture.err;
+    const Json report = parse_json(picture.out, "report");
+    const JsonValue& pane = report["result"]["panes"][0];
+    // The middle of the pane shows the point nearest to the viewer, wherever the legend has pushed it.
+    const double x = pane["camera"]["pane"][0].GetDouble() + pane["camera"]["pane"][2].GetDouble() / 2,
+                 y = pane["camera"]["pane"][1].GetDouble() + pane["camera"]["pane"][3].GetDouble() / 2;
+    EXPECT_LT(x, 299);
+    std::string camera = to_text(pane["camera"]);
+    const Path recipe =
+        folder.file("c.recipe.json", R"({"format": "ostraka-recipe", "version": 1, "annotations": [{"id": 0, "tag": "t",
+        "type": "point", "select": {"vertices": [{"camera": )" +
+                                         camera + R"(, "pixel": [)" + std::to_string(x) + "," + std::to_string(y) + "]}]}}]}");
+    const Mesh mesh = read_mesh(folder / "ball.ply").mesh;
+    const AnnotationSet set = apply_recipe(recipe, mesh);
+    EXPECT_EQ(mesh.point(Vertex(set.annotations.at(0).points.at(0))), Point(0, -1, 0));
+}
+
+TEST(SelectMutation, DamagedRecipesEndInSuccessOrAClearError) {
+    const Mesh mesh = spheres(2);
+    const std::string recipe = R"({"format": "ostraka-recipe", "version": 1, "class": "ball", "unit": "mm", "up": [0, 0, 1],
+ "cameras": {"front": {"view": "front", "projection": "perspective", "zoom": 1.5, "picture": [600, 500]},
+             "eye": {"eye": [0, -9, 1], "target": [0, 0, 0], "projection": "perspective", "angle": 30, "pane": [0, 0, 300, 200]}},
+ "annotations": [
+  {"id": 1, "tag": "a", "type": "region", "select": {"rectangle": {"camera": "front", "from": [100, 100], "to": [500, 400], "visible": true}}},
+  {"id": 2, "tag": "b", "type": "region", "select": {"polygon": {"camera": "eye", "points": [[50, 50], [250, 50], [150, 190]], "visible": false}}},
+  {"id": 3, "tag": "c", "type": "point", "select": {"vertices": [{"camera": "front", "pixel": [300, 240]}, [0, 0, 1], 5]}},
+  {"id": 4, "tag": "d", "type": "region", "select": {"lasso": {"points": [[1, 0.3, 0.3], [1, -0.4, 0.4], [1, -0.4, -0.4], [1, 0.4, -0.4]], "seed": [1, 0.02, 0.01]}}},
+  {"action": "add to", "id": 1, "select": {"sphere": {"centre": [0, 0, 1], "radius": 0.7}}},
+  {"action": "remove from", "id": 3, "select": {"nearest": [0, 0, 1]}},
+  {"action": "retag", "id": 2, "tag": "drawn", "colour": [1, 2, 3]},
+  {"action": "delete", "id": 4}]})";
+    ASSERT_NO_THROW(apply_recipe(parse_json(recipe, "r"), mesh, std::vector<std::int32_t>{}, "r"));
+    int done = 0;
+    for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+        const std::string text = test::mutate(recipe, seed);
+        try {
+            (void)apply_recipe(parse_json(text, "r"), mesh, std::vector<std::int32_t>{}, "r");
+            ++done;
+        } catch (const Error& error) {
+            EXPECT_NE(error.kind(), ErrorKind::failure) << error.what();
+            EXPECT_FALSE(std::string(error.what()).empty());
+        }
+    }
+    EXPECT_LT(done, 200);
+    EXPECT_GT(done, 5);
+}
