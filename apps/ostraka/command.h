@@ -91,6 +91,9 @@ void add_annotation_select(CLI::App& annotation, Session& session);    // annota
 void add_annotation_transfer(CLI::App& annotation, Session& session);  // annotation_transfer.cpp
 void add_annotation_survival(CLI::App& annotation, Session& session);  // annotation_survival.cpp
 void add_relation(CLI::App& relation, Session& session);               // relation.cpp
+void add_annotation_exchange(CLI::App& annotation, Session& session);  // annotation_exchange.cpp: export, import
+void add_annotation_edit(CLI::App& annotation, Session& session);      // annotation_edit.cpp
+void add_annotation_merge(CLI::App& annotation, Session& session);     // annotation_merge.cpp: diff, merge
 void add_render(CLI::App& tool, Session& session);                     // render.cpp
 
 }  // namespace ostraka::app

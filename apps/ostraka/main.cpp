@@ -33,6 +33,9 @@ int main(int argc, char** argv) {
     app::add_annotation_transfer(*annotation, session);
     app::add_annotation_survival(*annotation, session);
     app::add_relation(*relation, session);
+    app::add_annotation_exchange(*annotation, session);
+    app::add_annotation_edit(*annotation, session);
+    app::add_annotation_merge(*annotation, session);
     app::add_render(tool, session);
     try {
         tool.parse(argc, argv);

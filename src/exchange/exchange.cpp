@@ -1,0 +1,131 @@
+#include "ostraka/exchange/exchange.h"
+
+#include "landmark_formats.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/exchange/attribute_table.h"
+#include "ostraka/exchange/web_annotation.h"
+
+#include <algorithm>
+#include <set>
+
+namespace ostraka {
+
+namespace {
+
+std::optional<LandmarkFormat> landmark_format(const std::string& format) {
+    if (format == "landmarks-csv") return LandmarkFormat::csv;
+    if (format == "tps") return LandmarkFormat::tps;
+    if (format == "pp") return LandmarkFormat::pp;
+    if (format == "mrk") return LandmarkFormat::mrk;
+    if (format == "fcsv") return LandmarkFormat::fcsv;
+    return {};
+}
+
+[[noreturn]] void unknown_format(const std::string& format) {
+    std::string list;
+    for (const auto& name : exchange_formats()) list += (list.empty() ? "" : ", ") + name;
+    fail_usage("the format '" + format + "' is not known", "use one of: " + list);
+}
+
+/// Adds what was read to a set; an id that is taken is replaced.
+PlacedAnnotations added_to(const AnnotationSet& onto, PlacedAnnotations read) {
+    PlacedAnnotations result;
+    result.placements = std::move(read.placements);
+    result.set.object_class = onto.object_class.empty() ? read.set.object_class : onto.object_class;
+    result.set.unit = onto.unit.empty() ? read.set.unit : onto.unit;
+    result.set.up = onto.up ? onto.up : read.set.up;
+    result.set.annotations = onto.annotations;
+    result.set.notes = onto.notes;
+    result.set.notes.insert(result.set.notes.end(), read.set.notes.begin(), read.set.notes.end());
+    if (!onto.unit.empty() && !read.set.unit.empty() && onto.unit != read.set.unit)
+        result.set.notes.push_back("the file is in " + read.set.unit + ", the annotations in " + onto.unit +
+                                   "; coordinates were taken as they stand");
+    std::set<int> taken;
+    for (const Annotation& annotation : onto.annotations) taken.insert(annotation.id);
+    for (std::size_t i = 0; i < read.set.annotations.size(); ++i) {
+        Annotation& annotation = read.set.annotations[i];
+        const int before = annotation.id;
+        if (taken.contains(before)) {
+            annotation.id = free_id(result.set);
+            // Nor may it be one that another annotation of the file has.
+            while (taken.contains(annotation.id) ||
+                   std::any_of(read.set.annotations.begin() + static_cast<std::ptrdiff_t>(i) + 1, read.set.annotations.end(),
+                               [&](const Annotation& later) { return later.id == annotation.id; }))
+                ++annotation.id;
+            result.set.notes.push_back("the id " + std::to_string(before) + " is taken: '" + annotation.tag +
+                                       "' of the file got " + std::to_string(annotation.id));
+            for (Placement& placement : result.placements)
+                if (placement.id == before && placement.tag == annotation.tag) placement.id = annotation.id;
+        }
+        taken.insert(annotation.id);
+        result.set.annotations.push_back(std::move(annotation));
+    }
+    return result;
+}
+
+}  // namespace
+
+const std::vector<std::string>& exchange_formats() {
+    static const std::vector<std::string> names{"attributes-csv", "landmarks-csv", "tps", "pp", "mrk", "fcsv", "web"};
+    return names;
+}
+
+std::string guess_exchange_format(const Path& file, const std::string& bytes) {
+    const std::string ending = extension(file);
+    if (ending == ".csv") return bytes.empty() || is_attribute_table(bytes) ? "attributes-csv" : "landmarks-csv";
+    if (ending == ".tps") return "tps";
+    if (ending == ".pp") return "pp";
+    if (ending == ".fcsv") return "fcsv";
+    if (ending == ".json" && extension(file.stem()) == ".mrk") return "mrk";
+    if (ending == ".jsonld") return "web";
+    fail_usage("the ending of '" + file.filename().string() + "' tells no format", "say it with --format");
+}
+
+ExportedAnnotations export_annotations(const Mesh& mesh, const AnnotationSet& set, const std::string& format,
+                                       const std::string& mesh_file, const Provenance& provenance, const ExportOptions& options) {
+    check_options(options, "annotation export");
+    check_annotations(set, mesh, mesh_file.empty() ? "annotations" : "annotations of " + mesh_file);
+    ExportedAnnotations result;
+    if (const auto landmarks = landmark_format(format)) {
+        const LandmarkSet places = landmarks_of(mesh, set);
+        result.notes = places.notes;
+        result.bytes = landmarks_to_text(places, *landmarks, mesh_file, provenance, result.notes, options.landmarks);
+    } else if (format == "attributes-csv") {
+        result.bytes = attribute_table(set);
+    } else if (format == "web") {
+        result.bytes = web_annotations(mesh, set, mesh_file, provenance);
+    } else {
+        unknown_format(format);
+    }
+    return result;
+}
+
+PlacedAnnotations import_annotations(const Mesh& mesh, const std::string& bytes, const std::string& format,
+                                     const std::string& where, const AnnotationSet* onto, const ImportOptions& options) {
+    check_options(options, "annotation import");
+    PlacedAnnotations result;
+    if (const auto landmarks = landmark_format(format)) {
+        result = place_landmarks(mesh, landmarks_from_text(bytes, *landmarks, where, options.landmarks), where, options.place);
+        if (onto != nullptr) result = added_to(*onto, std::move(result));
+    } else if (format == "attributes-csv") {
+        if (onto == nullptr)
+            fail_usage("a table of attributes holds no selections", "give the annotations it was made of with --onto FILE");
+        result.set.object_class = onto->object_class;
+        result.set.unit = onto->unit;
+        result.set.up = onto->up;
+        result.set.annotations = onto->annotations;
+        result.set.notes = onto->notes;
+        const std::size_t changed = apply_attribute_table(bytes, result.set, where);
+        result.set.notes.push_back(exchange::counted(changed, "annotation") + " of the table taken over");
+    } else if (format == "web") {
+        result = read_web_annotations(bytes, mesh, where, options.place);
+        if (onto != nullptr) result = added_to(*onto, std::move(result));
+    } else {
+        unknown_format(format);
+    }
+    check_annotations(result.set, mesh, where);
+    return result;
+}
+
+}  // namespace ostraka

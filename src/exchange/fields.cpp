@@ -1,0 +1,105 @@
+#include "fields.h"
+
+#include "text.h"
+
+namespace ostraka::exchange {
+
+namespace {
+
+bool same(const Location& a, const Location& b) { return a.face == b.face && a.barycentric == b.barycentric; }
+
+bool same(const Measure& a, const Measure& b) {
+    return a.tool == b.tool && a.points == b.points && a.direction == b.direction && a.value == b.value && a.unit == b.unit &&
+           a.stale == b.stale &&
+           std::equal(a.locations.begin(), a.locations.end(), b.locations.begin(), b.locations.end(),
+                      [](const Location& x, const Location& y) { return same(x, y); });
+}
+
+bool same(const Descriptor& a, const Descriptor& b) {
+    return a.values == b.values && a.is_list == b.is_list && a.file == b.file && a.unit == b.unit && a.stale == b.stale;
+}
+
+}  // namespace
+
+bool same(const Attribute& a, const Attribute& b) {
+    if (a.id != b.id || a.name != b.name || a.type != b.type) return false;
+    if (a.type == AttributeType::semantic) return a.note == b.note;
+    return a.type == AttributeType::measure ? same(a.measure, b.measure) : same(a.descriptor, b.descriptor);
+}
+
+bool same_geometry(const Annotation& a, const Annotation& b) {
+    return a.type == b.type && a.points == b.points && a.polylines == b.polylines && a.all == b.all && a.faces == b.faces;
+}
+
+bool same_head(const Annotation& a, const Annotation& b) {
+    return a.tag == b.tag && a.colour == b.colour && a.note == b.note && same_geometry(a, b);
+}
+
+bool same(const Annotation& a, const Annotation& b) {
+    return a.id == b.id && same_head(a, b) &&
+           std::equal(a.attributes.begin(), a.attributes.end(), b.attributes.begin(), b.attributes.end(),
+                      [](const Attribute& x, const Attribute& y) { return same(x, y); });
+}
+
+std::string words(const std::string& text) {
+    const std::string line = one_line(text);
+    std::size_t end = 0, count = 0;
+    while (end < line.size() && count < 60) {
+        ++end;
+        while (end < line.size() && (static_cast<unsigned char>(line[end]) & 0xC0) == 0x80) ++end;
+        ++count;
+    }
+    return end < line.size() ? line.substr(0, end) + "..." : line;
+}
+
+std::string words(const std::array<int, 3>& colour) {
+    return std::to_string(colour[0]) + " " + std::to_string(colour[1]) + " " + std::to_string(colour[2]);
+}
+
+std::string words(const std::optional<std::array<double, 3>>& direction) {
+    return direction ? digits((*direction)[0]) + " " + digits((*direction)[1]) + " " + digits((*direction)[2]) : std::string();
+}
+
+std::string words(const std::vector<int>& ids) {
+    std::string text;
+    for (const int id : ids) text += (text.empty() ? "" : " ") + std::to_string(id);
+    return words(text);
+}
+
+std::string words(const Attribute& attribute) {
+    if (attribute.type == AttributeType::semantic) return words(attribute.name + ": " + attribute.note);
+    const bool measured = attribute.type == AttributeType::measure;
+    std::string text = attribute.name + ":";
+    if (measured) {
+        text += " " + attribute.measure.tool;
+        if (attribute.measure.value) text += " " + digits(*attribute.measure.value);
+    }
+    for (std::size_t i = 0; !measured && i < attribute.descriptor.values.size() && i < 4; ++i)
+        text += " " + digits(attribute.descriptor.values[i]);
+    if (!measured && !attribute.descriptor.file.empty()) text += " in " + attribute.descriptor.file;
+    const std::string& unit = measured ? attribute.measure.unit : attribute.descriptor.unit;
+    if (!unit.empty()) text += " " + unit;
+    if (measured) {
+        text += " (pins";
+        for (std::size_t i = 0; i < attribute.measure.points.size() && i < 4; ++i)
+            text += " " + std::to_string(attribute.measure.points[i]);
+        text += attribute.measure.points.size() > 4 ? " ...)" : ")";
+    }
+    return words(text + ((measured ? attribute.measure.stale : attribute.descriptor.stale) ? " (stale)" : ""));
+}
+
+std::string geometry_words(const Annotation& annotation) {
+    if (annotation.type == AnnotationType::point) return std::to_string(annotation.points.size()) + " points";
+    if (annotation.type == AnnotationType::region)
+        return annotation.all ? "the whole" : std::to_string(annotation.faces.size()) + " faces";
+    std::size_t edges = 0;
+    for (const auto& polyline : annotation.polylines) edges += polyline.size() - 1;
+    return std::to_string(edges) + " edges in " + std::to_string(annotation.polylines.size());
+}
+
+std::string words(const Annotation& annotation) {
+    return words("'" + annotation.tag + "', " + to_string(annotation.type) + ", " + geometry_words(annotation) + ", " +
+                 std::to_string(annotation.attributes.size()) + " attributes");
+}
+
+}  // namespace ostraka::exchange

@@ -1,0 +1,29 @@
+// The fields that sets, annotations and attributes are compared by.
+#pragma once
+
+#include "ostraka/annotation/annotation.h"
+
+namespace ostraka::exchange {
+
+bool same(const Attribute& a, const Attribute& b);
+bool same_geometry(const Annotation& a, const Annotation& b);
+/// All but the attributes' order and the id.
+bool same_head(const Annotation& a, const Annotation& b);
+bool same(const Annotation& a, const Annotation& b);
+
+/// In words, at most 60 characters and on one line.
+std::string words(const std::string& text);
+std::string words(const std::array<int, 3>& colour);
+std::string words(const std::optional<std::array<double, 3>>& direction);
+std::string words(const Attribute& attribute);
+std::string geometry_words(const Annotation& annotation);
+std::string words(const Annotation& annotation);
+template <class Entries>
+std::vector<int> ids_of(const Entries& entries) {
+    std::vector<int> ids;
+    for (const auto& entry : entries) ids.push_back(entry.id);
+    return ids;
+}
+std::string words(const std::vector<int>& ids);
+
+}  // namespace ostraka::exchange

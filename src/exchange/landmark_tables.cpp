@@ -1,0 +1,296 @@
+// Landmarks as lines of text: CSV, tps, fcsv.
+#include "landmark_formats.h"
+#include "text.h"
+
+#include "ostraka/core/error.h"
+
+#include <algorithm>
+#include <map>
+
+namespace ostraka::exchange {
+
+namespace {
+
+using std::to_string;
+
+std::string at_line(const std::string& where, std::size_t line) { return where + ", line " + to_string(line); }
+
+/// Names as tools write them in their headers.
+struct Columns {
+    std::array<std::size_t, 3> position{};
+    std::optional<std::size_t> name, id, defined;
+    std::string space;
+};
+
+constexpr std::size_t nowhere = static_cast<std::size_t>(-1);
+
+std::optional<Columns> columns_of(const std::vector<std::string>& header) {
+    std::map<std::string, std::size_t> places;
+    for (std::size_t i = 0; i < header.size(); ++i) places.try_emplace(lower(trimmed(unguarded(header[i]))), i);
+    const auto find = [&](std::initializer_list<const char*> names) -> std::size_t {
+        for (const char* name : names)
+            if (const auto found = places.find(name); found != places.end()) return found->second;
+        return nowhere;
+    };
+    Columns columns;
+    const auto take = [&](const char* a, const char* b, const char* c, const char* space) {
+        columns.position = {find({a}), find({b}), find({c})};
+        columns.space = space;
+        return std::find(columns.position.begin(), columns.position.end(), nowhere) == columns.position.end();
+    };
+    if (!take("x", "y", "z", "") && !take("l", "p", "s", "LPS") && !take("r", "a", "s", "RAS")) return {};
+    if (const std::size_t at = find({"name", "label", "landmark", "tag"}); at != nowhere) columns.name = at;
+    if (const std::size_t at = find({"id"}); at != nowhere) columns.id = at;
+    if (const std::size_t at = find({"defined"}); at != nowhere) columns.defined = at;
+    return columns;
+}
+
+double coordinate(const CsvRow& row, std::size_t column, const std::string& where) {
+    const std::string at = at_line(where, row.line);
+    if (column >= row.cells.size())
+        fail_input(at, "has " + to_string(row.cells.size()) + " cells", "give a number for x, y and z in each row");
+    if (const auto value = number_of(unguarded(row.cells[column]))) return *value;
+    fail_input(at, "'" + one_line(row.cells[column]).substr(0, 40) + "' is not a number", "give x, y and z with a decimal point");
+}
+
+}  // namespace
+
+std::array<double, 3> in_mesh_space(std::array<double, 3> position, const std::string& file_space,
+                                    const std::string& mesh_space) {
+    if (!file_space.empty() && file_space != mesh_space)
+        for (const std::size_t k : {0U, 1U}) position[k] = position[k] == 0 ? 0 : -position[k];
+    return position;
+}
+
+std::string counted(std::size_t count, const std::string& noun) {
+    return to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
+LandmarkSet read_landmark_table(const std::string& bytes, const std::string& where, const LandmarkFileOptions& options) {
+    std::vector<CsvRow> rows = csv_rows(bytes, csv_separator(bytes), where);
+    LandmarkSet set;
+    if (rows.empty()) fail_input(where, "holds no rows", "give a table with the columns x, y and z");
+    Columns columns;
+    std::size_t first = 0;
+    if (const auto found = columns_of(rows.front().cells)) {
+        columns = *found;
+        first = 1;
+    } else {  // without a header: three numbers, with or without a name in front
+        const std::size_t cells = rows.front().cells.size();
+        if ((cells != 3 && cells != 4) || !number_of(unguarded(rows.front().cells.back())))
+            fail_input(at_line(where, rows.front().line), "is not a header with the columns x, y and z",
+                       "name the columns, e.g. name,x,y,z");
+        columns.position = {cells - 3, cells - 2, cells - 1};
+        if (cells == 4) columns.name = 0;
+    }
+    std::size_t undefined = 0;
+    for (std::size_t i = first; i < rows.size(); ++i) {
+        const CsvRow& row = rows[i];
+        const auto cell = [&](std::optional<std::size_t> column) {
+            return column && *column < row.cells.size() ? unguarded(row.cells[*column]) : std::string();
+        };
+        if (columns.defined && trimmed(cell(columns.defined)) == "0") {
+            ++undefined;
+            continue;
+        }
+        Landmark landmark;
+        landmark.name = columns.name ? as_utf8(cell(columns.name)) : to_string(i - first + 1);
+        for (std::size_t k = 0; k < 3; ++k) landmark.position[k] = coordinate(row, columns.position[k], where);
+        landmark.position = in_mesh_space(landmark.position, columns.space, options.mesh_space);
+        landmark.group = whole_of(cell(columns.id));
+        set.landmarks.push_back(std::move(landmark));
+    }
+    if (undefined > 0) set.notes.push_back(counted(undefined, "landmark") + " not yet placed in the file, left out");
+    return set;
+}
+
+std::string write_landmark_table(const LandmarkSet& set) {
+    std::string text = "id,name,x,y,z\n";
+    for (const Landmark& landmark : set.landmarks)
+        text += csv_row({landmark.group ? to_string(*landmark.group) : "", landmark.name, digits(landmark.position[0]),
+                         digits(landmark.position[1]), digits(landmark.position[2])});
+    return text;
+}
+
+// tps (Rohlf): LM3=count, one landmark a line, then keywords; a file may hold many specimens.
+LandmarkSet read_tps(const std::string& bytes, const std::string& where, const LandmarkFileOptions& options) {
+    struct Specimen {
+        std::size_t line = 0;
+        std::vector<std::optional<std::array<double, 3>>> points;
+        std::string id, image, comment;
+        double scale = 1;
+    };
+    std::vector<Specimen> specimens;
+    std::size_t expected = 0, number = 0;
+    for (std::size_t i = 0; i < bytes.size();) {
+        const std::size_t end = std::min(bytes.find('\n', i), bytes.size());
+        const std::string_view line = trimmed(std::string_view(bytes).substr(i, end - i));
+        i = end + 1;
+        ++number;
+        if (line.empty()) continue;
+        const std::string at = at_line(where, number);
+        if (expected > 0) {
+            std::array<double, 3> point{};
+            std::size_t count = 0, missing = 0, from = 0;
+            while (from < line.size()) {
+                const std::size_t begin = line.find_first_not_of(" \t,", from);
+                if (begin == std::string_view::npos) break;
+                from = std::min(line.find_first_of(" \t,", begin), line.size());
+                const std::string_view word = line.substr(begin, from - begin);
+                const auto value = number_of(word);
+                const bool absent = lower(word) == "na" || lower(word) == "nan";
+                if ((!value && !absent) || count == 3)
+                    fail_input(at, "does not hold three coordinates", "give x, y and z, or NA NA NA for a missing landmark");
+                missing += absent ? 1 : 0;
+                point[count++] = value.value_or(0);
+            }
+            if (count != 3)
+                fail_input(at, "does not hold three coordinates", "give x, y and z, or NA NA NA for a missing landmark");
+            specimens.back().points.push_back(missing > 0 ? std::optional<std::array<double, 3>>() : point);
+            --expected;
+            continue;
+        }
+        const std::size_t equals = line.find('=');
+        if (equals == std::string_view::npos) fail_input(at, "is not KEYWORD=value", "the count after LM3= may be too small");
+        const std::string key = lower(trimmed(line.substr(0, equals)));
+        const std::string_view value = trimmed(line.substr(equals + 1));
+        if (key == "lm") fail_input(at, "holds landmarks in two dimensions", "give a file with LM3=");
+        if (key == "lm3") {
+            const auto count = whole_of(value);
+            if (!count || *count < 0 || static_cast<std::size_t>(*count) > bytes.size())
+                fail_input(at, "the count of landmarks is not a number that the file could hold", "mend LM3=");
+            specimens.emplace_back().line = number;
+            expected = static_cast<std::size_t>(*count);
+        } else if (specimens.empty()) {
+            fail_input(at, "stands before any LM3=", "begin each specimen with LM3=count");
+        } else if (key == "id") {
+            specimens.back().id = value;
+        } else if (key == "image") {
+            specimens.back().image = value;
+        } else if (key == "comment") {
+            specimens.back().comment = value;
+        } else if (key == "scale") {
+            const auto scale = number_of(value);
+            if (!scale || !(*scale > 0)) fail_input(at, "the scale is not a positive number", "mend SCALE=");
+            specimens.back().scale = *scale;
+        }
+    }
+    if (expected > 0) fail_input(where, counted(expected, "landmark") + " fewer than LM3= says", "the file may be cut off");
+    if (specimens.empty()) fail_input(where, "holds no LM3=", "give a tps file of landmarks in three dimensions");
+    const Specimen* chosen = specimens.size() == 1 && options.specimen.empty() ? &specimens.front() : nullptr;
+    for (const Specimen& specimen : specimens)
+        if (chosen == nullptr && !options.specimen.empty() && specimen.id == options.specimen) chosen = &specimen;
+    if (const auto index = whole_of(options.specimen);
+        chosen == nullptr && index && *index >= 1 && static_cast<std::size_t>(*index) <= specimens.size())
+        chosen = &specimens[static_cast<std::size_t>(*index) - 1];
+    if (chosen == nullptr)
+        fail_input(where,
+                   options.specimen.empty() ? "holds " + to_string(specimens.size()) + " specimens"
+                                            : "holds no specimen '" + options.specimen + "'",
+                   "choose one with --specimen, by its ID or its number from 1 to " + to_string(specimens.size()));
+
+    LandmarkSet set;
+    // Our own files keep the names in the comment, as the format has no room for them.
+    std::vector<std::string> names;
+    try {
+        const Json comment = parse_json(chosen->comment.empty() ? "null" : chosen->comment, where);
+        if (const JsonValue* list = find_member(comment, "names");
+            list != nullptr && list->IsArray() && list->Size() == chosen->points.size())
+            for (const auto& name : list->GetArray())
+                names.push_back(name.IsString() ? std::string(name.GetString(), name.GetStringLength()) : std::string());
+    } catch (const Error&) {  // any other comment
+        names.clear();
+    }
+    std::size_t missing = 0;
+    for (std::size_t i = 0; i < chosen->points.size(); ++i) {
+        if (!chosen->points[i]) {
+            ++missing;
+            continue;
+        }
+        Landmark landmark;
+        landmark.name = names.empty() ? to_string(i + 1) : names[i];
+        for (std::size_t k = 0; k < 3; ++k) landmark.position[k] = chosen->scale * (*chosen->points[i])[k];
+        set.landmarks.push_back(std::move(landmark));
+    }
+    if (missing > 0) set.notes.push_back(counted(missing, "missing landmark") + " (NA) left out");
+    if (names.empty() && !set.landmarks.empty()) set.notes.emplace_back("tps names no landmarks; they are numbered");
+    return set;
+}
+
+std::string write_tps(const LandmarkSet& set, const std::string& mesh_file) {
+    std::string text = "LM3=" + to_string(set.landmarks.size()) + "\n";
+    Json comment(rapidjson::kObjectType);
+    JsonValue names(rapidjson::kArrayType);
+    for (const Landmark& landmark : set.landmarks) {
+        for (std::size_t k = 0; k < 3; ++k) text += digits(landmark.position[k]) + (k < 2 ? " " : "\n");
+        names.PushBack(json_string(landmark.name, comment.GetAllocator()), comment.GetAllocator());
+    }
+    add_member(comment, "names", std::move(names), comment.GetAllocator());
+    text += "COMMENT=" + std::string(trimmed(one_line(json_text(comment)))) + "\n";
+    return text + "ID=" + one_line(Path(mesh_file).stem().string()) + "\n";
+}
+
+// fcsv: comment lines with the version, the space and the columns, then a row a point.
+LandmarkSet read_fcsv(const std::string& bytes, const std::string& where, const LandmarkFileOptions& options) {
+    LandmarkSet set;
+    std::string space;
+    std::vector<std::string> header;
+    std::string body;  // comment lines become blank, so that lines keep their numbers
+    for (std::size_t i = 0; i < bytes.size();) {
+        const std::size_t end = std::min(bytes.find('\n', i), bytes.size());
+        const std::string_view line = trimmed(std::string_view(bytes).substr(i, end - i));
+        if (line.starts_with('#')) {
+            const std::size_t equals = line.find('=');
+            const std::string key = lower(trimmed(line.substr(1, equals == std::string_view::npos ? 0 : equals - 1)));
+            const std::string_view value = equals == std::string_view::npos ? "" : trimmed(line.substr(equals + 1));
+            if (key == "coordinatesystem") {
+                space = value == "0" || value == "RAS" ? "RAS" : value == "1" || value == "LPS" ? "LPS" : "";
+                if (space.empty())
+                    fail_input(where, "the coordinate system '" + one_line(value).substr(0, 20) + "' is not known",
+                               "use LPS (1) or RAS (0)");
+            } else if (key == "columns") {
+                const auto rows = csv_rows(value, ',', where);
+                if (!rows.empty()) header = rows.front().cells;
+            }
+        } else {
+            body.append(bytes, i, end - i);
+        }
+        body += '\n';
+        i = end + 1;
+    }
+    if (space.empty()) {
+        space = "RAS";
+        set.notes.emplace_back("the file names no coordinate system: taken for RAS, as old versions wrote");
+    }
+    if (header.empty())
+        header = {"id", "x", "y", "z", "ow", "ox", "oy", "oz", "vis", "sel", "lock", "label", "desc", "associatedNodeID"};
+    const auto columns = columns_of(header);
+    if (!columns) fail_input(where, "its columns do not hold x, y and z", "mend the line '# columns = id,x,y,z,...'");
+    const auto rows = csv_rows(body, ',', where);
+    for (const CsvRow& row : rows) {
+        Landmark landmark;
+        landmark.name = columns->name && *columns->name < row.cells.size() ? as_utf8(unguarded(row.cells[*columns->name]))
+                                                                           : to_string(set.landmarks.size() + 1);
+        for (std::size_t k = 0; k < 3; ++k) landmark.position[k] = coordinate(row, columns->position[k], where);
+        landmark.position = in_mesh_space(landmark.position, space, options.mesh_space);
+        set.landmarks.push_back(std::move(landmark));
+    }
+    set.unit = "mm";
+    return set;
+}
+
+std::string write_fcsv(const LandmarkSet& set, const LandmarkFileOptions& options, Notes& notes) {
+    std::string text = "# Markups fiducial file version = 4.11\n# CoordinateSystem = " + options.mesh_space +
+                       "\n# columns = id,x,y,z,ow,ox,oy,oz,vis,sel,lock,label,desc,associatedNodeID\n";
+    std::size_t number = 0, changed = 0;
+    for (const Landmark& landmark : set.landmarks) {
+        changed += has_control(landmark.name) ? 1 : 0;
+        text += csv_row({"ostraka_" + to_string(++number), digits(landmark.position[0]), digits(landmark.position[1]),
+                         digits(landmark.position[2]), "0", "0", "0", "1", "1", "1", "0", one_line(landmark.name), "", ""});
+    }
+    if (changed > 0)
+        notes.push_back(counted(changed, "name") + " held line breaks or control characters, which became blanks in fcsv");
+    return text;
+}
+
+}  // namespace ostraka::exchange

@@ -1,0 +1,135 @@
+#include "placing.h"
+
+#include "ostraka/annotation/outline.h"
+#include "ostraka/core/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ostraka::exchange {
+
+VertexSearch::VertexSearch(const Mesh& mesh) : mesh_(mesh) {
+    for (const Vertex v : mesh.vertices())
+        if (!mesh.is_isolated(v)) order_.push_back(v);
+    if (order_.empty()) fail_input("mesh", "has no faces", "give a mesh with faces");
+    struct Range {
+        std::size_t begin, end;
+        int axis;
+    };
+    std::vector<Range> ranges{{0, order_.size(), 0}};
+    while (!ranges.empty()) {
+        const auto [begin, end, axis] = ranges.back();
+        ranges.pop_back();
+        if (end - begin < 2) continue;
+        const std::size_t middle = begin + (end - begin) / 2;
+        const auto at = [this](std::size_t i) { return order_.begin() + static_cast<std::ptrdiff_t>(i); };
+        std::nth_element(at(begin), at(middle), at(end), [&](Index a, Index b) {
+            const double x = mesh_.point(Vertex(a))[axis], y = mesh_.point(Vertex(b))[axis];
+            return x < y || (x == y && a < b);
+        });
+        ranges.push_back({begin, middle, (axis + 1) % 3});
+        ranges.push_back({middle + 1, end, (axis + 1) % 3});
+    }
+}
+
+Index VertexSearch::nearest(const Point& query) const {
+    double best = std::numeric_limits<double>::infinity();
+    Index found = no_index;
+    search(0, order_.size(), 0, query, best, found);
+    return found;
+}
+
+// NOLINTNEXTLINE(misc-no-recursion): as deep as the logarithm of the number of vertices
+void VertexSearch::search(std::size_t begin, std::size_t end, int axis, const Point& query, double& best, Index& found) const {
+    if (begin >= end) return;
+    const std::size_t middle = begin + (end - begin) / 2;
+    const Point& point = mesh_.point(Vertex(order_[middle]));
+    const double distance = CGAL::squared_distance(point, query);
+    if (found == no_index || distance < best || (distance == best && order_[middle] < found)) {
+        best = distance;
+        found = order_[middle];
+    }
+    const double offset = query[axis] - point[axis];
+    const int next = (axis + 1) % 3;
+    if (offset < 0) {
+        search(begin, middle, next, query, best, found);
+        if (offset * offset <= best) search(middle + 1, end, next, query, best, found);
+    } else {
+        search(middle + 1, end, next, query, best, found);
+        if (offset * offset <= best) search(begin, middle, next, query, best, found);
+    }
+}
+
+Placer::Placer(const Mesh& mesh) : mesh_(mesh), surface_(mesh), vertices_(mesh) {}
+
+Placed Placer::place(const Point& point) const {
+    Placed placed;
+    placed.vertex = vertices_.nearest(point);
+    placed.to_vertex = std::sqrt(CGAL::squared_distance(point, mesh_.point(Vertex(placed.vertex))));
+    placed.to_surface = std::min(surface_.closest(point).distance, placed.to_vertex);
+    return placed;
+}
+
+std::vector<Index> Placer::chain(const std::vector<Index>& picks, bool closed, const std::string& where) {
+    std::vector<Index> stops;
+    for (const Index pick : picks)
+        if (stops.empty() || stops.back() != pick) stops.push_back(pick);
+    while (closed && stops.size() > 1 && stops.back() == stops.front()) stops.pop_back();
+    if (stops.size() < 2) return stops;
+    if (closed) stops.push_back(stops.front());
+    std::vector<Index> vertices{stops.front()};
+    for (std::size_t i = 1; i < stops.size(); ++i) {
+        const Vertex from(stops[i - 1]), to(stops[i]);
+        if (find_halfedge(mesh_, from, to).is_valid()) {
+            vertices.push_back(to);
+            continue;
+        }
+        if (!paths_) paths_ = std::make_unique<PathSearch>(mesh_);
+        PathSearch::Query query;
+        query.metric = PathMetric::combined;
+        const std::vector<Index> leg = paths_->find(from, to, query);
+        if (leg.empty())
+            fail_input(where,
+                       "the vertices " + std::to_string(from.idx()) + " and " + std::to_string(to.idx()) +
+                           ", nearest to successive points, lie on parts of the mesh that are not connected",
+                       "give the mesh that the file was made for, or one of the same connectivity");
+        vertices.insert(vertices.end(), leg.begin() + 1, leg.end());
+    }
+    // What runs to and fro along an edge marks nothing.
+    std::vector<Index> clean;
+    for (const Index vertex : vertices) {
+        if (clean.size() > 1 && clean[clean.size() - 2] == vertex) clean.pop_back();
+        else clean.push_back(vertex);
+    }
+    return clean;
+}
+
+std::vector<bool> Placer::fill(const std::vector<std::vector<Index>>& chains, double area) const {
+    std::vector<Halfedge> edges;
+    for (const auto& chain : chains)
+        for (std::size_t i = 0; i + 1 < chain.size(); ++i)
+            edges.push_back(find_halfedge(mesh_, Vertex(chain[i]), Vertex(chain[i + 1])));
+    if (edges.empty()) return {};
+    if (auto filled = fill_by_winding(mesh_, edges, area)) return std::move(*filled);
+    return fill_edges(mesh_, edges).selected;
+}
+
+std::vector<bool> Placer::component(Index face) const {
+    std::vector<bool> selected(mesh_.number_of_faces(), false);
+    std::vector<Index> stack{face};
+    selected[face] = true;
+    while (!stack.empty()) {
+        const Halfedge first = mesh_.halfedge(Face(stack.back()));
+        stack.pop_back();
+        for (const Halfedge h : mesh_.halfedges_around_face(first)) {
+            const Face next = mesh_.face(mesh_.opposite(h));
+            if (next == Mesh::null_face() || selected[next]) continue;
+            selected[next] = true;
+            stack.push_back(next);
+        }
+    }
+    return selected;
+}
+
+}  // namespace ostraka::exchange

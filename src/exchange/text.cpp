@@ -1,0 +1,205 @@
+#include "text.h"
+
+#include "ostraka/core/error.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace ostraka::exchange {
+
+std::string as_utf8(std::string_view text) {
+    Json scratch;
+    const JsonValue value = json_string(text, scratch.GetAllocator());
+    return {value.GetString(), value.GetStringLength()};
+}
+
+std::string digits(double value) {
+    std::array<char, 32> buffer{};
+    const auto [end, code] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+    return {buffer.data(), end};
+}
+
+std::string_view trimmed(std::string_view text) {
+    const std::size_t begin = text.find_first_not_of(" \t\r\n");
+    if (begin == std::string_view::npos) return {};
+    return text.substr(begin, text.find_last_not_of(" \t\r\n") - begin + 1);
+}
+
+std::optional<double> number_of(std::string_view text) {
+    text = trimmed(text);
+    if (text.size() > 1 && text.front() == '+' && text[1] != '-') text.remove_prefix(1);
+    double value = 0;
+    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (text.empty() || code != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return {};
+    return value;
+}
+
+std::optional<int> whole_of(std::string_view text) {
+    text = trimmed(text);
+    int value = 0;
+    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (text.empty() || code != std::errc() || end != text.data() + text.size()) return {};
+    return value;
+}
+
+std::string lower(std::string_view text) {
+    std::string result(text);
+    for (char& c : result)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return result;
+}
+
+bool has_control(std::string_view text) {
+    return std::any_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 32 || c == 127; });
+}
+
+std::string one_line(std::string_view text) {
+    std::string result(text);
+    for (char& c : result)
+        if (static_cast<unsigned char>(c) < 32 || c == 127) c = ' ';
+    return result;
+}
+
+namespace {
+
+bool dangerous(std::string_view text) {
+    if (text.empty()) return false;
+    if (text.front() == '\t' || text.front() == '\r' || text.front() == '\n') return true;
+    const std::size_t first = text.find_first_not_of(" \t\r\n");
+    if (first == std::string_view::npos) return false;
+    text.remove_prefix(first);
+    if (std::string_view("=+-@").find(text.front()) != std::string_view::npos) return true;
+    for (const std::string_view wide : {"\xEF\xBC\x9D", "\xEF\xBC\x8B", "\xEF\xBC\x8D", "\xEF\xBC\xA0"})
+        if (text.starts_with(wide)) return true;
+    return false;
+}
+
+/// Does `guarded` put an apostrophe in front? Any number of apostrophes before dangerous text counts, so that it can be undone.
+bool needs_guard(std::string_view text) {
+    const std::size_t first = text.find_first_not_of('\'');
+    return first != std::string_view::npos && dangerous(text.substr(first));
+}
+
+}  // namespace
+
+std::string guarded(const std::string& text) { return needs_guard(text) ? "'" + text : text; }
+
+std::string unguarded(const std::string& text) {
+    return text.size() > 1 && text.front() == '\'' && needs_guard(std::string_view(text).substr(1)) ? text.substr(1) : text;
+}
+
+std::string csv_row(const std::vector<std::string>& cells) {
+    std::string row;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        if (i > 0) row += ',';
+        const std::string cell =
+            number_of(cells[i]) && trimmed(cells[i]).size() == cells[i].size() ? cells[i] : guarded(cells[i]);
+        const bool edged = !cell.empty() && (cell.front() == ' ' || cell.back() == ' ');
+        const bool quoted = edged || cell.find_first_of(",;\"\r\n\t'") != std::string::npos;
+        if (!quoted) {
+            row += cell;
+            continue;
+        }
+        row += '"';
+        for (const char c : cell) row.append(c == '"' ? 2 : 1, c);
+        row += '"';
+    }
+    return row + '\n';
+}
+
+std::vector<CsvRow> csv_rows(std::string_view text, char separator, const std::string& where) {
+    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+    std::vector<CsvRow> rows;
+    std::size_t line = 1;
+    for (std::size_t i = 0; i < text.size();) {
+        CsvRow row{line, {}};
+        bool blank = true;
+        for (bool more = true; more;) {
+            std::string cell;
+            if (i < text.size() && text[i] == '"') {
+                const std::size_t begin = line;
+                bool open = true;
+                for (++i; i < text.size() && open;) {
+                    if (text[i] != '"') {
+                        line += text[i] == '\n' ? 1 : 0;
+                        cell += text[i++];
+                    } else if (i + 1 < text.size() && text[i + 1] == '"') {
+                        cell += '"';
+                        i += 2;
+                    } else {
+                        open = false;
+                        ++i;
+                    }
+                }
+                const std::string at = where + ", line " + std::to_string(begin);
+                if (open) fail_input(at, "a quoted cell does not end", "close its quotation mark");
+                if (i < text.size() && text[i] != separator && text[i] != '\n' && text[i] != '\r')
+                    fail_input(at, "text follows the closing quotation mark of a cell", "double the marks within the cell");
+                blank = false;
+            } else {
+                while (i < text.size() && text[i] != separator && text[i] != '\n') cell += text[i++];
+                if ((i == text.size() || text[i] == '\n') && !cell.empty() && cell.back() == '\r') cell.pop_back();
+                blank = blank && trimmed(cell).empty();
+            }
+            row.cells.push_back(std::move(cell));
+            if (i < text.size() && text[i] == '\r') ++i;
+            more = i < text.size() && text[i] == separator;
+            if (more) {
+                ++i;
+                continue;
+            }
+            if (i < text.size() && text[i] == '\n') {
+                ++i;
+                ++line;
+            }
+        }
+        if (!blank) rows.push_back(std::move(row));
+    }
+    return rows;
+}
+
+char csv_separator(std::string_view text) {
+    const std::string_view first = text.substr(0, text.find('\n'));
+    char best = ',';
+    for (const char c : {',', ';', '\t'})
+        if (std::count(first.begin(), first.end(), c) > std::count(first.begin(), first.end(), best)) best = c;
+    return best;
+}
+
+std::string json_text(const JsonValue& value) {
+    const std::string plain = to_text(value);
+    std::string text;
+    text.reserve(plain.size());
+    // Outside of strings JSON has none of these characters.
+    for (const char c : plain) {
+        if (c == '<') text += "\\u003C";
+        else if (c == '>') text += "\\u003E";
+        else if (c == '&') text += "\\u0026";
+        else text += c;
+    }
+    return text;
+}
+
+std::string text_member(const JsonValue& object, std::string_view name) {
+    const JsonValue* value = find_member(object, name);
+    return value != nullptr && value->IsString() ? std::string(value->GetString(), value->GetStringLength()) : std::string();
+}
+
+std::optional<std::array<double, 3>> triple(const JsonValue* value) {
+    if (value == nullptr || !value->IsArray() || value->Size() != 3) return {};
+    std::array<double, 3> result{};
+    for (rapidjson::SizeType i = 0; i < 3; ++i) {
+        if (!(*value)[i].IsNumber() || !std::isfinite((*value)[i].GetDouble())) return {};
+        result[i] = (*value)[i].GetDouble();
+    }
+    return result;
+}
+
+JsonValue triple_json(const std::array<double, 3>& values, JsonAllocator& allocator) {
+    JsonValue list(rapidjson::kArrayType);
+    for (const double value : values) list.PushBack(value, allocator);
+    return list;
+}
+
+}  // namespace ostraka::exchange

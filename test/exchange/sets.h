@@ -1,0 +1,143 @@
+// Sets of annotations that formats must carry whole, and how two sets are compared.
+#pragma once
+
+#include "annotation/example_meshes.h"
+#include "ostraka/annotation/annotation_file.h"
+
+#include <gtest/gtest.h>
+
+namespace ostraka::example {
+
+/// Texts that other formats take for markup, scripts, formulas, separators or line ends.
+inline std::vector<std::string> wild_texts() {
+    return {"plain",
+            "with \"quotes\" and 'others'",
+            "a, b; c\td",
+            "two\nlines\r\nand three",
+            "</script><script>alert(1)</script>",
+            "<b>&amp; & ]]> --></b>",
+            "=1+1",
+            "+SUM(A1)",
+            "-2+3",
+            "@cmd|' /C calc'!A0",
+            "'=quoted",
+            "''-twice",
+            "\t=tab",
+            "\n=line",
+            "  =blank",
+            "\xEF\xBC\x9D"
+            "wide",
+            std::string("control \x01\x02\x1B and nul \0 end", 26),
+            "naïve Ὄστρακον 陶片 🏺",
+            "# comment",
+            "-5",
+            " edges ",
+            "back\\slash \\u003C",
+            "\xE2\x80\xA8 separators \xE2\x80\xA9",
+            "LM3=2",
+            ""};
+}
+
+inline Attribute semantic(int id, const std::string& name, const std::string& note) {
+    Attribute attribute;
+    attribute.id = id;
+    attribute.name = name;
+    attribute.note = note;
+    return attribute;
+}
+
+/// Points, lines, overlapping regions, the whole; every kind of attribute; wild texts everywhere. On `spheres(3)` or a mesh
+/// with as many faces.
+inline AnnotationSet wild_set(const Mesh& mesh) {
+    AnnotationSet set;
+    set.object_class = "class \"of\" <things>";
+    set.unit = "mm";
+    set.up = {0, 0, 1};
+    const auto texts = wild_texts();
+    const auto add = [&](AnnotationType type, int id, const std::string& tag) -> Annotation& {
+        Annotation annotation;
+        annotation.id = id;
+        annotation.tag = tag;
+        annotation.type = type;
+        annotation.colour = {id * 37 % 256, id * 91 % 256, id * 53 % 256};
+        return set.annotations.emplace_back(std::move(annotation));
+    };
+    int id = 3;
+    for (std::size_t i = 0; i < texts.size(); ++i, id += 2) {
+        Annotation& point = add(AnnotationType::point, id, texts[i]);
+        point.points = {static_cast<Index>(5 * i + 1)};
+        point.attributes.push_back(semantic(1, texts[(i + 1) % texts.size()], texts[(i + 2) % texts.size()]));
+    }
+    add(AnnotationType::point, id++, "several").points = {7, 3, 11};
+    Annotation& line = add(AnnotationType::line, id++, "way, with a comma");
+    // Straight on, from face to face.
+    Halfedge h = mesh.halfedge(Vertex(0));
+    std::vector<Index> way{mesh.source(h)};
+    for (int k = 0; k < 6; ++k, h = mesh.next(mesh.opposite(mesh.next(h)))) way.push_back(mesh.target(h));
+    line.polylines = {way};
+    const auto [a, b, c] = corners(mesh, Face(9));
+    line.polylines.push_back({a, b, c, a});
+    Annotation& lower = add(AnnotationType::region, id++, "half <low>");
+    Annotation& upper = add(AnnotationType::region, id++, "cap & more");
+    Annotation& two = add(AnnotationType::region, id++, "two patches");
+    for (const Face f : mesh.faces()) {
+        const Point p = centroid(mesh, f);
+        if (p.z() < 0.3) lower.faces.push_back(f);
+        if (p.z() > 0) upper.faces.push_back(f);
+        if (std::abs(p.x()) > 0.8) two.faces.push_back(f);
+    }
+    Attribute measure;
+    measure.id = 4;
+    measure.name = "height, \"max\"";
+    measure.type = AttributeType::measure;
+    measure.measure = {"bounding", {4, 5}, {{0, {0.25, 0.5, 0.25}}, {1, {1, 0, 0}}}, std::array<double, 3>{0, -0.6, 0.8}, 1.0 / 3,
+                       "mm",       true};
+    upper.attributes.push_back(measure);
+    measure.id = 5;
+    measure.name = "=way";
+    measure.measure = {"tape", {1, 2, 3}, {}, {}, {}, "", false};
+    upper.attributes.push_back(measure);
+    Attribute descriptor;
+    descriptor.id = 6;
+    descriptor.name = "area";
+    descriptor.type = AttributeType::descriptor;
+    descriptor.descriptor = {{-1e-300}, false, "", "mm^2", true};
+    upper.attributes.push_back(descriptor);
+    descriptor.id = 7;
+    descriptor.descriptor = {{1, 2.5, -3}, true, "", "", false};
+    upper.attributes.push_back(descriptor);
+    descriptor.id = 8;
+    descriptor.descriptor = {{}, false, "curvature map.npy", "1/mm", false};
+    upper.attributes.push_back(descriptor);
+    upper.note = "shrank; \"see\" <report>";
+    Annotation whole;
+    whole.id = 0;
+    whole.tag = "thing";
+    whole.all = true;
+    for (const Face f : mesh.faces()) whole.faces.push_back(f);
+    set.annotations.insert(set.annotations.begin(), whole);
+    return set;
+}
+
+inline AnnotationSet copy_of(const AnnotationSet& set) {
+    AnnotationSet copy;
+    copy.object_class = set.object_class;
+    copy.unit = set.unit;
+    copy.up = set.up;
+    copy.annotations = set.annotations;
+    return copy;
+}
+
+/// A set as the file that would hold it: two sets are the same if these texts are.
+inline std::string as_file(const AnnotationSet& set, const Mesh& mesh) {
+    return to_text(annotations_to_json(set, mesh, "m.ply", {}));
+}
+
+/// `part` finds what `whole` must not hold outside of quoted data.
+inline std::size_t occurrences(const std::string& whole, const std::string& part) {
+    std::size_t count = 0;
+    for (std::size_t at = whole.find(part); at != std::string::npos; at = whole.find(part, at + 1)) ++count;
+    return count;
+}
+
+}  // namespace ostraka::example
