@@ -4,6 +4,8 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/exchange/attribute_table.h"
+#include "ostraka/exchange/feature_glb.h"
+#include "ostraka/exchange/prototype_files.h"
 #include "ostraka/exchange/web_annotation.h"
 
 #include <algorithm>
@@ -67,7 +69,8 @@ PlacedAnnotations added_to(const AnnotationSet& onto, PlacedAnnotations read) {
 }  // namespace
 
 const std::vector<std::string>& exchange_formats() {
-    static const std::vector<std::string> names{"attributes-csv", "landmarks-csv", "tps", "pp", "mrk", "fcsv", "web"};
+    static const std::vector<std::string> names{"attributes-csv", "landmarks-csv", "tps", "pp",  "mrk",
+                                                "fcsv",           "web",           "glb", "ant", "fct"};
     return names;
 }
 
@@ -79,6 +82,7 @@ std::string guess_exchange_format(const Path& file, const std::string& bytes) {
     if (ending == ".fcsv") return "fcsv";
     if (ending == ".json" && extension(file.stem()) == ".mrk") return "mrk";
     if (ending == ".jsonld") return "web";
+    if (ending == ".glb" || ending == ".ant" || ending == ".fct") return ending.substr(1);
     fail_usage("the ending of '" + file.filename().string() + "' tells no format", "say it with --format");
 }
 
@@ -95,6 +99,12 @@ ExportedAnnotations export_annotations(const Mesh& mesh, const AnnotationSet& se
         result.bytes = attribute_table(set);
     } else if (format == "web") {
         result.bytes = web_annotations(mesh, set, mesh_file, provenance);
+    } else if (format == "glb") {
+        result.bytes = feature_glb(mesh, set, mesh_file, provenance, result.notes);
+    } else if (format == "ant") {
+        result.bytes = prototype_annotations(mesh, set, result.notes);
+    } else if (format == "fct") {
+        result.bytes = prototype_facets(mesh, set, mesh_file, result.notes);
     } else {
         unknown_format(format);
     }
@@ -107,7 +117,6 @@ PlacedAnnotations import_annotations(const Mesh& mesh, const std::string& bytes,
     PlacedAnnotations result;
     if (const auto landmarks = landmark_format(format)) {
         result = place_landmarks(mesh, landmarks_from_text(bytes, *landmarks, where, options.landmarks), where, options.place);
-        if (onto != nullptr) result = added_to(*onto, std::move(result));
     } else if (format == "attributes-csv") {
         if (onto == nullptr)
             fail_usage("a table of attributes holds no selections", "give the annotations it was made of with --onto FILE");
@@ -120,10 +129,16 @@ PlacedAnnotations import_annotations(const Mesh& mesh, const std::string& bytes,
         result.set.notes.push_back(exchange::counted(changed, "annotation") + " of the table taken over");
     } else if (format == "web") {
         result = read_web_annotations(bytes, mesh, where, options.place);
-        if (onto != nullptr) result = added_to(*onto, std::move(result));
+    } else if (format == "glb") {
+        result = read_feature_glb(bytes, mesh, where, options.place);
+    } else if (format == "ant") {
+        result.set = annotations_from_json(parse_json(bytes, where), mesh, where);
+    } else if (format == "fct") {
+        result.set = read_prototype_facets(bytes, mesh, where);
     } else {
         unknown_format(format);
     }
+    if (onto != nullptr && format != "attributes-csv") result = added_to(*onto, std::move(result));
     check_annotations(result.set, mesh, where);
     return result;
 }

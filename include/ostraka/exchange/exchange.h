@@ -6,7 +6,8 @@
 
 namespace ostraka {
 
-/// Names of formats, as the commands take them: "attributes-csv", "landmarks-csv", "tps", "pp", "mrk", "fcsv", "web".
+/// Names of formats, as the commands take them: "attributes-csv", "landmarks-csv", "tps", "pp", "mrk", "fcsv", "web", "glb",
+/// "ant", "fct".
 const std::vector<std::string>& exchange_formats();
 
 /// The format of a file by its name, and for .csv by its first line. `bytes` is empty for a file to be written: then .csv is

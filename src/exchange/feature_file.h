@@ -1,0 +1,69 @@
+// The features that a GLB file holds: what they select in its own primitives, and the rows of their table.
+#pragma once
+
+#include "glb.h"
+
+#include <array>
+#include <map>
+#include <optional>
+#include <set>
+
+namespace ostraka::exchange {
+
+inline constexpr std::size_t absent = static_cast<std::size_t>(-1);
+
+/// What the file says of one feature, and what it selects.
+struct Feature {
+    std::optional<std::vector<std::uint32_t>> faces;  ///< triangles, counted over all primitives
+    std::vector<std::vector<std::size_t>> polylines;  ///< corners of the line primitive
+    std::vector<std::size_t> points;                  ///< corners of the point primitive
+    std::size_t line_primitive = absent, point_primitive = absent;
+};
+
+struct Primitive {
+    std::vector<double> positions;     ///< three a vertex
+    std::vector<double> origins;       ///< _VERTEX, or empty
+    std::vector<std::size_t> corners;  ///< indices, or 0, 1, 2 ...
+    std::vector<std::vector<double>> features;
+    std::vector<std::size_t> nulls;
+    int mode = glb::triangles_mode;
+
+    [[nodiscard]] std::array<double, 3> position(std::size_t vertex) const {
+        return {positions[3 * vertex], positions[3 * vertex + 1], positions[3 * vertex + 2]};
+    }
+};
+
+/// A file read and checked, whatever mesh it is for. The constructor throws Error (input) naming file and JSON pointer.
+class FeatureFile {
+public:
+    FeatureFile(const std::string& bytes, const std::string& where);
+
+    glb::Reader file;
+    std::vector<Primitive> primitives;
+    std::map<std::size_t, Feature> features;  ///< by row of the table
+    std::size_t rows = 0;
+    bool ours = false;  ///< the table is of our class: ids, kinds, colours, notes and attributes are there
+    std::vector<std::string> tags, remarks, attributes;
+    std::vector<int> ids, kinds, colours;
+    std::vector<std::string> notes;  ///< what was not read
+
+    /// Our own words about the mesh, or nullptr.
+    [[nodiscard]] const JsonValue* extras() const;
+    [[nodiscard]] std::size_t triangles() const;
+
+private:
+    void refuse_what_is_not_read() const;
+    void read_primitives();
+    void read_primitive(const JsonValue& object, const std::string& at);
+    void read_ids(const JsonValue& set, const JsonValue& attributes, Primitive& primitive, const std::string& at);
+    [[nodiscard]] const JsonValue* metadata(const char* member) const;
+    void read_table();
+    template <class T>
+    std::vector<int> numbers(const JsonValue& properties, const char* name, std::size_t width, const std::string& at) const;
+    [[nodiscard]] std::vector<std::string> texts(const JsonValue& properties, const char* name, const std::string& at) const;
+    void collect(const Primitive& primitive, std::size_t number);
+
+    std::size_t table_ = absent, offset_ = 0;
+};
+
+}  // namespace ostraka::exchange

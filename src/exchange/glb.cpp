@@ -1,0 +1,216 @@
+#include "glb.h"
+
+#include "text.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/provenance.h"
+
+#include <rapidjson/stringbuffer.h>
+#include <rapidjson/writer.h>
+
+#include <cstring>
+#include <limits>
+
+namespace ostraka::exchange::glb {
+
+namespace {
+
+constexpr std::uint32_t magic = 0x46546C67, json_chunk = 0x4E4F534A, binary_chunk = 0x004E4942;
+
+std::size_t size_of(int component) {
+    switch (component) {
+        case signed_byte:
+        case byte:
+            return 1;
+        case signed_short:
+        case short_word:
+            return 2;
+        case word:
+        case single:
+            return 4;
+        default:
+            return 0;
+    }
+}
+
+template <class T>
+T value_at(std::string_view bytes, std::size_t offset) {
+    T value;
+    std::memcpy(&value, bytes.data() + offset, sizeof value);
+    return value;
+}
+
+double number_at(std::string_view bytes, std::size_t offset, int component) {
+    switch (component) {
+        case signed_byte:
+            return value_at<std::int8_t>(bytes, offset);
+        case byte:
+            return value_at<std::uint8_t>(bytes, offset);
+        case signed_short:
+            return value_at<std::int16_t>(bytes, offset);
+        case short_word:
+            return value_at<std::uint16_t>(bytes, offset);
+        case word:
+            return value_at<std::uint32_t>(bytes, offset);
+        default:
+            return static_cast<double>(value_at<float>(bytes, offset));
+    }
+}
+
+}  // namespace
+
+Builder::Builder() {
+    document_.SetObject();
+    JsonValue asset(rapidjson::kObjectType);
+    add_member(asset, "version", "2.0", allocator());
+    add_member(asset, "generator", "ostraka " + version(), allocator());
+    add_member(document_, "asset", std::move(asset), allocator());
+}
+
+int Builder::add_view(const std::string& bytes, int target, int stride) {
+    binary_.resize((binary_.size() + 7) / 8 * 8, '\0');
+    JsonValue entry(rapidjson::kObjectType);
+    add_member(entry, "buffer", JsonValue(0), allocator());
+    add_member(entry, "byteOffset", JsonValue(static_cast<std::uint64_t>(binary_.size())), allocator());
+    // A view holds one byte at least.
+    add_member(entry, "byteLength", JsonValue(static_cast<std::uint64_t>(std::max<std::size_t>(bytes.size(), 1))), allocator());
+    if (stride > 0) add_member(entry, "byteStride", JsonValue(stride), allocator());
+    if (target > 0) add_member(entry, "target", JsonValue(target), allocator());
+    binary_ += bytes.empty() ? std::string(1, '\0') : bytes;
+    views_.PushBack(entry, allocator());
+    return static_cast<int>(views_.Size()) - 1;
+}
+
+int Builder::add_accessor(const std::string& bytes, int target, int stride, int component, std::size_t count, const char* type,
+                          JsonValue* min, JsonValue* max) {
+    JsonValue entry(rapidjson::kObjectType);
+    add_member(entry, "bufferView", JsonValue(add_view(bytes, target, stride)), allocator());
+    add_member(entry, "componentType", JsonValue(component), allocator());
+    add_member(entry, "count", JsonValue(static_cast<std::uint64_t>(count)), allocator());
+    add_member(entry, "type", type, allocator());
+    if (min != nullptr) add_member(entry, "min", std::move(*min), allocator());
+    if (max != nullptr) add_member(entry, "max", std::move(*max), allocator());
+    accessors_.PushBack(entry, allocator());
+    return static_cast<int>(accessors_.Size()) - 1;
+}
+
+void Builder::mark_normalised(int accessor) {
+    add_member(accessors_[static_cast<rapidjson::SizeType>(accessor)], "normalized", JsonValue(true), allocator());
+}
+
+std::string Builder::finish(const std::string& where) {
+    binary_.resize((binary_.size() + 7) / 8 * 8, '\0');
+    JsonValue buffers(rapidjson::kArrayType), buffer(rapidjson::kObjectType);
+    add_member(buffer, "byteLength", JsonValue(static_cast<std::uint64_t>(binary_.size())), allocator());
+    buffers.PushBack(buffer, allocator());
+    add_member(document_, "accessors", std::move(accessors_), allocator());
+    add_member(document_, "bufferViews", std::move(views_), allocator());
+    add_member(document_, "buffers", std::move(buffers), allocator());
+    rapidjson::StringBuffer buffer_text;
+    rapidjson::Writer<rapidjson::StringBuffer> writer(buffer_text);
+    document_.Accept(writer);
+    std::string json;
+    for (const char* c = buffer_text.GetString(); c != buffer_text.GetString() + buffer_text.GetSize(); ++c) {
+        if (*c == '<') json += "\\u003C";
+        else if (*c == '>') json += "\\u003E";
+        else if (*c == '&') json += "\\u0026";
+        else json += *c;
+    }
+    while ((12 + 8 + json.size() + 8) % 8 != 0) json += ' ';
+    const std::size_t total = 12 + 8 + json.size() + 8 + binary_.size();
+    if (total > std::numeric_limits<std::uint32_t>::max())
+        throw Error(ErrorKind::failure, where, "would exceed the four gigabytes of a GLB file", "simplify the mesh");
+    std::string file;
+    file.reserve(total);
+    for (const std::uint32_t w :
+         {magic, 2U, static_cast<std::uint32_t>(total), static_cast<std::uint32_t>(json.size()), json_chunk})
+        append(file, w);
+    file += json;
+    append(file, static_cast<std::uint32_t>(binary_.size()));
+    append(file, binary_chunk);
+    return file + binary_;
+}
+
+Reader::Reader(const std::string& bytes, const std::string& where) : where_(where) {
+    const std::string_view all(bytes);
+    const auto damaged = [&](const std::string& what) { fail_input(where_, what, "give a binary glTF 2.0 file (.glb)"); };
+    if (all.size() < 20 || value_at<std::uint32_t>(all, 0) != magic) damaged("is no GLB file");
+    if (value_at<std::uint32_t>(all, 4) != 2) damaged("is of glTF version " + std::to_string(value_at<std::uint32_t>(all, 4)));
+    if (value_at<std::uint32_t>(all, 8) > all.size()) damaged("is cut off: its header says more bytes than there are");
+    const std::size_t end = value_at<std::uint32_t>(all, 8);
+    bool has_json = false;
+    for (std::size_t at = 12; at + 8 <= end;) {
+        const std::size_t length = value_at<std::uint32_t>(all, at);
+        const std::uint32_t kind = value_at<std::uint32_t>(all, at + 4);
+        if (length > end - at - 8) damaged("a chunk is longer than the file");
+        const std::string_view chunk = all.substr(at + 8, length);
+        if (!has_json && kind != json_chunk) damaged("the first chunk is not JSON");
+        if (!has_json) document_ = parse_json(chunk, where_ + ", JSON chunk");
+        else if (kind == binary_chunk && binary_.empty()) binary_ = chunk;
+        has_json = true;
+        at += 8 + (length + 3) / 4 * 4;
+    }
+    if (!has_json || !document_.IsObject()) damaged("has no JSON chunk with an object");
+}
+
+void Reader::fail(const std::string& pointer, const std::string& what) const {
+    fail_input(where_, "at " + pointer + ": " + what, "mend or regenerate the file");
+}
+
+std::size_t Reader::number(const JsonValue& object, const char* name, const std::string& pointer, std::size_t fallback) const {
+    const JsonValue* value = find_member(object, name);
+    if (value == nullptr) return fallback;
+    if (!value->IsUint()) fail(pointer + "/" + name, "is not a whole number from 0");
+    return value->GetUint();
+}
+
+const JsonValue& Reader::element(const char* list, std::size_t index, const std::string& pointer) const {
+    const JsonValue* found = find_member(document_, list);
+    if (found == nullptr || !found->IsArray() || index >= found->Size() ||
+        !(*found)[static_cast<rapidjson::SizeType>(index)].IsObject())
+        fail(pointer, std::string("names element ") + std::to_string(index) + " of " + list + ", which the file does not have");
+    return (*found)[static_cast<rapidjson::SizeType>(index)];
+}
+
+std::string_view Reader::view(std::size_t index, const std::string& pointer) const {
+    const JsonValue& entry = element("bufferViews", index, pointer);
+    const std::string here = "/bufferViews/" + std::to_string(index);
+    if (number(entry, "buffer", here, 1) != 0) fail(here + "/buffer", "is not the file's own buffer");
+    const JsonValue& buffer = element("buffers", 0, here);
+    if (find_member(buffer, "uri") != nullptr) fail("/buffers/0/uri", "data outside of the file are not read");
+    const std::size_t offset = number(entry, "byteOffset", here, 0), length = number(entry, "byteLength", here, 0);
+    if (offset > binary_.size() || length > binary_.size() - offset) fail(here, "reaches beyond the buffer");
+    return binary_.substr(offset, length);
+}
+
+std::vector<double> Reader::accessor(std::size_t index, std::size_t width, const std::string& pointer) const {
+    const JsonValue& entry = element("accessors", index, pointer);
+    const std::string here = "/accessors/" + std::to_string(index);
+    if (find_member(entry, "sparse") != nullptr) fail(here + "/sparse", "sparse accessors are not read");
+    const std::string type = text_member(entry, "type");
+    const std::size_t stated = type == "SCALAR" ? 1 : type == "VEC2" ? 2 : type == "VEC3" ? 3 : type == "VEC4" ? 4 : 0;
+    if (stated != width) fail(here + "/type", "'" + one_line(type).substr(0, 20) + "' is not what is asked for here");
+    const std::size_t kind = number(entry, "componentType", here, 0);
+    const std::size_t size = kind > 10000 ? 0 : size_of(static_cast<int>(kind));
+    if (size == 0) fail(here + "/componentType", "is not known");
+    const std::size_t which = number(entry, "bufferView", here, static_cast<std::size_t>(-1));
+    if (which == static_cast<std::size_t>(-1)) fail(here, "has no bufferView");
+    const std::string_view bytes = view(which, here);
+    const std::size_t element_size = size * width;
+    const std::size_t stride =
+        number(element("bufferViews", which, here), "byteStride", "/bufferViews/" + std::to_string(which), element_size);
+    const std::size_t offset = number(entry, "byteOffset", here, 0), count = number(entry, "count", here, 0);
+    if (stride < element_size || stride > 252) fail(here, "has a stride that does not fit");
+    if (count == 0) return {};
+    if (offset > bytes.size() || element_size > bytes.size() - offset ||
+        (count - 1) > (bytes.size() - offset - element_size) / stride)
+        fail(here, "reaches beyond its view");
+    std::vector<double> values;
+    values.reserve(count * width);
+    for (std::size_t i = 0; i < count; ++i)
+        for (std::size_t k = 0; k < width; ++k)
+            values.push_back(number_at(bytes, offset + i * stride + k * size, static_cast<int>(kind)));
+    return values;
+}
+
+}  // namespace ostraka::exchange::glb
