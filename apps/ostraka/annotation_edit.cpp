@@ -166,7 +166,7 @@ private:
         add_member(result, "notes", std::move(texts), allocator);
         if (session.json) session.print_report(provenance, document, result);
         else if (rows.empty()) std::cout << "nothing changed\n";
-        else std::cout << table({"id", "tag", "", "field", "before", "after"}, rows);
+        else std::cout << table({"id", "tag", "what", "field", "before", "after"}, rows);
     }
 };
 

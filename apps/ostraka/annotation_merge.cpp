@@ -66,7 +66,7 @@ struct Diff {
         add_member(result, "differences", std::move(entries), allocator);
         if (session.json) session.print_report(provenance, document, result);
         else if (list.empty()) std::cout << "no difference\n";
-        else std::cout << table({"id", "tag", "", "field", "before", "after"}, rows);
+        else std::cout << table({"id", "tag", "what", "field", "before", "after"}, rows);
         return list.empty() ? done : answer_is_no;
     }
 };
