@@ -17,8 +17,9 @@ std::vector<Index> grow_faces(const Mesh& mesh, const std::vector<Face>& start, 
         if (inside(face)) faces.push_back(face);
     };
     for (const Face face : start) meet(face);
-    for (std::size_t i = 0; i < faces.size(); ++i)
-        for (const Vertex v : corners(mesh, Face(faces[i])))
+    std::size_t next = 0;  // the list grows while it is worked off
+    while (next < faces.size())
+        for (const Vertex v : corners(mesh, Face(faces[next++])))
             for (const Face face : mesh.faces_around_target(mesh.halfedge(v))) meet(face);
     std::sort(faces.begin(), faces.end());
     return faces;
