@@ -17,6 +17,10 @@ bool is_volume(const std::string& kind) { return kind == "box" || kind == "spher
 
 bool is_drawn(const std::string& kind) { return kind == "rectangle" || kind == "polygon"; }
 
+bool is_reckoned(const std::string& kind) {
+    return kind == "brush" || kind == "threshold" || kind == "segments" || kind == "grow" || kind == "shrink";
+}
+
 /// What is hidden counts only where it is asked for.
 bool visible_only(const JsonValue& value) {
     const JsonValue* visible = find_member(value, "visible");
@@ -140,6 +144,7 @@ std::vector<bool> ExpressionEvaluator::faces(const JsonValue& expression, Frame 
         return faces_seen(mesh_, from.camera, screen_area(kind, *value, from, at + '/' + kind),
                           visible_only(*value) ? &search() : nullptr);
     }
+    if (is_reckoned(kind)) return reckoned_faces(kind, *value, frame, at + '/' + kind);
     std::vector<bool> result(mesh_.number_of_faces(), false);
     if (kind == "all") {
         result.assign(mesh_.number_of_faces(), true);
@@ -159,7 +164,15 @@ std::vector<bool> ExpressionEvaluator::faces(const JsonValue& expression, Frame 
         result = lasso(mesh_, picks((*value)["points"], frame, at + "/lasso/points"), seed, metric_of(*value),
                        where_ + ", at " + at + "/lasso", place);
     } else if (kind == "component") {
-        result = component_of(mesh_, face((*value)["seed"], frame, at + "/component/seed"));
+        const Index seed = face((*value)["seed"], frame, at + "/component/seed");
+        std::vector<bool> within;
+        if (const JsonValue* of = find_member(*value, "of")) {
+            within = faces(*of, frame, at + "/component/of");
+            if (!within[seed])
+                fail(at + "/component/seed", "face " + to_string(seed) + " does not belong to the selection",
+                     "put the seed within it");
+        }
+        result = component_of(mesh_, seed, within);
     } else if (kind == "labels") {
         if (face_labels_.empty())
             fail(at + "/labels", "the mesh has no face labels",
@@ -198,9 +211,15 @@ std::vector<Index> ExpressionEvaluator::vertices(const JsonValue& expression, Fr
         return vertices_seen(mesh_, from.camera, screen_area(kind, *value, from, at + '/' + kind),
                              visible_only(*value) ? &search() : nullptr);
     }
+    if (is_reckoned(kind) && kind != "segments") return reckoned_vertices(kind, *value, frame, at + '/' + kind);
     std::vector<Index> result;
     if (kind == "vertices") {
         result = picks(*value, frame, at + "/vertices");
+    } else if (kind == "invert") {
+        const std::vector<Index> part = vertices(*value, frame, at + "/invert");
+        const std::set<Index> members(part.begin(), part.end());
+        for (const Vertex v : mesh_.vertices())
+            if (!mesh_.is_isolated(v) && !members.contains(v)) result.push_back(v);
     } else if (kind == "nearest") {
         result = {vertex(*value, frame, at + "/nearest")};
     } else if (kind == "annotation") {
@@ -213,7 +232,8 @@ std::vector<Index> ExpressionEvaluator::vertices(const JsonValue& expression, Fr
             else std::erase_if(result, [&](Index v) { return members.contains(v) != (kind == "intersection"); });
         }
     } else {
-        fail(at + '/' + kind, "does not select points", "use vertices, nearest, a volume, or a set operation of these");
+        fail(at + '/' + kind, "does not select points",
+             "use vertices, nearest, a volume, rectangle, brush or threshold, or a set operation of these");
     }
     std::set<Index> seen;  // order kept, repeats dropped
     std::erase_if(result, [&](Index v) { return !seen.insert(v).second; });

@@ -6,6 +6,7 @@
 #include "ostraka/annotation/annotation.h"
 #include "ostraka/core/json.h"
 #include "ostraka/geom/surface_search.h"
+#include "ostraka/select/scalars.h"
 #include "ostraka/select/screen.h"
 
 #include <functional>
@@ -61,6 +62,23 @@ private:
                            const std::string& at) const;
     /// Built when the first ray is needed.
     const SurfaceSearch& search() const;
+    /// brush, threshold, segments, grow and shrink
+    [[nodiscard]] std::vector<bool> reckoned_faces(const std::string& kind, const JsonValue& value, Frame frame,
+                                                   const std::string& at) const;
+    [[nodiscard]] std::vector<Index> reckoned_vertices(const std::string& kind, const JsonValue& value, Frame frame,
+                                                       const std::string& at) const;
+    /// A length of the recipe in the mesh's unit.
+    [[nodiscard]] double length(double value, Frame frame) const;
+    /// Picked vertices that have faces.
+    std::vector<Index> surface_picks(const JsonValue& list, Frame frame, const std::string& at) const;
+    std::vector<Index> brush_centres(const JsonValue& value, Frame frame, const std::string& at) const;
+    ScalarMap scalar(const JsonValue& value, Frame frame, const std::string& at) const;
+    const ScalarMap& thickness_map() const;
+    Interval interval(const JsonValue& value, const ScalarMap& map, const std::string& at) const;
+    std::vector<bool> segments(const JsonValue& value, Frame frame, const std::string& at) const;
+    bool by_distance(const JsonValue& value, const std::string& at) const;
+    /// Calls `work`; what it finds wrong with the mesh is said with the place in the recipe.
+    void in_place(const std::string& at, const std::function<void()>& work) const;
     const Annotation& earlier(const JsonValue& id, AnnotationType type, const std::string& at) const;
     /// The kind and its value; an expression of two kinds is refused.
     std::pair<std::string, const JsonValue*> only_kind(const JsonValue& expression, const std::string& at) const;
@@ -73,7 +91,9 @@ private:
     CGAL::Bbox_3 bounds_;
     Surroundings surroundings_;
     mutable std::optional<SurfaceSearch> search_;
-    mutable std::map<std::string, ScreenCamera> cameras_;  ///< those with a name
+    mutable std::map<std::string, ScreenCamera> cameras_;         ///< those with a name
+    mutable std::map<std::string, ScalarMap> maps_;               ///< computed ones
+    mutable std::map<std::string, std::vector<Index>> segments_;  ///< likewise
 };
 
 /// The kind of an expression (its member that is not "frame") and its value.

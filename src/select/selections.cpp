@@ -165,10 +165,18 @@ Index nearest_face(const Mesh& mesh, const Point& point) {
     return nearest;
 }
 
-std::vector<bool> component_of(const Mesh& mesh, Index seed) {
+std::vector<bool> component_of(const Mesh& mesh, Index seed, const std::vector<bool>& within) {
     if (seed >= mesh.number_of_faces())
         fail_input("face " + std::to_string(seed), "the mesh has " + std::to_string(mesh.number_of_faces()) + " faces");
-    return flood(mesh, seed, {}).reached;
+    if (within.empty()) return flood(mesh, seed, {}).reached;
+    if (!within[seed])
+        fail_input("face " + std::to_string(seed), "does not belong to the selection whose part it is to show",
+                   "pick a face of it");
+    std::vector<bool> wall(mesh.number_of_edges(), false);
+    for (const Edge e : mesh.edges())
+        for (const Halfedge h : {mesh.halfedge(e, 0), mesh.halfedge(e, 1)})
+            if (!mesh.is_border(h) && !within[mesh.face(h)]) wall[e] = true;
+    return flood(mesh, seed, wall).reached;
 }
 
 std::vector<Index> path_through(const Mesh& mesh, const std::vector<Index>& picks, bool closed, PathMetric metric,

@@ -4,7 +4,10 @@
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/annotation/outline.h"
 #include "ostraka/core/error.h"
+#include "ostraka/measure/examine.h"
 #include "ostraka/select/selections.h"
+#include "ostraka/shapes/make_mesh.h"
+#include "select/real_mesh.h"
 
 #include <gtest/gtest.h>
 
@@ -125,6 +128,11 @@ TEST(Recipe, PathsComponentsAndPicks) {
     const auto second = faces_of(R"({"component": {"seed": [6, 0, 0]}})", two);
     EXPECT_EQ(second.size(), two.number_of_faces() / 2);
     EXPECT_EQ(second.front(), two.number_of_faces() / 2);
+    EXPECT_EQ(
+        faces_of(R"({"component": {"seed": [0, 2, 0], "of": {"invert": {"box": {"min": [1, 0, 0], "max": [3, 4, 0]}}}}})", mesh),
+        faces_of(R"({"box": {"min": [0, 0, 0], "max": [1, 4, 0]}})", mesh));
+    expect_error(recipe(step("region", R"({"component": {"seed": 0, "of": {"faces": [5]}}})")), mesh, "/component/seed",
+                 "does not belong");
     EXPECT_EQ(faces_of(R"({"faces": [3, 1]})", two), (std::vector<Index>{1, 3}));
     EXPECT_EQ(follow(recipe(step("region", R"({"labels": [2, 7]})")), grid(1), {7, 1}).annotations[0].faces,
               std::vector<Index>{0});
@@ -241,4 +249,41 @@ TEST(Recipe, TheShippedOnesFitTheSchema) {
         EXPECT_NO_THROW(validate(read_json(entry.path()), "recipe", name));
     }
     EXPECT_GE(count, 2U);
+}
+
+TEST(Recipe, TheVaseDrawnOnItsPicturesHasItsTrueParts) {
+    MakeOptions options;
+    options.vertices = 12000;
+    const MadeObject& vase = made_object("vase");
+    const MadeMesh made = make_mesh(vase, options);
+    const AnnotationSet set = apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data/vase-drawn.recipe.json", made.mesh);
+    for (std::size_t part = 0; part < vase.parts.size(); ++part) {
+        const auto found = std::find_if(set.annotations.begin(), set.annotations.end(),
+                                        [&](const Annotation& a) { return a.tag == vase.parts[part]; });
+        ASSERT_NE(found, set.annotations.end()) << vase.parts[part];
+        const std::vector<bool> chosen = face_flags(made.mesh, found->faces);
+        double shared = 0, all = 0;
+        for (const Face f : made.mesh.faces()) {
+            const bool truth = made.face_labels[f] == static_cast<int>(part);
+            if (chosen[f] && truth) shared += face_area(made.mesh, f);
+            if (chosen[f] || truth) all += face_area(made.mesh, f);
+        }
+        EXPECT_GT(shared / all, 0.9) << vase.parts[part];
+    }
+}
+
+TEST(Recipe, TheLionHeadIsAnnotatedOnItsPictures) {
+    OSTRAKA_SCAN(mesh, "lion-head.off");
+    const Path file = Path(OSTRAKA_SOURCE_DIR) / "data/lion-head.recipe.json";
+    const AnnotationSet set = apply_recipe(file, mesh);
+    EXPECT_EQ(to_text(annotations_to_json(set, mesh, "m", {})),
+              to_text(annotations_to_json(apply_recipe(file, mesh), mesh, "m", {})));
+    for (const Finding& finding : examine(mesh, set)) EXPECT_FALSE(finding.defect) << finding.where << ": " << finding.text;
+    const auto area = [&](int id) { return measure_region(mesh, set.find(id)->faces).area; };
+    EXPECT_NEAR(area(1) + area(2), area(0), 1e-9 * area(0)) << "neck and head are the whole";
+    for (const int id : {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12})
+        EXPECT_EQ(summarise(mesh, *set.find(id)).patches, 1U) << set.find(id)->tag;
+    EXPECT_NEAR(area(6) / area(7), 1, 0.2) << "the eyes";
+    EXPECT_NEAR(area(3) / area(4), 1, 0.3) << "the ears";
+    EXPECT_NEAR(*set.find(6)->attributes.at(0).measure.value / *set.find(7)->attributes.at(0).measure.value, 1, 0.2);
 }

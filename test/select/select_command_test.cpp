@@ -138,6 +138,40 @@ TEST(SelectCommand, APictureReportsItsCameras) {
     EXPECT_EQ(mesh.point(Vertex(set.annotations.at(0).points.at(0))), Point(0, -1, 0));
 }
 
+TEST(SelectCommand, BrushThresholdAndSegment) {
+    const Folder folder;
+    const std::string record = " --record " + folder.at("r.recipe.json");
+    for (const std::string step :
+         {"--tag disc --brush 0,0,1 --radius 0.5", "--tag stroke --brush 1,0,0 0,1,0 --radius 0.1 --stroke",
+          "--tag north --threshold z --above 0.5", "--tag near --threshold distance --seed 0,0,-1 --below 0.4",
+          "--tag thin --threshold thickness --quantiles --below 0.2", "--tag disc --brush 0,0,1 --radius 0.5 --grow 2",
+          "--tag ring --type point --brush 0,0,1 --radius 0.3 --invert"}) {
+        const auto result = folder.select(step + record);
+        ASSERT_EQ(result.code, 0) << step << "\n" << result.err;
+    }
+    ASSERT_EQ(run_command("annotation apply " + folder.at("ball.ply") + " " + folder.at("r.recipe.json") + " " +
+                          folder.at("o.ant.json"))
+                  .code,
+              0);
+    EXPECT_EQ(read_file(folder / "o.ant.json"), read_file(folder / "a.ant.json"));
+    const auto segments = run_command("annotation segment " + folder.at("ball.ply") + " " + folder.at("s.ant.json") +
+                                      " --clusters 3 --labels-out " + folder.at("s.seg") + " --json");
+    ASSERT_EQ(segments.code, 0) << segments.err;
+    const Json report = parse_json(segments.out, "report");
+    const JsonValue& list = report["result"]["segments"];
+    ASSERT_GE(list.Size(), 1U);
+    double area = 0;
+    for (rapidjson::SizeType i = 0; i < list.Size(); ++i) {
+        area += list[i]["area"].GetDouble();
+        if (i > 0) {
+            EXPECT_LE(list[i]["area"].GetDouble(), list[i - 1]["area"].GetDouble() * (1 + 1e-12));
+        }
+    }
+    EXPECT_NEAR(area, surface_area(read_mesh(folder / "ball.ply").mesh), 1e-9);
+    EXPECT_EQ(run_command("annotation segment " + folder.at("ball.ply") + " " + folder.at("s.ant.json") + " --clusters 1").code,
+              2);
+}
+
 TEST(SelectMutation, DamagedRecipesEndInSuccessOrAClearError) {
     const Mesh mesh = spheres(2);
     const std::string recipe = R"({"format": "ostraka-recipe", "version": 1, "class": "ball", "unit": "mm", "up": [0, 0, 1],
@@ -148,6 +182,10 @@ TEST(SelectMutation, DamagedRecipesEndInSuccessOrAClearError) {
   {"id": 2, "tag": "b", "type": "region", "select": {"polygon": {"camera": "eye", "points": [[50, 50], [250, 50], [150, 190]], "visible": false}}},
   {"id": 3, "tag": "c", "type": "point", "select": {"vertices": [{"camera": "front", "pixel": [300, 240]}, [0, 0, 1], 5]}},
   {"id": 4, "tag": "d", "type": "region", "select": {"lasso": {"points": [[1, 0.3, 0.3], [1, -0.4, 0.4], [1, -0.4, -0.4], [1, 0.4, -0.4]], "seed": [1, 0.02, 0.01]}}},
+  {"id": 5, "tag": "e", "type": "region", "select": {"grow": {"of": {"brush": {"points": [0, [0, 1, 0]], "radius": 0.5, "stroke": true}}, "rings": 1}}},
+  {"id": 6, "tag": "f", "type": "region", "select": {"threshold": {"coordinate": [0, 0, 1], "above": 0.2, "below": 0.8, "quantiles": true}}},
+  {"id": 7, "tag": "g", "type": "point", "select": {"threshold": {"curvature": "mean", "scale": 0.1, "above": 0.5}}},
+  {"id": 8, "tag": "h", "type": "region", "select": {"shrink": {"of": {"threshold": {"distance": [4], "below": 1.4}}, "distance": 0.2}}},
   {"action": "add to", "id": 1, "select": {"sphere": {"centre": [0, 0, 1], "radius": 0.7}}},
   {"action": "remove from", "id": 3, "select": {"nearest": [0, 0, 1]}},
   {"action": "retag", "id": 2, "tag": "drawn", "colour": [1, 2, 3]},

@@ -27,8 +27,8 @@ Index nearest_vertex(const Mesh& mesh, const Point& point);
 /// The face with the nearest point; ties go to the lower index. Linear. Throws Error (input) on a mesh without faces.
 Index nearest_face(const Mesh& mesh, const Point& point);
 
-/// The faces connected with `seed` over edges.
-std::vector<bool> component_of(const Mesh& mesh, Index seed);
+/// The faces connected with `seed` over edges; those of `within` only, which holds the seed, where that is not empty.
+std::vector<bool> component_of(const Mesh& mesh, Index seed, const std::vector<bool>& within = {});
 
 /// The vertices along shortest edge paths through the picked vertices in turn; closed: first = last, and legs avoid one another
 /// where they can. Equal successive picks count

@@ -1,0 +1,54 @@
+// Selections by a number that each vertex or face has.
+#pragma once
+
+#include "ostraka/core/mesh.h"
+#include "ostraka/core/options.h"
+
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace ostraka {
+
+/// One number a vertex or a face; NaN where there is none.
+struct ScalarMap {
+    std::vector<double> values;
+    bool on_faces = false;
+};
+
+/// From `above` to `below`, both included.
+struct Interval {
+    double above = -std::numeric_limits<double>::infinity(), below = std::numeric_limits<double>::infinity();
+    [[nodiscard]] bool contains(double x) const { return above <= x && x <= below; }
+};
+
+/// The coordinate along a direction, of each vertex. With `share` 0 at the lowest vertex that has a face and 1 at the highest,
+/// else in the mesh's unit. Throws Error (input) for a direction without length.
+ScalarMap coordinate_map(const Mesh& mesh, const Vector& direction, bool share, const std::string& where);
+
+/// Faces whose value (of a map on vertices: the mean of its corners) lies in the interval.
+std::vector<bool> faces_between(const Mesh& mesh, const ScalarMap& map, const Interval& interval);
+/// Vertices that have a face and whose value (of a map on faces: the mean around them, weighted by area) lies in the interval.
+std::vector<Index> vertices_between(const Mesh& mesh, const ScalarMap& map, const Interval& interval);
+
+/// The value below which the map lies on this share of the area (0 to 1). Throws Error (input) without any value.
+double quantile_of(const Mesh& mesh, const ScalarMap& map, double share, const std::string& where);
+
+struct SegmentOptions {
+    int clusters = 5;
+    double smoothing = 0.26;
+
+    template <class Visitor>
+    void describe(Visitor& visit) {
+        visit("clusters", clusters, "levels of thickness that are told apart", Range{2, 100});
+        visit("smoothing", smoothing, "how much short borders in hollows are preferred, 0 to 1", Range{0, 1});
+    }
+};
+
+/// Parts of like thickness (Shapira, Shamir and Cohen-Or 2008, as CGAL implements it): the values of `thickness`, one a face, are
+/// smoothed over faces, told apart by a mixture of Gaussians and cut where the surface is hollow (graph cut); connected faces of
+/// one level are a segment. Returns the number of each face's segment, 0 for the largest by area. Throws Error (input) where
+/// there is no face, and Error (usage) for options out of range or values that are not one a face.
+std::vector<Index> segment(const Mesh& mesh, const std::vector<double>& thickness, const SegmentOptions& options = {});
+
+}  // namespace ostraka

@@ -1,0 +1,208 @@
+// Expressions that reckon with distances and other numbers on the surface.
+#include "expression.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/fields/curvature.h"
+#include "ostraka/fields/thickness.h"
+#include "ostraka/render/values.h"
+#include "ostraka/select/growth.h"
+#include "ostraka/select/selections.h"
+
+#include <algorithm>
+#include <sstream>
+
+namespace ostraka {
+
+namespace {
+
+using std::to_string;
+
+std::string key_of(const char* name, double a, double b = 0) {
+    std::ostringstream text;
+    text.precision(17);
+    text << name << ' ' << a << ' ' << b;
+    return text.str();
+}
+
+double number(const JsonValue& object, const char* name, double otherwise) {
+    const JsonValue* value = find_member(object, name);
+    return value == nullptr ? otherwise : value->GetDouble();
+}
+
+}  // namespace
+
+double ExpressionEvaluator::length(double value, Frame frame) const { return frame.box ? value * box_diagonal(mesh_) : value; }
+
+std::vector<Index> ExpressionEvaluator::surface_picks(const JsonValue& list, Frame frame, const std::string& at) const {
+    const std::vector<Index> vertices = picks(list, frame, at);
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+        if (mesh_.is_isolated(Vertex(vertices[i])))
+            fail(at + '/' + to_string(i), "vertex " + to_string(vertices[i]) + " has no face", "pick another one");
+    return vertices;
+}
+
+std::vector<Index> ExpressionEvaluator::brush_centres(const JsonValue& value, Frame frame, const std::string& at) const {
+    const std::vector<Index> centres = surface_picks(value["points"], frame, at + "/points");
+    const JsonValue* stroke = find_member(value, "stroke");
+    if (stroke == nullptr || !stroke->GetBool() || centres.size() < 2) return centres;
+    return path_through(mesh_, centres, false, PathMetric::combined, where_ + ", at " + at);
+}
+
+ScalarMap ExpressionEvaluator::scalar(const JsonValue& value, Frame frame, const std::string& at) const {
+    std::string chosen;
+    for (const char* name : {"coordinate", "curvature", "thickness", "distance", "map"}) {
+        if (find_member(value, name) == nullptr) continue;
+        if (!chosen.empty()) fail(at, "a threshold on both " + chosen + " and " + name, "give one, and join two by intersection");
+        chosen = name;
+    }
+    if (chosen.empty()) fail(at, "a threshold on nothing", "name one of coordinate, curvature, thickness, distance, map");
+    const std::string here = at + '/' + chosen;
+    const JsonValue& of = value[chosen.c_str()];
+    if (mesh_.number_of_faces() == 0) fail(at, "the mesh has no faces", "give another mesh");
+    if (chosen == "coordinate")
+        return coordinate_map(mesh_, Vector(of[0].GetDouble(), of[1].GetDouble(), of[2].GetDouble()), frame.box,
+                              where_ + ", at " + here);
+    const double unit = length(1, frame);
+    ScalarMap map;
+    if (chosen == "distance") {
+        const double limit = number(value, "below", std::numeric_limits<double>::infinity());
+        const bool quantiles = find_member(value, "quantiles") != nullptr && value["quantiles"].GetBool();
+        map.values = distances_within(mesh_, surface_picks(of, frame, here),
+                                      quantiles ? std::numeric_limits<double>::infinity() : unit * std::max(0.0, limit));
+        for (double& x : map.values) x /= unit;
+        return map;
+    }
+    if (chosen == "map") {
+        const Path file = surroundings_.folder / std::string(of.GetString(), of.GetStringLength());
+        map.values = read_values(file);
+        const JsonValue* on = find_member(value, "on");
+        const bool vertices = map.values.size() == mesh_.number_of_vertices(),
+                   faces = map.values.size() == mesh_.number_of_faces();
+        map.on_faces = on == nullptr ? !vertices : std::string(on->GetString()) == "face";
+        if (!(map.on_faces ? faces : vertices))
+            fail(here,
+                 file.filename().string() + " holds " + to_string(map.values.size()) + " values for a mesh of " +
+                     to_string(mesh_.number_of_vertices()) + " vertices and " + to_string(mesh_.number_of_faces()) + " faces",
+                 "give one value a vertex or a face of this mesh");
+        return map;
+    }
+    if (chosen == "curvature") {
+        const bool mean = std::string(of.GetString()) == "mean";
+        CurvatureOptions options;
+        options.scale = number(value, "scale", 0);
+        const std::string key = key_of("curvature", options.scale, mean ? 1 : 0);
+        if (!maps_.contains(key)) {
+            Curvature found;
+            in_place(here, [&] { found = curvature(mesh_, options); });
+            maps_[key].values = std::move(mean ? found.mean : found.gaussian);
+        }
+        map = maps_[key];
+        for (double& x : map.values) x *= mean ? unit : unit * unit;
+        return map;
+    }
+    in_place(here, [&] { map = thickness_map(); });
+    for (double& x : map.values) x /= unit;
+    return map;
+}
+
+const ScalarMap& ExpressionEvaluator::thickness_map() const {
+    if (!maps_.contains("thickness")) maps_["thickness"] = {thickness(mesh_), true};
+    return maps_["thickness"];
+}
+
+void ExpressionEvaluator::in_place(const std::string& at, const std::function<void()>& work) const {
+    try {
+        work();
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::input || error.where().starts_with(where_)) throw;
+        fail(at, error.problem(), error.remedy().empty() ? "select by another tool" : error.remedy());
+    }
+}
+
+Interval ExpressionEvaluator::interval(const JsonValue& value, const ScalarMap& map, const std::string& at) const {
+    Interval result;
+    if (find_member(value, "above") == nullptr && find_member(value, "below") == nullptr)
+        fail(at, "a threshold with neither above nor below", "give one of them, or both");
+    const JsonValue* quantiles = find_member(value, "quantiles");
+    const auto bound = [&](const char* name, double otherwise) {
+        const JsonValue* given = find_member(value, name);
+        if (given == nullptr) return otherwise;
+        const double x = given->GetDouble();
+        if (quantiles == nullptr || !quantiles->GetBool()) return x;
+        if (x < 0 || x > 1) fail(at + '/' + name, "a quantile of " + to_string(x), "give a share of the area from 0 to 1");
+        return quantile_of(mesh_, map, x, where_ + ", at " + at);
+    };
+    result.above = bound("above", result.above);
+    result.below = bound("below", result.below);
+    if (result.above > result.below) fail(at, "above exceeds below", "exchange the two");
+    return result;
+}
+
+std::vector<bool> ExpressionEvaluator::segments(const JsonValue& value, Frame frame, const std::string& at) const {
+    SegmentOptions options;
+    options.clusters = static_cast<int>(number(value, "clusters", options.clusters));
+    options.smoothing = number(value, "smoothing", options.smoothing);
+    const JsonValue *seeds = find_member(value, "seeds"), *numbers = find_member(value, "numbers");
+    if ((seeds == nullptr) == (numbers == nullptr))
+        fail(at, seeds == nullptr ? "segments without seeds or numbers" : "segments by both seeds and numbers",
+             "give one of the two");
+    const std::string key = key_of("segments", options.clusters, options.smoothing);
+    if (!segments_.contains(key)) in_place(at, [&] { segments_[key] = segment(mesh_, thickness_map().values, options); });
+    const std::vector<Index>& number_of = segments_[key];
+    const Index count = *std::max_element(number_of.begin(), number_of.end()) + 1;
+    std::vector<bool> wanted(count, false);
+    if (seeds != nullptr)
+        for (rapidjson::SizeType i = 0; i < seeds->Size(); ++i)
+            wanted[number_of[face((*seeds)[i], frame, at + "/seeds/" + to_string(i))]] = true;
+    if (numbers != nullptr)
+        for (rapidjson::SizeType i = 0; i < numbers->Size(); ++i) {
+            const Index n = (*numbers)[i].GetUint();
+            if (n >= count)
+                fail(at + "/numbers/" + to_string(i), "segment " + to_string(n) + " of " + to_string(count),
+                     "segments are numbered from 0, the largest");
+            wanted[n] = true;
+        }
+    std::vector<bool> faces(mesh_.number_of_faces());
+    for (std::size_t f = 0; f < faces.size(); ++f) faces[f] = wanted[number_of[f]];
+    return faces;
+}
+
+std::vector<bool> ExpressionEvaluator::reckoned_faces(const std::string& kind, const JsonValue& value, Frame frame,
+                                                      const std::string& at) const {
+    if (kind == "brush") return brushed_faces(mesh_, brush_centres(value, frame, at), length(value["radius"].GetDouble(), frame));
+    if (kind == "threshold") {
+        const ScalarMap map = scalar(value, frame, at);
+        return faces_between(mesh_, map, interval(value, map, at));
+    }
+    if (kind == "segments") return segments(value, frame, at);
+    const bool larger = kind == "grow";
+    const std::vector<bool> part = faces(value["of"], frame, at + "/of");
+    if (by_distance(value, at)) {
+        const double distance = length(value["distance"].GetDouble(), frame);
+        return larger ? grow_by(mesh_, part, distance) : shrink_by(mesh_, part, distance);
+    }
+    const int rings = value["rings"].GetInt();
+    return larger ? grow(mesh_, part, rings) : shrink(mesh_, part, rings);
+}
+
+std::vector<Index> ExpressionEvaluator::reckoned_vertices(const std::string& kind, const JsonValue& value, Frame frame,
+                                                          const std::string& at) const {
+    if (kind == "brush")
+        return brushed_vertices(mesh_, brush_centres(value, frame, at), length(value["radius"].GetDouble(), frame));
+    if (kind == "threshold") {
+        const ScalarMap map = scalar(value, frame, at);
+        return vertices_between(mesh_, map, interval(value, map, at));
+    }
+    const std::vector<Index> part = vertices(value["of"], frame, at + "/of");
+    if (by_distance(value, at)) fail(at + "/distance", "points grow by rings only", "give rings");
+    const int rings = value["rings"].GetInt();
+    return kind == "grow" ? grow_vertices(mesh_, part, rings) : shrink_vertices(mesh_, part, rings);
+}
+
+bool ExpressionEvaluator::by_distance(const JsonValue& value, const std::string& at) const {
+    const bool rings = find_member(value, "rings") != nullptr, distance = find_member(value, "distance") != nullptr;
+    if (rings == distance) fail(at, rings ? "both rings and a distance" : "neither rings nor a distance", "say one: how far");
+    return distance;
+}
+
+}  // namespace ostraka
