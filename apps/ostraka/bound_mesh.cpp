@@ -142,7 +142,7 @@ MarkedParts BoundMesh::marked(bool pins) const {
     if (!pins) return parts;
     for (const Annotation& annotation : before_->annotations)
         for (const Attribute& attribute : annotation.attributes)
-            for (const Index v : attribute.measure.points) parts.vertices.at(v) = true;
+            for (const Index v : pins_of(attribute.measure)) parts.vertices.at(v) = true;
     return parts;
 }
 

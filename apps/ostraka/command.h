@@ -95,6 +95,8 @@ void add_relation(CLI::App& relation, Session& session);               // relati
 void add_annotation_exchange(CLI::App& annotation, Session& session);  // annotation_exchange.cpp: export, import
 void add_annotation_edit(CLI::App& annotation, Session& session);      // annotation_edit.cpp
 void add_annotation_merge(CLI::App& annotation, Session& session);     // annotation_merge.cpp: diff, merge
+void add_measure(CLI::App& measure, Session& session);                 // measure.cpp: take, describe, refresh
+void add_measure_map(CLI::App& measure, Session& session);             // measure_map.cpp
 void add_render(CLI::App& tool, Session& session);                     // render.cpp
 
 }  // namespace ostraka::app

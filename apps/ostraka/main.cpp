@@ -23,6 +23,8 @@ int main(int argc, char** argv) {
     annotation->require_subcommand(1);
     CLI::App* relation = tool.add_subcommand("relation", "relationships among annotations");
     relation->require_subcommand(1);
+    CLI::App* measure = tool.add_subcommand("measure", "take measures, describe annotations, compute maps");
+    measure->require_subcommand(1);
     app::add_mesh_info(*mesh, session);
     app::add_mesh_convert(*mesh, session);
     app::add_mesh_repair(*mesh, session);
@@ -37,6 +39,8 @@ int main(int argc, char** argv) {
     app::add_annotation_exchange(*annotation, session);
     app::add_annotation_edit(*annotation, session);
     app::add_annotation_merge(*annotation, session);
+    app::add_measure(*measure, session);
+    app::add_measure_map(*measure, session);
     app::add_render(tool, session);
     try {
         tool.parse(argc, argv);

@@ -53,6 +53,12 @@ Annotation& ensure_root(AnnotationSet& set, const Mesh& mesh) {
     return *root;
 }
 
+std::vector<Index> pins_of(const Measure& measure) {
+    std::vector<Index> pins = measure.points;
+    for (const auto& again : measure.repeats) pins.insert(pins.end(), again.begin(), again.end());
+    return pins;
+}
+
 std::vector<bool> face_flags(const Mesh& mesh, const std::vector<Index>& faces) {
     std::vector<bool> flags(mesh.number_of_faces(), false);
     for (const Index face : faces) {

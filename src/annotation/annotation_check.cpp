@@ -69,6 +69,19 @@ void check_measure(const Measure& measure, const Mesh& mesh, const std::string& 
         if (!(length > 0 && std::isfinite(length)))
             fail(where, at + "/direction", "the direction has no length", "give a vector that is not zero");
     }
+    if (measure.exact && measure.tool != "tape")
+        fail(where, at + "/geodesic", "belongs to a tape, not to a " + measure.tool, "remove it");
+    for (std::size_t i = 0; i < measure.repeats.size(); ++i) {
+        const std::string here = at + "/repeats/" + to_string(i);
+        if (measure.repeats[i].size() != measure.points.size())
+            fail(where, here,
+                 to_string(measure.repeats[i].size()) + " pins where the measure has " + to_string(measure.points.size()),
+                 "pick the same pins again");
+        for (std::size_t k = 0; k < measure.repeats[i].size(); ++k)
+            places::check_vertex(mesh, measure.repeats[i][k], where, here + '/' + to_string(k));
+    }
+    if (measure.uncertainty && !(std::isfinite(*measure.uncertainty) && *measure.uncertainty >= 0))
+        fail(where, at + "/uncertainty", "is negative or not finite", "leave it out");
     if (measure.value && !std::isfinite(*measure.value)) fail(where, at + "/value", "the value is not finite", "leave it out");
 }
 

@@ -291,7 +291,17 @@ void move_pins(Annotation& annotation, const std::vector<Index>& vertex_map, std
             if (!vertex_map.empty()) pin = pin < vertex_map.size() ? vertex_map[pin] : no_index;
             lost = lost || pin >= vertex_count;
         }
+        // A picking that loses a pin is none; the others are left.
+        std::erase_if(measure.repeats, [&](std::vector<Index>& pins) {
+            bool gone = false;
+            for (Index& pin : pins) {
+                if (!vertex_map.empty()) pin = pin < vertex_map.size() ? vertex_map[pin] : no_index;
+                gone = gone || pin >= vertex_count;
+            }
+            return gone;
+        });
         measure.locations.clear();
+        measure.uncertainty.reset();
         measure.stale = true;
         if (!lost) continue;
         // A measure without its pins cannot be taken again: what is left is a figure.

@@ -66,7 +66,10 @@ Measure measure_of(const JsonValue& object) {
         for (const auto& location : locations->GetArray())
             measure.locations.push_back({location["face"].GetUint(), vector_of(location["barycentric"])});
     if (const JsonValue* direction = find_member(object, "direction")) measure.direction = vector_of(*direction);
+    measure.exact = text_of(object, "geodesic") == "exact";
+    measure.repeats = chains_of(object, "repeats");
     if (const JsonValue* value = find_member(object, "value")) measure.value = value->GetDouble();
+    if (const JsonValue* value = find_member(object, "uncertainty")) measure.uncertainty = value->GetDouble();
     measure.unit = text_of(object, "unit");
     measure.stale = flag_of(object, "stale");
     return measure;
@@ -88,7 +91,9 @@ Attribute attribute_of(const JsonValue& object, const std::string& where, const 
         attribute.type = AttributeType::measure;
         const JsonValue* measure = find_member(object, "measure");
         if (measure == nullptr) fail(where, at, "an attribute of type measure without a measure", "add the member \"measure\"");
-        note_unknown(*measure, {"tool", "points", "locations", "direction", "value", "unit", "stale"}, at + "/measure", notes);
+        note_unknown(*measure,
+                     {"tool", "points", "locations", "direction", "geodesic", "repeats", "value", "uncertainty", "unit", "stale"},
+                     at + "/measure", notes);
         attribute.measure = measure_of(*measure);
     } else {
         note_unknown(object, {"id", "name", "type", "value", "file", "unit", "stale"}, at, notes);

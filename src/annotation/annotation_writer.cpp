@@ -56,7 +56,10 @@ JsonValue json_of(const Measure& measure, JsonAllocator& allocator) {
         add_member(object, "locations", std::move(locations), allocator);
     }
     if (measure.direction) add_member(object, "direction", numbers_of(*measure.direction, allocator), allocator);
+    if (measure.exact) add_member(object, "geodesic", "exact", allocator);
+    if (!measure.repeats.empty()) add_member(object, "repeats", list_of(measure.repeats, allocator), allocator);
     if (measure.value) add_member(object, "value", number_of(*measure.value), allocator);
+    if (measure.uncertainty) add_member(object, "uncertainty", number_of(*measure.uncertainty), allocator);
     add_text(object, "unit", measure.unit, allocator);
     if (measure.stale) add_member(object, "stale", JsonValue(true), allocator);
     return object;

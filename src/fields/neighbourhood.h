@@ -3,6 +3,7 @@
 
 #include "ostraka/core/mesh.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace ostraka {
@@ -14,11 +15,7 @@ public:
     /// ball joins to it; the order depends on the mesh alone.
     template <class Visit>
     void walk(const Mesh& mesh, Vertex centre, double radius, Visit&& visit) {
-        if (stamps_.size() < mesh.number_of_vertices()) stamps_.resize(mesh.number_of_vertices(), 0);
-        if (++stamp_ == 0) {
-            std::fill(stamps_.begin(), stamps_.end(), 0);
-            stamp_ = 1;
-        }
+        begin(mesh.number_of_vertices());
         const Point& middle = mesh.point(centre);
         const double limit = radius * radius;
         front_.assign(1, centre);
@@ -43,10 +40,41 @@ public:
         }
     }
 
+    /// The same for faces, which are where their centroids are and joined over edges.
+    template <class Visit>
+    void walk(const Mesh& mesh, const std::vector<Point>& centroids, Face centre, double radius, Visit&& visit) {
+        begin(mesh.number_of_faces());
+        const double limit = radius * radius;
+        faces_.assign(1, centre);
+        stamps_[centre] = stamp_;
+        visit(centre, 0.0);
+        for (std::size_t i = 0; i < faces_.size(); ++i) {
+            Halfedge h = mesh.halfedge(faces_[i]);
+            for (int k = 0; k < 3; ++k, h = mesh.next(h)) {
+                const Face next = mesh.face(mesh.opposite(h));
+                if (next == Mesh::null_face() || stamps_[next] == stamp_) continue;
+                stamps_[next] = stamp_;
+                const double squared = CGAL::squared_distance(centroids[next], centroids[centre]);
+                if (!(squared < limit)) continue;
+                faces_.push_back(next);
+                visit(next, squared);
+            }
+        }
+    }
+
 private:
+    void begin(std::size_t count) {
+        if (stamps_.size() < count) stamps_.resize(count, 0);
+        if (++stamp_ == 0) {
+            std::fill(stamps_.begin(), stamps_.end(), 0);
+            stamp_ = 1;
+        }
+    }
+
     std::vector<std::uint32_t> stamps_;
     std::uint32_t stamp_ = 0;
     std::vector<Vertex> front_;
+    std::vector<Face> faces_;
 };
 
 /// One for each thread; what a walk gives does not depend on the walks before it.

@@ -34,22 +34,21 @@ std::vector<ConeRay> cone_rays(int count, double opening) {
     return rays;
 }
 
-/// Area vectors of the vertices averaged over balls, so that single faces do not tilt the cone.
+/// Area vectors of the faces averaged over balls, so that single faces do not tilt the cone.
 std::vector<Vector> smooth_normals(const Mesh& mesh, double radius) {
-    std::vector<Vector> shares(mesh.number_of_vertices(), Vector(0, 0, 0)), result = shares;
-    parallel_for(shares.size(), [&](std::size_t i) {
-        const Vertex v(static_cast<Index>(i));
-        if (mesh.is_isolated(v)) return;
-        for (const Face face : mesh.faces_around_target(mesh.halfedge(v)))
-            if (face != Mesh::null_face()) shares[i] += area_vector(mesh, face);
+    std::vector<Vector> own(mesh.number_of_faces()), result(own.size(), Vector(0, 0, 0));
+    std::vector<Point> centroids(own.size());
+    parallel_for(own.size(), [&](std::size_t f) {
+        own[f] = area_vector(mesh, Face(static_cast<Index>(f)));
+        centroids[f] = centroid(mesh, Face(static_cast<Index>(f)));
     });
-    if (!(radius > 0)) return shares;
+    if (!(radius > 0)) return own;
     parallel_for(
         result.size(),
-        [&](std::size_t i) {
-            this_threads_neighbourhood().walk(mesh, Vertex(static_cast<Index>(i)), radius, [&](Vertex v, double squared) {
-                result[i] += (1 - squared / (radius * radius)) * shares[v];
-            });
+        [&](std::size_t f) {
+            this_threads_neighbourhood().walk(
+                mesh, centroids, Face(static_cast<Index>(f)), radius,
+                [&](Face face, double squared) { result[f] += (1 - squared / (radius * radius)) * own[face]; });
         },
         4096);
     return result;
@@ -111,9 +110,7 @@ std::vector<double> thickness(const Mesh& mesh, const ThicknessOptions& options)
         result.size(),
         [&](std::size_t f) {
             const Face face(static_cast<Index>(f));
-            Vector axis(0, 0, 0);
-            for (const Vertex v : corners(mesh, face)) axis -= normals[v];
-            if (!(options.scale > 0)) axis = -area_vector(mesh, face);
+            Vector axis = -normals[f];
             const double length = std::sqrt(axis.squared_length());
             if (!(length > 0)) return;
             axis = axis / length;

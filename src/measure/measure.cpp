@@ -1,12 +1,15 @@
 #include "ostraka/measure/measure.h"
 
-#include "ostraka/annotation/outline.h"
 #include "ostraka/core/error.h"
+#include "ostraka/geom/geodesic.h"
 #include "ostraka/geom/shortest_path.h"
+#include "ostraka/geom/surface_trace.h"
+#include "ostraka/measure/descriptors.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 
 namespace ostraka {
@@ -23,6 +26,7 @@ double distance(const Point& a, const Point& b) { return std::sqrt(CGAL::squared
 struct Pin {
     Point point{0, 0, 0};
     Index face = no_index;  ///< of a pin inside a face
+    SurfaceNode node;
     std::vector<std::pair<Vertex, double>> gates;
 };
 
@@ -31,23 +35,92 @@ class Evaluator {
 public:
     explicit Evaluator(const Mesh& mesh) : mesh_(mesh) {}
 
-    double evaluate(const Annotation& annotation, const Measure& measure) {
+    Evaluated evaluate(const Annotation& annotation, const Measure& measure) {
         const std::string where = name_of(annotation) + ", " + measure.tool;
-        if (measure.points.size() < 2 && measure.locations.size() < 2) fail_input(where, "has fewer than two pins", "add them");
-        std::vector<Pin> pins;
+        Evaluated result;
+        std::vector<double> values;
+        double variance = 0;
+        const auto pick = [&](const Measure& picking) {
+            const std::vector<Pin> pins = pins_at(picking, where);
+            values.push_back(value(pins, measure, where));
+            variance += resolution(pins, measure);
+        };
+        pick(measure);
+        for (const auto& points : measure.repeats) {
+            if (points.size() != measure.points.size())
+                fail_input(where,
+                           "was picked again with " + std::to_string(points.size()) + " pins instead of " +
+                               std::to_string(measure.points.size()),
+                           "pick the same pins again");
+            Measure again;
+            again.points = points;
+            pick(again);
+        }
+        const auto count = static_cast<double>(values.size());
+        for (const double v : values) result.value += (v - values.front()) / count;
+        result.value += values.front();
+        for (const double v : values) result.spread += (v - result.value) * (v - result.value) / std::max(count - 1, 1.0);
+        result.uncertainty = std::sqrt(variance / count + result.spread / count);
+        result.spread = std::sqrt(result.spread);
+        result.resolution = std::sqrt(variance / count);
+        result.pickings = values.size();
+        return result;
+    }
+
+private:
+    std::vector<Pin> pins_at(const Measure& measure, const std::string& where) const {
         const std::size_t count = measure.locations.empty() ? measure.points.size() : measure.locations.size();
+        if (count < 2) fail_input(where, "has fewer than two pins", "add them");
+        std::vector<Pin> pins;
         for (std::size_t i = 0; i < count; ++i) pins.push_back(pin(measure, i, where));
+        return pins;
+    }
+
+    double value(const std::vector<Pin>& pins, const Measure& measure, const std::string& where) {
         if (measure.tool == "bounding") return bounding(pins, measure, where);
         if (measure.tool != "ruler" && measure.tool != "tape")
             fail_input(where, "is not a known tool", "use ruler, tape or bounding");
         double sum = 0;
-        for (std::size_t i = 0; i + 1 < pins.size(); ++i)
-            sum +=
-                measure.tool == "ruler" ? distance(pins[i].point, pins[i + 1].point) : along_surface(pins[i], pins[i + 1], where);
+        for (std::size_t i = 0; i + 1 < pins.size(); ++i) {
+            if (measure.tool == "ruler") sum += distance(pins[i].point, pins[i + 1].point);
+            else if (!measure.exact) sum += along_surface(pins[i], pins[i + 1], where);
+            else sum += joined(geodesic_distance(mesh_, pins[i].node, pins[i + 1].node), where);
+        }
         return sum;
     }
 
-private:
+    /// Variance of a picked place in each direction.
+    [[nodiscard]] double variance(const Pin& pin) const {
+        double area = 0;
+        if (pin.face != no_index) area = face_area(mesh_, Face(pin.face));
+        else if (const Vertex v(pin.node.element); !mesh_.is_isolated(v))
+            for (const Face face : mesh_.faces_around_target(mesh_.halfedge(v)))
+                if (face != Mesh::null_face()) area += face_area(mesh_, face) / 3;
+        return area / (4 * std::numbers::pi);
+    }
+
+    /// Variance of a measure by the resolution at its pins.
+    [[nodiscard]] double resolution(const std::vector<Pin>& pins, const Measure& measure) const {
+        double sum = 0;
+        if (measure.tool == "bounding") {
+            const auto [low, high] = outermost(pins, unit_direction(*measure.direction));
+            return low == high ? 0 : variance(pins[low]) + variance(pins[high]);
+        }
+        for (std::size_t i = 0; i < pins.size(); ++i) {
+            Vector derivative(0, 0, 0);
+            double alone = 0;  // pins in one place: away from each other in any direction
+            for (const std::size_t k : {i - 1, i + 1}) {
+                if (k >= pins.size()) continue;
+                const Vector way = pins[i].point - pins[k].point;
+                const double length = std::sqrt(way.squared_length());
+                if (length > 0) derivative += way / length;
+                else alone += 1;
+            }
+            sum += variance(pins[i]) * (derivative.squared_length() + alone);
+        }
+        return sum;
+    }
+
     Pin pin(const Measure& measure, std::size_t i, const std::string& where) const {
         Pin result;
         if (measure.locations.empty()) {
@@ -59,6 +132,7 @@ private:
                            "was it taken on another mesh?");
             result.point = mesh_.point(Vertex(vertex));
             result.gates.emplace_back(Vertex(vertex), 0.0);
+            result.node = surface_node(mesh_, Vertex(vertex));
             return result;
         }
         const auto& [face, weights] = measure.locations[i];
@@ -77,9 +151,14 @@ private:
             z += weights[k] * p.z();
         }
         result.point = Point(x, y, z);
+        result.node.kind = SurfaceNode::Kind::face;
+        result.node.element = face;
+        result.node.barycentric = weights;
+        result.node.point = result.point;
         for (std::size_t k = 0; k < 3; ++k) {
             if (weights[k] >= 1) {  // the pin is this corner
                 result.gates.assign(1, {corner[k], 0.0});
+                result.node = surface_node(mesh_, corner[k]);
                 result.face = no_index;
                 break;
             }
@@ -90,20 +169,37 @@ private:
 
     static double bounding(const std::vector<Pin>& pins, const Measure& measure, const std::string& where) {
         if (!measure.direction) fail_input(where, "has no direction", "add one");
-        // Scaled first: squares of huge and tiny numbers are neither.
-        const auto& [x, y, z] = *measure.direction;
-        const double scale = std::max({std::abs(x), std::abs(y), std::abs(z)});
-        const Vector direction(x / scale, y / scale, z / scale);
-        const double length = std::sqrt(direction.squared_length());
-        if (!(length > 0)) fail_input(where, "has a direction without length", "give a vector that is not zero");
-        double low = std::numeric_limits<double>::infinity(), high = -low;
-        for (const Pin& p : pins) {
-            // Relative to the first pin, so that nothing is lost far from the origin.
-            const double height = ((p.point - pins.front().point) * direction) / length;
-            low = std::min(low, height);
-            high = std::max(high, height);
+        const Vector direction = unit_direction(*measure.direction);
+        if (!(direction.squared_length() > 0))
+            fail_input(where, "has a direction without length", "give a vector that is not zero");
+        const auto [low, high] = outermost(pins, direction);
+        return (pins[high].point - pins[low].point) * direction;
+    }
+
+    /// The null vector for one without length or that is no number. Scaled first: squares of huge and tiny numbers are neither.
+    static Vector unit_direction(const std::array<double, 3>& d) {
+        const double scale = std::max({std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});
+        if (!(scale > 0 && std::isfinite(scale))) return {0, 0, 0};
+        const Vector scaled(d[0] / scale, d[1] / scale, d[2] / scale);
+        return scaled / std::sqrt(scaled.squared_length());
+    }
+
+    /// The pins lowest and highest along a unit vector, heights taken from the first so that nothing is lost far from the origin.
+    static std::pair<std::size_t, std::size_t> outermost(const std::vector<Pin>& pins, const Vector& direction) {
+        std::size_t lowest = 0, highest = 0;
+        double low = 0, high = 0;
+        for (std::size_t i = 0; i < pins.size(); ++i) {
+            const double height = (pins[i].point - pins.front().point) * direction;
+            if (height < low) low = height, lowest = i;
+            if (height > high) high = height, highest = i;
         }
-        return high - low;
+        return {lowest, highest};
+    }
+
+    static double joined(double length, const std::string& where) {
+        if (!std::isfinite(length))
+            fail_input(where, "no path along the surface joins two of its pins", "they lie on separate parts: use a ruler");
+        return length;
     }
 
     double along_surface(const Pin& from, const Pin& to, const std::string& where) {
@@ -124,57 +220,60 @@ private:
                     length += distance(mesh_.point(Vertex(path[i])), mesh_.point(Vertex(path[i + 1])));
                 best = std::min(best, length);
             }
-        if (!std::isfinite(best))
-            fail_input(where, "no path along the surface joins two of its pins", "they lie on separate parts: use a ruler");
-        return best;
+        return joined(best, where);
     }
 
     const Mesh& mesh_;
     std::optional<PathSearch> search_;
 };
 
-double length_of(const Mesh& mesh, const Annotation& annotation) {
-    double sum = 0;
-    for (const auto& polyline : annotation.polylines)
-        for (std::size_t k = 0; k + 1 < polyline.size(); ++k)
-            sum += distance(mesh.point(Vertex(polyline[k])), mesh.point(Vertex(polyline[k + 1])));
-    return sum;
-}
-
-/// V = 1/3 sum c . n A (the thesis's footnote with its erratum), about the first vertex so that nothing is lost far from the
-/// origin.
-double volume_of(const Mesh& mesh) {
-    if (mesh.number_of_faces() == 0) return 0;
-    const Point origin = mesh.point(corners(mesh, *mesh.faces().begin())[0]);
-    double sum = 0;
-    for (const Face face : mesh.faces()) sum += (centroid(mesh, face) - origin) * area_vector(mesh, face);
-    return sum / 3;
-}
-
-bool is_closed(const Mesh& mesh) {
-    return std::none_of(mesh.halfedges().begin(), mesh.halfedges().end(), [&](Halfedge h) { return mesh.is_border(h); });
-}
-
 }  // namespace
 
 double evaluate(const Mesh& mesh, const Annotation& annotation, const Measure& measure) {
+    return Evaluator(mesh).evaluate(annotation, measure).value;
+}
+
+Evaluated evaluate_with_uncertainty(const Mesh& mesh, const Annotation& annotation, const Measure& measure) {
     return Evaluator(mesh).evaluate(annotation, measure);
 }
 
+std::size_t merge_pickings(Annotation& annotation) {
+    std::vector<Attribute> kept;
+    std::size_t merged = 0;
+    for (Attribute& attribute : annotation.attributes) {
+        const Measure& measure = attribute.measure;
+        const auto same = std::find_if(kept.begin(), kept.end(), [&](const Attribute& other) {
+            return attribute.type == AttributeType::measure && other.type == AttributeType::measure &&
+                   other.name == attribute.name && other.measure.tool == measure.tool &&
+                   other.measure.points.size() == measure.points.size() && other.measure.direction == measure.direction &&
+                   other.measure.exact == measure.exact && other.measure.unit == measure.unit &&
+                   other.measure.locations.empty() && measure.locations.empty();
+        });
+        if (same == kept.end()) {
+            kept.push_back(std::move(attribute));
+            continue;
+        }
+        same->measure.repeats.push_back(measure.points);
+        same->measure.repeats.insert(same->measure.repeats.end(), measure.repeats.begin(), measure.repeats.end());
+        same->measure.stale = true;
+        same->measure.uncertainty.reset();
+        ++merged;
+    }
+    annotation.attributes = std::move(kept);
+    return merged;
+}
+
 std::optional<double> evaluate(const Mesh& mesh, const Annotation& annotation, const std::string& descriptor) {
-    if (annotation.type == AnnotationType::line && descriptor == "length") return length_of(mesh, annotation);
-    if (annotation.type != AnnotationType::region) return std::nullopt;
-    if (descriptor == "area") return measure_region(mesh, annotation.faces).area;
-    if (descriptor == "perimeter") return measure_region(mesh, annotation.faces).perimeter;
-    if (descriptor == "circularity") return measure_region(mesh, annotation.faces).circularity();
-    if (descriptor == "volume" && annotation.all && is_closed(mesh)) return volume_of(mesh);
-    return std::nullopt;
+    const auto quantity = DescriptorSearch(mesh).find(annotation, descriptor);
+    if (!quantity || quantity->is_list) return std::nullopt;
+    return quantity->values.front();
 }
 
 std::string descriptor_unit(const std::string& descriptor, const std::string& unit) {
-    if (unit.empty() || descriptor == "circularity") return {};
+    if (descriptor == "Gaussian curvature integral") return "rad";
+    if (unit.empty() || descriptor == "circularity" || descriptor == "box axes") return {};
     if (descriptor == "area") return unit + "^2";
-    if (descriptor == "volume") return unit + "^3";
+    if (descriptor == "volume" || descriptor == "volume bound") return unit + "^3";
     return unit;
 }
 
@@ -193,9 +292,10 @@ std::array<Index, 2> extremes(const Mesh& mesh, const Annotation& annotation, co
     return result;
 }
 
-RefreshResult refresh_measures(const Mesh& mesh, AnnotationSet& set) {
+RefreshResult refresh_measures(const Mesh& mesh, AnnotationSet& set, bool uncertainties) {
     RefreshResult result;
     Evaluator evaluator(mesh);
+    DescriptorSearch descriptors(mesh);
     const auto stays_stale = [&](bool& mark, const Annotation& annotation, const Attribute& attribute, const std::string& why) {
         mark = true;
         ++result.stale;
@@ -205,18 +305,20 @@ RefreshResult refresh_measures(const Mesh& mesh, AnnotationSet& set) {
         for (Attribute& attribute : annotation.attributes) {
             if (attribute.type == AttributeType::measure) {
                 try {
-                    attribute.measure.value = evaluator.evaluate(annotation, attribute.measure);
-                    attribute.measure.stale = false;
+                    Measure& measure = attribute.measure;
+                    const Evaluated now = evaluator.evaluate(annotation, measure);
+                    measure.value = now.value;
+                    if (uncertainties || measure.uncertainty || !measure.repeats.empty()) measure.uncertainty = now.uncertainty;
+                    measure.stale = false;
                     ++result.computed;
                 } catch (const Error& error) {
                     stays_stale(attribute.measure.stale, annotation, attribute, error.problem());
                 }
             } else if (attribute.type == AttributeType::descriptor) {
                 Descriptor& descriptor = attribute.descriptor;
-                const auto value =
-                    descriptor.file.empty() && !descriptor.is_list ? evaluate(mesh, annotation, attribute.name) : std::nullopt;
-                if (value) {
-                    descriptor.values.assign(1, *value);
+                const auto quantity = descriptor.file.empty() ? descriptors.find(annotation, attribute.name) : std::nullopt;
+                if (quantity && quantity->is_list == descriptor.is_list) {
+                    descriptor.values = quantity->values;
                     descriptor.stale = false;
                     ++result.computed;
                 } else if (descriptor.stale) {

@@ -4,6 +4,7 @@
 
 #include <bit>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -115,6 +116,28 @@ std::vector<double> parse_lines(std::string_view text, const std::string& where)
 std::vector<double> read_values(const Path& file) {
     const std::string bytes = read_file(file);
     return extension(file) == ".npy" ? parse_npy(bytes, file.string()) : parse_lines(bytes, file.string());
+}
+
+void write_values(const Path& file, const std::vector<double>& values) {
+    std::string bytes;
+    if (extension(file) == ".npy") {
+        std::string header = "{'descr': '<f8', 'fortran_order': False, 'shape': (" + std::to_string(values.size()) + ",), }";
+        header.resize((header.size() + 11 + 63) / 64 * 64 - 11, ' ');  // data start at a multiple of 64
+        header += '\n';
+        bytes.assign("\x93NUMPY\x01\x00", 8);
+        bytes += static_cast<char>(header.size() & 255);
+        bytes += static_cast<char>(header.size() >> 8);
+        bytes += header;
+        bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double));
+    } else {
+        char text[32];
+        for (const double value : values) {
+            if (std::isnan(value)) bytes += "nan";
+            else bytes.append(text, std::to_chars(text, text + sizeof text, value).ptr);
+            bytes += '\n';
+        }
+    }
+    write_file(file, bytes);
 }
 
 }  // namespace ostraka

@@ -8,6 +8,8 @@ void AttributeCarrier::carry(const Annotation& from, Annotation& to) {
         if (attribute.type == AttributeType::measure) {
             moved.measure.points.clear();
             moved.measure.locations.clear();
+            moved.measure.repeats.clear();
+            moved.measure.uncertainty.reset();
             bool complete = true;
             for (const Index v : attribute.measure.points) {
                 const Correspondence& place = tracer_.place(v);
@@ -18,6 +20,12 @@ void AttributeCarrier::carry(const Annotation& from, Annotation& to) {
                 moved.measure.points.push_back(place.vertex);
                 // Face indices of a refined mesh are new: there the nearest vertex stands alone.
                 if (!refined_) moved.measure.locations.push_back({place.place.face, place.place.barycentric});
+            }
+            for (const auto& pins : attribute.measure.repeats) {  // a picking that loses a pin is none
+                std::vector<Index> places;
+                for (const Index v : pins)
+                    if (const Index place = tracer_.place(v).vertex; place != no_index) places.push_back(place);
+                if (complete && places.size() == pins.size()) moved.measure.repeats.push_back(std::move(places));
             }
             if (!complete) {
                 to.note += (to.note.empty() ? "" : "; ") + ("measure '" + attribute.name + "' lost a pin");

@@ -55,7 +55,7 @@ void check_annotations(const Mesh& source, const AnnotationSet& set) {
             for (const Index v : line) check(v, source.number_of_vertices(), "vertex");
         for (const Index f : annotation.faces) check(f, source.number_of_faces(), "face");
         for (const Attribute& attribute : annotation.attributes)
-            for (const Index v : attribute.measure.points) check(v, source.number_of_vertices(), "vertex");
+            for (const Index v : pins_of(attribute.measure)) check(v, source.number_of_vertices(), "vertex");
     }
 }
 
@@ -125,8 +125,10 @@ private:
                 chains_[i] = region_chains(source_, annotation.faces);
             for (const Chain& chain : chains_[i]) vertices.insert(vertices.end(), chain.vertices.begin(), chain.vertices.end());
             vertices.insert(vertices.end(), annotation.points.begin(), annotation.points.end());
-            for (const Attribute& attribute : annotation.attributes)
-                vertices.insert(vertices.end(), attribute.measure.points.begin(), attribute.measure.points.end());
+            for (const Attribute& attribute : annotation.attributes) {
+                const std::vector<Index> pins = pins_of(attribute.measure);
+                vertices.insert(vertices.end(), pins.begin(), pins.end());
+            }
         }
         tracer_.match(std::move(vertices));
     }

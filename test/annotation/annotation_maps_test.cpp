@@ -148,7 +148,10 @@ TEST(AnnotationMaps, PinsFollowAndValuesAreStale) {
     Annotation annotation;
     Attribute& attribute = annotation.attributes.emplace_back();
     attribute.type = AttributeType::measure;
-    attribute.measure = {"ruler", {0, 2}, {}, {}, 5.0, "mm", false};
+    attribute.measure.tool = "ruler";
+    attribute.measure.points = {0, 2};
+    attribute.measure.value = 5.0;
+    attribute.measure.unit = "mm";
     move_pins(annotation, {3, 4, 1}, 5);
     EXPECT_EQ(attribute.measure.points, (std::vector<Index>{3, 1}));
     EXPECT_TRUE(attribute.measure.stale);

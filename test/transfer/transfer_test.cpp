@@ -183,7 +183,10 @@ TEST(Transfer, ShortLinesBecomePointsAndLostPinsLeaveAStaleValue) {
     Attribute ruler;
     ruler.name = "width";
     ruler.type = AttributeType::measure;
-    ruler.measure = {"ruler", {static_cast<Index>(two.number_of_vertices() - 1), 4}, {}, std::nullopt, 1.5, "mm", false};
+    ruler.measure.tool = "ruler";
+    ruler.measure.points = {static_cast<Index>(two.number_of_vertices() - 1), 4};
+    ruler.measure.value = 1.5;
+    ruler.measure.unit = "mm";
     cap_region.attributes = {ruler};
     TransferOptions force;
     force.force = true;
@@ -340,7 +343,10 @@ TEST(Transfer, MeasuresMoveWithTheirPinsAndAreTakenAnew) {
     Attribute ruler;
     ruler.name = "axis";
     ruler.type = AttributeType::measure;
-    ruler.measure = {"ruler", {4, 5}, {}, std::nullopt, 99.0, "mm", false};  // the poles
+    ruler.measure.tool = "ruler";
+    ruler.measure.points = {4, 5};  // the poles
+    ruler.measure.value = 99.0;
+    ruler.measure.unit = "mm";
     Attribute area;
     area.id = 1;
     area.name = "area";

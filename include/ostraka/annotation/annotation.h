@@ -23,9 +23,12 @@ struct Measure {
     std::vector<Index> points;        ///< vertices: two for a ruler, two or more for a tape, the two extremes for a bounding
     std::vector<Location> locations;  ///< empty, or one per point: where the pin really is
     std::optional<std::array<double, 3>> direction;  ///< of a bounding measure
-    std::optional<double> value;                     ///< in `unit`
+    std::optional<double> value;                     ///< in `unit`; the mean over the pickings
     std::string unit;
     bool stale = false;  ///< the mesh or the pins changed and the value was not recomputed
+    bool exact = false;  ///< a tape along the shortest curve over the faces ("geodesic": "exact") instead of along edges
+    std::vector<std::vector<Index>> repeats = {};      ///< the pins picked again, once or more: as many each as `points`
+    std::optional<double> uncertainty = std::nullopt;  ///< standard deviation of the value, in `unit`
 };
 
 /// A quantity that is not a measure: area, curvature map, thickness ...
@@ -89,6 +92,9 @@ int free_id(const AnnotationSet& set);
 /// The vertices an annotation touches, ascending, without repeats: its points, the vertices of its poly-lines or the corners
 /// of its faces.
 std::vector<Index> touched_vertices(const Mesh& mesh, const Annotation& annotation);
+
+/// The vertices that a measure names: its points and those of its repeats.
+std::vector<Index> pins_of(const Measure& measure);
 
 /// One flag per face of a region.
 std::vector<bool> face_flags(const Mesh& mesh, const std::vector<Index>& faces);

@@ -3,6 +3,7 @@
 
 #include "ostraka/core/mesh.h"
 #include "ostraka/core/options.h"
+#include "ostraka/geom/oriented_box.h"
 
 #include <string>
 #include <utility>
@@ -38,12 +39,6 @@ struct ComponentDiagnosis {
     [[nodiscard]] bool closed() const { return border_edges == 0 && nonmanifold_edges == 0; }
     /// Number of handles; -1 unless closed, manifold and orientable.
     [[nodiscard]] long long genus() const { return closed() && manifold() && orientable ? (2 - euler()) / 2 : -1; }
-};
-
-struct OrientedBox {
-    std::array<double, 3> centre{};
-    std::array<std::array<double, 3>, 3> axes{};  ///< unit vectors, longest side first, right-handed
-    std::array<double, 3> sides{};
 };
 
 /// A guess from the size alone.
@@ -108,9 +103,5 @@ struct SelfIntersections {
 /// count as joined. Exact. Triangles without area are left out. `limit` bounds the number of pairs, the work is bounded as
 /// well; what is found does not depend on the number of threads.
 SelfIntersections self_intersections(const TriangleSoup& soup, std::size_t limit = 10'000'000);
-
-/// A small box around the points: the smallest rectangle (rotating calipers, Toussaint 1983) over a fixed set of directions,
-/// principal axes among them, the best refined. Near the smallest box, not always it. Null sides without points.
-OrientedBox oriented_box(const std::vector<std::array<double, 3>>& points);
 
 }  // namespace ostraka

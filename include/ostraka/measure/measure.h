@@ -8,13 +8,34 @@ namespace ostraka {
 
 /// The value of a measure on the mesh as it is, in the mesh's unit. Pins are the measure's points, or its locations where it has
 /// them. ruler: Euclidean distance from pin to pin, summed. tape: shortest edge paths from pin to pin, summed (the thesis's
-/// approximate geodesic: some per cent longer than the true one); a pin inside a face reaches the edges over its corners.
-/// bounding: distance of the two planes across `direction` through the pins farthest apart along it. Throws Error (input), naming
+/// approximate geodesic: some per cent longer than the true one), or, where the measure is `exact`, the shortest curves over the
+/// faces; on edge paths a pin inside a face reaches the edges over its corners. bounding: distance of the two planes across
+/// `direction` through the pins farthest apart along it. With repeats the mean over the pickings. Throws Error (input), naming
 /// the annotation, if a pin is out of range, the direction is missing or no path joins two pins of a tape.
 double evaluate(const Mesh& mesh, const Annotation& annotation, const Measure& measure);
 
-/// Descriptors known by name: "area", "perimeter" and "circularity" (P^2 / A) of a region, "length" of a line, "volume" enclosed
-/// by a region that is all of a closed mesh. Nothing for other names or types.
+/// Value and standard deviation of a measure. Each pin was set on the nearest vertex, so that its place is known to the size of
+/// the faces around it: as if it lay anywhere in a disc of a third of their area A (of the area of the face that holds the pin,
+/// for a location), which has the variance s^2 = A / (4 pi) in each direction. A length L then varies by r^2 = sum over the pins
+/// of s^2 |dL/dp|^2, the derivatives taken along the straight lines between the pins (JCGM 100:2008, type B). Of n pickings with
+/// values L_i the mean is kept, and the uncertainty is u^2 = mean r_i^2 + (sum (L_i - mean)^2 / (n - 1)) / n (type A added). What
+/// an edge path is longer than the true one is not in it. Throws as `evaluate`.
+struct Evaluated {
+    double value = 0;
+    double uncertainty = 0;
+    double resolution = 0;  ///< root mean square of the r_i
+    double spread = 0;      ///< sample standard deviation of the pickings; 0 if there is one
+    std::size_t pickings = 1;
+};
+Evaluated evaluate_with_uncertainty(const Mesh& mesh, const Annotation& annotation, const Measure& measure);
+
+/// Makes one measure of those of an annotation that have the same name, tool, number of pins and direction: the first keeps its
+/// place and gets the pins of the others as repeats; value and uncertainty are left for `refresh_measures`. Measures with
+/// locations stay as they are. Returns how many went into others.
+std::size_t merge_pickings(Annotation& annotation);
+
+/// Descriptors of one number known by name: "area", "perimeter", "circularity" (P^2 / A), "volume" and others of a region,
+/// "length" of a line; see descriptors.h. Nothing for other names or types.
 std::optional<double> evaluate(const Mesh& mesh, const Annotation& annotation, const std::string& descriptor);
 /// The unit of such a descriptor when lengths are in `unit` ("mm" gives "mm^2" for an area); empty if `unit` is.
 std::string descriptor_unit(const std::string& descriptor, const std::string& unit);
@@ -30,7 +51,7 @@ struct RefreshResult {
 };
 
 /// Computes every measure and every known descriptor of the set anew and clears their marks; what cannot be computed is marked
-/// stale.
-RefreshResult refresh_measures(const Mesh& mesh, AnnotationSet& set);
+/// stale. Measures that have an uncertainty or repeats get their uncertainty anew as well; with `uncertainties` all do.
+RefreshResult refresh_measures(const Mesh& mesh, AnnotationSet& set, bool uncertainties = false);
 
 }  // namespace ostraka

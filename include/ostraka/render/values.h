@@ -12,4 +12,7 @@ namespace ostraka {
 /// byte.
 std::vector<double> read_values(const Path& file);
 
+/// Writes a NumPy array of float64 (.npy) or, under any other extension, one number a line, "nan" for no value.
+void write_values(const Path& file, const std::vector<double>& values);
+
 }  // namespace ostraka

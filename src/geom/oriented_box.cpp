@@ -1,6 +1,8 @@
 // The oriented box: directions tried on a few hundred extreme points, then measured on all.
+#include "ostraka/geom/oriented_box.h"
+
+#include "ostraka/core/mesh.h"
 #include "ostraka/core/parallel.h"
-#include "ostraka/io/diagnose.h"
 
 #include <Eigen/Dense>
 
@@ -111,19 +113,68 @@ Candidate box_across(const Vector3d& normal, const std::vector<Vector3d>& points
     return best;
 }
 
+/// Goes downhill in the normal by steps that halve down to `finest`; the smallest rectangle across it is found exactly each time.
+/// Where that ends, either other axis may serve as the normal and lead on.
+Candidate refine(Candidate best, const std::vector<Vector3d>& points, double coarsest, double finest) {
+    for (int round = 0; round < 4; ++round) {
+        for (double step = coarsest; step > finest;) {
+            Candidate better = best;
+            for (int k = 0; k < 8; ++k) {
+                const Vector3d u = best.side, w = best.normal.cross(u);
+                const double turn = k * std::numbers::pi / 4;
+                const Candidate next =
+                    box_across((best.normal + step * (std::cos(turn) * u + std::sin(turn) * w)).normalized(), points);
+                if (next.volume < better.volume) better = next;
+            }
+            if (better.volume < best.volume) best = better;
+            else step /= 2;
+        }
+        Candidate turned = best;
+        for (const Vector3d& axis : {best.side, Vector3d(best.normal.cross(best.side))})
+            if (const Candidate next = box_across(axis.normalized(), points); next.volume < turned.volume) turned = next;
+        if (turned.volume > best.volume * (1 - 1e-12)) break;
+        best = turned;
+    }
+    return best;
+}
+
+/// Refines all, the smallest first in what is returned.
+void refine_all(std::vector<Candidate>& candidates, const std::vector<Vector3d>& points, double coarsest, double finest) {
+    parallel_for(
+        candidates.size(), [&](std::size_t i) { candidates[i] = refine(candidates[i], points, coarsest, finest); }, 1);
+    std::stable_sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) { return a.volume < b.volume; });
+}
+
+/// Directions in narrow cones around the sides of a box.
+std::vector<Vector3d> directions_around(const Candidate& box) {
+    std::vector<Vector3d> list;
+    const std::array<Vector3d, 3> axes{box.side, box.normal.cross(box.side), box.normal};
+    for (std::size_t k = 0; k < 3; ++k) {
+        list.push_back(axes[k]);
+        for (int i = 0; i < 24; ++i) {
+            const double turn = i * std::numbers::pi / 4, tilt = 0.02 * std::exp2(i / 8);
+            list.push_back(
+                (axes[k] + tilt * (std::cos(turn) * axes[(k + 1) % 3] + std::sin(turn) * axes[(k + 2) % 3])).normalized());
+        }
+    }
+    return list;
+}
+
 }  // namespace
 
 OrientedBox oriented_box(const std::vector<Array3>& points) {
     OrientedBox box;
     box.axes = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     if (points.empty()) return box;
-    std::vector<Vector3d> extreme = extreme_points(points, directions(96));
+    std::vector<Vector3d> extreme = extreme_points(points, directions(points.size() > 50000 ? 128 : 512));
     // Directions do not depend on place and scale; numbers near one keep products in range.
     const Vector3d origin = extreme.front();
     double reach = 0;
-    for (auto& p : extreme) reach = std::max(reach, (p -= origin).cwiseAbs().maxCoeff());
-    if (reach > 0)
-        for (auto& p : extreme) p /= reach;
+    for (const auto& p : extreme) reach = std::max(reach, (p - origin).cwiseAbs().maxCoeff());
+    const auto near_one = [&](std::vector<Vector3d>& list) {
+        for (auto& p : list) p = reach > 0 ? Vector3d((p - origin) / reach) : Vector3d::Zero();
+    };
+    near_one(extreme);
 
     std::vector<Vector3d> tried = directions(400);
     Vector3d mean = Vector3d::Zero();
@@ -135,26 +186,32 @@ OrientedBox oriented_box(const std::vector<Array3>& points) {
         tried.push_back(Vector3d::Unit(k));
         tried.push_back(principal.eigenvectors().col(k).normalized());
     }
-    std::vector<Candidate> candidates(tried.size());
+    std::vector<Candidate> all(tried.size());
     parallel_for(
-        tried.size(), [&](std::size_t i) { candidates[i] = box_across(tried[i], extreme); }, 16);
-    std::stable_sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) { return a.volume < b.volume; });
-    candidates.resize(4);
-    for (Candidate& best : candidates)
-        for (double step = 0.05; step > 1e-6;) {
-            Candidate better = best;
-            for (int k = 0; k < 8; ++k) {
-                const Vector3d u = best.side, w = best.normal.cross(u);
-                const double turn = k * std::numbers::pi / 4;
-                const Candidate next =
-                    box_across((best.normal + step * (std::cos(turn) * u + std::sin(turn) * w)).normalized(), extreme);
-                if (next.volume < better.volume) better = next;
-            }
-            if (better.volume < best.volume) best = better;
-            else step /= 2;
-        }
-    const Candidate best =
-        *std::min_element(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) { return a.volume < b.volume; });
+        tried.size(), [&](std::size_t i) { all[i] = box_across(tried[i], extreme); }, 16);
+    std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.volume < b.volume; });
+    // The best of each neighbourhood: valleys differ.
+    std::vector<Candidate> candidates;
+    for (const Candidate& next : all) {
+        if (candidates.size() == 48) break;
+        if (std::none_of(candidates.begin(), candidates.end(),
+                         [&](const Candidate& c) { return std::abs(c.normal.dot(next.normal)) > 0.98; }))
+            candidates.push_back(next);
+    }
+    refine_all(candidates, extreme, 0.05, 4e-3);
+    candidates.resize(std::min<std::size_t>(candidates.size(), 6));
+    // What touches boxes of these directions was perhaps not among the points so far.
+    std::vector<Vector3d> around;
+    for (const Candidate& candidate : candidates) {
+        const std::vector<Vector3d> list = directions_around(candidate);
+        around.insert(around.end(), list.begin(), list.end());
+    }
+    std::vector<Vector3d> more = extreme_points(points, around);
+    near_one(more);
+    extreme.insert(extreme.end(), more.begin(), more.end());
+    for (Candidate& candidate : candidates) candidate = box_across(candidate.normal, extreme);
+    refine_all(candidates, extreme, 0.02, 1e-9);
+    const Candidate best = candidates.front();
 
     const std::array<Vector3d, 3> axes{best.side, best.normal.cross(best.side).normalized(), best.normal};
     std::array<double, 3> low, high;

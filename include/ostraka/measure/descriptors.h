@@ -1,0 +1,82 @@
+// What can be computed of an annotation: sizes, box, centroid, curvature, thickness, statistics of maps.
+#pragma once
+
+#include "ostraka/annotation/annotation.h"
+#include "ostraka/fields/curvature.h"
+#include "ostraka/fields/statistics.h"
+#include "ostraka/fields/thickness.h"
+
+#include <memory>
+
+namespace ostraka {
+
+/// A quantity with its name, and the power of the unit of length it is in.
+struct Quantity {
+    std::string name;
+    std::vector<double> values;
+    bool is_list = false;  ///< a list in a file, even of one value
+    int power = 0;         ///< 1 for a length, 2 for an area, -1 for a curvature; 0 without unit or as `unit` says
+    std::string unit;      ///< of quantities that are no power of a length, e.g. "rad"
+};
+
+/// The unit of a quantity where lengths are in `unit`: "mm^2", "1/mm"; empty if `unit` is.
+std::string unit_of(const Quantity& quantity, const std::string& unit);
+
+/// A map to take statistics of: one value a vertex.
+struct NamedMap {
+    std::string name;
+    std::vector<double> values;
+    std::string unit;
+};
+
+struct DescriptorOptions {
+    bool curvature = false;  ///< statistics of mean and Gaussian curvature
+    bool thickness = false;  ///< statistics of the shape diameter
+    CurvatureOptions curvature_options;
+    ThicknessOptions thickness_options;
+
+    template <class Visitor>
+    void describe(Visitor& visit) {
+        visit("curvature", curvature, "statistics of mean and Gaussian curvature at the vertices", Anything{});
+        visit("thickness", thickness, "statistics of the thickness under the faces (shape diameter)", Anything{});
+        curvature_options.describe(visit);
+        thickness_options.describe(visit);
+    }
+};
+
+/// Computes quantities of annotations on one mesh, which must outlive it; what is needed of the whole mesh (curvature, thickness)
+/// is computed once, when first asked for. Not for use by several threads at once.
+class DescriptorSearch {
+public:
+    explicit DescriptorSearch(const Mesh& mesh, DescriptorOptions options = {});
+    ~DescriptorSearch();
+    DescriptorSearch(const DescriptorSearch&) = delete;
+    DescriptorSearch& operator=(const DescriptorSearch&) = delete;
+
+    /// One quantity by its name; nothing if the name is not known or has no meaning for this type of annotation. Known are, of
+    /// regions: area, perimeter, circularity (P^2 / A), volume and volume bound (see solid.h), centroid (of the surface), solid
+    /// centroid, box sides, box centre, box axes (oriented box, the longest side first), mean curvature integral, Gaussian
+    /// curvature integral; of lines: length.
+    std::optional<Quantity> find(const Annotation& annotation, const std::string& name);
+
+    /// All that are known, and the statistics asked for: "mean curvature median", "thickness mean" and so on: mean, deviation,
+    /// median, 5 and 95 per cent. Throws Error (input), naming annotation and map, for a map of the wrong length or one that is
+    /// not finite there, and for an annotation without elements. Points and lines have statistics of maps with equal weights.
+    std::vector<Quantity> describe(const Annotation& annotation, const std::vector<NamedMap>& maps = {});
+
+    /// The fields themselves, per vertex.
+    const Curvature& curvature();
+    /// Per face; NaN where there is none.
+    const std::vector<double>& thickness();
+
+private:
+    const Mesh& mesh_;
+    DescriptorOptions options_;
+    struct Cache;
+    std::unique_ptr<Cache> cache_;
+};
+
+/// Writes quantities into an annotation as descriptors: those of the same name are replaced, others get fresh ids.
+void store(Annotation& annotation, const std::vector<Quantity>& quantities, const std::string& unit);
+
+}  // namespace ostraka

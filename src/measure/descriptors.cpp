@@ -1,0 +1,209 @@
+#include "ostraka/measure/descriptors.h"
+
+#include "ostraka/annotation/outline.h"
+#include "ostraka/core/error.h"
+#include "ostraka/geom/oriented_box.h"
+#include "ostraka/measure/solid.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ostraka {
+
+namespace {
+
+const std::vector<std::string>& region_quantities() {
+    static const std::vector<std::string> names{"area",
+                                                "perimeter",
+                                                "circularity",
+                                                "volume",
+                                                "volume bound",
+                                                "centroid",
+                                                "solid centroid",
+                                                "box sides",
+                                                "box centre",
+                                                "box axes",
+                                                "mean curvature integral",
+                                                "Gaussian curvature integral"};
+    return names;
+}
+
+Quantity number(const std::string& name, double value, int power, const std::string& unit = {}) {
+    return {name, {value}, false, power, unit};
+}
+
+Quantity list(const std::string& name, std::vector<double> values, int power) {
+    return {name, std::move(values), true, power, {}};
+}
+
+std::vector<double> coordinates(const Point& p) { return {p.x(), p.y(), p.z()}; }
+
+void add_statistics(std::vector<Quantity>& list, const std::string& name, const Statistics& s, int power,
+                    const std::string& unit = {}) {
+    list.push_back(number(name + " mean", s.mean, power, unit));
+    list.push_back(number(name + " deviation", s.deviation, power, unit));
+    list.push_back(number(name + " median", s.median, power, unit));
+    list.push_back(number(name + " 5 %", s.percentile_5, power, unit));
+    list.push_back(number(name + " 95 %", s.percentile_95, power, unit));
+}
+
+std::string name_of(const Annotation& annotation) {
+    return "annotation " + std::to_string(annotation.id) + " ('" + annotation.tag + "')";
+}
+
+double length_of(const Mesh& mesh, const Annotation& annotation) {
+    double sum = 0;
+    for (const auto& polyline : annotation.polylines)
+        for (std::size_t k = 0; k + 1 < polyline.size(); ++k)
+            sum += std::sqrt(CGAL::squared_distance(mesh.point(Vertex(polyline[k])), mesh.point(Vertex(polyline[k + 1]))));
+    return sum;
+}
+
+}  // namespace
+
+std::string unit_of(const Quantity& quantity, const std::string& unit) {
+    if (quantity.power == 0) return quantity.unit;
+    if (unit.empty()) return {};
+    const int power = std::abs(quantity.power);
+    const std::string text = power == 1 ? unit : unit + '^' + std::to_string(power);
+    return quantity.power > 0 ? text : "1/" + text;
+}
+
+struct DescriptorSearch::Cache {
+    std::optional<CurvatureIntegrals> integrals;
+    std::optional<Curvature> curvature;
+    std::optional<std::vector<double>> thickness;
+
+    /// The box of the region asked for last: its three quantities are asked for one after the other.
+    const OrientedBox& box_of(const Mesh& mesh, const Annotation& annotation) {
+        if (boxed_faces != annotation.faces) {
+            std::vector<std::array<double, 3>> points;
+            for (const Index v : touched_vertices(mesh, annotation)) {
+                const Point& p = mesh.point(Vertex(v));
+                points.push_back({p.x(), p.y(), p.z()});
+            }
+            box = oriented_box(points);
+            boxed_faces = annotation.faces;
+        }
+        return box;
+    }
+
+private:
+    std::vector<Index> boxed_faces;
+    OrientedBox box;
+};
+
+DescriptorSearch::DescriptorSearch(const Mesh& mesh, DescriptorOptions options)
+    : mesh_(mesh), options_(std::move(options)), cache_(std::make_unique<Cache>()) {
+    check_options(options_, "descriptors");
+}
+DescriptorSearch::~DescriptorSearch() = default;
+
+const Curvature& DescriptorSearch::curvature() {
+    if (!cache_->curvature) cache_->curvature = ostraka::curvature(mesh_, options_.curvature_options);
+    return *cache_->curvature;
+}
+
+const std::vector<double>& DescriptorSearch::thickness() {
+    if (!cache_->thickness) cache_->thickness = ostraka::thickness(mesh_, options_.thickness_options);
+    return *cache_->thickness;
+}
+
+std::optional<Quantity> DescriptorSearch::find(const Annotation& annotation, const std::string& name) {
+    if (annotation.type == AnnotationType::line && name == "length") return number(name, length_of(mesh_, annotation), 1);
+    if (annotation.type != AnnotationType::region) return std::nullopt;
+    const auto& faces = annotation.faces;
+    if (name == "area") return number(name, measure_region(mesh_, faces).area, 2);
+    if (name == "perimeter") return number(name, measure_region(mesh_, faces).perimeter, 1);
+    if (name == "circularity") return number(name, measure_region(mesh_, faces).circularity(), 0);
+    if (faces.empty()) return std::nullopt;
+    if (name == "volume") return number(name, region_solid(mesh_, faces).volume, 3);
+    if (name == "volume bound") return number(name, region_solid(mesh_, faces).volume_bound, 3);
+    if (name == "solid centroid") return list(name, coordinates(region_solid(mesh_, faces).centroid), 1);
+    if (name == "centroid") return list(name, coordinates(surface_centroid(mesh_, faces)), 1);
+    if (name == "box sides" || name == "box centre" || name == "box axes") {
+        const OrientedBox& box = cache_->box_of(mesh_, annotation);
+        if (name == "box sides") return list(name, {box.sides.begin(), box.sides.end()}, 1);
+        if (name == "box centre") return list(name, {box.centre.begin(), box.centre.end()}, 1);
+        std::vector<double> axes;
+        for (const auto& axis : box.axes) axes.insert(axes.end(), axis.begin(), axis.end());
+        return list(name, axes, 0);
+    }
+    if (name == "mean curvature integral" || name == "Gaussian curvature integral") {
+        if (!cache_->integrals) cache_->integrals = curvature_integrals(mesh_);
+        const RegionCurvature sum = region_curvature(mesh_, *cache_->integrals, faces);
+        return name.front() == 'm' ? number(name, sum.mean_integral, 1) : number(name, sum.gaussian_integral, 0, "rad");
+    }
+    return std::nullopt;
+}
+
+std::vector<Quantity> DescriptorSearch::describe(const Annotation& annotation, const std::vector<NamedMap>& maps) {
+    std::vector<Quantity> result;
+    const std::string who = name_of(annotation);
+    const std::vector<Index> vertices = touched_vertices(mesh_, annotation);
+    if (vertices.empty()) fail_input(who, "has no elements to describe", "select some first");
+    const bool region = annotation.type == AnnotationType::region;
+    if (annotation.type == AnnotationType::line) result.push_back(*find(annotation, "length"));
+    if (region)
+        for (const std::string& name : region_quantities()) result.push_back(*find(annotation, name));
+    const auto of_map = [&](const std::vector<double>& values, const std::string& where) {
+        if (region) return vertex_statistics(mesh_, values, annotation.faces, where);
+        if (values.size() != mesh_.number_of_vertices())
+            fail_input(where,
+                       "has " + std::to_string(values.size()) + " values for " + std::to_string(mesh_.number_of_vertices()) +
+                           " vertices",
+                       "give one value for each of the vertices");
+        std::vector<double> here;
+        for (const Index v : vertices) {
+            if (!std::isfinite(values[v]))
+                fail_input(where, "the value of vertex " + std::to_string(v) + " is not a finite number", "mend the map");
+            here.push_back(values[v]);
+        }
+        return statistics(here, std::vector<double>(here.size(), 1), where);
+    };
+    if (options_.curvature) {
+        add_statistics(result, "mean curvature", of_map(curvature().mean, who), -1);
+        add_statistics(result, "Gaussian curvature", of_map(curvature().gaussian, who), -2);
+    }
+    if (options_.thickness && region) {
+        std::vector<double> values, weights;
+        double all = 0, with = 0;
+        for (const Index face : annotation.faces) {
+            const double area = face_area(mesh_, Face(face)), value = thickness()[face];
+            all += area;
+            if (!std::isfinite(value)) continue;
+            with += area;
+            values.push_back(value);
+            weights.push_back(area);
+        }
+        if (!values.empty()) add_statistics(result, "thickness", statistics(values, weights, who), 1);
+        // How much of the region has one: rays leave an open mesh without meeting it.
+        result.push_back(number("thickness share", all > 0 ? with / all : 0, 0));
+    }
+    for (const NamedMap& map : maps)
+        add_statistics(result, map.name, of_map(map.values, who + ", map '" + map.name + "'"), 0, map.unit);
+    return result;
+}
+
+void store(Annotation& annotation, const std::vector<Quantity>& quantities, const std::string& unit) {
+    for (const Quantity& quantity : quantities) {
+        auto place = std::find_if(annotation.attributes.begin(), annotation.attributes.end(), [&](const Attribute& a) {
+            return a.type == AttributeType::descriptor && a.name == quantity.name;
+        });
+        if (place == annotation.attributes.end()) {
+            int id = 0;
+            for (const Attribute& attribute : annotation.attributes) id = std::max(id, attribute.id + 1);
+            annotation.attributes.emplace_back();
+            place = annotation.attributes.end() - 1;
+            place->id = id;
+            place->name = quantity.name;
+            place->type = AttributeType::descriptor;
+        }
+        place->descriptor = {};
+        place->descriptor.values = quantity.values;
+        place->descriptor.is_list = quantity.is_list;
+        place->descriptor.unit = unit_of(quantity, unit);
+    }
+}
+
+}  // namespace ostraka

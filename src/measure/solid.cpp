@@ -1,0 +1,100 @@
+#include "ostraka/measure/solid.h"
+
+#include "compensated_sum.h"
+#include "ostraka/annotation/outline.h"
+#include "ostraka/core/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ostraka {
+
+namespace {
+
+void check_faces(const Mesh& mesh, const std::vector<Index>& faces) {
+    for (const Index face : faces)
+        if (face >= mesh.number_of_faces())
+            fail_usage("face " + std::to_string(face) + " is not one of the " + std::to_string(mesh.number_of_faces()) + " faces",
+                       "was it selected on another mesh?");
+}
+
+/// The middle of the region's box: sums about it lose nothing far from the origin.
+Point middle_of(const Mesh& mesh, const std::vector<Index>& faces) {
+    CGAL::Bbox_3 box;
+    for (const Index face : faces)
+        for (const Vertex v : corners(mesh, Face(face))) box += mesh.point(v).bbox();
+    return faces.empty() ? Point(0, 0, 0)
+                         : Point(box.xmin() + (box.xmax() - box.xmin()) / 2, box.ymin() + (box.ymax() - box.ymin()) / 2,
+                                 box.zmin() + (box.zmax() - box.zmin()) / 2);
+}
+
+/// Sums of signed tetrahedra from an origin to oriented triangles.
+class Tetrahedra {
+public:
+    explicit Tetrahedra(const Point& origin) : origin_(origin) {}
+    void add(const Point& a, const Point& b, const Point& c) {
+        const Vector u = a - origin_, v = b - origin_, w = c - origin_;
+        // c . n A / 3 with the centroid c and the area vector n A of the triangle, about one corner for the area's sake.
+        const Vector centre = (u + v + w) / 3, area = CGAL::cross_product(v - u, w - u) / 2;
+        const double volume = centre * area / 3;
+        volume_ += volume;
+        x_ += volume * centre.x() * 0.75;
+        y_ += volume * centre.y() * 0.75;
+        z_ += volume * centre.z() * 0.75;
+    }
+    [[nodiscard]] double volume() const { return volume_.value(); }
+    [[nodiscard]] Point centroid() const { return origin_ + Vector(x_.value(), y_.value(), z_.value()) / volume_.value(); }
+
+private:
+    Point origin_;
+    CompensatedSum volume_, x_, y_, z_;
+};
+
+}  // namespace
+
+Point surface_centroid(const Mesh& mesh, const std::vector<Index>& faces) {
+    check_faces(mesh, faces);
+    if (faces.empty()) fail_usage("the region has no faces", "select some");
+    const Point origin = middle_of(mesh, faces);
+    CompensatedSum area, x, y, z, mean_x, mean_y, mean_z;
+    for (const Index face : faces) {
+        const double part = face_area(mesh, Face(face));
+        const auto [a, b, c] = corners(mesh, Face(face));
+        const Vector centre = ((mesh.point(a) - origin) + (mesh.point(b) - origin) + (mesh.point(c) - origin)) / 3;
+        area += part;
+        x += part * centre.x(), y += part * centre.y(), z += part * centre.z();
+        mean_x += centre.x(), mean_y += centre.y(), mean_z += centre.z();
+    }
+    if (area.value() > 0) return origin + Vector(x.value(), y.value(), z.value()) / area.value();
+    return origin + Vector(mean_x.value(), mean_y.value(), mean_z.value()) / static_cast<double>(faces.size());
+}
+
+RegionSolid region_solid(const Mesh& mesh, const std::vector<Index>& faces) {
+    check_faces(mesh, faces);
+    RegionSolid result;
+    if (faces.empty()) return result;
+    Tetrahedra sum(middle_of(mesh, faces));
+    for (const Index face : faces) {
+        const auto [a, b, c] = corners(mesh, Face(face));
+        sum.add(mesh.point(a), mesh.point(b), mesh.point(c));
+    }
+    for (const Outline& outline : extract_outlines(mesh, faces)) {
+        std::vector<Point> points;
+        for (const Index v : outline) points.push_back(mesh.point(Vertex(v)));
+        Vector mean(0, 0, 0);
+        for (const Point& p : points) mean += (p - points.front()) / static_cast<double>(points.size());
+        const Point apex = points.front() + mean;
+        for (std::size_t i = 0; i < points.size(); ++i) sum.add(points[(i + 1) % points.size()], points[i], apex);
+        result.volume_bound += hull_volume(points);
+        ++result.outlines;
+    }
+    result.volume = sum.volume();
+    const CGAL::Bbox_3 box = bounding_box(mesh);
+    const double size = std::hypot(box.xmax() - box.xmin(), box.ymax() - box.ymin(), box.zmax() - box.zmin());
+    // A solid so thin that its volume is rounding has no centroid to tell.
+    result.centroid = std::abs(result.volume) > 1e-13 * size * size * size ? sum.centroid() : surface_centroid(mesh, faces);
+    return result;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,166 @@
+// `ostraka measure` as people run it.
+#include "meshes.h"
+#include "ostraka/annotation/annotation_file.h"
+#include "ostraka/io/mesh_file.h"
+#include "ostraka/render/values.h"
+#include "scratch.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace ostraka {
+namespace {
+using test::run_command;
+using test::Scratch;
+
+class MeasureCommand : public ::testing::Test {
+protected:
+    Scratch scratch;
+    Path cube = scratch / "cube.ply", annotated = scratch / "cube.ant.json";
+    Mesh mesh = build_mesh(test::box(2));
+
+    void SetUp() override {
+        write_mesh(cube, mesh);
+        AnnotationSet set;
+        set.unit = "mm";
+        ensure_root(set, mesh);
+        Annotation& side = set.annotations.emplace_back();
+        side.id = 7;
+        side.tag = "side";
+        for (const Face f : mesh.faces())
+            if (centroid(mesh, f).x() == 0) side.faces.push_back(f);
+        write_annotations(annotated, set, mesh, cube.string(), {});
+    }
+    Index at(double x, double y, double z) const {
+        for (const Vertex v : mesh.vertices())
+            if (mesh.point(v) == Point(x, y, z)) return v;
+        return no_index;
+    }
+    std::string pins(std::initializer_list<Index> list) const {
+        std::string text;
+        for (const Index v : list) text += (text.empty() ? "" : ",") + std::to_string(v);
+        return text;
+    }
+    test::CommandResult run(const std::string& words) const { return run_command("measure " + words); }
+    void refused(const std::string& words, int code, const std::string& text) const {
+        const auto result = run(words);
+        EXPECT_EQ(result.code, code) << words << '\n' << result.err;
+        EXPECT_NE(result.err.find(text), std::string::npos) << words << '\n' << result.err;
+        EXPECT_EQ(result.out, "") << words;
+    }
+};
+
+TEST_F(MeasureCommand, TakesStoresAndRefreshes) {
+    const std::string o = pins({at(0, 0, 0), at(1, 1, 1)});
+    auto result = run("take " + cube.string() + " --tool ruler --json --points " + o);
+    ASSERT_EQ(result.code, 0) << result.err;
+    EXPECT_DOUBLE_EQ(parse_json(result.out, "report")["result"]["value"].GetDouble(), std::sqrt(3));
+    const Path out = scratch / "out.ant.json", last = scratch / "last.ant.json";
+    const std::string rest = " --annotations " + annotated.string() + " --annotation side --output " + out.string();
+    result = run("take " + cube.string() + " --tool tape --geodesic exact --name way --points " + o + " --repeat " +
+                 pins({at(0, 0, 0), at(1, 1, 0.5)}) + rest);
+    ASSERT_EQ(result.code, 0) << result.err;
+    AnnotationSet set = read_annotations(out, mesh);
+    ASSERT_EQ(set.find(7)->attributes.size(), 1U);
+    const Measure& way = set.find(7)->attributes[0].measure;
+    EXPECT_TRUE(way.exact);
+    EXPECT_EQ(way.unit, "mm");
+    EXPECT_NEAR(*way.value, (std::sqrt(5) + std::hypot(1.5, 1)) / 2, 1e-12);
+    EXPECT_GT(*way.uncertainty, 0);
+    ASSERT_EQ(way.repeats.size(), 1U);
+    // What is stored is enough to take it again: checking finds no defect, refreshing changes no digit.
+    EXPECT_EQ(run_command("annotation check " + cube.string() + " " + out.string()).code, 0);
+    result = run("refresh " + cube.string() + " --annotations " + out.string() + " --output " + last.string());
+    EXPECT_EQ(result.code, 0) << result.err;
+    set = read_annotations(last, mesh);
+    EXPECT_EQ(set.find(7)->attributes[0].measure.value, way.value);
+    EXPECT_EQ(set.find(7)->attributes[0].measure.uncertainty, way.uncertainty);
+    // By coordinates; along a direction, the whole annotation.
+    result = run("take " + cube.string() + " --tool ruler --at 0.1,0,0 --at 1,0.9,0 --json");
+    EXPECT_DOUBLE_EQ(parse_json(result.out, "report")["result"]["value"].GetDouble(), std::sqrt(2));
+    result = run("take " + cube.string() + " --tool bounding --direction 0,2,0 --json");
+    EXPECT_DOUBLE_EQ(parse_json(result.out, "report")["result"]["value"].GetDouble(), 1);
+    result = run("take " + cube.string() + " --tool bounding --direction 1,0,0 --json --annotation 7 --annotations " +
+                 annotated.string());
+    EXPECT_DOUBLE_EQ(parse_json(result.out, "report")["result"]["value"].GetDouble(), 0);
+}
+
+TEST_F(MeasureCommand, DescribesAndStores) {
+    const Path out = scratch / "out.ant.json", map = scratch / "x.npy";
+    std::vector<double> x;
+    for (const Vertex v : mesh.vertices()) x.push_back(mesh.point(v).x());
+    write_values(map, x);
+    const auto result = run("describe " + cube.string() + " --annotations " + annotated.string() +
+                            " --map depth=" + map.string() + " --thickness --cone 5 --output " + out.string());
+    ASSERT_EQ(result.code, 0) << result.err;
+    const AnnotationSet set = read_annotations(out, mesh);
+    const auto value = [&](int id, const std::string& name) {
+        for (const Attribute& a : set.find(id)->attributes)
+            if (a.name == name) return a.descriptor.values.front();
+        return std::nan("");
+    };
+    EXPECT_DOUBLE_EQ(value(0, "volume"), 1);
+    EXPECT_DOUBLE_EQ(value(7, "area"), 1);
+    EXPECT_DOUBLE_EQ(value(7, "circularity"), 16);
+    EXPECT_DOUBLE_EQ(value(7, "volume bound"), 0);
+    EXPECT_DOUBLE_EQ(value(0, "depth mean"), 0.5);
+    EXPECT_DOUBLE_EQ(value(7, "depth 95 %"), 0);
+    EXPECT_NEAR(value(7, "thickness median"), 1, 0.01);
+    EXPECT_EQ(run_command("annotation check " + cube.string() + " " + out.string()).code, 0);
+}
+
+TEST_F(MeasureCommand, MapsAreWrittenForPicturesAndOthers) {
+    const Path map = scratch / "map.npy", text = scratch / "map.txt";
+    ASSERT_EQ(run("map " + cube.string() + " " + map.string() + " --of geodesic --from " + pins({at(0, 0, 0)})).code, 0);
+    const auto values = read_values(map);
+    ASSERT_EQ(values.size(), mesh.number_of_vertices());
+    EXPECT_NEAR(values[at(1, 1, 1)], std::sqrt(5), 1e-12);
+    EXPECT_EQ(run("map " + cube.string() + " " + text.string() + " --of geodesic --from " + pins({at(0, 0, 0)})).code, 0);
+    EXPECT_EQ(read_values(text), values);
+    EXPECT_EQ(run("map " + cube.string() + " " + map.string() + " --of thickness --on face").code, 0);
+    EXPECT_EQ(read_values(map).size(), mesh.number_of_faces());
+    EXPECT_EQ(run("map " + cube.string() + " " + map.string() + " --of mean-curvature --scale 0.2").code, 0);
+    const Path png = scratch / "map.png";
+    EXPECT_EQ(run_command("render " + cube.string() + " --map " + map.string() + " --size 200x200 " + png.string()).code, 0);
+    EXPECT_GT(std::filesystem::file_size(png), 0U);
+}
+
+TEST_F(MeasureCommand, BadInputIsRefusedAndEarlierOutputsStay) {
+    const Path out = scratch.file("out.ant.json", "earlier");
+    const std::string c = cube.string(), o = " --output " + out.string();
+    refused("take " + c + " --tool ruler --points 3" + o, 2, "1 pin");
+    refused("take " + c + " --tool ruler" + o, 2, "0 pins");
+    refused("take " + c + " --tool ruler --points 3,x" + o, 2, "3,x");
+    refused("take " + c + " --tool ruler --points 3," + o, 2, "3,");
+    refused("take " + c + " --tool ruler --points 3,9999" + o, 1, "vertex 9999");
+    refused("take " + c + " --tool bounding --points 3,4" + o, 2, "direction");
+    refused("take " + c + " --tool bounding --direction 0,0,0" + o, 2, "not zero");
+    refused("take " + c + " --tool bounding --direction 0,0,nan" + o, 2, "finite");
+    refused("take " + c + " --tool ruler --geodesic exact --points 3,4" + o, 2, "tape");
+    refused("take " + c + " --tool ruler --points 3,4 --repeat 3" + o, 1, "picked again");
+    refused("take " + c + " --tool laser --points 3,4" + o, 2, "laser");
+    refused("take " + c + " --tool ruler --points 3,4 --annotations " + annotated.string() + " --annotation nose" + o, 1, "nose");
+    refused("take " + c + " --tool ruler --points 3,4 --annotations " + (scratch / "none.ant.json").string() + o, 1,
+            "none.ant.json");
+    refused("refresh " + c + o, 2, "annotations");
+    refused("map " + c + " " + out.string() + " --of geodesic", 2, "--from");
+    refused("map " + c + " " + out.string() + " --of geodesic --from 9999", 2, "9999");
+    refused("map " + c + " " + out.string() + " --of mean-curvature --on face", 2, "faces");
+    const Path few = scratch.file("few.txt", "1\n2\n"), gap = scratch / "gap.txt";
+    std::vector<double> values(mesh.number_of_vertices(), 1);
+    values[5] = std::nan("");
+    write_values(gap, values);
+    refused("describe " + c + " --map m=" + few.string() + o, 1, "2 values");
+    refused("describe " + c + " --map m=" + gap.string() + o, 1, "vertex 5");
+    refused("describe " + c + " --map " + few.string() + o, 2, "NAME=FILE");
+    // Pins on separate parts.
+    const Path two = scratch / "two.ply";
+    write_mesh(two, build_mesh(test::joined(test::box(1), test::moved(test::box(1), 1, {5, 0, 0}))));
+    refused("take " + two.string() + " --tool tape --points 0,9" + o, 1, "no path");
+    refused("take " + two.string() + " --tool tape --geodesic exact --points 0,9" + o, 1, "no path");
+    EXPECT_EQ(read_file(out), "earlier");
+}
+
+}  // namespace
+}  // namespace ostraka
