@@ -1,0 +1,91 @@
+// Axes of objects and of annotated parts: principal, of slices, of rotation, of the skeleton; or the answer that there is none.
+#pragma once
+
+#include "ostraka/core/mesh.h"
+#include "ostraka/core/options.h"
+
+#include <string>
+#include <vector>
+
+namespace ostraka {
+
+struct AxisOptions {
+    std::string method = "rotation";
+    double tolerance = 0.02;
+    double least_quality = 0.7;
+    int slices = 24;
+    int trials = 300;
+    int smoothing = 2;
+    std::uint64_t seed = 1;
+
+    template <class Visitor>
+    void describe(Visitor& visit) {
+        visit("method", method, "how the axis is found", Choices{"rotation", "slices", "skeleton", "principal"});
+        visit("tolerance", tolerance,
+              "rotation: distance from the turned profile that counts as on it, share of its largest diameter", Range{0, 1});
+        visit("least-quality", least_quality, "rotation: share of the surface that must lie on the turned profile", Range{0, 1});
+        visit("slices", slices, "slices: number of planes across the part", Range{4, 10000});
+        visit("trials", trials, "rotation: random sets of normals tried", Range{0, 1000000});
+        visit("smoothing", smoothing, "rotation: how often normals are averaged over their neighbours", Range{0, 100});
+        visit("seed", seed, "rotation: of the random sets", Anything{});
+    }
+};
+
+/// A number that describes the axis; lengths are in the mesh's unit.
+struct AxisFigure {
+    std::string name;
+    double value;
+    std::string unit;  ///< "length", "degree", "%" or empty for a ratio
+};
+
+struct Axis {
+    bool found = false;
+    std::string reason;                     ///< why there is none
+    Point point{0, 0, 0};                   ///< of the straight axis: the place nearest to the part's centroid
+    Vector direction{0, 0, 1};              ///< unit vector whose largest component is positive
+    std::vector<std::vector<Point>> lines;  ///< the curved axis, or the branches of a skeleton with the longest way first
+    double quality = 0;                     ///< 0 to 1; what it means depends on the method
+    std::vector<AxisFigure> figures;
+    [[nodiscard]] const AxisFigure* figure(const std::string& name) const;
+};
+
+/// The axis of a set of faces by the method named in the options. Throws Error (input) if there are no faces with area.
+Axis find_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options = {});
+
+/// Axis of the surface of revolution that fits best. Every normal of such a surface meets the axis: the linear line complex of
+/// Pottmann and Wallner (Computational Line Geometry, 2001) is fitted to random sets of normals (RANSAC), then to all with
+/// reweighting; the result is refined so that radii agree along parallels (robust least squares over heights), which needs no
+/// normals. Quality: the share of the area (without parts that face along the axis) within `tolerance` of the turned profile. No
+/// axis: flat parts, spheres (infinitely many), what is not round. Figures: largest diameter, per cent of the circle preserved,
+/// rms distance, standard error of the direction. Linear in faces.
+Axis rotation_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options = {});
+
+/// Centroids of slices across the longest principal direction, then once more across the local tangent: for tubular parts. A
+/// slice that covers less than 300 degrees gives the centre of its circle. The straight axis is fitted to the centres. Quality: 1
+/// - mean radius / length. No axis: parts that are not longer than wide. Figures: length, mean radius, rms distance of the
+/// centres from the straight axis. O(slices x faces).
+Axis slice_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options = {});
+
+/// Mean curvature skeleton (Tagliasacchi et al. 2012, CGAL) of the largest piece, capped where it is open. The axis is the
+/// longest way through the skeleton, or its loop. Quality: the share of the skeleton's length on that way. No axis: what shrinks
+/// to a point. Figures: length, branches, rms distance from the straight axis. At most 200 000 faces.
+Axis skeleton_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options = {});
+
+/// Principal axes of the area: the longest one as direction; `lines` holds all three, longest first, as long as the part along
+/// them. Quality: 1 - (second / first variance). No axis: the first two variances agree within a tenth.
+Axis principal_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options = {});
+
+/// Circle through the vertices of a curve (the rim of a sherd, say): its axis, diameter and the per cent of it that is there.
+/// Quality: 1 - rms distance / radius. No axis: fewer than three vertices, or all on one line.
+Axis circle_axis(const std::vector<Point>& points);
+
+/// Centroid and covariance of the area of the faces, exact for triangles.
+struct AreaMoments {
+    double area = 0;
+    Point centroid{0, 0, 0};
+    std::array<double, 3> variances{};  ///< descending
+    std::array<Vector, 3> directions;   ///< unit vectors of the variances, right-handed
+};
+AreaMoments area_moments(const Mesh& mesh, const std::vector<Index>& faces);
+
+}  // namespace ostraka

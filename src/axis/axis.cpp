@@ -1,0 +1,176 @@
+// Moments, principal axes, circles, and the choice of a method.
+#include "ostraka/axis/axis.h"
+
+#include "axis_parts.h"
+
+#include "ostraka/core/error.h"
+
+#include <Eigen/Eigenvalues>
+
+namespace ostraka {
+
+using namespace detail;
+
+const AxisFigure* Axis::figure(const std::string& name) const {
+    for (const auto& entry : figures)
+        if (entry.name == name) return &entry;
+    return nullptr;
+}
+
+namespace detail {
+
+LineFit fit_line(const std::vector<Vector3d>& points, const std::vector<double>& weights) {
+    Vector3d mean = Vector3d::Zero();
+    double total = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) mean += weights[i] * points[i], total += weights[i];
+    mean /= total;
+    Matrix3d covariance = Matrix3d::Zero();
+    for (std::size_t i = 0; i < points.size(); ++i)
+        covariance += weights[i] / total * (points[i] - mean) * (points[i] - mean).transpose();
+    const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(covariance);
+    const Vector3d values = solver.eigenvalues();
+    return {mean, solver.eigenvectors().col(2), std::sqrt(std::max(0.0, values[0]) + std::max(0.0, values[1]))};
+}
+
+CircleFit fit_circle(const std::vector<Eigen::Vector2d>& points, const std::vector<double>& weights) {
+    Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+    double total = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) mean += weights[i] * points[i], total += weights[i];
+    if (!(total > 0)) return {};
+    mean /= total;
+    // |q|^2 = 2 c . q + (r^2 - |c|^2) about the mean.
+    Eigen::Matrix2d A = Eigen::Matrix2d::Zero();
+    Eigen::Vector2d b = Eigen::Vector2d::Zero();
+    double square = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const Eigen::Vector2d q = points[i] - mean;
+        A += weights[i] * q * q.transpose();
+        b += weights[i] * q.squaredNorm() * q / 2;
+        square += weights[i] * q.squaredNorm();
+    }
+    const double determinant = A.determinant();
+    if (!(determinant > 1e-12 * A.trace() * A.trace())) return {};
+    const Eigen::Vector2d c = A.inverse() * b;
+    return {mean + c, std::sqrt(square / total + c.squaredNorm())};
+}
+
+double part_diagonal(const Mesh& mesh, const std::vector<Index>& faces) {
+    CGAL::Bbox_3 box;
+    for (const Index f : faces)
+        for (const Vertex v : corners(mesh, Face(f))) box += mesh.point(v).bbox();
+    return std::hypot(box.xmax() - box.xmin(), box.ymax() - box.ymin(), box.zmax() - box.zmin());
+}
+
+void set_line(Axis& axis, const Vector3d& point, const Vector3d& direction, const Vector3d& centre) {
+    const Vector3d a = oriented(direction.normalized());
+    axis.direction = vector_of(a);
+    axis.point = point_of(point + a.dot(centre - point) * a);
+}
+
+}  // namespace detail
+
+AreaMoments area_moments(const Mesh& mesh, const std::vector<Index>& faces) {
+    AreaMoments moments;
+    if (faces.empty()) return moments;
+    const Vector3d origin = eigen(mesh.point(corners(mesh, Face(faces.front()))[0]));
+    Vector3d first = Vector3d::Zero();
+    Matrix3d second = Matrix3d::Zero();
+    for (const Index f : faces) {
+        const double area = face_area(mesh, Face(f));
+        Vector3d sum = Vector3d::Zero();
+        Matrix3d squares = Matrix3d::Zero();
+        for (const Vertex v : corners(mesh, Face(f))) {
+            const Vector3d p = eigen(mesh.point(v)) - origin;
+            sum += p;
+            squares += p * p.transpose();
+        }
+        // Integral of p p^T over a triangle: area / 12 (sum of p_i p_i^T + s s^T), s the sum of the corners.
+        moments.area += area;
+        first += area / 3 * sum;
+        second += area / 12 * (squares + sum * sum.transpose());
+    }
+    if (!(moments.area > 0)) return moments;
+    const Vector3d mean = first / moments.area;
+    const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(second / moments.area - mean * mean.transpose());
+    moments.centroid = point_of(origin + mean);
+    for (int k = 0; k < 3; ++k) {
+        moments.variances.at(static_cast<std::size_t>(k)) = std::max(0.0, solver.eigenvalues()[2 - k]);
+        moments.directions.at(static_cast<std::size_t>(k)) = vector_of(oriented(solver.eigenvectors().col(2 - k)));
+    }
+    moments.directions[2] = CGAL::cross_product(moments.directions[0], moments.directions[1]);
+    return moments;
+}
+
+Axis principal_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options) {
+    check_options(options, "axis");
+    const AreaMoments moments = area_moments(mesh, faces);
+    if (!(moments.area > 0)) fail_input("part", "has no faces with area", "choose another part");
+    Axis axis;
+    const Vector3d centre = eigen(moments.centroid);
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vector3d d = eigen(moments.directions[k]);
+        double least = 0, most = 0;
+        for (const Index f : faces)
+            for (const Vertex v : corners(mesh, Face(f))) {
+                const double h = d.dot(eigen(mesh.point(v)) - centre);
+                least = std::min(least, h), most = std::max(most, h);
+            }
+        axis.lines.push_back({point_of(centre + least * d), point_of(centre + most * d)});
+        axis.figures.push_back({"extent " + std::to_string(k + 1), most - least, "length"});
+    }
+    set_line(axis, centre, eigen(moments.directions[0]), centre);
+    axis.quality = moments.variances[0] > 0 ? 1 - moments.variances[1] / moments.variances[0] : 0;
+    axis.found = axis.quality > 0.1;
+    if (!axis.found) axis.reason = "it is as wide as it is long: the first two principal variances agree";
+    return axis;
+}
+
+Axis circle_axis(const std::vector<Point>& points) {
+    Axis axis;
+    if (points.size() < 3) {
+        axis.reason = "a circle needs three points";
+        return axis;
+    }
+    Vector3d mean = Vector3d::Zero();
+    for (const auto& p : points) mean += eigen(p) - eigen(points[0]);
+    mean = eigen(points[0]) + mean / double(points.size());
+    Matrix3d covariance = Matrix3d::Zero();
+    for (const auto& p : points) covariance += (eigen(p) - mean) * (eigen(p) - mean).transpose() / double(points.size());
+    const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(covariance);
+    const Vector3d a = oriented(solver.eigenvectors().col(0)), u = solver.eigenvectors().col(2), w = a.cross(u);
+    std::vector<Eigen::Vector2d> flat;
+    for (const auto& p : points) flat.emplace_back(u.dot(eigen(p) - mean), w.dot(eigen(p) - mean));
+    const CircleFit circle = fit_circle(flat, std::vector<double>(flat.size(), 1));
+    if (circle.radius < 0) {
+        axis.reason = "its vertices lie on one line";
+        return axis;
+    }
+    double sum = 0;
+    std::vector<double> angles;
+    for (std::size_t i = 0; i < flat.size(); ++i) {
+        const Eigen::Vector2d q = flat[i] - circle.centre;
+        const double off = a.dot(eigen(points[i]) - mean);
+        sum += std::pow(q.norm() - circle.radius, 2) + off * off;
+        angles.push_back(std::atan2(q.y(), q.x()));
+    }
+    const double rms = std::sqrt(sum / double(flat.size()));
+    const Vector3d centre = mean + circle.centre.x() * u + circle.centre.y() * w;
+    set_line(axis, centre, a, centre);
+    axis.quality = std::max(0.0, 1 - rms / circle.radius);
+    axis.found = true;
+    axis.lines = {{point_of(centre - circle.radius * a), point_of(centre + circle.radius * a)}};
+    axis.figures = {{"diameter", 2 * circle.radius, "length"},
+                    {"circle preserved", covered_percent(angles), "%"},
+                    {"rms distance", rms, "length"}};
+    return axis;
+}
+
+Axis find_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options) {
+    check_options(options, "axis");
+    if (options.method == "slices") return slice_axis(mesh, faces, options);
+    if (options.method == "skeleton") return skeleton_axis(mesh, faces, options);
+    if (options.method == "principal") return principal_axis(mesh, faces, options);
+    return rotation_axis(mesh, faces, options);
+}
+
+}  // namespace ostraka

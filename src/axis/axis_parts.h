@@ -1,0 +1,59 @@
+// What the methods share.
+#pragma once
+
+#include "ostraka/axis/axis.h"
+
+#include <Eigen/Dense>
+
+namespace ostraka::detail {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+inline Vector3d eigen(const Point& p) { return {p.x(), p.y(), p.z()}; }
+inline Vector3d eigen(const Vector& v) { return {v.x(), v.y(), v.z()}; }
+inline Point point_of(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+inline Vector vector_of(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+/// The sign that makes the largest component positive.
+inline Vector3d oriented(const Vector3d& v) {
+    Eigen::Index largest = 0;
+    v.cwiseAbs().maxCoeff(&largest);
+    return v[largest] < 0 ? Vector3d(-v) : v;
+}
+
+/// Two unit vectors that complete `a` to a right-handed frame.
+inline std::pair<Vector3d, Vector3d> across(const Vector3d& a) {
+    const Vector3d u = a.unitOrthogonal();
+    return {u, a.cross(u)};
+}
+
+/// Per cent of the full turn that the angles cover: without the largest gap, if that is wider than five degrees and than three
+/// of the mean gaps of a full turn.
+inline double covered_percent(std::vector<double> angles) {
+    if (angles.empty()) return 0;
+    std::sort(angles.begin(), angles.end());
+    double gap = angles.front() + 2 * M_PI - angles.back();
+    for (std::size_t i = 1; i < angles.size(); ++i) gap = std::max(gap, angles[i] - angles[i - 1]);
+    return gap < std::max(5 * M_PI / 180, 6 * M_PI / double(angles.size())) ? 100 : 100 * (1 - gap / (2 * M_PI));
+}
+
+/// Straight line through weighted points: mean and direction of largest spread.
+struct LineFit {
+    Vector3d point, direction;
+    double rms = 0;
+};
+LineFit fit_line(const std::vector<Vector3d>& points, const std::vector<double>& weights);
+
+/// Circle of least algebraic error (Kasa 1976) through points of the plane; the radius is negative if they lie on a line.
+struct CircleFit {
+    Eigen::Vector2d centre{0, 0};
+    double radius = -1;
+};
+CircleFit fit_circle(const std::vector<Eigen::Vector2d>& points, const std::vector<double>& weights);
+
+double part_diagonal(const Mesh& mesh, const std::vector<Index>& faces);
+/// The straight axis of a result, its point moved next to `centre`.
+void set_line(Axis& axis, const Vector3d& point, const Vector3d& direction, const Vector3d& centre);
+
+}  // namespace ostraka::detail

@@ -1,0 +1,400 @@
+// Axis of a surface of revolution from normals, refined on positions.
+#include "axis_parts.h"
+
+#include "ostraka/core/error.h"
+
+#include <Eigen/Eigenvalues>
+
+#include <random>
+
+namespace ostraka {
+
+using namespace detail;
+
+namespace {
+
+/// A point of the surface, in the part's own frame (centroid at the origin, diagonal 1), with its normal and area.
+struct Sample {
+    Vector3d p, n;
+    double weight;
+};
+
+struct Line {
+    Vector3d point = Vector3d::Zero(), direction = Vector3d::UnitZ();
+};
+
+/// Vertex normals of the part, averaged `rounds` times over edges of the part; then one sample a face, or 8000 spread by area.
+std::vector<Sample> take_samples(const Mesh& mesh, const std::vector<Index>& faces, int rounds, const Vector3d& centre,
+                                 double scale) {
+    std::vector<Index> vertices;
+    for (const Index f : faces)
+        for (const Vertex v : corners(mesh, Face(f))) vertices.push_back(v.idx());
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    const auto place = [&](Vertex v) {
+        return static_cast<std::size_t>(std::lower_bound(vertices.begin(), vertices.end(), v.idx()) - vertices.begin());
+    };
+    std::vector<std::array<std::size_t, 3>> triangles;
+    std::vector<Vector3d> normals(vertices.size(), Vector3d::Zero());
+    double total = 0;
+    for (const Index f : faces) {
+        const auto c = corners(mesh, Face(f));
+        triangles.push_back({place(c[0]), place(c[1]), place(c[2])});
+        const Vector3d n = eigen(area_vector(mesh, Face(f)));
+        for (const std::size_t v : triangles.back()) normals[v] += n;
+        total += n.norm();
+    }
+    for (int round = 0; round <= rounds; ++round) {
+        for (auto& n : normals)
+            if (n.norm() > 0) n.normalize();
+        if (round == rounds) break;
+        std::vector<Vector3d> sums = normals;
+        for (const auto& [a, b, c] : triangles) {
+            const Vector3d sum = (normals[a] + normals[b] + normals[c]) / 3;
+            sums[a] += sum, sums[b] += sum, sums[c] += sum;
+        }
+        normals = std::move(sums);
+    }
+    const std::size_t most = 8000;
+    std::vector<Sample> samples;
+    double passed = 0;
+    std::size_t taken = 0;
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+        const double area = face_area(mesh, Face(faces[i]));
+        if (!(area > 0)) continue;
+        passed += area;
+        double weight = area / total;
+        if (faces.size() > most) {
+            const auto due = static_cast<std::size_t>(passed / total * double(most));
+            if (due <= taken) continue;
+            weight = double(due - taken) / double(most);
+            taken = due;
+        }
+        Vector3d p = Vector3d::Zero(), n = Vector3d::Zero();
+        for (const Vertex v : corners(mesh, Face(faces[i]))) p += (eigen(mesh.point(v)) - centre) / (3 * scale);
+        for (const std::size_t v : triangles[i]) n += normals[v];
+        if (n.norm() > 0) samples.push_back({p, n.normalized(), weight});
+    }
+    return samples;
+}
+
+/// Normal equations of the line complex: n . m + (p x n) . a = 0 for the axis with direction a and moment m.
+struct Complex {
+    Matrix3d N = Matrix3d::Zero(), B = Matrix3d::Zero(), D = Matrix3d::Zero();
+    void add(const Sample& s, double weight) {
+        const Vector3d q = s.p.cross(s.n);
+        N += weight * s.n * s.n.transpose();
+        B += weight * s.n * q.transpose();
+        D += weight * q * q.transpose();
+    }
+    /// The axis of least error with |a| = 1, its pitch dropped; `second` is the next eigenvalue: how well other axes would do.
+    [[nodiscard]] Line solve(double* second = nullptr) const {
+        const Eigen::SelfAdjointEigenSolver<Matrix3d> of_n(N);
+        Matrix3d inverse = Matrix3d::Zero();
+        for (int k = 0; k < 3; ++k)
+            if (of_n.eigenvalues()[k] > 1e-6 * N.trace())
+                inverse += of_n.eigenvectors().col(k) * of_n.eigenvectors().col(k).transpose() / of_n.eigenvalues()[k];
+        const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(D - B.transpose() * inverse * B);
+        const Vector3d a = solver.eigenvectors().col(0);
+        if (second != nullptr) *second = solver.eigenvalues()[1];
+        return {a.cross(-inverse * B * a), a};
+    }
+};
+
+/// Sine of the angle between the normal and the plane through the axis and the point; 0 on the axis.
+double sine(const Sample& s, const Line& axis) {
+    const Vector3d v = axis.direction.cross(s.p - axis.point);
+    const double speed = v.norm();
+    return speed > 0.01 ? s.n.dot(v) / speed : 0;
+}
+
+double score(const std::vector<Sample>& samples, std::size_t step, const Line& axis) {
+    double sum = 0;
+    for (std::size_t i = 0; i < samples.size(); i += step)
+        if (const double s = sine(samples[i], axis); std::abs(s) < 0.17) sum += samples[i].weight * (1 - s * s / (0.17 * 0.17));
+    return sum;
+}
+
+/// Iteratively reweighted least squares with Cauchy's weights.
+Line reweighted(const std::vector<Sample>& samples, Line axis, int rounds) {
+    for (int round = 0; round < rounds; ++round) {
+        std::vector<double> sines(samples.size()), sorted;
+        for (std::size_t i = 0; i < samples.size(); ++i) sines[i] = std::abs(sine(samples[i], axis));
+        sorted = sines;
+        std::nth_element(sorted.begin(), sorted.begin() + static_cast<long>(sorted.size() / 2), sorted.end());
+        const double sigma = std::max(1.4826 * sorted[sorted.size() / 2], 0.01);
+        Complex complex;
+        for (std::size_t i = 0; i < samples.size(); ++i)
+            complex.add(samples[i], samples[i].weight / (1 + std::pow(sines[i] / sigma, 2)));
+        axis = complex.solve();
+    }
+    return axis;
+}
+
+Line first_guess(const std::vector<Sample>& samples, const AreaMoments& moments, const AxisOptions& options) {
+    const std::size_t step = std::max<std::size_t>(1, samples.size() / 1000);
+    Line best = reweighted(
+        samples,
+        [&] {
+            Complex all;
+            for (const auto& s : samples) all.add(s, s.weight);
+            return all.solve();
+        }(),
+        10);
+    double most = score(samples, step, best);
+    const auto consider = [&](const Line& line) {
+        const double value = score(samples, step, line);
+        if (value > most) most = value, best = line;
+    };
+    for (const auto& d : moments.directions) consider({Vector3d::Zero(), eigen(d)});
+    std::mt19937_64 random(options.seed);
+    for (int trial = 0; trial < options.trials; ++trial) {
+        Complex some;
+        for (int k = 0; k < 6; ++k) some.add(samples[random() % samples.size()], 1);
+        const Line line = some.solve();
+        if (line.direction.allFinite() && line.point.allFinite()) consider(line);
+    }
+    return reweighted(samples, best, 15);
+}
+
+/// The turned profile: heights in bins, the two walls of a hollow part apart, radius = R + S (height - mean) in each.
+struct Profile {
+    struct Bin {
+        double weight = 0, height = 0, radius = 0, slope = 0;
+        double hh = 0, hr = 0;
+        std::vector<std::size_t> members;
+    };
+    std::vector<Bin> bins;
+    std::vector<int> bin_of;  ///< -1: faces along the axis, or next to it
+    std::vector<double> height, radius, error, robust;
+    double sigma = 0;
+
+    Profile(const std::vector<Sample>& samples, const Line& axis)
+        : bin_of(samples.size(), -1),
+          height(samples.size()),
+          radius(samples.size()),
+          error(samples.size(), 0),
+          robust(samples.size(), 1) {
+        const int count = 20;
+        double least = 1e300, most = -1e300;
+        std::vector<double> facing(samples.size(), 0);
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            const Vector3d d = samples[i].p - axis.point;
+            height[i] = d.dot(axis.direction);
+            const Vector3d away = d - height[i] * axis.direction;
+            radius[i] = away.norm();
+            if (radius[i] > 0.01) facing[i] = samples[i].n.dot(away) / radius[i];
+            if (std::abs(facing[i]) < 0.3) continue;
+            least = std::min(least, height[i]), most = std::max(most, height[i]);
+        }
+        if (least > most) return;
+        bins.resize(2 * static_cast<std::size_t>(count));
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            if (std::abs(facing[i]) < 0.3) continue;
+            const int at = most > least ? std::min(count - 1, static_cast<int>((height[i] - least) / (most - least) * count)) : 0;
+            bin_of[i] = 2 * at + (facing[i] > 0 ? 1 : 0);
+            bins[static_cast<std::size_t>(bin_of[i])].members.push_back(i);
+        }
+        for (int round = 0; round < 6; ++round) fit(samples, round == 0);
+    }
+
+private:
+    void fit(const std::vector<Sample>& samples, bool first) {
+        std::vector<double> errors;
+        for (auto& bin : bins) {
+            if (first && !bin.members.empty()) {
+                // Start at the median: a handle must not pull the circle away.
+                std::vector<double> radii;
+                for (const std::size_t i : bin.members) radii.push_back(radius[i]);
+                std::nth_element(radii.begin(), radii.begin() + static_cast<long>(radii.size() / 2), radii.end());
+                bin.radius = radii[radii.size() / 2];
+            } else {
+                bin.weight = bin.height = bin.radius = bin.hh = bin.hr = 0;
+                for (const std::size_t i : bin.members) {
+                    const double w = samples[i].weight * robust[i];
+                    bin.weight += w, bin.height += w * height[i], bin.radius += w * radius[i];
+                }
+                if (!(bin.weight > 0)) continue;
+                bin.height /= bin.weight, bin.radius /= bin.weight;
+                for (const std::size_t i : bin.members) {
+                    const double w = samples[i].weight * robust[i], h = height[i] - bin.height;
+                    bin.hh += w * h * h, bin.hr += w * h * (radius[i] - bin.radius);
+                }
+                bin.slope = bin.hh > 1e-12 * bin.weight ? std::clamp(bin.hr / bin.hh, -4.0, 4.0) : 0;
+            }
+            for (const std::size_t i : bin.members) {
+                error[i] = (radius[i] - bin.radius - bin.slope * (height[i] - bin.height)) / std::hypot(1, bin.slope);
+                errors.push_back(std::abs(error[i]));
+            }
+        }
+        if (errors.empty()) return;
+        std::nth_element(errors.begin(), errors.begin() + static_cast<long>(errors.size() / 2), errors.end());
+        sigma = std::max(1.4826 * errors[errors.size() / 2], 1e-6);
+        for (std::size_t i = 0; i < error.size(); ++i) {
+            const double t = error[i] / (4.685 * sigma);  // Tukey's biweight
+            robust[i] = std::abs(t) < 1 ? std::pow(1 - t * t, 2) : 0;
+        }
+    }
+};
+
+/// Normal equations of two shifts and two tilts of the axis, each bin's radius and slope eliminated.
+struct Refinement {
+    Eigen::Matrix4d H = Eigen::Matrix4d::Zero();
+    Eigen::Vector4d g = Eigen::Vector4d::Zero();
+    double weight = 0, squares = 0, radius = 0, count = 0;
+    Vector3d u, w;
+
+    Refinement(const std::vector<Sample>& samples, const Line& axis, const Profile& profile) {
+        std::tie(u, w) = across(axis.direction);
+        double sum = 0, sum_squares = 0;
+        for (const auto& bin : profile.bins) {
+            if (bin.members.size() < 8 || !(bin.weight > 0)) continue;
+            const auto row = [&](std::size_t i) {
+                const Vector3d d = samples[i].p - axis.point;
+                const Vector3d e = (d - d.dot(axis.direction) * axis.direction).normalized();
+                const double arm = profile.height[i] + bin.slope * profile.radius[i];
+                return Eigen::Vector4d(Eigen::Vector4d(u.dot(e), w.dot(e), arm * u.dot(e), arm * w.dot(e)) /
+                                       -std::hypot(1, bin.slope));
+            };
+            Eigen::Vector4d mean = Eigen::Vector4d::Zero(), slope = Eigen::Vector4d::Zero();
+            for (const std::size_t i : bin.members) mean += samples[i].weight * profile.robust[i] / bin.weight * row(i);
+            for (const std::size_t i : bin.members)
+                slope += samples[i].weight * profile.robust[i] * (profile.height[i] - bin.height) * row(i);
+            if (bin.hh > 1e-12 * bin.weight) slope /= bin.hh;
+            else slope.setZero();
+            for (const std::size_t i : bin.members) {
+                const double at = samples[i].weight * profile.robust[i];
+                const Eigen::Vector4d r = row(i) - mean - (profile.height[i] - bin.height) * slope;
+                H += at * r * r.transpose();
+                g += at * profile.error[i] * r;
+                squares += at * profile.error[i] * profile.error[i];
+                radius += at * profile.radius[i];
+                sum += at, sum_squares += at * at;
+            }
+        }
+        weight = sum;
+        if (sum_squares > 0) count = sum * sum / sum_squares;
+        if (sum > 0) radius /= sum;
+    }
+    /// Least eigenvalue of the tilts with the shifts eliminated, for unit weight: 0 where a tilt changes nothing.
+    [[nodiscard]] double tilt_information() const {
+        const Eigen::Matrix2d shifts = H.topLeftCorner<2, 2>() + 1e-12 * (H.trace() + 1e-30) * Eigen::Matrix2d::Identity();
+        const Eigen::Matrix2d left =
+            H.bottomRightCorner<2, 2>() - H.bottomLeftCorner<2, 2>() * shifts.inverse() * H.topRightCorner<2, 2>();
+        return std::max(0.0, Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(left).eigenvalues()[0]) / weight;
+    }
+};
+
+Line refined(const std::vector<Sample>& samples, Line axis) {
+    for (int round = 0; round < 12; ++round) {
+        const Profile profile(samples, axis);
+        const Refinement system(samples, axis, profile);
+        if (!(system.weight > 0)) break;
+        const Eigen::Matrix4d damped = system.H + 1e-6 * system.H.trace() * Eigen::Matrix4d::Identity();
+        const Eigen::Vector4d step = -damped.ldlt().solve(system.g);
+        if (!step.allFinite() || step.norm() > 0.5) break;
+        axis.point += step[0] * system.u + step[1] * system.w;
+        axis.direction = (axis.direction + step[2] * system.u + step[3] * system.w).normalized();
+        axis.point -= axis.point.dot(axis.direction) * axis.direction;
+        if (step.norm() < 1e-10) break;
+    }
+    return axis;
+}
+
+/// Median distance (as a standard deviation) of what lies on the profile from the sphere that fits it best: |p|^2 = 2 c . p + d.
+double sphere_error(const std::vector<Sample>& samples, const Profile& profile) {
+    Eigen::Matrix4d A = Eigen::Matrix4d::Zero();
+    Eigen::Vector4d b = Eigen::Vector4d::Zero();
+    const auto each = [&](const auto& visit) {
+        for (std::size_t i = 0; i < samples.size(); ++i)
+            if (profile.bin_of[i] >= 0 && profile.robust[i] > 0) visit(samples[i]);
+    };
+    each([&](const Sample& s) {
+        const Eigen::Vector4d row(2 * s.p.x(), 2 * s.p.y(), 2 * s.p.z(), 1);
+        A += s.weight * row * row.transpose();
+        b += s.weight * s.p.squaredNorm() * row;
+    });
+    const Eigen::Vector4d x = A.ldlt().solve(b);
+    const double square = x[3] + x.head<3>().squaredNorm();
+    if (!x.allFinite() || !(square > 0)) return std::numeric_limits<double>::infinity();
+    std::vector<double> errors;
+    each([&](const Sample& s) { errors.push_back(std::abs((s.p - x.head<3>()).norm() - std::sqrt(square))); });
+    std::nth_element(errors.begin(), errors.begin() + static_cast<long>(errors.size() / 2), errors.end());
+    return 1.4826 * errors[errors.size() / 2];
+}
+
+}  // namespace
+
+Axis rotation_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options) {
+    check_options(options, "axis");
+    const AreaMoments moments = area_moments(mesh, faces);
+    if (!(moments.area > 0)) fail_input("part", "has no faces with area", "choose another part");
+    const double scale = part_diagonal(mesh, faces);
+    const Vector3d centroid = eigen(moments.centroid);
+    const std::vector<Sample> samples = take_samples(mesh, faces, options.smoothing, centroid, scale);
+    Axis axis;
+    if (samples.size() < 12) {
+        axis.reason = "it has too few faces to tell";
+        return axis;
+    }
+    // A flat part has every line across it as an axis.
+    if (moments.variances[2] < 1e-4 * moments.variances[1]) {
+        axis.reason = "it is flat: every line across it would do";
+        return axis;
+    }
+    const Line line = refined(samples, first_guess(samples, moments, options));
+    const Profile profile(samples, line);
+    const Refinement system(samples, line, profile);
+    double round = 0, facing = 0, squares = 0, largest = 0;
+    std::vector<double> angles;
+    const auto [u, w] = across(line.direction);
+    for (const auto& bin : profile.bins)
+        if (bin.weight > 0.002 && bin.members.size() >= 8) largest = std::max(largest, bin.radius);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const bool on_profile = profile.bin_of[i] >= 0;
+        if (!on_profile && std::abs(samples[i].n.dot(line.direction)) > 0.95) continue;
+        facing += samples[i].weight;
+        if (!on_profile) continue;
+        if (std::abs(profile.error[i]) > options.tolerance * 2 * largest) continue;
+        round += samples[i].weight;
+        squares += samples[i].weight * profile.error[i] * profile.error[i];
+        const Vector3d d = samples[i].p - line.point;
+        angles.push_back(std::atan2(w.dot(d), u.dot(d)));
+    }
+    if (facing < 0.02 || !(system.weight > 0)) {
+        axis.reason = "no part of it faces away from an axis";
+        return axis;
+    }
+    const double information = system.tilt_information();
+    const double error = profile.sigma / std::sqrt(std::max(1e-300, information * std::max(1.0, system.count)));
+    axis.quality = facing > 0 ? round / facing : 0;
+    axis.figures = {{"largest diameter", 2 * largest * scale, "length"},
+                    {"circle preserved", covered_percent(angles), "%"},
+                    {"rms distance", round > 0 ? std::sqrt(squares / round) * scale : 0, "length"},
+                    {"direction error", std::min(90.0, error * 180 / M_PI), "degree"}};
+    if (sphere_error(samples, profile) < 2 * profile.sigma || information < 1e-4 * system.radius * system.radius) {
+        axis.reason = "it is like a part of a sphere: many axes would do";
+        return axis;
+    }
+    if (axis.quality < options.least_quality) {
+        axis.reason = "it is not round about any line";
+        return axis;
+    }
+    if (error > 0.09) {
+        axis.reason = "the direction is not determined to within five degrees";
+        return axis;
+    }
+    axis.found = true;
+    set_line(axis, centroid + scale * line.point, line.direction, centroid);
+    double least = 1e300, most = -1e300;
+    const Vector3d a = eigen(axis.direction), at = eigen(axis.point);
+    for (const Index f : faces)
+        for (const Vertex v : corners(mesh, Face(f))) {
+            const double h = a.dot(eigen(mesh.point(v)) - at);
+            least = std::min(least, h), most = std::max(most, h);
+        }
+    axis.lines = {{point_of(at + least * a), point_of(at + most * a)}};
+    return axis;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,214 @@
+// Mean curvature skeleton of a part, capped where it is open.
+#include "axis_parts.h"
+
+#include "ostraka/core/error.h"
+
+#include <CGAL/Mean_curvature_flow_skeletonization.h>
+#include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
+#include <CGAL/Random.h>
+
+#include <queue>
+#include <set>
+
+namespace ostraka {
+
+using namespace detail;
+
+namespace {
+
+/// The part of `faces` that is connected over edges and has most faces.
+std::vector<Index> largest_piece(const Mesh& mesh, const std::vector<Index>& faces) {
+    std::vector<bool> left(mesh.number_of_faces(), false);
+    for (const Index f : faces) left[f] = true;
+    std::vector<Index> best;
+    for (const Index seed : faces) {
+        if (!left[seed]) continue;
+        std::vector<Index> piece{seed};
+        left[seed] = false;
+        for (std::size_t i = 0; i < piece.size(); ++i)
+            for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(Face(piece[i])))) {
+                const Face next = mesh.face(mesh.opposite(h));
+                if (next == Mesh::null_face() || !left[next]) continue;
+                left[next] = false;
+                piece.push_back(next.idx());
+            }
+        if (piece.size() > best.size()) best = std::move(piece);
+    }
+    std::sort(best.begin(), best.end());
+    return best;
+}
+
+/// The piece as a mesh of its own, moved to `centre` and scaled to diagonal 1, its holes filled.
+Mesh capped(const Mesh& mesh, const std::vector<Index>& faces, const Vector3d& centre, double scale) {
+    std::map<Index, Index> number;
+    TriangleSoup soup;
+    for (const Index f : faces) {
+        std::array<Index, 3> triangle{};
+        std::size_t k = 0;
+        for (const Vertex v : corners(mesh, Face(f))) {
+            const auto [entry, added] = number.emplace(v.idx(), static_cast<Index>(soup.points.size()));
+            if (added) {
+                const Vector3d p = (eigen(mesh.point(v)) - centre) / scale;
+                soup.points.push_back({p.x(), p.y(), p.z()});
+            }
+            triangle.at(k++) = entry->second;
+        }
+        soup.triangles.push_back(triangle);
+    }
+    Mesh part;
+    if (try_build_mesh(soup, part).any())
+        fail_input("part", "touches itself at a vertex", "remove the faces that hang on by a vertex, or use --method slices");
+    std::vector<Halfedge> holes;
+    std::vector<bool> seen(part.number_of_halfedges(), false);
+    for (const Halfedge first : part.halfedges()) {
+        if (!part.is_border(first) || seen[first]) continue;
+        holes.push_back(first);
+        for (Halfedge h = first; !seen[h]; h = part.next(h)) seen[h] = true;
+    }
+    for (const Halfedge hole : holes) {
+        std::vector<Face> patch;
+        CGAL::Polygon_mesh_processing::triangulate_hole(part, hole, std::back_inserter(patch));
+        if (patch.empty()) fail_input("part", "has an opening that cannot be capped", "close it, or use --method slices");
+    }
+    return part;
+}
+
+/// Eigen's products on one thread while it stands.
+class OneThread {
+public:
+    OneThread() : before_(Eigen::nbThreads()) { Eigen::setNbThreads(1); }
+    ~OneThread() { Eigen::setNbThreads(before_); }
+    OneThread(const OneThread&) = delete;
+    OneThread& operator=(const OneThread&) = delete;
+
+private:
+    int before_;
+};
+
+struct Graph {
+    std::vector<Vector3d> points;
+    std::vector<std::vector<std::pair<std::size_t, double>>> links;
+    double length = 0;
+};
+
+/// Lengths from `start` and the links used.
+std::pair<std::vector<double>, std::vector<std::size_t>> ways(const Graph& graph, std::size_t start) {
+    std::vector<double> distance(graph.points.size(), std::numeric_limits<double>::infinity());
+    std::vector<std::size_t> before(graph.points.size(), start);
+    std::priority_queue<std::pair<double, std::size_t>, std::vector<std::pair<double, std::size_t>>, std::greater<>> queue;
+    queue.emplace(distance[start] = 0, start);
+    while (!queue.empty()) {
+        const auto [at, v] = queue.top();
+        queue.pop();
+        if (at > distance[v]) continue;
+        for (const auto& [next, length] : graph.links[v])
+            if (at + length < distance[next]) {
+                distance[next] = at + length;
+                before[next] = v;
+                queue.emplace(distance[next], next);
+            }
+    }
+    return {distance, before};
+}
+
+std::size_t farthest(const std::vector<double>& distance) {
+    return static_cast<std::size_t>(std::max_element(distance.begin(), distance.end()) - distance.begin());
+}
+
+std::vector<std::size_t> main_way(const Graph& graph) {
+    std::size_t leaf = graph.points.size();
+    for (std::size_t v = 0; v < graph.points.size() && leaf == graph.points.size(); ++v)
+        if (graph.links[v].size() == 1) leaf = v;
+    std::vector<std::size_t> way;
+    if (leaf == graph.points.size()) {
+        // No end: a loop is followed around where it does not branch.
+        std::size_t last = 0, v = 0;
+        do {
+            way.push_back(v);
+            if (graph.links[v].size() != 2) return {};
+            const std::size_t next =
+                graph.links[v][0].first == last && v != last ? graph.links[v][1].first : graph.links[v][0].first;
+            last = v;
+            v = next;
+        } while (v != 0 && way.size() <= graph.points.size());
+        way.push_back(0);
+        return way;
+    }
+    const std::size_t one_end = farthest(ways(graph, leaf).first);
+    const auto [distance, before] = ways(graph, one_end);
+    for (std::size_t v = farthest(distance);; v = before[v]) {
+        way.push_back(v);
+        if (v == one_end) return way;
+    }
+}
+
+}  // namespace
+
+Axis skeleton_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options) {
+    check_options(options, "axis");
+    const AreaMoments moments = area_moments(mesh, faces);
+    if (!(moments.area > 0)) fail_input("part", "has no faces with area", "choose another part");
+    const std::vector<Index> piece = largest_piece(mesh, faces);
+    if (piece.size() > 200000)
+        fail_input("part", "has " + std::to_string(piece.size()) + " faces, too many for a skeleton", "simplify the mesh first");
+    const Vector3d centre = eigen(moments.centroid);
+    const double scale = part_diagonal(mesh, piece);
+    const Mesh part = capped(mesh, piece, centre, scale);
+
+    // The same sums in the same order, however many threads there are and whatever ran before.
+    const OneThread one_thread;
+    CGAL::get_default_random() = CGAL::Random(0);
+    using Skeletonization = CGAL::Mean_curvature_flow_skeletonization<Mesh>;
+    Skeletonization::Skeleton skeleton;
+    Skeletonization flow(part);
+    flow.contract_until_convergence();
+    flow.convert_to_skeleton(skeleton);
+
+    Graph graph;
+    for (const auto v : CGAL::make_range(vertices(skeleton))) graph.points.push_back(eigen(skeleton[v].point));
+    graph.links.resize(graph.points.size());
+    for (const auto e : CGAL::make_range(edges(skeleton))) {
+        const std::size_t a = source(e, skeleton), b = target(e, skeleton);
+        const double length = (graph.points[a] - graph.points[b]).norm();
+        graph.links[a].emplace_back(b, length);
+        graph.links[b].emplace_back(a, length);
+        graph.length += length;
+    }
+    Axis axis;
+    const std::vector<std::size_t> way = graph.points.empty() ? std::vector<std::size_t>() : main_way(graph);
+    double length = 0;
+    for (std::size_t i = 1; i < way.size(); ++i) length += (graph.points[way[i]] - graph.points[way[i - 1]]).norm();
+    std::size_t branches = 0;
+    for (const auto& links : graph.links) branches += links.size() > 2;
+    if (length < 0.25) {
+        axis.reason =
+            graph.length < 0.25 ? "it shrinks to a point: it is not longer than wide" : "its skeleton has no longest way";
+        return axis;
+    }
+    std::vector<Vector3d> middles;
+    std::vector<double> weights;
+    std::vector<Point> line;
+    std::set<std::pair<std::size_t, std::size_t>> used;
+    for (std::size_t i = 0; i < way.size(); ++i) {
+        line.push_back(point_of(centre + scale * graph.points[way[i]]));
+        if (i == 0) continue;
+        middles.push_back((graph.points[way[i]] + graph.points[way[i - 1]]) / 2);
+        weights.push_back((graph.points[way[i]] - graph.points[way[i - 1]]).norm() + 1e-12);
+        used.insert(std::minmax(way[i], way[i - 1]));
+    }
+    const LineFit fit = fit_line(middles, weights);
+    set_line(axis, centre + scale * fit.point, fit.direction, centre);
+    axis.lines.push_back(std::move(line));
+    for (std::size_t a = 0; a < graph.points.size(); ++a)
+        for (const auto& link : graph.links[a])
+            if (a < link.first && used.count({a, link.first}) == 0)
+                axis.lines.push_back(
+                    {point_of(centre + scale * graph.points[a]), point_of(centre + scale * graph.points[link.first])});
+    axis.quality = graph.length > 0 ? length / graph.length : 0;
+    axis.found = true;
+    axis.figures = {
+        {"length", length * scale, "length"}, {"branches", double(branches), ""}, {"rms distance", fit.rms * scale, "length"}};
+    return axis;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,139 @@
+// Axis of a tubular part from the centres of its slices.
+#include "axis_parts.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+
+namespace ostraka {
+
+using namespace detail;
+
+namespace {
+
+struct Slice {
+    bool valid = false;
+    Vector3d centre = Vector3d::Zero();
+    double radius = 0;
+};
+
+/// The cut of the part by a plane, of which only what lies within `reach` of `point` counts. A vertex on the plane counts as
+/// above.
+Slice cut(const Mesh& mesh, const std::vector<Index>& faces, const Vector3d& point, const Vector3d& normal, double reach) {
+    std::vector<Vector3d> middles;
+    std::vector<double> lengths;
+    for (const Index f : faces) {
+        std::array<Vector3d, 3> p;
+        std::array<double, 3> h{};
+        std::size_t k = 0;
+        for (const Vertex v : corners(mesh, Face(f))) {
+            p.at(k) = eigen(mesh.point(v)) - point;
+            h.at(k) = normal.dot(p.at(k));
+            ++k;
+        }
+        const int above = (h[0] >= 0) + (h[1] >= 0) + (h[2] >= 0);
+        if (above == 0 || above == 3) continue;
+        std::array<Vector3d, 2> ends;
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::size_t j = (i + 1) % 3;
+            if ((h.at(i) >= 0) == (h.at(j) >= 0)) continue;
+            const double t = h.at(i) / (h.at(i) - h.at(j));
+            ends.at(count++) = p.at(i) + t * (p.at(j) - p.at(i));
+        }
+        const Vector3d middle = (ends[0] + ends[1]) / 2;
+        const double length = (ends[1] - ends[0]).norm();
+        if (!(length > 0) || middle.norm() > reach) continue;
+        middles.push_back(middle);
+        lengths.push_back(length);
+    }
+    Slice slice;
+    if (middles.size() < 3) return slice;
+    Vector3d centre = Vector3d::Zero();
+    double total = 0;
+    for (std::size_t i = 0; i < middles.size(); ++i) centre += lengths[i] * middles[i], total += lengths[i];
+    centre /= total;
+    const auto [u, w] = across(normal);
+    std::vector<double> angles;
+    std::vector<Eigen::Vector2d> flat;
+    for (const auto& m : middles) {
+        flat.emplace_back(u.dot(m), w.dot(m));
+        angles.push_back(std::atan2(w.dot(m - centre), u.dot(m - centre)));
+    }
+    if (covered_percent(angles) < 100.0 * 300 / 360) {
+        const CircleFit circle = fit_circle(flat, lengths);
+        if (circle.radius < 0 || circle.radius > reach) return slice;
+        centre = circle.centre.x() * u + circle.centre.y() * w;
+    }
+    for (std::size_t i = 0; i < middles.size(); ++i) slice.radius += lengths[i] / total * (middles[i] - centre).norm();
+    slice.centre = point + centre;
+    slice.valid = true;
+    return slice;
+}
+
+}  // namespace
+
+Axis slice_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options) {
+    check_options(options, "axis");
+    const AreaMoments moments = area_moments(mesh, faces);
+    if (!(moments.area > 0)) fail_input("part", "has no faces with area", "choose another part");
+    Axis axis;
+    if (moments.variances[0] < 1.3 * moments.variances[1]) {
+        axis.reason = "it is not longer than wide";
+        return axis;
+    }
+    const Vector3d centroid = eigen(moments.centroid), direction = eigen(moments.directions[0]);
+    double least = 0, most = 0;
+    for (const Index f : faces)
+        for (const Vertex v : corners(mesh, Face(f))) {
+            const double h = direction.dot(eigen(mesh.point(v)) - centroid);
+            least = std::min(least, h), most = std::max(most, h);
+        }
+    const double diagonal = part_diagonal(mesh, faces);
+    const auto count = static_cast<std::size_t>(options.slices);
+    std::vector<Slice> first(count);
+    parallel_for(
+        count,
+        [&](std::size_t i) {
+            const double h = least + (most - least) * (0.03 + 0.94 * (double(i) + 0.5) / double(count));
+            first[i] = cut(mesh, faces, centroid + h * direction, direction, 2 * diagonal);
+        },
+        1);
+    std::vector<Slice> rough;
+    for (const auto& slice : first)
+        if (slice.valid) rough.push_back(slice);
+    std::vector<Slice> fine(rough.size());
+    parallel_for(
+        rough.size(),
+        [&](std::size_t i) {
+            const std::size_t before = i >= 2 ? i - 2 : 0, after = std::min(i + 2, rough.size() - 1);
+            const Vector3d tangent = rough[after].centre - rough[before].centre;
+            if (tangent.norm() > 0)
+                fine[i] = cut(mesh, faces, rough[i].centre, tangent.normalized(), 3 * rough[i].radius + 1e-9 * diagonal);
+        },
+        1);
+    std::vector<Vector3d> centres;
+    std::vector<Point> line;
+    double radius = 0, length = 0;
+    for (const auto& slice : fine) {
+        if (!slice.valid) continue;
+        if (!centres.empty()) length += (slice.centre - centres.back()).norm();
+        centres.push_back(slice.centre);
+        line.push_back(point_of(slice.centre));
+        radius += slice.radius;
+    }
+    if (centres.size() < 3 || 2 * centres.size() < count || !(length > 0)) {
+        axis.reason = "fewer than half of the slices have a centre";
+        return axis;
+    }
+    radius /= double(centres.size());
+    const LineFit fit = fit_line(centres, std::vector<double>(centres.size(), 1));
+    set_line(axis, fit.point, fit.direction, centroid);
+    axis.lines = {line};
+    axis.quality = std::max(0.0, 1 - radius / length);
+    axis.found = axis.quality > 0.4;
+    if (!axis.found) axis.reason = "it is not longer than wide";
+    axis.figures = {{"length", length, "length"}, {"mean radius", radius, "length"}, {"rms distance", fit.rms, "length"}};
+    return axis;
+}
+
+}  // namespace ostraka
