@@ -107,37 +107,17 @@ private:
             edit.remove_attributes.push_back(name_of(name));
             remember("remove-attribute", name);
         }
-        add_attributes(edit, set);
-        for (const auto& text : attributes) remember("attribute", text);
-        if (duplicate) edit.duplicate = true, remember("duplicate", "true");
-        if (split) edit.split = true, remember("split", "true");
-        if (remove) edit.remove = true, remember("remove", "true");
-        return edit;
-    }
-
-    /// NAME=TEXT: the semantic attribute of that name, or a new one.
-    void add_attributes(AnnotationEdit& edit, const AnnotationSet& set) const {
-        if (attributes.empty()) return;
-        const auto found = std::find_if(set.annotations.begin(), set.annotations.end(), [&](const Annotation& a) {
-            return edit.annotation.id ? a.id == *edit.annotation.id : a.tag == edit.annotation.text;
-        });
-        int next = 0;
-        if (found != set.annotations.end())
-            for (const Attribute& attribute : found->attributes) next = std::max(next, attribute.id + 1);
         for (const auto& text : attributes) {
             const std::size_t equals = text.find('=');
             if (equals == std::string::npos || equals == 0)
                 fail_usage("the attribute '" + text + "' is not NAME=TEXT", "for measures and descriptors use --edits FILE");
-            Attribute attribute;
-            attribute.name = text.substr(0, equals);
-            attribute.note = text.substr(equals + 1);
-            attribute.id = -1;
-            if (found != set.annotations.end())
-                for (const Attribute& known : found->attributes)
-                    if (known.name == attribute.name && known.type == AttributeType::semantic) attribute.id = known.id;
-            if (attribute.id < 0) attribute.id = next++;
-            edit.attributes.push_back(std::move(attribute));
+            edit.texts.emplace_back(text.substr(0, equals), text.substr(equals + 1));
+            remember("attribute", text);
         }
+        if (duplicate) edit.duplicate = true, remember("duplicate", "true");
+        if (split) edit.split = true, remember("split", "true");
+        if (remove) edit.remove = true, remember("remove", "true");
+        return edit;
     }
 
     static void print(const Session& session, const Provenance& provenance, const AnnotationSet& set,

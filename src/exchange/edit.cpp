@@ -90,6 +90,7 @@ private:
         }
         for (const EntryName& name : edit.remove_attributes) remove_attribute(annotation, name);
         for (const Attribute& attribute : edit.attributes) put(annotation, attribute);
+        for (const auto& [name, text] : edit.texts) put(annotation, name, text);
         if (edit.duplicate) {
             Annotation copy = annotation;
             copy.id = free_id(set_);
@@ -126,6 +127,17 @@ private:
         else *same_id = attribute;
     }
 
+    static void put(Annotation& annotation, const std::string& name, const std::string& text) {
+        const auto same_name = std::find_if(annotation.attributes.begin(), annotation.attributes.end(), [&](const Attribute& a) {
+            return a.name == name && a.type == AttributeType::semantic;
+        });
+        Attribute attribute;
+        attribute.id = same_name == annotation.attributes.end() ? free_attribute_id(annotation) : same_name->id;
+        attribute.name = name;
+        attribute.note = text;
+        put(annotation, attribute);
+    }
+
     /// What was measured on the selection.
     void refresh(Annotation& annotation) {
         AnnotationSet alone;
@@ -143,9 +155,9 @@ private:
         if (annotation.type != other.type)
             fail_input(here_, "a " + to_string(other.type) + " cannot become part of a " + to_string(annotation.type),
                        "merge annotations of one type");
-        for (const Index point : other.points)
-            if (std::find(annotation.points.begin(), annotation.points.end(), point) == annotation.points.end())
-                annotation.points.push_back(point);
+        std::set<Index> known(annotation.points.begin(), annotation.points.end());
+        std::copy_if(other.points.begin(), other.points.end(), std::back_inserter(annotation.points),
+                     [&](Index point) { return known.insert(point).second; });
         annotation.polylines.insert(annotation.polylines.end(), other.polylines.begin(), other.polylines.end());
         std::vector<Index> faces;
         std::set_union(annotation.faces.begin(), annotation.faces.end(), other.faces.begin(), other.faces.end(),
@@ -203,11 +215,16 @@ private:
         }
         set_.annotations[at] = parts.front();
         refresh(set_.annotations[at]);
+        std::set<int> taken;
+        for (const Annotation& annotation : set_.annotations) taken.insert(annotation.id);
+        int fresh = free_id(set_);
         for (std::size_t i = 1; i < parts.size(); ++i) {
-            parts[i].id = free_id(set_);
+            while (taken.contains(fresh)) ++fresh;
+            parts[i].id = fresh++;
             refresh(parts[i]);
-            set_.annotations.insert(set_.annotations.begin() + static_cast<std::ptrdiff_t>(at + i), parts[i]);
         }
+        set_.annotations.insert(set_.annotations.begin() + static_cast<std::ptrdiff_t>(at) + 1,
+                                std::make_move_iterator(parts.begin() + 1), std::make_move_iterator(parts.end()));
     }
 
     const Mesh& mesh_;
@@ -235,6 +252,10 @@ std::vector<AnnotationEdit> edits_from_json(const JsonValue& document, const std
             edit.colour = {(*colour)[0].GetInt(), (*colour)[1].GetInt(), (*colour)[2].GetInt()};
         if (const JsonValue* attributes = find_member(entry, "attributes"))
             edit.attributes = attributes_from_json(*attributes, where, "/edits/" + to_string(i) + "/attributes");
+        if (const JsonValue* texts = find_member(entry, "texts"))
+            for (const auto& text : texts->GetObject())
+                edit.texts.emplace_back(std::string(text.name.GetString(), text.name.GetStringLength()),
+                                        std::string(text.value.GetString(), text.value.GetStringLength()));
         const auto names = [&](const char* member, std::vector<EntryName>& into) {
             if (const JsonValue* value = find_member(entry, member))
                 for (const auto& name : value->GetArray()) into.push_back(name_of(name));

@@ -8,7 +8,7 @@
 #include "ostraka/exchange/prototype_files.h"
 #include "ostraka/exchange/web_annotation.h"
 
-#include <algorithm>
+#include <map>
 #include <set>
 
 namespace ostraka {
@@ -43,26 +43,24 @@ PlacedAnnotations added_to(const AnnotationSet& onto, PlacedAnnotations read) {
     if (!onto.unit.empty() && !read.set.unit.empty() && onto.unit != read.set.unit)
         result.set.notes.push_back("the file is in " + read.set.unit + ", the annotations in " + onto.unit +
                                    "; coordinates were taken as they stand");
-    std::set<int> taken;
+    std::set<int> taken, reserved;
     for (const Annotation& annotation : onto.annotations) taken.insert(annotation.id);
-    for (std::size_t i = 0; i < read.set.annotations.size(); ++i) {
-        Annotation& annotation = read.set.annotations[i];
+    for (const Annotation& annotation : read.set.annotations) reserved.insert(annotation.id);
+    int fresh = 0;
+    std::map<int, int> renamed;
+    for (Annotation& annotation : read.set.annotations) {
         const int before = annotation.id;
         if (taken.contains(before)) {
-            annotation.id = free_id(result.set);
-            // Nor may it be one that another annotation of the file has.
-            while (taken.contains(annotation.id) ||
-                   std::any_of(read.set.annotations.begin() + static_cast<std::ptrdiff_t>(i) + 1, read.set.annotations.end(),
-                               [&](const Annotation& later) { return later.id == annotation.id; }))
-                ++annotation.id;
+            while (taken.contains(fresh) || reserved.contains(fresh)) ++fresh;
+            annotation.id = fresh++;
+            renamed[before] = annotation.id;
             result.set.notes.push_back("the id " + std::to_string(before) + " is taken: '" + annotation.tag +
                                        "' of the file got " + std::to_string(annotation.id));
-            for (Placement& placement : result.placements)
-                if (placement.id == before && placement.tag == annotation.tag) placement.id = annotation.id;
         }
-        taken.insert(annotation.id);
         result.set.annotations.push_back(std::move(annotation));
     }
+    for (Placement& placement : result.placements)
+        if (const auto found = renamed.find(placement.id); found != renamed.end()) placement.id = found->second;
     return result;
 }
 

@@ -2,6 +2,7 @@
 #include "ostraka/exchange/feature_glb.h"
 
 #include "glb.h"
+#include "landmark_formats.h"
 #include "text.h"
 
 #include "ostraka/annotation/annotation_file.h"
@@ -83,6 +84,12 @@ public:
             used.PushBack("EXT_structural_metadata", a());
             add_member(root, "extensionsUsed", std::move(used), a());
         }
+        const auto empty = std::count_if(set_.annotations.begin(), set_.annotations.end(), [](const Annotation& annotation) {
+            return annotation.points.empty() && annotation.polylines.empty() && annotation.faces.empty();
+        });
+        if (empty > 0)
+            notes_.push_back(counted(static_cast<std::size_t>(empty), "annotation") +
+                             " without elements: in the table, but nowhere on the mesh");
         if (rounded_) notes_.emplace_back("GLB holds coordinates in single precision; they were rounded");
         return builder_.finish(where_);
     }

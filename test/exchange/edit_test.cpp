@@ -102,6 +102,18 @@ TEST(Edit, MergeAndSplitAreEachOthersInverse) {
     EXPECT_EQ(set.annotations[1].attributes.size(), 3U);
 }
 
+TEST(Edit, TextsFindTheirAttributeByName) {
+    const Mesh mesh = grid(4);
+    AnnotationSet set = tile_set(mesh);
+    edit_annotations(mesh, set, edits(R"({"annotation": "left", "merge": ["right"], "texts": {"glaze": "none", "age": "old"}})"),
+                     "edits");
+    const Annotation& left = set.annotations[0];
+    ASSERT_EQ(left.attributes.size(), 4U) << "area, glaze, the height that came along, age";
+    EXPECT_EQ(left.attributes[1].note, "none");
+    EXPECT_EQ(left.attributes[3].name, "age");
+    EXPECT_EQ(left.attributes[3].note, "old");
+}
+
 TEST(Edit, DuplicateAndRemove) {
     const Mesh mesh = grid(4);
     AnnotationSet set = tile_set(mesh);

@@ -21,8 +21,10 @@ struct AnnotationEdit {
     std::optional<int> id;
     std::vector<EntryName> remove_attributes;
     std::vector<Attribute> attributes;  ///< each replaces the one with its id, or comes last; its pins are indices of the mesh
-    bool duplicate = false;             ///< the copy gets a free id and comes after the original
-    bool split = false;                 ///< the patches of a region, poly-lines of a line, points become annotations of their own
+    std::vector<std::pair<std::string, std::string>>
+        texts;               ///< name and text: changes the semantic attribute of that name, or adds one
+    bool duplicate = false;  ///< the copy gets a free id and comes after the original
+    bool split = false;      ///< the patches of a region, poly-lines of a line, points become annotations of their own
     bool remove = false;
 };
 
