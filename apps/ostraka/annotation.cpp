@@ -1,5 +1,6 @@
 // ostraka annotation apply | list | check | remap
 #include "command.h"
+#include "word_checks.h"
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/annotation/colouring.h"
@@ -111,8 +112,9 @@ struct Apply {
     std::string names, edit;
     bool mesh_labels = false;
     Outputs outputs;
+    WordChecks words;
 
-    int run(const Session& session) const {
+    int run(const Session& session) {
         if (files.size() != (mesh_labels ? 2U : 3U))
             fail_usage(mesh_labels ? "annotation apply --from-ply-labels takes a mesh and an output"
                                    : "annotation apply takes a mesh, a recipe or label file, and an output");
@@ -122,15 +124,17 @@ struct Apply {
         outputs.check();
         if (!edit.empty() && (mesh_labels || !is_json(source)))
             fail_usage("--edit goes with a recipe", "give a recipe whose steps edit the annotations");
-        check_outputs(given({mesh_file, source, names, edit}), given({output, outputs.ply, outputs.labels}));
+        check_outputs(given({mesh_file, source, names, edit, words.vocabulary}), given({output, outputs.ply, outputs.labels}));
         Provenance provenance{"annotation apply", {}, {}};
         for (const Path& file : given({mesh_file, source, names, edit})) provenance.add_input(file);
         if (is_json(source))
             for (const Path& file : files_named_by(read_json(source), Path(source).parent_path())) provenance.add_input(file);
         if (mesh_labels) provenance.options.emplace_back("from-ply-labels", "true");
+        words.read(provenance);
         const MeshFile file = read_mesh(mesh_file);
         for (const auto& note : file.notes) session.note("note: " + note);
         const AnnotationSet set = make(file, mesh_file, source);
+        words.require(set, source.empty() ? mesh_file : source);
         write_annotations(output, set, file.mesh, mesh_file, provenance);
         outputs.write(session, file.mesh, set, provenance);
         print_set(session, provenance, file.mesh, set);
@@ -159,6 +163,7 @@ private:
 struct Examined {
     std::string mesh, annotations;
     ReadAnnotationsOptions options;
+    WordChecks words;
 
     int list(const Session& session) const {
         const Provenance provenance = inputs("annotation list");
@@ -167,19 +172,24 @@ struct Examined {
         return done;
     }
 
-    int check(const Session& session) const {
-        const Provenance provenance = inputs("annotation check");
+    int check(const Session& session) {
+        Provenance provenance = inputs("annotation check");
+        words.read(provenance);
         const MeshFile file = read_mesh(mesh);
         const Json document = read_json(annotations);
         std::vector<Finding> findings;
+        std::optional<AnnotationSet> set;
         try {
-            const AnnotationSet set = annotations_from_json(document, file.mesh, annotations, options);
-            for (const auto& note : set.notes) findings.push_back({false, "", note});
-            const std::vector<Finding> found = examine(file.mesh, set);
-            findings.insert(findings.end(), found.begin(), found.end());
+            set = annotations_from_json(document, file.mesh, annotations, options);
         } catch (const Error& error) {
             if (error.kind() != ErrorKind::input) throw;
             findings.push_back({true, "", error.problem() + (error.remedy().empty() ? "" : " (" + error.remedy() + ")")});
+        }
+        if (set) {
+            for (const auto& note : set->notes) findings.push_back({false, "", note});
+            const std::vector<Finding> found = examine(file.mesh, *set);
+            findings.insert(findings.end(), found.begin(), found.end());
+            words.look(file.mesh, *set, findings);
         }
         return report(session, provenance, findings);
     }
@@ -279,6 +289,7 @@ void add_annotation(CLI::App& annotation, Session& session) {
                       "take the labels of the mesh file itself instead of a recipe or label file");
     command->add_option("--names", apply->names, "JSON file with names of the labels");
     command->add_option("--edit", apply->edit, "annotations that the recipe's steps edit and add to");
+    apply->words.add_to(*command, false);
     apply->outputs.add_to(*command);
 
     const auto examined = std::make_shared<Examined>();
@@ -290,6 +301,7 @@ void add_annotation(CLI::App& annotation, Session& session) {
         command->add_option("mesh", examined->mesh, "mesh file")->required();
         command->add_option("annotations", examined->annotations, "its annotations (.ant.json)")->required();
         add_flags(command, examined->options);
+        if (check) examined->words.add_to(*command, true);
     }
 
     const auto remap = std::make_shared<Remap>();

@@ -25,6 +25,8 @@ int main(int argc, char** argv) {
     relation->require_subcommand(1);
     CLI::App* measure = tool.add_subcommand("measure", "take measures, describe annotations, compute maps");
     measure->require_subcommand(1);
+    CLI::App* vocabulary = tool.add_subcommand("vocabulary", "the words that tags and attributes are taken from");
+    vocabulary->require_subcommand(1);
     app::add_mesh_info(*mesh, session);
     app::add_mesh_convert(*mesh, session);
     app::add_mesh_repair(*mesh, session);
@@ -42,6 +44,8 @@ int main(int argc, char** argv) {
     app::add_annotation_merge(*annotation, session);
     app::add_measure(*measure, session);
     app::add_measure_map(*measure, session);
+    app::add_annotation_infer(*annotation, session);
+    app::add_vocabulary(*vocabulary, session);
     app::add_render(tool, session);
     try {
         tool.parse(argc, argv);

@@ -82,10 +82,11 @@ Attribute attribute_of(const JsonValue& object, const std::string& where, const 
     attribute.name = text_of(object, "name");
     const std::string type = text_of(object, "type");
     if (type == "semantic") {
-        note_unknown(object, {"id", "name", "type", "note"}, at, notes);
+        note_unknown(object, {"id", "name", "type", "note", "origin"}, at, notes);
         if (find_member(object, "note") == nullptr)
             fail(where, at, "a semantic attribute without a note", "add the member \"note\"");
         attribute.note = text_of(object, "note");
+        attribute.origin = text_of(object, "origin");
     } else if (type == "measure") {
         note_unknown(object, {"id", "name", "type", "measure"}, at, notes);
         attribute.type = AttributeType::measure;

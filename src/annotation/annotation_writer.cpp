@@ -73,6 +73,7 @@ JsonValue json_of(const Attribute& attribute, JsonAllocator& allocator) {
         case AttributeType::semantic:
             add_member(object, "type", "semantic", allocator);
             add_member(object, "note", attribute.note, allocator);
+            add_text(object, "origin", attribute.origin, allocator);
             break;
         case AttributeType::measure:
             add_member(object, "type", "measure", allocator);

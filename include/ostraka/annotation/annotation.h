@@ -49,6 +49,7 @@ struct Attribute {
     std::string note;       ///< semantic
     Measure measure;        ///< measure
     Descriptor descriptor;  ///< descriptor
+    std::string origin{};   ///< semantic: how the word came about where no person stated it, e.g. the rule and its inputs
 };
 
 enum class AnnotationType { point, line, region };

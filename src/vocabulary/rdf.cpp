@@ -1,0 +1,262 @@
+#include "rdf.h"
+
+#include "ostraka/core/error.h"
+
+#include <raptor.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <memory>
+#include <mutex>
+#include <new>
+
+namespace ostraka {
+
+namespace {
+
+struct Free {
+    void operator()(raptor_world* world) const { raptor_free_world(world); }
+    void operator()(raptor_parser* parser) const { raptor_free_parser(parser); }
+    void operator()(raptor_serializer* serializer) const { raptor_free_serializer(serializer); }
+    void operator()(raptor_uri* uri) const { raptor_free_uri(uri); }
+    void operator()(raptor_statement* statement) const { raptor_free_statement(statement); }
+};
+template <class T>
+using Owned = std::unique_ptr<T, Free>;
+
+/// Raptor and the XML library under it have global state.
+std::mutex& library_mutex() {
+    static std::mutex mutex;
+    return mutex;
+}
+
+const unsigned char* bytes(const std::string& text) { return reinterpret_cast<const unsigned char*>(text.c_str()); }
+
+[[noreturn]] void no_memory() { throw Error(ErrorKind::failure, "RDF", "the library cannot be used: out of memory"); }
+
+/// What the library says of errors; the first one counts.
+struct Log {
+    std::string text;
+    int line = -1;
+    static void write(void* self, raptor_log_message* message) {
+        auto& log = *static_cast<Log*>(self);
+        if (message->level < RAPTOR_LOG_LEVEL_ERROR || !log.text.empty()) return;
+        try {
+            log.text = message->text == nullptr ? "unknown reason" : message->text;
+        } catch (const std::bad_alloc&) {
+            return;
+        }
+        if (message->locator != nullptr) log.line = message->locator->line;
+    }
+};
+
+Owned<raptor_world> open_world(Log& log) {
+    Owned<raptor_world> world(raptor_new_world());
+    if (!world) no_memory();
+    raptor_world_set_log_handler(world.get(), &log, &Log::write);
+    if (raptor_world_open(world.get()) != 0) no_memory();
+    return world;
+}
+
+std::string text_of(raptor_uri* uri) {
+    std::size_t length = 0;
+    const unsigned char* text = raptor_uri_as_counted_string(uri, &length);
+    return {reinterpret_cast<const char*>(text), length};
+}
+
+RdfTerm value_of(const raptor_term* term) {
+    if (term->type == RAPTOR_TERM_TYPE_URI) return {RdfTerm::Kind::uri, text_of(term->value.uri), {}, {}};
+    if (term->type == RAPTOR_TERM_TYPE_BLANK)
+        return {RdfTerm::Kind::blank,
+                {reinterpret_cast<const char*>(term->value.blank.string), term->value.blank.string_len},
+                {},
+                {}};
+    const auto& literal = term->value.literal;
+    RdfTerm value{RdfTerm::Kind::text, {reinterpret_cast<const char*>(literal.string), literal.string_len}, {}, {}};
+    if (literal.language != nullptr) value.language.assign(reinterpret_cast<const char*>(literal.language), literal.language_len);
+    if (literal.datatype != nullptr) value.datatype = text_of(literal.datatype);
+    if (value.datatype == "http://www.w3.org/2001/XMLSchema#string") value.datatype.clear();  // RDF 1.1: the same
+    return value;
+}
+
+struct Collector {
+    std::vector<RdfStatement> statements;
+    bool out_of_memory = false;
+    // No exception may pass through the library.
+    static void add(void* self, raptor_statement* statement) noexcept {
+        auto& collector = *static_cast<Collector*>(self);
+        try {
+            collector.statements.push_back(
+                {value_of(statement->subject), text_of(statement->predicate->value.uri), value_of(statement->object)});
+        } catch (const std::bad_alloc&) {
+            collector.out_of_memory = true;
+        }
+    }
+};
+
+int line_of(std::string_view text, std::size_t offset) {
+    return 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(offset), '\n'));
+}
+
+[[noreturn]] void fail_at(const std::string& where, int line, const std::string& what, const std::string& remedy) {
+    fail_input(line > 0 ? where + ", line " + std::to_string(line) : where, what, remedy);
+}
+
+/// Both syntaxes are read as UTF-8 only, so that no other encoding hides anything from the checks below.
+void require_utf8(const std::string& text, const std::string& where) {
+    for (std::size_t i = 0; i < text.size();) {
+        const auto byte = static_cast<unsigned char>(text[i]);
+        const std::size_t length = byte < 0x80                   ? 1
+                                   : byte >= 0xC2 && byte < 0xE0 ? 2
+                                   : byte >= 0xE0 && byte < 0xF0 ? 3
+                                   : byte >= 0xF0 && byte < 0xF5 ? 4
+                                                                 : 0;
+        bool good = byte != 0 && length > 0 && i + length <= text.size();
+        for (std::size_t k = 1; good && k < length; ++k) good = (static_cast<unsigned char>(text[i + k]) & 0xC0) == 0x80;
+        if (!good) fail_at(where, line_of(text, i), "the text is not UTF-8", "save the file as UTF-8");
+        i += length;
+    }
+}
+
+/// Entities that stand for plain text are common in RDF/XML; those that read other files or multiply are not let in.
+void refuse_dangerous_entities(const std::string& text, const std::string& where) {
+    const auto upper = [](std::string part) {
+        for (char& c : part) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+        return part;
+    };
+    if (text.starts_with("<?xml")) {
+        const std::string head = upper(text.substr(0, std::min(text.find("?>"), std::size_t{1000})));
+        if (const std::size_t at = head.find("ENCODING"); at != std::string::npos)
+            if (head.find("UTF-8", at) == std::string::npos && head.find("US-ASCII", at) == std::string::npos)
+                fail_at(where, 1, "the file says that it is in another encoding than UTF-8", "save the file as UTF-8");
+    }
+    std::size_t at = text.find("<!DOCTYPE");
+    if (at == std::string::npos) return;
+    const std::size_t open = text.find_first_of("[>", at);
+    const std::string name = upper(text.substr(at, std::min(open, text.size()) - at));
+    if (name.find("SYSTEM") != std::string::npos || name.find("PUBLIC") != std::string::npos)
+        fail_at(where, line_of(text, at), "the document type stands in another file", "take the document type declaration away");
+    while ((at = text.find("<!ENTITY", at)) != std::string::npos) {
+        const int line = line_of(text, at);
+        const std::size_t quote = text.find_first_of("\"'", at);
+        const std::size_t end = quote == std::string::npos ? quote : text.find(text[quote], quote + 1);
+        if (end == std::string::npos) fail_at(where, line, "an entity does not end", "mend or regenerate the file");
+        const std::string head = upper(text.substr(at, quote - at)), value = text.substr(quote + 1, end - quote - 1);
+        if (head.find("SYSTEM") != std::string::npos || head.find("PUBLIC") != std::string::npos)
+            fail_at(where, line, "an entity stands in another file", "put its text in place of it");
+        if (head.find('%') != std::string::npos || value.find('%') != std::string::npos || value.find('&') != std::string::npos)
+            fail_at(where, line, "an entity is made of entities", "put its text in place of it");
+        if (value.size() > 1000) fail_at(where, line, "an entity stands for more than 1000 bytes", "put its text in place of it");
+        at = end;
+    }
+}
+
+void require_uri(const std::string& uri, const std::string& where) {
+    const std::size_t colon = uri.find(':');
+    bool good = colon != std::string::npos && colon > 0 && std::isalpha(static_cast<unsigned char>(uri.front())) != 0;
+    for (std::size_t i = 0; good && i < colon; ++i)
+        good = std::isalnum(static_cast<unsigned char>(uri[i])) != 0 || uri[i] == '+' || uri[i] == '-' || uri[i] == '.';
+    for (const char c : uri)
+        good =
+            good && static_cast<unsigned char>(c) > 32 && std::string_view("<>\"{}|^`\\\x7F").find(c) == std::string_view::npos;
+    if (!good) fail_input(where, "'" + uri + "' is no URI", "give a URI such as https://example.org/vocabulary");
+}
+
+void require_text(const std::string& text, RdfSyntax syntax, const std::string& where) {
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (byte == 0 || (syntax == RdfSyntax::rdf_xml && byte < 32 && c != '\n' && c != '\t' && c != '\r'))
+            fail_input(where,
+                       "a text holds a control character, which " +
+                           std::string(syntax == RdfSyntax::turtle ? "Turtle" : "RDF/XML") + " cannot",
+                       "take the character away");
+    }
+}
+
+raptor_term* new_term(raptor_world* world, const RdfTerm& term) {
+    switch (term.kind) {
+        case RdfTerm::Kind::uri:
+            return raptor_new_term_from_counted_uri_string(world, bytes(term.value), term.value.size());
+        case RdfTerm::Kind::blank:
+            return raptor_new_term_from_counted_blank(world, bytes(term.value), term.value.size());
+        case RdfTerm::Kind::text:
+            break;
+    }
+    const Owned<raptor_uri> datatype(term.datatype.empty() ? nullptr : raptor_new_uri(world, bytes(term.datatype)));
+    return raptor_new_term_from_counted_literal(world, bytes(term.value), term.value.size(), datatype.get(),
+                                                term.language.empty() ? nullptr : bytes(term.language),
+                                                static_cast<unsigned char>(term.language.size()));
+}
+
+}  // namespace
+
+std::vector<RdfStatement> parse_rdf(const std::string& text, RdfSyntax syntax, const std::string& base,
+                                    const std::string& where) {
+    const bool xml = syntax == RdfSyntax::rdf_xml;
+    require_utf8(text, where);
+    if (xml) refuse_dangerous_entities(text, where);
+    const std::lock_guard lock(library_mutex());
+    Log log;
+    Collector collector;
+    const Owned<raptor_world> world = open_world(log);
+    const Owned<raptor_parser> parser(raptor_new_parser(world.get(), xml ? "rdfxml" : "turtle"));
+    const Owned<raptor_uri> base_uri(raptor_new_uri(world.get(), bytes(base)));
+    if (!parser || !base_uri) no_memory();
+    raptor_parser_set_option(parser.get(), RAPTOR_OPTION_NO_NET, nullptr, 1);
+    raptor_parser_set_option(parser.get(), RAPTOR_OPTION_NO_FILE, nullptr, 1);
+    raptor_parser_set_option(parser.get(), RAPTOR_OPTION_LOAD_EXTERNAL_ENTITIES, nullptr, 0);
+    raptor_parser_set_option(parser.get(), RAPTOR_OPTION_NORMALIZE_LANGUAGE, nullptr, 0);
+    raptor_parser_set_statement_handler(parser.get(), &collector, &Collector::add);
+    int result = raptor_parser_parse_start(parser.get(), base_uri.get());
+    if (result == 0) result = raptor_parser_parse_chunk(parser.get(), bytes(text), text.size(), 1);
+    if (collector.out_of_memory) throw std::bad_alloc();
+    if (result == 0 && log.text.empty()) return std::move(collector.statements);
+    if (log.line < 0)
+        if (const raptor_locator* locator = raptor_parser_get_locator(parser.get())) log.line = locator->line;
+    fail_at(where, log.line,
+            std::string(xml ? "not valid RDF/XML: " : "not valid Turtle: ") + (log.text.empty() ? "unknown reason" : log.text),
+            "mend or regenerate the file");
+}
+
+std::string serialise_rdf(const std::vector<RdfStatement>& statements, RdfSyntax syntax,
+                          const std::vector<std::pair<std::string, std::string>>& prefixes, const std::string& where) {
+    for (const RdfStatement& statement : statements) {
+        require_uri(statement.predicate, where);
+        for (const RdfTerm* term : {&statement.subject, &statement.object}) {
+            if (term->kind == RdfTerm::Kind::uri) require_uri(term->value, where);
+            if (!term->datatype.empty()) require_uri(term->datatype, where);
+            if (term->kind == RdfTerm::Kind::text) require_text(term->value, syntax, where);
+        }
+    }
+    const std::lock_guard lock(library_mutex());
+    Log log;
+    const Owned<raptor_world> world = open_world(log);
+    const Owned<raptor_serializer> serializer(
+        raptor_new_serializer(world.get(), syntax == RdfSyntax::turtle ? "turtle" : "rdfxml-abbrev"));
+    if (!serializer) no_memory();
+    void* memory = nullptr;
+    std::size_t length = 0;
+    for (const auto& [prefix, name] : prefixes) {
+        const Owned<raptor_uri> uri(raptor_new_uri(world.get(), bytes(name)));
+        raptor_serializer_set_namespace(serializer.get(), uri.get(), bytes(prefix));
+    }
+    int result = raptor_serializer_start_to_string(serializer.get(), nullptr, &memory, &length);
+    for (const RdfStatement& statement : statements) {
+        if (result != 0) break;
+        const Owned<raptor_statement> triple(raptor_new_statement_from_nodes(
+            world.get(), new_term(world.get(), statement.subject),
+            raptor_new_term_from_counted_uri_string(world.get(), bytes(statement.predicate), statement.predicate.size()),
+            new_term(world.get(), statement.object), nullptr));
+        if (!triple) no_memory();
+        result = raptor_serializer_serialize_statement(serializer.get(), triple.get());
+    }
+    if (result == 0) result = raptor_serializer_serialize_end(serializer.get());
+    std::string text(static_cast<const char*>(memory), memory == nullptr ? 0 : length);
+    if (memory != nullptr) raptor_free_memory(memory);
+    if (result != 0 || !log.text.empty() || text.empty())
+        throw Error(ErrorKind::failure, where, "cannot be written: " + (log.text.empty() ? "unknown reason" : log.text));
+    return text;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,324 @@
+// SKOS -> vocabulary.
+#include "rdf.h"
+#include "rules_json.h"
+#include "skos_terms.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/vocabulary/skos.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <set>
+
+namespace ostraka {
+
+namespace {
+
+using Kind = RdfTerm::Kind;
+using std::to_string;
+
+/// Statements by subject, and what of them was used.
+class Graph {
+public:
+    explicit Graph(std::vector<RdfStatement> list) : statements_(std::move(list)) {
+        for (std::size_t i = 0; i < statements_.size(); ++i) by_subject_[statements_[i].subject].push_back(i);
+    }
+    [[nodiscard]] const std::vector<RdfStatement>& statements() const { return statements_; }
+    template <class Use>
+    void each(const RdfTerm& subject, Use&& use) const {
+        const auto found = by_subject_.find(subject);
+        if (found == by_subject_.end()) return;
+        for (const std::size_t i : found->second) use(statements_[i].predicate, statements_[i].object);
+    }
+    [[nodiscard]] std::vector<RdfTerm> values(const RdfTerm& subject, const std::string& property) const {
+        std::vector<RdfTerm> list;
+        each(subject, [&](const std::string& predicate, const RdfTerm& object) {
+            if (predicate == property) list.push_back(object);
+        });
+        return list;
+    }
+
+private:
+    std::vector<RdfStatement> statements_;
+    std::map<RdfTerm, std::vector<std::size_t>> by_subject_;
+};
+
+class SkosReader {
+public:
+    SkosReader(std::vector<RdfStatement> statements, std::string where, const std::string& scheme)
+        : graph_(std::move(statements)), where_(std::move(where)) {
+        find_scheme(scheme);
+        find_concepts();
+        vocabulary_.uri = scheme_ == skos::default_scheme ? "" : scheme_;
+        read_scheme();
+        name_concepts();
+        for (const RdfTerm& term : concepts_) read_concept(term);
+        join_narrower();
+        for (Concept& entry : vocabulary_.concepts) {
+            sort(entry.broader);
+            sort(entry.others);
+            for (auto& [language, labels] : entry.alternatives) sort(labels);
+        }
+        sort(vocabulary_.others);
+        for (const auto& [property, count] : dropped_)
+            vocabulary_.notes.push_back(to_string(count) + (count == 1 ? " statement" : " statements") + " not kept: <" +
+                                        property + "> of something without a name");
+        if (outside_ > 0)
+            vocabulary_.notes.push_back(
+                to_string(outside_) +
+                " concepts of other schemes, or of nothing we know, are named as broader; kept as they are");
+        check_vocabulary(vocabulary_, where_);
+    }
+    Vocabulary result() { return std::move(vocabulary_); }
+
+private:
+    template <class T>
+    static void sort(std::vector<T>& list) {
+        std::sort(list.begin(), list.end());
+        list.erase(std::unique(list.begin(), list.end()), list.end());
+    }
+    [[noreturn]] void fail(const std::string& what, const std::string& remedy) const { fail_input(where_, what, remedy); }
+    static RdfTerm uri(const std::string& text) { return {Kind::uri, text, {}, {}}; }
+
+    void find_scheme(const std::string& wanted) {
+        std::vector<std::string> declared;
+        for (const RdfStatement& statement : graph_.statements())
+            if (statement.predicate == skos::rdf + "type" && statement.object == uri(skos::core + "ConceptScheme") &&
+                statement.subject.kind == Kind::uri)
+                declared.push_back(statement.subject.value);
+        sort(declared);
+        scheme_ = wanted;
+        if (!wanted.empty()) {
+            if (!std::binary_search(declared.begin(), declared.end(), wanted))
+                fail("has no concept scheme <" + wanted + ">",
+                     declared.empty() ? "it names none" : "it has <" + declared.front() + ">");
+        } else if (declared.size() > 1) {
+            fail("has " + to_string(declared.size()) + " concept schemes: <" + declared[0] + ">, <" + declared[1] + "> ...",
+                 "name one with --scheme");
+        } else {
+            scheme_ = declared.empty() ? skos::default_scheme : declared.front();
+        }
+    }
+
+    /// Everything said to be a concept, or in a scheme, or below or above another; of this scheme or of none.
+    void find_concepts() {
+        std::set<RdfTerm> seen, elsewhere;
+        std::size_t nameless = 0;
+        for (const auto& [subject, predicate, object] : graph_.statements())
+            if (predicate == skos::core + "inScheme" && object.kind == Kind::uri && object.value != scheme_)
+                elsewhere.insert(subject);
+        for (const auto& [subject, predicate, object] : graph_.statements())
+            if (predicate == skos::core + "inScheme" && object.kind == Kind::uri && object.value == scheme_)
+                elsewhere.erase(subject);
+        const auto add = [&](const RdfTerm& term) {
+            if (elsewhere.contains(term) || !seen.insert(term).second) return;
+            if (term.kind == Kind::uri) concepts_.push_back(term);
+            else if (term.kind == Kind::blank) ++nameless;
+        };
+        for (const auto& [subject, predicate, object] : graph_.statements()) {
+            if (predicate == skos::rdf + "type" && object == uri(skos::core + "Concept")) add(subject);
+            if (predicate == skos::core + "inScheme" || predicate == skos::core + "topConceptOf") add(subject);
+            if (predicate == skos::core + "hasTopConcept") add(object);
+            if (predicate == skos::core + "broader" || predicate == skos::core + "narrower") add(subject);
+        }
+        if (nameless > 0) vocabulary_.notes.push_back(to_string(nameless) + " concepts without a URI not kept");
+        if (concepts_.empty()) fail("holds no SKOS concept", "give a SKOS vocabulary (skos:Concept)");
+        std::map<RdfTerm, std::size_t> positions;
+        for (const RdfTerm& term : concepts_)
+            if (const auto position = position_of(term)) positions[term] = *position;
+        if (positions.size() == concepts_.size())
+            std::stable_sort(concepts_.begin(), concepts_.end(),
+                             [&](const RdfTerm& a, const RdfTerm& b) { return positions.at(a) < positions.at(b); });
+    }
+
+    /// The part behind the vocabulary's namespace, if that is all the URI says; else the URI's last part, if no other concept
+    /// has it; else the URI.
+    void name_concepts() {
+        const std::string prefix = skos::namespace_of(vocabulary_.uri), slash = vocabulary_.uri + "/";
+        std::map<std::string, std::size_t> names;
+        std::vector<std::string> last(concepts_.size());
+        for (std::size_t i = 0; i < concepts_.size(); ++i) {
+            const std::string& text = concepts_[i].value;
+            const bool ours = text.starts_with(prefix) && text.size() > prefix.size();
+            last[i] = skos::percent_decoded(ours ? text.substr(prefix.size()) : text.substr(text.find_last_of("/#") + 1));
+            if (const auto stated = graph_.values(concepts_[i], skos::own + "id");
+                stated.size() == 1 && stated.front().kind == Kind::text)
+                last[i] = stated.front().value;
+            ++names[last[i]];
+        }
+        for (std::size_t i = 0; i < concepts_.size(); ++i) {
+            const std::string& text = concepts_[i].value;
+            const std::string id = last[i].empty() || names[last[i]] > 1 ? text : last[i];
+            ids_[text] = id;
+            Concept entry;
+            entry.id = id;
+            if (prefix + skos::percent_encoded(id) != text) entry.uri = text;
+            vocabulary_.concepts.push_back(std::move(entry));
+            index_[text] = i;
+        }
+    }
+
+    [[nodiscard]] std::optional<std::size_t> position_of(const RdfTerm& subject) const {
+        const auto values = graph_.values(subject, skos::own + "position");
+        std::size_t number = 0;
+        if (values.size() != 1) return std::nullopt;
+        const std::string& text = values.front().value;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+        return error == std::errc() && end == text.data() + text.size() ? std::optional<std::size_t>(number) : std::nullopt;
+    }
+
+    /// The first text of each language; false where the language is taken already.
+    static bool put(Labels& labels, const RdfTerm& text) { return labels.emplace(text.language, text.value).second; }
+
+    void keep(std::vector<ForeignStatement>& list, const std::string& property, const RdfTerm& value) {
+        if (value.kind == Kind::blank) ++dropped_[property];
+        else list.push_back({property, value.value, value.kind == Kind::uri, value.language, value.datatype});
+    }
+
+    void read_scheme() {
+        const RdfTerm scheme = uri(scheme_);
+        std::string title_property;
+        for (const std::string& property : {skos::dcterms + "title", std::string("http://purl.org/dc/elements/1.1/title"),
+                                            skos::core + "prefLabel", skos::rdfs + "label"})
+            if (title_property.empty() && !graph_.values(scheme, property).empty()) title_property = property;
+        graph_.each(scheme, [&](const std::string& property, const RdfTerm& value) {
+            if (property == skos::rdf + "type" && value == uri(skos::core + "ConceptScheme")) return;
+            if (property == skos::core + "hasTopConcept" || property == skos::own + "attribute") return;
+            if (property == skos::own + "rules") return read_rules(value);
+            if (property == title_property && value.kind == Kind::text && value.datatype.empty() && put(vocabulary_.title, value))
+                return;
+            keep(vocabulary_.others, property, value);
+        });
+        vocabulary_.attributes = attributes_of(scheme);
+    }
+
+    void read_rules(const RdfTerm& value) {
+        const std::string where = where_ + ", ostraka:rules";
+        const Json list = parse_json(value.value, where);
+        for (auto& rule : rules_from_json(list, where)) vocabulary_.rules.push_back(std::move(rule));
+    }
+
+    void read_concept(const RdfTerm& term) {
+        Concept& entry = vocabulary_.concepts[index_.at(term.value)];
+        graph_.each(term, [&](const std::string& property, const RdfTerm& value) {
+            const bool text = value.kind == Kind::text && value.datatype.empty();
+            if (property == skos::rdf + "type" && value == uri(skos::core + "Concept")) return;
+            if ((property == skos::core + "inScheme" || property == skos::core + "topConceptOf") && value == uri(scheme_)) return;
+            if (property == skos::own + "position" || property == skos::own + "attribute" || property == skos::own + "id") return;
+            if (property == skos::core + "prefLabel" && text) {
+                if (!put(entry.labels, value)) entry.alternatives[value.language].push_back(value.value);
+                return;
+            }
+            if (property == skos::core + "altLabel" && text) {
+                entry.alternatives[value.language].push_back(value.value);
+                return;
+            }
+            if (property == skos::core + "definition" && text && put(entry.definition, value)) return;
+            if (property == skos::core + "broader" && value.kind == Kind::uri) {
+                if (const auto found = ids_.find(value.value); found != ids_.end()) {
+                    entry.broader.push_back(found->second);
+                    return;
+                }
+                ++outside_;
+            }
+            if (property == skos::core + "narrower" && value.kind == Kind::uri && ids_.contains(value.value)) return;
+            keep(entry.others, property, value);
+        });
+        entry.attributes = attributes_of(term);
+    }
+
+    void join_narrower() {
+        for (const RdfTerm& term : concepts_)
+            for (const RdfTerm& other : graph_.values(term, skos::core + "narrower"))
+                if (const auto found = index_.find(other.value); found != index_.end() && other.kind == Kind::uri)
+                    vocabulary_.concepts[found->second].broader.push_back(ids_.at(term.value));
+    }
+
+    /// Nodes in the order of their positions, or as they stand.
+    [[nodiscard]] std::vector<RdfTerm> ordered(const RdfTerm& owner, const std::string& property) const {
+        std::vector<RdfTerm> nodes = graph_.values(owner, property);
+        std::map<RdfTerm, std::size_t> positions;
+        for (const RdfTerm& node : nodes) positions.emplace(node, position_of(node).value_or(nodes.size()));
+        std::stable_sort(nodes.begin(), nodes.end(),
+                         [&](const RdfTerm& a, const RdfTerm& b) { return positions.at(a) < positions.at(b); });
+        return nodes;
+    }
+
+    [[nodiscard]] std::string name_of(const RdfTerm& node, const std::string& what) const {
+        const auto names = graph_.values(node, skos::own + "name");
+        if (names.size() != 1 || names.front().kind != Kind::text || names.front().value.empty())
+            fail("an " + what + " without a name", "give each one ostraka:name");
+        return names.front().value;
+    }
+
+    [[nodiscard]] std::optional<double> number_of(const RdfTerm& node, const std::string& name,
+                                                  const std::string& attribute) const {
+        const auto values = graph_.values(node, skos::own + name);
+        if (values.empty()) return std::nullopt;
+        double number = 0;
+        const std::string& text = values.front().value;
+        const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
+        const auto [end, error] = std::from_chars(begin, text.data() + text.size(), number);
+        if (values.size() > 1 || error != std::errc() || end != text.data() + text.size() || !std::isfinite(number))
+            fail("the " + name + " of the attribute '" + attribute + "' is no number: '" + text + "'", "give one number");
+        return number;
+    }
+
+    Labels labels_of(const RdfTerm& node, const std::string& property) const {
+        Labels labels;
+        for (const RdfTerm& value : graph_.values(node, property))
+            if (value.kind == Kind::text) put(labels, value);
+        return labels;
+    }
+
+    [[nodiscard]] std::vector<AllowedAttribute> attributes_of(const RdfTerm& owner) const {
+        std::vector<AllowedAttribute> list;
+        for (const RdfTerm& node : ordered(owner, skos::own + "attribute")) {
+            AllowedAttribute attribute;
+            attribute.name = name_of(node, "attribute");
+            attribute.labels = labels_of(node, skos::core + "prefLabel");
+            attribute.definition = labels_of(node, skos::core + "definition");
+            attribute.min = number_of(node, "minimum", attribute.name);
+            attribute.max = number_of(node, "maximum", attribute.name);
+            if (const auto units = graph_.values(node, skos::own + "unit"); !units.empty()) attribute.unit = units.front().value;
+            for (const RdfTerm& term : ordered(node, skos::own + "value"))
+                attribute.values.push_back({name_of(term, "attribute's value"), labels_of(term, skos::core + "prefLabel")});
+            list.push_back(std::move(attribute));
+        }
+        return list;
+    }
+
+    Graph graph_;
+    std::string where_, scheme_;
+    std::vector<RdfTerm> concepts_;
+    std::map<std::string, std::string> ids_;    ///< URI -> id
+    std::map<std::string, std::size_t> index_;  ///< URI -> place among the concepts
+    std::map<std::string, std::size_t> dropped_;
+    std::size_t outside_ = 0;
+    Vocabulary vocabulary_;
+};
+
+bool is_xml(const Path& file) {
+    const std::string ending = extension(file);
+    return ending == ".rdf" || ending == ".owl" || ending == ".xml";
+}
+
+}  // namespace
+
+bool is_skos(const Path& file) {
+    const std::string ending = extension(file);
+    return is_xml(file) || ending == ".ttl" || ending == ".turtle" || ending == ".nt";
+}
+
+Vocabulary vocabulary_from_skos(const std::string& text, bool rdf_xml, const std::string& where, const std::string& scheme) {
+    return SkosReader(parse_rdf(text, rdf_xml ? RdfSyntax::rdf_xml : RdfSyntax::turtle, skos::default_scheme, where), where,
+                      scheme)
+        .result();
+}
+
+Vocabulary read_skos(const Path& file, const std::string& scheme) {
+    return vocabulary_from_skos(read_file(file), is_xml(file), file.string(), scheme);
+}
+
+}  // namespace ostraka

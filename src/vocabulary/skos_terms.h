@@ -1,0 +1,53 @@
+// The names that SKOS files are made of.
+#pragma once
+
+#include <string>
+
+namespace ostraka::skos {
+
+inline const std::string rdf = "http://www.w3.org/1999/02/22-rdf-syntax-ns#";
+inline const std::string rdfs = "http://www.w3.org/2000/01/rdf-schema#";
+inline const std::string xsd = "http://www.w3.org/2001/XMLSchema#";
+inline const std::string core = "http://www.w3.org/2004/02/skos/core#";
+inline const std::string dcterms = "http://purl.org/dc/terms/";
+/// Ours: attributes that a concept may carry, and rules.
+inline const std::string own = "urn:ostraka:ns#";
+/// The URI of a vocabulary that has none.
+inline const std::string default_scheme = "urn:ostraka:vocabulary";
+
+/// What stands before the id in the URI of a concept.
+inline std::string namespace_of(const std::string& scheme) {
+    const std::string uri = scheme.empty() ? default_scheme : scheme;
+    return uri.ends_with('#') || uri.ends_with('/') ? uri : uri + "#";
+}
+
+/// Every byte but letters, digits and -._~ as %XX.
+inline std::string percent_encoded(const std::string& text) {
+    std::string result;
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        const bool plain = (byte >= 'a' && byte <= 'z') || (byte >= 'A' && byte <= 'Z') || (byte >= '0' && byte <= '9') ||
+                           c == '-' || c == '.' || c == '_' || c == '~';
+        if (plain) result += c;
+        else result += {'%', "0123456789ABCDEF"[byte >> 4], "0123456789ABCDEF"[byte & 15]};
+    }
+    return result;
+}
+
+inline std::string percent_decoded(const std::string& text) {
+    const auto digit = [](char c) {
+        return c >= '0' && c <= '9' ? c - '0' : c >= 'A' && c <= 'F' ? c - 'A' + 10 : c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
+    };
+    std::string result;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (text[i] == '%' && i + 2 < text.size() && digit(text[i + 1]) >= 0 && digit(text[i + 2]) >= 0) {
+            result += static_cast<char>(digit(text[i + 1]) * 16 + digit(text[i + 2]));
+            i += 2;
+        } else {
+            result += text[i];
+        }
+    }
+    return result;
+}
+
+}  // namespace ostraka::skos

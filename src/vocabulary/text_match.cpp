@@ -1,0 +1,172 @@
+#include "ostraka/vocabulary/text_match.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <numbers>
+#include <numeric>
+
+namespace ostraka {
+
+namespace {
+
+/// Code points; a byte that is not UTF-8 stands for itself, beyond all of them.
+std::u32string decoded(std::string_view text) {
+    std::u32string points;
+    for (std::size_t i = 0; i < text.size();) {
+        const auto byte = static_cast<unsigned char>(text[i]);
+        const std::size_t length = byte < 0x80 ? 1 : byte >= 0xF0 ? 4 : byte >= 0xE0 ? 3 : byte >= 0xC0 ? 2 : 0;
+        bool good = length > 0 && i + length <= text.size();
+        char32_t point = length == 1 ? byte : length == 2 ? byte & 0x1FU : length == 3 ? byte & 0x0FU : byte & 0x07U;
+        for (std::size_t k = 1; good && k < length; ++k) {
+            const auto next = static_cast<unsigned char>(text[i + k]);
+            good = (next & 0xC0U) == 0x80;
+            point = point << 6 | (next & 0x3FU);
+        }
+        points += good ? point : 0x110000U + byte;
+        i += good ? length : 1;
+    }
+    return points;
+}
+
+std::string encoded(const std::u32string& points) {
+    std::string text;
+    for (const char32_t p : points) {
+        if (p >= 0x110000) {
+            text += static_cast<char>(p - 0x110000);
+        } else if (p < 0x80) {
+            text += static_cast<char>(p);
+        } else if (p < 0x800) {
+            text += static_cast<char>(0xC0 | p >> 6);
+            text += static_cast<char>(0x80 | (p & 0x3F));
+        } else if (p < 0x10000) {
+            text += static_cast<char>(0xE0 | p >> 12);
+            text += static_cast<char>(0x80 | (p >> 6 & 0x3F));
+            text += static_cast<char>(0x80 | (p & 0x3F));
+        } else {
+            text += static_cast<char>(0xF0 | p >> 18);
+            text += static_cast<char>(0x80 | (p >> 12 & 0x3F));
+            text += static_cast<char>(0x80 | (p >> 6 & 0x3F));
+            text += static_cast<char>(0x80 | (p & 0x3F));
+        }
+    }
+    return text;
+}
+
+char32_t lower(char32_t c) {
+    const auto within = [c](char32_t first, char32_t last) { return c >= first && c <= last; };
+    if (within(U'A', U'Z') || (within(0xC0, 0xDE) && c != 0xD7)) return c + 32;  // ASCII, Latin-1
+    if (within(0x100, 0x137) && c != 0x130 && c != 0x131) return c | 1U;         // Latin Extended-A: pairs, even is upper
+    if (within(0x139, 0x148)) return c % 2 == 1 ? c + 1 : c;                     // odd is upper
+    if (within(0x14A, 0x177)) return c | 1U;
+    if (c == 0x178) return 0xFF;
+    if (within(0x179, 0x17E)) return c % 2 == 1 ? c + 1 : c;
+    if (within(0x391, 0x3AB) && c != 0x3A2) return c + 32;  // Greek
+    if (c == 0x386) return 0x3AC;
+    if (within(0x388, 0x38A)) return c + 37;
+    if (c == 0x38C) return 0x3CC;
+    if (c == 0x38E || c == 0x38F) return c + 63;
+    if (c == 0x3C2) return 0x3C3;             // final sigma
+    if (within(0x410, 0x42F)) return c + 32;  // Cyrillic
+    if (within(0x400, 0x40F)) return c + 80;
+    return c;
+}
+
+bool blank(char32_t c) { return c == ' ' || (c >= 9 && c <= 13) || c == 0xA0 || (c >= 0x2000 && c <= 0x200A) || c == 0x202F; }
+
+struct Unit {
+    double factor;
+    int length;  ///< power of length, 0 for an angle
+};
+
+std::optional<Unit> unit_of(std::string text) {
+    static const std::map<std::string, double> lengths{{"um", 1e-6}, {"\xC2\xB5m", 1e-6}, {"mm", 1e-3},
+                                                       {"cm", 1e-2}, {"dm", 0.1},         {"m", 1},
+                                                       {"km", 1e3},  {"in", 0.0254},      {"ft", 0.3048}};
+    if (text == "rad") return Unit{1, 0};
+    if (text == "deg" || text == "\xC2\xB0") return Unit{std::numbers::pi / 180, 0};
+    const bool reciprocal = text.starts_with("1/");
+    if (reciprocal) text.erase(0, 2);
+    int power = 1;
+    if (text.ends_with("^2")) power = 2;
+    if (text.ends_with("^3")) power = 3;
+    if (power > 1) text.erase(text.size() - 2);
+    const auto found = lengths.find(text);
+    if (found == lengths.end()) return std::nullopt;
+    if (reciprocal) power = -power;
+    return Unit{std::pow(found->second, power), power};
+}
+
+}  // namespace
+
+std::string folded(std::string_view text) {
+    std::u32string result;
+    for (const char32_t c : decoded(text)) {
+        if (!blank(c)) result += lower(c);
+        else if (!result.empty() && result.back() != U' ') result += U' ';
+    }
+    if (!result.empty() && result.back() == U' ') result.pop_back();
+    return encoded(result);
+}
+
+std::size_t edit_distance(std::string_view first, std::string_view second, std::size_t limit) {
+    const std::u32string a = decoded(first), b = decoded(second);
+    const std::size_t longer = std::max(a.size(), b.size()), shorter = std::min(a.size(), b.size());
+    if (longer - shorter > limit) return limit + 1;
+    // Rows of the table: the one before the last, the last, and the one being filled; only cells within `limit` of the diagonal.
+    std::vector<std::size_t> before(b.size() + 1, limit + 1), last(b.size() + 1), row(b.size() + 1, limit + 1);
+    std::iota(last.begin(), last.end(), std::size_t{0});
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        const std::size_t begin = i > limit ? i - limit : 1, end = std::min(b.size(), i + limit);
+        row.assign(b.size() + 1, limit + 1);
+        if (i <= limit) row[0] = i;
+        std::size_t best = row[0];
+        for (std::size_t j = begin; j <= end; ++j) {
+            row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) row[j] = std::min(row[j], before[j - 2] + 1);
+            best = std::min(best, row[j]);
+        }
+        if (best > limit) return limit + 1;
+        std::swap(before, last);
+        std::swap(last, row);
+    }
+    return std::min(last[b.size()], limit + 1);
+}
+
+std::vector<std::string> near_misses(const std::string& text, const std::vector<std::string>& candidates, std::size_t most) {
+    if (text.size() > 200) return {};
+    const std::string wanted = folded(text);
+    std::vector<std::pair<std::size_t, std::size_t>> found;  // distance, candidate
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+        if (candidates[i].size() > 400) continue;
+        const std::string candidate = folded(candidates[i]);
+        const std::size_t limit = std::max<std::size_t>(1, (std::max(wanted.size(), candidate.size()) + 1) / 3);
+        const std::size_t distance = edit_distance(wanted, candidate, limit);
+        if (distance <= limit && distance < std::max(wanted.size(), candidate.size())) found.emplace_back(distance, i);
+    }
+    std::sort(found.begin(), found.end());
+    std::vector<std::string> list;
+    for (const auto& [distance, i] : found) {
+        if (list.size() == most) break;
+        if (std::find(list.begin(), list.end(), candidates[i]) == list.end()) list.push_back(candidates[i]);
+    }
+    return list;
+}
+
+std::string did_you_mean(const std::vector<std::string>& suggestions) {
+    if (suggestions.empty()) return {};
+    std::string text = ": did you mean ";
+    for (std::size_t i = 0; i < suggestions.size(); ++i)
+        text += (i == 0 ? "'" : i + 1 == suggestions.size() ? " or '" : ", '") + suggestions[i] + "'";
+    return text + "?";
+}
+
+std::optional<double> converted(double value, const std::string& from, const std::string& to) {
+    if (from == to) return value;
+    const auto source = unit_of(from), target = unit_of(to);
+    if (!source || !target || source->length != target->length) return std::nullopt;
+    return value * (source->factor / target->factor);
+}
+
+}  // namespace ostraka
