@@ -27,6 +27,8 @@ int main(int argc, char** argv) {
     measure->require_subcommand(1);
     CLI::App* vocabulary = tool.add_subcommand("vocabulary", "the words that tags and attributes are taken from");
     vocabulary->require_subcommand(1);
+    CLI::App* bundle = tool.add_subcommand("template", "the files of a template, as one");
+    bundle->require_subcommand(1);
     app::add_mesh_info(*mesh, session);
     app::add_mesh_convert(*mesh, session);
     app::add_mesh_repair(*mesh, session);
@@ -45,6 +47,7 @@ int main(int argc, char** argv) {
     app::add_measure(*measure, session);
     app::add_measure_map(*measure, session);
     app::add_annotation_infer(*annotation, session);
+    app::add_template(*bundle, session);
     app::add_vocabulary(*vocabulary, session);
     app::add_render(tool, session);
     try {

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cstdlib>
+#include <cstring>
 #include <memory>
 #include <mutex>
 #include <new>
@@ -152,6 +152,32 @@ void refuse_dangerous_entities(const std::string& text, const std::string& where
     }
 }
 
+/// The parser's time grows with the square of the depth. What is no XML is left to the parser.
+void refuse_deep_nesting(const std::string& text, const std::string& where) {
+    const auto behind = [&](const char* end, std::size_t from) {
+        const std::size_t at = text.find(end, from);
+        return at == std::string::npos ? text.size() : at + std::strlen(end);
+    };
+    std::size_t depth = 0;
+    for (std::size_t i = text.find('<'); i < text.size(); i = text.find('<', i)) {
+        if (text.compare(i, 4, "<!--") == 0) i = behind("-->", i);
+        else if (text.compare(i, 9, "<![CDATA[") == 0) i = behind("]]>", i);
+        else if (text.compare(i, 2, "<?") == 0) i = behind("?>", i);
+        else if (text.compare(i, 2, "<!") == 0) ++i;
+        else if (text.compare(i, 2, "</") == 0) depth -= depth > 0 ? 1 : 0, ++i;
+        else {
+            const std::size_t start = i;
+            char quote = 0;
+            for (++i; i < text.size() && (quote != 0 || text[i] != '>'); ++i) {
+                if (quote == 0 && (text[i] == '"' || text[i] == '\'')) quote = text[i];
+                else if (text[i] == quote) quote = 0;
+            }
+            if (text[i - 1] != '/' && ++depth > 1000)
+                fail_at(where, line_of(text, start), "elements are nested deeper than 1000", "flatten the file");
+        }
+    }
+}
+
 void require_uri(const std::string& uri, const std::string& where) {
     const std::size_t colon = uri.find(':');
     bool good = colon != std::string::npos && colon > 0 && std::isalpha(static_cast<unsigned char>(uri.front())) != 0;
@@ -195,7 +221,10 @@ std::vector<RdfStatement> parse_rdf(const std::string& text, RdfSyntax syntax, c
                                     const std::string& where) {
     const bool xml = syntax == RdfSyntax::rdf_xml;
     require_utf8(text, where);
-    if (xml) refuse_dangerous_entities(text, where);
+    if (xml) {
+        refuse_dangerous_entities(text, where);
+        refuse_deep_nesting(text, where);
+    }
     const std::lock_guard lock(library_mutex());
     Log log;
     Collector collector;

@@ -151,7 +151,10 @@ TEST(Skos, MaliciousFilesAreRefusedOrHarmless) {
     for (int i = 0; i < 50000; ++i) tower += inner;
     for (int i = 0; i < 50000; ++i) tower += outer;
     nested.insert(nested.find("<skos:prefLabel"), "<skos:related>" + tower + "</skos:related>");
-    EXPECT_NO_THROW(vocabulary_from_skos(nested, true, "v"));
+    expect_error(nested, true, "v.ttl, line 3", "deeper than 1000");
+    EXPECT_THROW(vocabulary_from_skos(head + "ex:a skos:related " + std::string(200000, '(') + std::string(200000, ')') + " .",
+                                      false, "v"),
+                 Error);
     const std::string huge(8000000, 'x');
     EXPECT_EQ(vocabulary_from_skos(head + "ex:a a skos:Concept ; skos:prefLabel \"" + huge + "\" .", false, "v")
                   .concepts[0]

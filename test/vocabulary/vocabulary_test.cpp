@@ -217,7 +217,7 @@ TEST(Vocabulary, AttributesAreInherited) {
 TEST(CheckAgainstVocabulary, TagsThatFitAndThatDoNot) {
     EXPECT_TRUE(defects(set_of({point(0, "head"), point(1, "Auge 1"), point(2, "whiskers")})).empty());
     EXPECT_EQ(only_defect(point(0, "bread")),
-              "/annotations/0/tag the tag 'bread' is not in the vocabulary: did you mean 'beard'?");
+              "/annotations/0/tag the tag 'bread' is not in the vocabulary: did you mean 'head' or 'beard'?");
     EXPECT_TRUE(holds(only_defect(point(0, "Nase")), "may mean 'rock', 'n2'"));
     EXPECT_TRUE(holds(only_defect(point(0, "")), "not in the vocabulary"));
     EXPECT_TRUE(defects(set_of({})).empty());

@@ -1,0 +1,128 @@
+// *.template.json
+#include "ostraka/bundle/template.h"
+#include "ostraka/core/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace ostraka {
+
+namespace {
+
+using std::to_string;
+
+std::string text_of(const JsonValue& value) { return {value.GetString(), value.GetStringLength()}; }
+
+/// Where a name leads, if that is within the folder: also over links.
+Path locate(const std::string& name, const Path& folder, bool allow_outside, const std::string& where, const std::string& at) {
+    if (name.find('\0') != std::string::npos)
+        fail_input(where, "at " + at + ": the name holds a character that no file name can", "mend it");
+    const Path path(name);
+    const Path file = folder / path;
+    if (allow_outside) return file;
+    const std::string remedy =
+        "move the part into the template's folder ('template pack --copy' does so), or allow it with --allow-outside";
+    if (path.is_absolute()) fail_input(where, "at " + at + ": '" + name + "' is no relative name", remedy);
+    const auto within = [](const Path& inner, const Path& outer) {
+        const Path relative = inner.lexically_relative(outer);
+        return !relative.empty() && *relative.begin() != "..";
+    };
+    std::error_code code;
+    const Path home = std::filesystem::weakly_canonical(std::filesystem::absolute(folder), code);
+    const Path place = std::filesystem::weakly_canonical(std::filesystem::absolute(file), code);
+    if (*path.lexically_normal().begin() == ".." || code || !within(place, home))
+        fail_input(where, "at " + at + ": '" + name + "' leads out of the template's folder", remedy);
+    return file;
+}
+
+}  // namespace
+
+const std::vector<std::string>& template_roles() {
+    static const std::vector<std::string> roles{"mesh",       "annotations", "graph",  "cage",     "coordinates",
+                                                "vocabulary", "rules",       "ranges", "landmarks"};
+    return roles;
+}
+
+std::vector<const TemplatePart*> TemplateFile::of(const std::string& role) const {
+    std::vector<const TemplatePart*> list;
+    for (const TemplatePart& part : parts)
+        if (part.role == role) list.push_back(&part);
+    return list;
+}
+
+TemplateFile template_from_json(const JsonValue& document, const Path& folder, const std::string& where,
+                                const TemplateOptions& options) {
+    if (const JsonValue* format = find_member(document, "format");
+        format != nullptr && format->IsString() && text_of(*format) != "ostraka-template")
+        fail_input(where, "at /format: the format is '" + text_of(*format) + "'", "give a template ('ostraka-template')");
+    validate(document, "template", where);
+    TemplateFile result;
+    if (const JsonValue* name = find_member(document, "class")) result.object_class = text_of(*name);
+    if (const JsonValue* unit = find_member(document, "unit")) result.unit = text_of(*unit);
+    if (const JsonValue* up = find_member(document, "up")) {
+        result.up = {(*up)[0].GetDouble(), (*up)[1].GetDouble(), (*up)[2].GetDouble()};
+        if (std::hypot((*result.up)[0], (*result.up)[1], (*result.up)[2]) == 0)
+            fail_input(where, "at /up: the upward direction is zero", "give a direction such as [0, 0, 1]");
+    }
+    for (const std::string& role : template_roles()) {
+        const JsonValue* value = find_member(document, role);
+        if (value == nullptr) continue;
+        const auto add = [&](const JsonValue& name, const std::string& at) {
+            result.parts.push_back({role, text_of(name), locate(text_of(name), folder, options.allow_outside, where, at), {}});
+        };
+        if (value->IsString()) add(*value, "/" + role);
+        else
+            for (rapidjson::SizeType i = 0; i < value->Size(); ++i) add((*value)[i], "/" + role + "/" + to_string(i));
+    }
+    if (const JsonValue* checksums = find_member(document, "checksums"))
+        for (const auto& member : checksums->GetObject()) {
+            bool known = false;
+            for (TemplatePart& part : result.parts)
+                if (part.name == text_of(member.name)) part.sha256 = text_of(member.value), known = true;
+            if (!known)
+                fail_input(where, "at /checksums: '" + text_of(member.name) + "' is no part of the template",
+                           "name a part or take it away");
+        }
+    return result;
+}
+
+TemplateFile read_template(const Path& file, const TemplateOptions& options) {
+    const Path folder = file.has_parent_path() ? file.parent_path() : Path(".");
+    return template_from_json(read_json(file), folder, file.string(), options);
+}
+
+Json template_to_json(const TemplateFile& file, const Provenance& provenance) {
+    Json document(rapidjson::kObjectType);
+    auto& allocator = document.GetAllocator();
+    add_member(document, "format", "ostraka-template", allocator);
+    add_member(document, "version", JsonValue(1), allocator);
+    if (!file.object_class.empty()) add_member(document, "class", file.object_class, allocator);
+    if (!file.unit.empty()) add_member(document, "unit", file.unit, allocator);
+    if (file.up) {
+        JsonValue up(rapidjson::kArrayType);
+        for (const double x : *file.up) up.PushBack(x, allocator);
+        add_member(document, "up", std::move(up), allocator);
+    }
+    JsonValue checksums(rapidjson::kObjectType);
+    std::map<std::string, std::string> sums;
+    for (const std::string& role : template_roles()) {
+        const auto parts = file.of(role);
+        if (parts.empty()) continue;
+        if (parts.size() == 1) {
+            add_member(document, role, parts.front()->name, allocator);
+        } else {
+            JsonValue list(rapidjson::kArrayType);
+            for (const TemplatePart* part : parts) list.PushBack(json_string(part->name, allocator), allocator);
+            add_member(document, role, std::move(list), allocator);
+        }
+        for (const TemplatePart* part : parts)
+            if (!part->sha256.empty() && sums.emplace(part->name, part->sha256).second)
+                add_member(checksums, part->name, part->sha256, allocator);
+    }
+    if (!sums.empty()) add_member(document, "checksums", std::move(checksums), allocator);
+    add_member(document, "provenance", provenance.to_json(allocator), allocator);
+    return document;
+}
+
+}  // namespace ostraka
