@@ -23,7 +23,7 @@ bool same(const Descriptor& a, const Descriptor& b) {
 
 bool same(const Attribute& a, const Attribute& b) {
     if (a.id != b.id || a.name != b.name || a.type != b.type) return false;
-    if (a.type == AttributeType::semantic) return a.note == b.note;
+    if (a.type == AttributeType::semantic) return a.note == b.note && a.origin == b.origin;
     return a.type == AttributeType::measure ? same(a.measure, b.measure) : same(a.descriptor, b.descriptor);
 }
 
