@@ -238,7 +238,12 @@ std::vector<RdfStatement> parse_rdf(const std::string& text, RdfSyntax syntax, c
     raptor_parser_set_option(parser.get(), RAPTOR_OPTION_NORMALIZE_LANGUAGE, nullptr, 0);
     raptor_parser_set_statement_handler(parser.get(), &collector, &Collector::add);
     int result = raptor_parser_parse_start(parser.get(), base_uri.get());
-    if (result == 0) result = raptor_parser_parse_chunk(parser.get(), bytes(text), text.size(), 1);
+    // The XML library takes no more than ten million bytes at once.
+    const std::size_t piece = xml ? std::min<std::size_t>(65536, text.size()) : text.size();
+    for (std::size_t at = 0; result == 0 && at + piece < text.size(); at += piece)
+        result = raptor_parser_parse_chunk(parser.get(), bytes(text) + at, piece, 0);
+    const std::size_t last = text.empty() ? 0 : (text.size() - 1) / piece * piece;
+    if (result == 0) result = raptor_parser_parse_chunk(parser.get(), bytes(text) + last, text.size() - last, 1);
     if (collector.out_of_memory) throw std::bad_alloc();
     if (result == 0 && log.text.empty()) return std::move(collector.statements);
     if (log.line < 0)

@@ -165,6 +165,19 @@ TEST(Skos, MaliciousFilesAreRefusedOrHarmless) {
         vocabulary_from_skos(head + "<../../../../../../a/./../b?c#d> a skos:Concept . <#x> a skos:Concept .", false, "v"));
 }
 
+TEST(Skos, FilesOfManyMegabytes) {
+    Vocabulary vocabulary = busts();
+    for (int i = 0; i < 12; ++i) {
+        Concept entry;
+        entry.id = "large " + std::to_string(i);
+        entry.definition["en"] = std::string(1000000, static_cast<char>('a' + i));
+        vocabulary.concepts.push_back(std::move(entry));
+    }
+    for (const bool rdf_xml : {false, true})
+        EXPECT_TRUE(text_of(vocabulary_from_skos(vocabulary_to_skos(vocabulary, rdf_xml, "v"), rdf_xml, "v")) ==
+                    text_of(vocabulary));
+}
+
 TEST(Skos, WhatRdfCannotHoldIsRefused) {
     Vocabulary vocabulary = busts();
     vocabulary.concepts[0].labels["en"] = std::string("a\x01") + "b";
