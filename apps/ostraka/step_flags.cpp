@@ -49,6 +49,11 @@ JsonValue part(const std::string& text, const std::string& flag, std::size_t beg
 
 JsonValue StepFlags::camera(Alloc a) const {
     JsonValue value(rapidjson::kObjectType);
+    if (camera_text.starts_with('{')) {
+        value.CopyFrom(parse_json(camera_text, "camera"), a);
+        return value;
+    }
+    if (!camera_text.empty()) return json_string(camera_text, a);
     add_member(value, "view", view, a);
     if (!up.empty()) add_member(value, "up", vector(up, "up", 3, a), a);
     add_member(value, "projection", projection, a);
@@ -231,6 +236,11 @@ JsonValue StepFlags::expression(Alloc a) const {
     return result;
 }
 
+std::string StepFlags::type_of_tool() const {
+    if (!tools.path.empty()) return "line";
+    return tools.nearest.empty() && tools.vertices.empty() ? "region" : "point";
+}
+
 int StepFlags::id_for(const AnnotationSet& set) const {
     if (id) return *id;
     if (action != "make") fail_usage("the action '" + action + "' needs the annotation's --id", "see 'ostraka annotation list'");
@@ -262,9 +272,9 @@ Json StepFlags::step(const AnnotationSet& set) const {
     if (action == "make" || !colour.empty()) {
         add_member(document, "colour", colour_for(set, a), a);
     }
-    if (action == "make") add_member(document, "type", type, a);
+    if (action == "make") add_member(document, "type", type.empty() ? type_of_tool() : type, a);
     if (selects) {
-        if (frame != "mesh") add_member(document, "frame", frame, a);
+        add_member(document, "frame", frame, a);
         add_member(document, "select", expression(a), a);
     }
     return document;
@@ -319,7 +329,11 @@ void StepFlags::add_to(CLI::App& command) {
         ->check(CLI::IsMember({"mesh", "box"}))
         ->group(how);
 
-    const std::string camera = "Camera (as 'ostraka render' has it)";
+    const std::string camera = "Camera (that of 'ostraka render' without legend and title)";
+    command
+        .add_option("--camera", camera_text,
+                    "one of the recipe's by its name, or as JSON ('render --json' reports it), instead of the following")
+        ->group(camera);
     command.add_option("--view", view, "front, back, left, right, top, bottom, iso or azimuth,elevation")->group(camera);
     command.add_option("--up", up, "three numbers; else as the annotations say, else z")->group(camera);
     command.add_option("--projection", projection, "orthographic or perspective")
@@ -331,7 +345,9 @@ void StepFlags::add_to(CLI::App& command) {
     const std::string what = "Annotation";
     command.add_option("--tag", tag, "what it is")->group(what);
     command.add_option("--id", id, "its id; a free one if it is new and none is given")->group(what);
-    command.add_option("--type", type, "of a new one")->check(CLI::IsMember({"point", "line", "region"}))->group(what);
+    command.add_option("--type", type, "of a new one; else what the tool selects")
+        ->check(CLI::IsMember({"point", "line", "region"}))
+        ->group(what);
     command.add_option("--colour", colour, "red,green,blue, each 0 to 255")->group(what);
     command.add_option("--action", action, "what to do with the annotation of this id")
         ->check(CLI::IsMember({"make", "add to", "remove from", "replace", "delete", "retag"}))

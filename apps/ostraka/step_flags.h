@@ -32,10 +32,10 @@ struct StepFlags {
     bool quantiles = false;
     int grow = 0, shrink = 0;
     // the camera
-    std::string view = "30,20", up, projection = "orthographic", size = "1200x900";
+    std::string camera_text, view = "30,20", up, projection = "orthographic", size = "1200x900";
     double zoom = 1;
     // what for
-    std::string type = "region", tag, colour, action = "make";
+    std::string type, tag, colour, action = "make";
     std::optional<int> id;
 
     void add_to(CLI::App& command);
@@ -51,6 +51,7 @@ private:
     [[nodiscard]] JsonValue tool(Alloc a) const;
     [[nodiscard]] JsonValue threshold(Alloc a) const;
     [[nodiscard]] JsonValue expression(Alloc a) const;
+    [[nodiscard]] std::string type_of_tool() const;
     [[nodiscard]] int id_for(const AnnotationSet& set) const;
     [[nodiscard]] JsonValue colour_for(const AnnotationSet& set, Alloc a) const;
 };

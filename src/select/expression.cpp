@@ -142,7 +142,7 @@ std::vector<bool> ExpressionEvaluator::faces(const JsonValue& expression, Frame 
     if (is_drawn(kind)) {
         const ScreenCamera from = camera(*value, frame, at + '/' + kind);
         return faces_seen(mesh_, from.camera, screen_area(kind, *value, from, at + '/' + kind),
-                          visible_only(*value) ? &search() : nullptr);
+                          visible_only(*value) ? &search(at + '/' + kind) : nullptr);
     }
     if (is_reckoned(kind)) return reckoned_faces(kind, *value, frame, at + '/' + kind);
     std::vector<bool> result(mesh_.number_of_faces(), false);
@@ -209,7 +209,7 @@ std::vector<Index> ExpressionEvaluator::vertices(const JsonValue& expression, Fr
     if (is_drawn(kind)) {
         const ScreenCamera from = camera(*value, frame, at + '/' + kind);
         return vertices_seen(mesh_, from.camera, screen_area(kind, *value, from, at + '/' + kind),
-                             visible_only(*value) ? &search() : nullptr);
+                             visible_only(*value) ? &search(at + '/' + kind) : nullptr);
     }
     if (is_reckoned(kind) && kind != "segments") return reckoned_vertices(kind, *value, frame, at + '/' + kind);
     std::vector<Index> result;

@@ -61,7 +61,7 @@ private:
     ScreenArea screen_area(const std::string& kind, const JsonValue& value, const ScreenCamera& camera,
                            const std::string& at) const;
     /// Built when the first ray is needed.
-    const SurfaceSearch& search() const;
+    const SurfaceSearch& search(const std::string& at) const;
     /// brush, threshold, segments, grow and shrink
     [[nodiscard]] std::vector<bool> reckoned_faces(const std::string& kind, const JsonValue& value, Frame frame,
                                                    const std::string& at) const;

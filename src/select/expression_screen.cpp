@@ -28,8 +28,8 @@ std::string size_of(const ScreenCamera& camera) {
 
 }  // namespace
 
-const SurfaceSearch& ExpressionEvaluator::search() const {
-    if (!search_) search_.emplace(mesh_, false);
+const SurfaceSearch& ExpressionEvaluator::search(const std::string& at) const {
+    if (!search_) in_place(at, [&] { search_.emplace(mesh_, false); });
     return *search_;
 }
 
@@ -37,7 +37,9 @@ ScreenCamera ExpressionEvaluator::camera(const JsonValue& owner, Frame frame, co
     const auto read = [&](const JsonValue& value, Frame around, const std::string& here) {
         const Frame own = frame_of(value, around);
         const auto place = [&](const JsonValue& list) { return point(list, own); };
-        return read_camera(value, mesh_, surroundings_.up, place, where_ + ", at " + here);
+        ScreenCamera result;
+        in_place(here, [&] { result = read_camera(value, mesh_, surroundings_.up, place, where_ + ", at " + here); });
+        return result;
     };
     const JsonValue& value = owner["camera"];
     if (!value.IsString()) return read(value, frame, at + "/camera");
@@ -55,7 +57,7 @@ SurfaceHit ExpressionEvaluator::seen(const JsonValue& pick, Frame frame, const s
     const Pixel pixel = pixel_of(pick["pixel"]);
     if (!within(pixel, from))
         fail(at + "/pixel", "pixel " + text(pixel) + " lies outside the picture of " + size_of(from), "pick one within it");
-    const auto hit = seen_at(search(), from.camera, pixel);
+    const auto hit = seen_at(search(at), from.camera, pixel);
     if (!hit) fail(at + "/pixel", "pixel " + text(pixel) + " shows the background", "pick one that shows the surface");
     return *hit;
 }

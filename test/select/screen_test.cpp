@@ -255,3 +255,38 @@ TEST(Screen, ErrorsNameWhatIsWrong) {
     expect_error(R"({"vertices": [{"camera": {"view": "front"}, "pixel": [-3, 3]}]})", mesh, "/vertices/0/pixel",
                  "outside the picture", "point");
 }
+
+TEST(Screen, ThePlaceAndScaleOfTheObjectDoNotMatter) {
+    const Mesh ball = spheres(3);
+    const auto moved = [&](double scale, const std::array<double, 3>& by) {
+        TriangleSoup soup = to_soup(ball);
+        for (auto& p : soup.points)
+            for (std::size_t k = 0; k < 3; ++k) p[k] = p[k] * scale + by[k];
+        return build_mesh(soup);
+    };
+    for (const char* projection : {"orthographic", "perspective"}) {
+        const std::string expression =
+            drawn(R"({"view": "37,23", "projection": ")" + std::string(projection) + "\"}", "[431.3, 211.7]", "[777.9, 640.1]");
+        const auto expected = faces_of(expression, ball);
+        EXPECT_GT(expected.size(), 20U);
+        EXPECT_EQ(faces_of(expression, moved(1e-9, {0, 0, 0})), expected);
+        EXPECT_EQ(faces_of(expression, moved(1e9, {0, 0, 0})), expected);
+        EXPECT_EQ(faces_of(expression, moved(1, {1e5, -2e5, 3e5})), expected);
+    }
+}
+
+TEST(Screen, MeshesWithoutMuchToSee) {
+    TriangleSoup soup;
+    const std::string everything = drawn(R"({"view": "top"})", "[0, 0]", "[1200, 900]");
+    expect_error(everything, build_mesh(soup), "/rectangle/camera", "no vertices");
+    soup.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    soup.triangles = {{0, 1, 2}};
+    EXPECT_EQ(faces_of(everything, build_mesh(soup)), std::vector<Index>{0});
+    EXPECT_EQ(select("point", everything, build_mesh(soup)).points, (std::vector<Index>{0, 1, 2}));
+    soup.points[2] = {2, 0, 0};  // without area
+    expect_error(everything, build_mesh(soup), "/rectangle", "no face with an area");
+    // Two sheets in one place hide each other, which is said by selecting nothing.
+    soup.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    soup.triangles = {{0, 1, 2}, {3, 4, 5}};
+    expect_error(everything, build_mesh(soup), "", "selects no face");
+}
