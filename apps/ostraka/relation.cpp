@@ -3,9 +3,10 @@
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/io/mesh_file.h"
-#include "ostraka/relation/check.h"
+#include "ostraka/relation/geometric.h"
 #include "ostraka/relation/topology.h"
 
+#include <algorithm>
 #include <charconv>
 #include <iostream>
 #include <memory>
@@ -102,17 +103,33 @@ void print_graph(const Session& session, const Provenance& provenance, const Ann
 struct Extract {
     Inputs inputs;
     std::string output;
+    std::vector<std::string> types;
+    RelationOptions tolerances;
 
     int run(const Session& session) const {
         inputs.check(output);
-        const Provenance provenance = inputs.provenance("relation extract");
+        Provenance provenance = inputs.provenance("relation extract");
+        for (const auto& option : list_options(tolerances)) provenance.options.push_back(option);
+        std::vector<std::string> wanted;
+        for (const auto& name : types) {
+            const RelationType* type = find_relation_type(name);
+            if (type == nullptr || !type->geometric)
+                fail_usage("'" + name + "' is not a type that geometry tells",
+                           "use one of those in doc/relations.md; the nearest is '" + nearest_relation_type(name) + "'");
+            wanted.push_back(type->name);
+            provenance.options.emplace_back("type", type->name);
+        }
         AnnotationSet set;
         RelationGraph old, graph;
         const Mesh mesh = inputs.read(session, set, old);
         for (auto& relationship : old.relationships)
             if (relationship.origin != "extracted") graph.relationships.push_back(std::move(relationship));
         const Topology found = in_file(inputs.annotations, [&] { return topology(mesh, set); });
-        for (auto& relationship : relationships_of(found, set, free_id(graph))) add(session, graph, std::move(relationship));
+        for (auto& relationship : relationships_of(found, set, free_id(graph)))
+            if (wanted.empty() || std::find(wanted.begin(), wanted.end(), relationship.type) != wanted.end())
+                add(session, graph, std::move(relationship));
+        RelationMeter meter(mesh, set, tolerances);
+        for (auto& relationship : meter.extract(wanted, free_id(graph))) add(session, graph, std::move(relationship));
         write_graph(output, graph, set, provenance);
         print_graph(session, provenance, set, graph, &found.order);
         return done;
@@ -123,7 +140,8 @@ private:
     static void add(const Session& session, RelationGraph& graph, Relationship relationship) {
         for (const auto& known : graph.relationships)
             if (known.origin != "extracted" && known.type == relationship.type && !known.is_constraint &&
-                known.annotations == relationship.annotations) {
+                known.annotations == relationship.annotations &&
+                known.parameters.attribute == relationship.parameters.attribute) {
                 session.note("note: relationship " + std::to_string(known.id) + " (" + known.type + ") is stated already");
                 return;
             }
@@ -170,6 +188,11 @@ private:
         return found->id;
     }
 
+    static std::string unit_of(const std::string& quantity, const std::string& length) {
+        if (quantity == "angle" || quantity == "tilt") return "degree";
+        return quantity == "distance" || quantity == "height" ? length : "%";
+    }
+
     [[nodiscard]] Relationship make(const AnnotationSet& set) const {
         Relationship relationship;
         const RelationType* known = find_relation_type(type);
@@ -193,7 +216,14 @@ private:
                 fail_usage("'" + text + "' is not a tolerance", "write QUANTITY=NUMBER, e.g. angle=5");
             if (!(value >= 0)) fail_usage("the tolerance '" + text + "' is negative", "use 0 or more");
             const std::string quantity = text.substr(0, sign);
-            relationship.parameters.deviations.push_back({quantity, {}, value, quantity == "angle" ? "degree" : ""});
+            const auto measured = measured_quantities(relationship.type);
+            if (std::find(measured.begin(), measured.end(), quantity) == measured.end()) {
+                std::string list;
+                for (const auto& name : measured) list += (list.empty() ? "" : ", ") + name;
+                fail_usage("'" + relationship.type + "' does not measure '" + quantity + "'",
+                           list.empty() ? "leave the tolerance out" : "it measures " + list);
+            }
+            relationship.parameters.deviations.push_back({quantity, {}, value, unit_of(quantity, set.unit)});
         }
         return relationship;
     }
@@ -201,13 +231,16 @@ private:
 
 struct Check {
     Inputs inputs;
+    RelationOptions tolerances;
 
     int run(const Session& session) const {
-        const Provenance provenance = inputs.provenance("relation check");
+        Provenance provenance = inputs.provenance("relation check");
+        for (const auto& option : list_options(tolerances)) provenance.options.push_back(option);
         AnnotationSet set;
         RelationGraph graph;
         const Mesh mesh = inputs.read(session, set, graph);
-        const std::vector<RelationCheck> checks = in_file(inputs.annotations, [&] { return check_relations(mesh, set, graph); });
+        const std::vector<RelationCheck> checks =
+            in_file(inputs.annotations, [&] { return check_relations(mesh, set, graph, tolerances); });
         Json document(rapidjson::kObjectType);
         auto& allocator = document.GetAllocator();
         JsonValue result(rapidjson::kObjectType), list(rapidjson::kArrayType);
@@ -265,6 +298,8 @@ void add_relation(CLI::App& relation, Session& session) {
     extract->inputs.add_to(*command);
     command->add_option("output", extract->output, "graph to write (.graph.json)")->required();
     command->add_option("--graph", extract->inputs.graph, "graph whose stated relationships are kept");
+    command->add_option("--type", extract->types, "type to look for, once for each; all without it");
+    add_flags(command, extract->tolerances);
     add_flags(command, extract->inputs.options);
 
     const auto add = std::make_shared<Add>();
@@ -289,6 +324,7 @@ void add_relation(CLI::App& relation, Session& session) {
                           [&session, check] { return check->run(session); });
     check->inputs.add_to(*command);
     command->add_option("graph", check->inputs.graph, "graph (.graph.json)")->required();
+    add_flags(command, check->tolerances);
     add_flags(command, check->inputs.options);
 
     const auto exported = std::make_shared<Export>();

@@ -1,5 +1,6 @@
 #include "ostraka/relation/check.h"
 
+#include "ostraka/relation/geometric.h"
 #include "ostraka/relation/topology.h"
 
 #include <set>
@@ -53,7 +54,8 @@ void conclude(RelationCheck& check, double value, const std::string& quantity, c
 
 }  // namespace
 
-std::vector<RelationCheck> check_relations(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph) {
+std::vector<RelationCheck> check_relations(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
+                                           const RelationOptions& options) {
     check_graph(graph, set, "graph");
     std::map<std::pair<int, int>, double> adjacent;
     const Topology found = topology(mesh, set);
@@ -61,6 +63,7 @@ std::vector<RelationCheck> check_relations(const Mesh& mesh, const AnnotationSet
         const int a = set.annotations[pair.a].id, b = set.annotations[pair.b].id;
         adjacent[std::minmax(a, b)] = pair.length;
     }
+    RelationMeter meter(mesh, set, options);
     std::vector<RelationCheck> checks;
     for (const auto& relationship : graph.relationships) {
         RelationCheck check;
@@ -92,7 +95,7 @@ std::vector<RelationCheck> check_relations(const Mesh& mesh, const AnnotationSet
                                       : "they have faces in common";
             }
         } else {
-            check.text = "cannot be measured";
+            check = meter.measure(relationship);
         }
         checks.push_back(std::move(check));
     }

@@ -1,9 +1,26 @@
 // Which relationships of a graph hold on a mesh, and by how much the others fail.
 #pragma once
 
+#include "ostraka/core/options.h"
 #include "ostraka/relation/graph.h"
 
 namespace ostraka {
+
+/// Tolerances for what is not stated with its own.
+struct RelationOptions {
+    double distance = 0.01;
+    double angle = 5;
+    double tilt = 20;
+    double ratio = 10;
+
+    template <class Visitor>
+    void describe(Visitor& visit) {
+        visit("distance", distance, "tolerance of distances and heights, as a share of the mesh's diagonal", Range{0, 1});
+        visit("angle", angle, "tolerance of angles between axes, degrees", Range{0, 90});
+        visit("tilt", tilt, "tolerance of the tilt of a contact, degrees", Range{0, 90});
+        visit("ratio", ratio, "tolerance of areas, shapes and values of attributes, per cent", Range{0, 100});
+    }
+};
 
 enum class Verdict { holds, fails, unknown };
 std::string to_string(Verdict verdict);
@@ -16,6 +33,7 @@ struct RelationCheck {
 
 /// Checks each relationship of `graph`, in its order. Unknown are constraints, types that only experts can tell, and types whose
 /// input is missing; `text` says what. Throws Error (input) if the graph does not fit the set.
-std::vector<RelationCheck> check_relations(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph);
+std::vector<RelationCheck> check_relations(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
+                                           const RelationOptions& options = {});
 
 }  // namespace ostraka

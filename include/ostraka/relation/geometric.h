@@ -1,0 +1,34 @@
+// Relationships that the geometry of the parts tells, each with a tolerance and its measured deviation.
+#pragma once
+
+#include "ostraka/core/options.h"
+#include "ostraka/relation/check.h"
+
+#include <memory>
+
+namespace ostraka {
+
+/// Measures relationships on one mesh; what it needs of a part (axis, samples, search tree) is made once. Not for use by several
+/// threads at a time. Mesh and set must outlive it.
+class RelationMeter {
+public:
+    RelationMeter(const Mesh& mesh, const AnnotationSet& set, const RelationOptions& options = {});
+    ~RelationMeter();
+
+    /// One relationship of a geometric type other than containment, equal selections and adjacency. Tolerances that it states
+    /// take the place of those of the options. doc/relations.md says what each type measures.
+    RelationCheck measure(const Relationship& relationship);
+
+    /// All that hold between annotations of the set, except the root; see doc/relations.md for the candidates. `types` names
+    /// those wanted (all if empty). Ids count up from `first_id`.
+    std::vector<Relationship> extract(const std::vector<std::string>& types, int first_id);
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+/// The quantities that a type measures, e.g. {"angle", "distance"}; none for types that are not measured here.
+std::vector<std::string> measured_quantities(const std::string& type);
+
+}  // namespace ostraka
