@@ -73,6 +73,52 @@ std::vector<Vector2d> convex_hull(std::vector<Vector2d> p) {
     return hull;
 }
 
+/// Sides of a rectangle around a convex polygon.
+struct Extent {
+    double x0, x1, y0, y1;
+};
+
+/// Along the unit vector `a` and across it, by looking at every corner.
+Extent extent_along(const Vector2d& a, const std::vector<Vector2d>& hull) {
+    Extent e{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
+             std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    for (const Vector2d& q : hull) {
+        const double x = a.dot(q), y = a[0] * q[1] - a[1] * q[0];
+        e.x0 = std::min(e.x0, x), e.x1 = std::max(e.x1, x), e.y0 = std::min(e.y0, y), e.y1 = std::max(e.y1, y);
+    }
+    return e;
+}
+
+/// The corners of a counter-clockwise convex polygon that touch the rectangle along one side after the other only move on: three
+/// of them are followed, the fourth is the side itself (Toussaint 1983).
+class Calipers {
+public:
+    explicit Calipers(const std::vector<Vector2d>& hull) : hull_(hull) {}
+    Extent along(std::size_t side, const Vector2d& a) {
+        const Vector2d b(-a[1], a[0]);
+        if (!started_) right_ = top_ = left_ = side;
+        right_ = farthest(right_, a);
+        top_ = farthest(started_ ? top_ : right_, b);
+        left_ = farthest(started_ ? left_ : top_, -a);
+        started_ = true;
+        return {a.dot(hull_[left_]), a.dot(hull_[right_]), b.dot(hull_[side]), b.dot(hull_[top_])};
+    }
+
+private:
+    std::size_t farthest(std::size_t from, const Vector2d& direction) const {
+        for (std::size_t step = 0; step < hull_.size(); ++step) {
+            const std::size_t next = (from + 1) % hull_.size();
+            if (direction.dot(hull_[next]) < direction.dot(hull_[from])) break;
+            from = next;
+        }
+        return from;
+    }
+
+    const std::vector<Vector2d>& hull_;
+    std::size_t right_ = 0, top_ = 0, left_ = 0;
+    bool started_ = false;
+};
+
 struct Candidate {
     double volume = std::numeric_limits<double>::infinity();
     Vector3d normal = Vector3d::UnitZ(), side = Vector3d::UnitX();
@@ -82,6 +128,7 @@ struct Candidate {
 Candidate box_across(const Vector3d& normal, const std::vector<Vector3d>& points) {
     const Vector3d u = normal.unitOrthogonal(), w = normal.cross(u);
     std::vector<Vector2d> flat;
+    flat.reserve(points.size());
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const Vector3d& p : points) {
         flat.emplace_back(u.dot(p), w.dot(p));
@@ -91,24 +138,33 @@ Candidate box_across(const Vector3d& normal, const std::vector<Vector3d>& points
     const auto hull = convex_hull(std::move(flat));
     Candidate best;
     best.normal = normal;
-    double smallest = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < hull.size(); ++i) {  // a side of the smallest rectangle lies on a side of the hull
-        Vector2d a = hull[(i + 1) % hull.size()] - hull[i];
-        if (a.norm() == 0) a = Vector2d::UnitX();
-        a.normalize();
-        double x0 = std::numeric_limits<double>::infinity(), x1 = -x0, y0 = x0, y1 = -x0;
-        for (const Vector2d& q : hull) {
-            const double x = a.dot(q), y = a[0] * q[1] - a[1] * q[0];
-            x0 = std::min(x0, x), x1 = std::max(x1, x), y0 = std::min(y0, y), y1 = std::max(y1, y);
+    // Flat objects have boxes of no volume: a trace of the sides' sum tells them apart.
+    const auto cost_of = [&](const Extent& e) {
+        const double thickness = high - low, x = e.x1 - e.x0, y = e.y1 - e.y0, sum = thickness + x + y;
+        return thickness * x * y + 1e-9 * sum * sum * sum;
+    };
+    // A side of the smallest rectangle lies on a side of the hull.
+    const auto search = [&](const auto& extent_of) {
+        Vector2d along = Vector2d::UnitX();
+        for (std::size_t i = 0; i < hull.size(); ++i) {
+            Vector2d a = hull[(i + 1) % hull.size()] - hull[i];
+            if (a.norm() == 0) a = Vector2d::UnitX();
+            a.normalize();
+            const double cost = cost_of(extent_of(i, a));
+            if (cost < best.volume) {
+                best.volume = cost;
+                along = a;
+            }
         }
-        // Flat objects have boxes of no volume: a trace of the sides' sum tells them apart.
-        const double thickness = high - low, area = (x1 - x0) * (y1 - y0);
-        const double sum = thickness + (x1 - x0) + (y1 - y0), cost = thickness * area + 1e-9 * sum * sum * sum;
-        if (cost < smallest) {
-            smallest = cost;
-            best.volume = cost;
-            best.side = (a[0] * u + a[1] * w).normalized();
-        }
+        best.side = (along[0] * u + along[1] * w).normalized();
+        return along;
+    };
+    Calipers calipers(hull);
+    const Vector2d along = search([&](std::size_t i, const Vector2d& a) { return calipers.along(i, a); });
+    // Sides of no length to speak of point anywhere, and the calipers lose their way: then all corners are looked at.
+    if (const double true_cost = cost_of(extent_along(along, hull)); std::abs(true_cost - best.volume) > 1e-9 * true_cost) {
+        best.volume = std::numeric_limits<double>::infinity();
+        search([&](std::size_t, const Vector2d& a) { return extent_along(a, hull); });
     }
     return best;
 }
@@ -117,6 +173,7 @@ Candidate box_across(const Vector3d& normal, const std::vector<Vector3d>& points
 /// Where that ends, either other axis may serve as the normal and lead on.
 Candidate refine(Candidate best, const std::vector<Vector3d>& points, double coarsest, double finest) {
     for (int round = 0; round < 4; ++round) {
+        int moves = 0;
         for (double step = coarsest; step > finest;) {
             Candidate better = best;
             for (int k = 0; k < 8; ++k) {
@@ -126,8 +183,13 @@ Candidate refine(Candidate best, const std::vector<Vector3d>& points, double coa
                     box_across((best.normal + step * (std::cos(turn) * u + std::sin(turn) * w)).normalized(), points);
                 if (next.volume < better.volume) better = next;
             }
-            if (better.volume < best.volume) best = better;
-            else step /= 2;
+            // A gain must be worth the step and may not be had for ever, or things that are round are walked round.
+            if (better.volume < best.volume * (1 - 1e-3 * step) && ++moves <= 16) {
+                best = better;
+            } else {
+                step /= 2;
+                moves = 0;
+            }
         }
         Candidate turned = best;
         for (const Vector3d& axis : {best.side, Vector3d(best.normal.cross(best.side))})
