@@ -3,6 +3,14 @@
 
 namespace ostraka::shapes {
 
+namespace {
+/// The line of a front leg, which the support above it continues, at a height.
+Vector3d along_leg(double height, double side) {
+    const Vector3d top(150, side * 214, 655), foot(226, side * 190, 17);
+    return foot + (height - foot[2]) / (top[2] - foot[2]) * (top - foot);
+}
+}  // namespace
+
 ObjectPointer make_chair() {
     auto object = std::make_unique<MadeObject>();
     object->name = "chair";
@@ -23,22 +31,30 @@ ObjectPointer make_chair() {
             add_part(*object, left ? "left support" : "right support", left ? Colour3{170, 70, 60} : Colour3{200, 100, 80});
         add_member(*object,
                    make_tube({{{-262, side * 205, 668}, 20},
-                              {{-120, side * 226, 676}, 20},
-                              {{40, side * 236, 672}, 22},
-                              {{190, side * 232, 660}, 24}}),
+                              {{-120, side * 210, 676}, 20},
+                              {{40, side * 214, 672}, 22},
+                              {{190, side * 213, 660}, 24}}),
                    arm, 14);
-        add_member(*object,
-                   make_tube({{{150, side * 205, 440}, 15},
-                              {{156, side * 220, 520}, 17},
-                              {{150, side * 228, 600}, 15},
-                              {{150, side * 230, 655}, 15}}),
-                   support, 12);
+        add_member(
+            *object,
+            make_tube(
+                {{along_leg(440, side), 15}, {along_leg(520, side), 17}, {along_leg(600, side), 15}, {along_leg(655, side), 15}}),
+            support, 12);
     }
     const char* names[4] = {"front left leg", "front right leg", "rear left leg", "rear right leg"};
     const Colour3 colours[4] = {{90, 140, 80}, {120, 165, 95}, {70, 115, 75}, {140, 180, 120}};
     for (int i = 0; i < 4; ++i) {
         const double front = i < 2 ? 1 : -1, side = i % 2 == 0 ? 1 : -1;
         const int leg = add_part(*object, names[i], colours[i]);
+        if (front > 0) {
+            add_member(*object,
+                       make_tube({{along_leg(430, side), 25},
+                                  {along_leg(280, side), 24},
+                                  {along_leg(130, side), 19},
+                                  {along_leg(17, side), 17}}),
+                       leg, 16);
+            continue;
+        }
         add_member(*object,
                    make_tube({{{front * 190, side * 180, 430}, 26},
                               {{front * 202, side * 188, 280}, 24},

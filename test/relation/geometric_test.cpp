@@ -55,6 +55,8 @@ const std::map<std::string, std::vector<Planted>>& planted() {
           {true, "horizontal support", {7, 1}},
           {true, "horizontal support", {4, 3}},
           {true, "side contact", {2, 3}},
+          {true, "co-axiality", {4, 7}},
+          {true, "co-axiality", {6, 8}},
           {false, "mirror symmetry", {3, 4}},
           {false, "mirror symmetry", {2, 3}},
           {false, "same level", {3, 4}},
