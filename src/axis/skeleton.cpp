@@ -3,8 +3,6 @@
 
 #include "ostraka/core/error.h"
 
-// The compiler sees boost::optional read where it cannot tell that it was set (with sanitizers only).
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #include <CGAL/Mean_curvature_flow_skeletonization.h>
 #include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
 #include <CGAL/Random.h>
