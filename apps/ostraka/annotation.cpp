@@ -191,7 +191,7 @@ struct Examined {
             findings.insert(findings.end(), found.begin(), found.end());
             words.look(file.mesh, *set, findings);
         }
-        return report(session, provenance, findings);
+        return report_findings(session, provenance, findings);
     }
 
 private:
@@ -200,35 +200,6 @@ private:
         provenance.add_input(mesh);
         provenance.add_input(annotations);
         return provenance;
-    }
-
-    static int report(const Session& session, const Provenance& provenance, const std::vector<Finding>& findings) {
-        Json document(rapidjson::kObjectType);
-        auto& allocator = document.GetAllocator();
-        JsonValue result(rapidjson::kObjectType), list(rapidjson::kArrayType);
-        std::vector<std::vector<std::string>> rows;
-        std::uint64_t defects = 0;
-        for (const Finding& finding : findings) {
-            defects += finding.defect ? 1 : 0;
-            const std::string kind = finding.defect ? "defect" : "remark";
-            JsonValue entry(rapidjson::kObjectType);
-            add_member(entry, "kind", kind, allocator);
-            add_member(entry, "where", finding.where, allocator);
-            add_member(entry, "text", finding.text, allocator);
-            list.PushBack(entry, allocator);
-            rows.push_back({kind, finding.where, finding.text});
-        }
-        add_member(result, "sound", JsonValue(defects == 0), allocator);
-        add_member(result, "defects", JsonValue(defects), allocator);
-        add_member(result, "findings", std::move(list), allocator);
-        if (session.json) {
-            session.print_report(provenance, document, result);
-        } else {
-            if (!rows.empty()) std::cout << table({"kind", "where", "what"}, rows);
-            std::cout << (defects == 0 ? "no defects" : std::to_string(defects) + (defects == 1 ? " defect" : " defects"))
-                      << '\n';
-        }
-        return defects == 0 ? done : answer_is_no;
     }
 };
 

@@ -110,4 +110,39 @@ std::string number(double value, int digits) {
     return buffer;
 }
 
+std::size_t add_findings(JsonValue& result, const std::vector<Finding>& findings, const std::string& place,
+                         std::vector<std::vector<std::string>>& rows, JsonAllocator& allocator) {
+    JsonValue list(rapidjson::kArrayType);
+    std::size_t defects = 0;
+    for (const Finding& finding : findings) {
+        defects += finding.defect ? 1 : 0;
+        const std::string kind = finding.defect ? "defect" : "remark";
+        JsonValue entry(rapidjson::kObjectType);
+        add_member(entry, "kind", kind, allocator);
+        add_member(entry, place, finding.where, allocator);
+        add_member(entry, "text", finding.text, allocator);
+        list.PushBack(entry, allocator);
+        rows.push_back({kind, finding.where, finding.text});
+    }
+    add_member(result, "sound", JsonValue(defects == 0), allocator);
+    add_member(result, "defects", JsonValue(static_cast<std::uint64_t>(defects)), allocator);
+    add_member(result, "findings", std::move(list), allocator);
+    return defects;
+}
+
+void print_findings(const std::string& place, const std::vector<std::vector<std::string>>& rows, std::size_t defects) {
+    if (!rows.empty()) std::cout << table({"kind", place, "what"}, rows);
+    std::cout << (defects == 0 ? "no defects" : std::to_string(defects) + (defects == 1 ? " defect" : " defects")) << '\n';
+}
+
+int report_findings(const Session& session, const Provenance& provenance, const std::vector<Finding>& findings) {
+    Json document(rapidjson::kObjectType);
+    JsonValue result(rapidjson::kObjectType);
+    std::vector<std::vector<std::string>> rows;
+    const std::size_t defects = add_findings(result, findings, "where", rows, document.GetAllocator());
+    if (session.json) session.print_report(provenance, document, result);
+    else print_findings("where", rows, defects);
+    return defects == 0 ? done : answer_is_no;
+}
+
 }  // namespace ostraka::app

@@ -2,6 +2,8 @@
 #pragma once
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/finding.h"
+#include "ostraka/core/json.h"
 #include "ostraka/core/options.h"
 #include "ostraka/core/provenance.h"
 
@@ -74,6 +76,14 @@ auto in_file(const std::string& file, Work&& work) {
                     error.problem(), error.remedy());
     }
 }
+
+/// Adds what a check found to `result` (sound, defects, findings) and to the rows of a table; `place` is what its places are
+/// called. Returns the number of defects.
+std::size_t add_findings(JsonValue& result, const std::vector<Finding>& findings, const std::string& place,
+                         std::vector<std::vector<std::string>>& rows, JsonAllocator& allocator);
+void print_findings(const std::string& place, const std::vector<std::vector<std::string>>& rows, std::size_t defects);
+/// Prints what a check found, as a table or a report. Returns the exit code: `answer_is_no` if there is a defect.
+int report_findings(const Session& session, const Provenance& provenance, const std::vector<Finding>& findings);
 
 /// A table for people: columns padded, numbers right-aligned.
 std::string table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows);

@@ -15,7 +15,7 @@ namespace {
 int print(const Session& session, const Provenance& provenance, const Template& bundle, bool contents) {
     Json document(rapidjson::kObjectType);
     auto& allocator = document.GetAllocator();
-    JsonValue result(rapidjson::kObjectType), parts(rapidjson::kArrayType), list(rapidjson::kArrayType);
+    JsonValue result(rapidjson::kObjectType), parts(rapidjson::kArrayType);
     std::vector<std::vector<std::string>> part_rows, rows;
     for (const TemplateEntry& entry : bundle.entries) {
         JsonValue object(rapidjson::kObjectType);
@@ -26,23 +26,10 @@ int print(const Session& session, const Provenance& provenance, const Template& 
         parts.PushBack(object, allocator);
         part_rows.push_back({entry.role, entry.name, std::to_string(entry.bytes), entry.text});
     }
-    std::uint64_t defects = 0;
-    for (const TemplateFinding& finding : bundle.findings) {
-        defects += finding.defect ? 1 : 0;
-        const std::string kind = finding.defect ? "defect" : "remark";
-        JsonValue object(rapidjson::kObjectType);
-        add_member(object, "kind", kind, allocator);
-        add_member(object, "part", finding.part, allocator);
-        add_member(object, "text", finding.text, allocator);
-        list.PushBack(object, allocator);
-        rows.push_back({kind, finding.part, finding.text});
-    }
     add_member(result, "class", bundle.file.object_class, allocator);
     add_member(result, "unit", bundle.file.unit, allocator);
-    add_member(result, "sound", JsonValue(defects == 0), allocator);
-    add_member(result, "defects", JsonValue(defects), allocator);
     add_member(result, "parts", std::move(parts), allocator);
-    add_member(result, "findings", std::move(list), allocator);
+    const std::size_t defects = add_findings(result, bundle.findings, "part", rows, allocator);
     if (session.json) {
         session.print_report(provenance, document, result);
     } else {
@@ -52,8 +39,7 @@ int print(const Session& session, const Provenance& provenance, const Template& 
                           << (bundle.file.unit.empty() ? "" : ", in " + printable(bundle.file.unit)) << '\n';
             std::cout << table({"part", "file", "bytes", "what"}, part_rows) << '\n';
         }
-        if (!rows.empty()) std::cout << table({"kind", "part", "what"}, rows);
-        std::cout << (defects == 0 ? "no defects" : std::to_string(defects) + (defects == 1 ? " defect" : " defects")) << '\n';
+        print_findings("part", rows, defects);
     }
     return defects == 0 ? done : answer_is_no;
 }

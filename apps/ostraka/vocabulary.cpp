@@ -21,7 +21,7 @@ struct Check {
         // A file that is no JSON or no RDF at all is a failure, not an answer.
         const bool skos = is_skos(file);
         const Json source = skos ? Json() : read_json(file);
-        std::vector<VocabularyFinding> findings;
+        std::vector<Finding> findings;
         try {
             const Vocabulary vocabulary = skos ? read_skos(file, scheme) : vocabulary_from_json(source, file);
             for (const auto& note : vocabulary.notes) findings.push_back({false, "", note});
@@ -30,30 +30,7 @@ struct Check {
             if (error.kind() != ErrorKind::input || error.problem().starts_with("not valid")) throw;
             findings.push_back({true, "", error.problem() + (error.remedy().empty() ? "" : " (" + error.remedy() + ")")});
         }
-        Json document(rapidjson::kObjectType);
-        auto& allocator = document.GetAllocator();
-        JsonValue result(rapidjson::kObjectType), list(rapidjson::kArrayType);
-        std::vector<std::vector<std::string>> rows;
-        std::uint64_t defects = 0;
-        for (const VocabularyFinding& finding : findings) {
-            defects += finding.defect ? 1 : 0;
-            const std::string kind = finding.defect ? "defect" : "remark";
-            JsonValue entry(rapidjson::kObjectType);
-            add_member(entry, "kind", kind, allocator);
-            add_member(entry, "where", finding.where, allocator);
-            add_member(entry, "text", finding.text, allocator);
-            list.PushBack(entry, allocator);
-            rows.push_back({kind, finding.where, finding.text});
-        }
-        add_member(result, "sound", JsonValue(defects == 0), allocator);
-        add_member(result, "findings", std::move(list), allocator);
-        if (session.json) {
-            session.print_report(provenance, document, result);
-        } else {
-            if (!rows.empty()) std::cout << table({"kind", "where", "what"}, rows);
-            std::cout << (defects == 0 ? "no defects" : "1 defect") << '\n';
-        }
-        return defects == 0 ? done : answer_is_no;
+        return report_findings(session, provenance, findings);
     }
 };
 

@@ -2,18 +2,12 @@
 #pragma once
 
 #include "ostraka/axis/axis.h"
-
-#include <Eigen/Dense>
+#include "ostraka/geom/eigen.h"
 
 namespace ostraka::detail {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-inline Vector3d eigen(const Point& p) { return {p.x(), p.y(), p.z()}; }
-inline Vector3d eigen(const Vector& v) { return {v.x(), v.y(), v.z()}; }
-inline Point point_of(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
-inline Vector vector_of(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 /// The sign that makes the largest component positive.
 inline Vector3d oriented(const Vector3d& v) {

@@ -3,6 +3,15 @@
 
 #include "ostraka/core/error.h"
 
+// The library orders the edges of its working mesh by their addresses, so that its allocator decides the result. This one hands
+// out ascending addresses, whatever ran before.
+#include "ascending_allocator.h"
+#pragma push_macro("CGAL_ALLOCATOR")
+#undef CGAL_ALLOCATOR
+#define CGAL_ALLOCATOR(T) ostraka::detail::AscendingAllocator<T>
+#include <CGAL/Polyhedron_3.h>
+#pragma pop_macro("CGAL_ALLOCATOR")
+
 #include <CGAL/Mean_curvature_flow_skeletonization.h>
 #include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
 #include <CGAL/Random.h>
@@ -158,7 +167,9 @@ Axis skeleton_axis(const Mesh& mesh, const std::vector<Index>& faces, const Axis
     // The same sums in the same order, however many threads there are and whatever ran before.
     const OneThread one_thread;
     CGAL::get_default_random() = CGAL::Random(0);
+    const AscendingMemory memory(piece.size() * 2048 + (std::size_t{1} << 20U));
     using Skeletonization = CGAL::Mean_curvature_flow_skeletonization<Mesh>;
+    static_assert(std::is_same_v<Skeletonization::mTriangleMesh::Allocator, AscendingAllocator<int>>);
     Skeletonization::Skeleton skeleton;
     Skeletonization flow(part);
     flow.contract_until_convergence();

@@ -239,7 +239,7 @@ private:
 }  // namespace
 
 bool Template::sound() const {
-    return std::none_of(findings.begin(), findings.end(), [](const TemplateFinding& finding) { return finding.defect; });
+    return std::none_of(findings.begin(), findings.end(), [](const Finding& finding) { return finding.defect; });
 }
 
 Template load_template(TemplateFile file, const TemplateOptions& options) { return Loader(std::move(file), options).run(); }

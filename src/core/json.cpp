@@ -78,22 +78,10 @@ void refuse_twins(const JsonValue& value, const std::string& where) {
 std::string as_utf8(std::string_view text) {
     std::string result;
     for (std::size_t i = 0; i < text.size();) {
-        const auto byte = static_cast<unsigned char>(text[i]);
-        const std::size_t length = byte < 0x80                   ? 1
-                                   : byte >= 0xC2 && byte < 0xE0 ? 2
-                                   : byte >= 0xE0 && byte < 0xF0 ? 3
-                                   : byte >= 0xF0 && byte < 0xF5 ? 4
-                                                                 : 0;
-        bool good = length > 0 && i + length <= text.size();
-        for (std::size_t k = 1; good && k < length; ++k) good = (static_cast<unsigned char>(text[i + k]) & 0xC0) == 0x80;
-        if (good && length > 2) {  // overlong forms, surrogates, beyond U+10FFFF
-            const auto second = static_cast<unsigned char>(text[i + 1]);
-            good = !(byte == 0xE0 && second < 0xA0) && !(byte == 0xED && second >= 0xA0) && !(byte == 0xF0 && second < 0x90) &&
-                   !(byte == 0xF4 && second >= 0x90);
-        }
-        if (good) result.append(text.substr(i, length));
+        const std::size_t length = utf8_length(text, i);
+        if (length > 0) result.append(text.substr(i, length));
         else result += "\xEF\xBF\xBD";
-        i += good ? length : 1;
+        i += std::max<std::size_t>(length, 1);
     }
     return result;
 }
@@ -215,6 +203,23 @@ void validate(const JsonValue& value, const std::string& schema, const std::stri
     fail_input(where,
                "at " + (at.empty() ? std::string("the root") : at) + ": does not fit the format, which asks for " + expected,
                "see doc/schema/" + schema + ".schema.json");
+}
+
+std::size_t utf8_length(std::string_view text, std::size_t at) {
+    const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[at + k]); };
+    const std::size_t length = byte(0) < 0x80                      ? 1
+                               : byte(0) >= 0xC2 && byte(0) < 0xE0 ? 2
+                               : byte(0) >= 0xE0 && byte(0) < 0xF0 ? 3
+                               : byte(0) >= 0xF0 && byte(0) < 0xF5 ? 4
+                                                                   : 0;
+    if (length == 0 || at + length > text.size()) return 0;
+    for (std::size_t k = 1; k < length; ++k)
+        if ((byte(k) & 0xC0) != 0x80) return 0;
+    // Overlong forms, surrogates, beyond U+10FFFF.
+    if ((byte(0) == 0xE0 && byte(1) < 0xA0) || (byte(0) == 0xED && byte(1) >= 0xA0) || (byte(0) == 0xF0 && byte(1) < 0x90) ||
+        (byte(0) == 0xF4 && byte(1) >= 0x90))
+        return 0;
+    return length;
 }
 
 JsonValue json_string(std::string_view text, JsonAllocator& allocator) {

@@ -39,23 +39,8 @@ public:
             JsonValue entry = annotation(id, feature);
             if (entry.IsObject()) list.PushBack(entry, a());
         }
-        JsonValue made_for(rapidjson::kObjectType);
-        add_member(made_for, "vertices", JsonValue(static_cast<std::uint64_t>(mesh_.number_of_vertices())), a());
-        add_member(made_for, "faces", JsonValue(static_cast<std::uint64_t>(mesh_.number_of_faces())), a());
-        add_member(native_, "mesh", std::move(made_for), a());
-        if (ours != nullptr)
-            for (const char* name : {"class", "unit", "up"})
-                if (const JsonValue* value = find_member(*ours, name)) add_member(native_, name, JsonValue(*value, a()), a());
-        add_member(native_, "annotations", std::move(list), a());
-        PlacedAnnotations result;
-        result.set = annotations_from_json(native_, mesh_, where_);
-        if (!same_mesh_) {
-            const auto refreshed = refresh_measures(mesh_, result.set);
-            notes_.insert(notes_.end(), refreshed.notes.begin(), refreshed.notes.end());
-        }
-        result.set.notes.insert(result.set.notes.begin(), notes_.begin(), notes_.end());
-        result.placements = std::move(placements_);
-        return result;
+        return placed_annotations(native_, std::move(list), ours, mesh_, where_, same_mesh_, std::move(notes_),
+                                  std::move(placements_));
     }
 
 private:

@@ -1,7 +1,10 @@
 #include "placing.h"
 
+#include "ostraka/annotation/annotation_file.h"
 #include "ostraka/annotation/outline.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/json.h"
+#include "ostraka/measure/measure.h"
 
 #include <algorithm>
 #include <cmath>
@@ -130,6 +133,30 @@ std::vector<bool> Placer::component(Index face) const {
         }
     }
     return selected;
+}
+
+PlacedAnnotations placed_annotations(Json& native, JsonValue list, const JsonValue* about, const Mesh& mesh,
+                                     const std::string& where, bool same_mesh, std::vector<std::string> notes,
+                                     std::vector<Placement> placements) {
+    auto& allocator = native.GetAllocator();
+    JsonValue made_for(rapidjson::kObjectType);
+    add_member(made_for, "vertices", JsonValue(static_cast<std::uint64_t>(mesh.number_of_vertices())), allocator);
+    add_member(made_for, "faces", JsonValue(static_cast<std::uint64_t>(mesh.number_of_faces())), allocator);
+    add_member(native, "mesh", std::move(made_for), allocator);
+    if (about != nullptr)
+        for (const char* name : {"class", "unit", "up"})
+            if (const JsonValue* value = find_member(*about, name))
+                add_member(native, name, JsonValue(*value, allocator), allocator);
+    add_member(native, "annotations", std::move(list), allocator);
+    PlacedAnnotations result;
+    result.set = annotations_from_json(native, mesh, where);
+    if (!same_mesh) {
+        const auto refreshed = refresh_measures(mesh, result.set);
+        notes.insert(notes.end(), refreshed.notes.begin(), refreshed.notes.end());
+    }
+    result.set.notes.insert(result.set.notes.begin(), notes.begin(), notes.end());
+    result.placements = std::move(placements);
+    return result;
 }
 
 }  // namespace ostraka::exchange

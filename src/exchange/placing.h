@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ostraka/core/mesh.h"
+#include "ostraka/exchange/landmarks.h"
 #include "ostraka/geom/shortest_path.h"
 #include "ostraka/geom/surface_search.h"
 
@@ -55,5 +56,11 @@ private:
     VertexSearch vertices_;
     std::unique_ptr<PathSearch> paths_;
 };
+
+/// The set of `native`, an annotation file without its list and head, and of `list`, its annotations. `about` may carry the
+/// class, the unit and the way up. Measures are taken anew where the mesh is not the one they were taken on.
+PlacedAnnotations placed_annotations(Json& native, JsonValue list, const JsonValue* about, const Mesh& mesh,
+                                     const std::string& where, bool same_mesh, std::vector<std::string> notes,
+                                     std::vector<Placement> placements);
 
 }  // namespace ostraka::exchange

@@ -65,23 +65,8 @@ public:
         if (list.Empty() && left_out_ > 0)
             fail_input(where_, "none of its annotations could be placed on this mesh",
                        "see the notes, or give the mesh it is about");
-        JsonValue made_for(rapidjson::kObjectType);
-        add_member(made_for, "vertices", JsonValue(static_cast<std::uint64_t>(mesh_.number_of_vertices())), a());
-        add_member(made_for, "faces", JsonValue(static_cast<std::uint64_t>(mesh_.number_of_faces())), a());
-        add_member(native_, "mesh", std::move(made_for), a());
-        if (const JsonValue* about = find_member(document, "about"))
-            for (const char* name : {"class", "unit", "up"})
-                if (const JsonValue* value = find_member(*about, name)) add_member(native_, name, JsonValue(*value, a()), a());
-        add_member(native_, "annotations", std::move(list), a());
-        PlacedAnnotations result;
-        result.set = annotations_from_json(native_, mesh_, where_);
-        if (by_place_) {
-            const auto refreshed = refresh_measures(mesh_, result.set);
-            notes_.insert(notes_.end(), refreshed.notes.begin(), refreshed.notes.end());
-        }
-        result.set.notes.insert(result.set.notes.begin(), notes_.begin(), notes_.end());
-        result.placements = std::move(placements_);
-        return result;
+        return placed_annotations(native_, std::move(list), find_member(document, "about"), mesh_, where_, !by_place_,
+                                  std::move(notes_), std::move(placements_));
     }
 
 private:

@@ -3,9 +3,8 @@
 
 #include "ostraka/annotation/annotation.h"
 #include "ostraka/axis/axis.h"
+#include "ostraka/geom/eigen.h"
 #include "ostraka/geom/surface_search.h"
-
-#include <Eigen/Dense>
 
 #include <memory>
 
@@ -14,9 +13,6 @@ namespace ostraka::detail {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-inline Vector3d eigen(const Point& p) { return {p.x(), p.y(), p.z()}; }
-inline Vector3d eigen(const Vector& v) { return {v.x(), v.y(), v.z()}; }
-inline Point point_of(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 inline std::array<double, 3> array_of(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 /// Points with weights: centroids of faces by area, middles of edges by length, or vertices.

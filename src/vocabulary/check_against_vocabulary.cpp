@@ -37,7 +37,7 @@ std::string range_text(const AllowedAttribute& attribute) {
 class Inspector {
 public:
     Inspector(const Vocabulary& vocabulary, const CheckVocabularyOptions& options) : search_(vocabulary), options_(options) {}
-    std::vector<VocabularyFinding> findings;
+    std::vector<Finding> findings;
 
     void look_at(const Annotation& annotation, const std::string& at) {
         const auto concepts = search_.concepts_of(annotation.tag);
@@ -169,7 +169,7 @@ bool compatible(const Condition& a, const std::string& a_unit, const Condition& 
 }
 
 /// Rules that speak of one attribute of one concept (or of a narrower one) and can both hold with different results.
-void compare_rules(const VocabularySearch& search, std::vector<VocabularyFinding>& findings) {
+void compare_rules(const VocabularySearch& search, std::vector<Finding>& findings) {
     const auto& rules = search.vocabulary().rules;
     for (std::size_t i = 0; i < rules.size(); ++i)
         for (std::size_t k = i + 1; k < rules.size(); ++k) {
@@ -192,8 +192,8 @@ void compare_rules(const VocabularySearch& search, std::vector<VocabularyFinding
 
 }  // namespace
 
-std::vector<VocabularyFinding> check_against_vocabulary(const AnnotationSet& set, const Vocabulary& vocabulary,
-                                                        const CheckVocabularyOptions& options) {
+std::vector<Finding> check_against_vocabulary(const AnnotationSet& set, const Vocabulary& vocabulary,
+                                              const CheckVocabularyOptions& options) {
     Inspector inspector(vocabulary, options);
     for (std::size_t i = 0; i < set.annotations.size(); ++i)
         inspector.look_at(set.annotations[i], "/annotations/" + to_string(i));
@@ -217,8 +217,8 @@ void require_vocabulary(const AnnotationSet& set, const Vocabulary& vocabulary, 
                    "use words of the vocabulary, or add to it");
 }
 
-std::vector<VocabularyFinding> examine(const Vocabulary& vocabulary) {
-    std::vector<VocabularyFinding> findings;
+std::vector<Finding> examine(const Vocabulary& vocabulary) {
+    std::vector<Finding> findings;
     const VocabularySearch search(vocabulary);
     std::map<std::string, std::size_t> languages;
     for (const Concept& entry : vocabulary.concepts)

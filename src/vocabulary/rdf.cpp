@@ -1,6 +1,7 @@
 #include "rdf.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/json.h"
 
 #include <raptor.h>
 
@@ -106,15 +107,8 @@ int line_of(std::string_view text, std::size_t offset) {
 /// Both syntaxes are read as UTF-8 only, so that no other encoding hides anything from the checks below.
 void require_utf8(const std::string& text, const std::string& where) {
     for (std::size_t i = 0; i < text.size();) {
-        const auto byte = static_cast<unsigned char>(text[i]);
-        const std::size_t length = byte < 0x80                   ? 1
-                                   : byte >= 0xC2 && byte < 0xE0 ? 2
-                                   : byte >= 0xE0 && byte < 0xF0 ? 3
-                                   : byte >= 0xF0 && byte < 0xF5 ? 4
-                                                                 : 0;
-        bool good = byte != 0 && length > 0 && i + length <= text.size();
-        for (std::size_t k = 1; good && k < length; ++k) good = (static_cast<unsigned char>(text[i + k]) & 0xC0) == 0x80;
-        if (!good) fail_at(where, line_of(text, i), "the text is not UTF-8", "save the file as UTF-8");
+        const std::size_t length = text[i] == 0 ? 0 : utf8_length(text, i);
+        if (length == 0) fail_at(where, line_of(text, i), "the text is not UTF-8", "save the file as UTF-8");
         i += length;
     }
 }

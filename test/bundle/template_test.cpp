@@ -78,8 +78,8 @@ struct Ball : Scratch {
     /// What loading has to say, after a change.
     [[nodiscard]] std::string findings(bool defects) const {
         std::string text;
-        for (const TemplateFinding& finding : load_template(read_template(*this / "ball.template.json")).findings)
-            if (finding.defect == defects) text += finding.part + ": " + finding.text + "\n";
+        for (const Finding& finding : load_template(read_template(*this / "ball.template.json")).findings)
+            if (finding.defect == defects) text += finding.where + ": " + finding.text + "\n";
         return text;
     }
     /// Without checksums, so that a change is judged by what it means.

@@ -49,13 +49,6 @@ TemplateFile template_from_json(const JsonValue& document, const Path& folder, c
                                 const TemplateOptions& options = {});
 Json template_to_json(const TemplateFile& file, const Provenance& provenance);
 
-/// Something wrong with a template, or worth knowing.
-struct TemplateFinding {
-    bool defect = false;  ///< false: a remark
-    std::string part;     ///< name of the file it is about
-    std::string text;
-};
-
 /// One line of what a template holds.
 struct TemplateEntry {
     std::string role, name;
@@ -74,7 +67,7 @@ struct Template {
     std::vector<std::optional<Enclosure>> enclosures;  ///< of the mesh by each cage
     std::optional<Vocabulary> vocabulary;
     std::optional<ClassRules> rules;
-    std::vector<TemplateFinding> findings;
+    std::vector<Finding> findings;  ///< `where` is the name of the file of the template
     std::vector<TemplateEntry> entries;
 
     [[nodiscard]] bool sound() const;

@@ -27,6 +27,9 @@ void write_json(const Path& file, const JsonValue& value);
 /// the JSON pointer and what was expected. Throws std::logic_error for an unknown schema name.
 void validate(const JsonValue& value, const std::string& schema, const std::string& where);
 
+/// Bytes of the UTF-8 character that begins at byte `at` of a text that is longer than that; 0 if none does.
+std::size_t utf8_length(std::string_view text, std::size_t at);
+
 /// Building blocks.
 JsonValue json_string(std::string_view text, JsonAllocator& allocator);
 void add_member(JsonValue& object, std::string_view name, JsonValue value, JsonAllocator& allocator);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
+#include "ostraka/core/finding.h"
 
 namespace ostraka {
 
@@ -14,12 +15,6 @@ struct AnnotationSummary {
     double length = 0;         ///< perimeter of a region, length of a line
 };
 AnnotationSummary summarise(const Mesh& mesh, const Annotation& annotation);
-
-struct Finding {
-    bool defect = false;  ///< false: a remark on something that is allowed but worth knowing
-    std::string where;    ///< JSON pointer
-    std::string text;
-};
 
 /// Looks for empty selections, repeated points, poly-lines that run twice over an edge, missing tags, stale values, and values
 /// that differ from those computed anew by more than a millionth of themselves (defects); regions in several patches, outlines

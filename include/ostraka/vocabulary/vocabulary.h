@@ -3,6 +3,7 @@
 
 #include "ostraka/annotation/annotation.h"
 #include "ostraka/core/file.h"
+#include "ostraka/core/finding.h"
 #include "ostraka/core/options.h"
 
 #include <map>
@@ -102,17 +103,9 @@ void write_vocabulary(const Path& file, const Vocabulary& vocabulary);
 /// The checks of reading, for a vocabulary in memory. Linear in its size.
 void check_vocabulary(const Vocabulary& vocabulary, const std::string& where);
 
-/// Something worth knowing, or wrong.
-struct VocabularyFinding {
-    bool defect = false;  ///< false: a remark
-    std::string where;    ///< JSON pointer
-    std::string text;
-    auto operator<=>(const VocabularyFinding&) const = default;
-};
-
 /// What is allowed in a vocabulary but may be meant otherwise: concepts without labels or with labels that others have too,
 /// languages that only some concepts are labelled in, rules that contradict each other where both apply.
-std::vector<VocabularyFinding> examine(const Vocabulary& vocabulary);
+std::vector<Finding> examine(const Vocabulary& vocabulary);
 
 /// Answers questions about a vocabulary, which must have passed check_vocabulary and outlive this. Construction is linear.
 class VocabularySearch {
@@ -166,8 +159,8 @@ struct CheckVocabularyOptions {
 /// attribute that the concept may not carry, a value outside its list, a word where a number belongs and the reverse, a quantity
 /// outside its range or in a unit that cannot be converted. Names what comes close. Remarks: quantities that the vocabulary
 /// does not have (defects if `strict`), stale quantities and quantities without a unit, whose range was not looked at.
-std::vector<VocabularyFinding> check_against_vocabulary(const AnnotationSet& set, const Vocabulary& vocabulary,
-                                                        const CheckVocabularyOptions& options = {});
+std::vector<Finding> check_against_vocabulary(const AnnotationSet& set, const Vocabulary& vocabulary,
+                                              const CheckVocabularyOptions& options = {});
 /// Throws Error (input) with the first defect if there is one; `where` names the file of the set.
 void require_vocabulary(const AnnotationSet& set, const Vocabulary& vocabulary, const std::string& where,
                         const CheckVocabularyOptions& options = {});
