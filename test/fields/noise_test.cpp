@@ -82,21 +82,27 @@ std::vector<Compared> compare(const std::string& name, std::uint64_t vertices, d
     return list;
 }
 
-TEST(Noise, MeanCurvatureKeepsItsMedianPerPart) {
+std::size_t expect_mean_curvature_kept(const std::string& name, std::uint64_t vertices, double scale) {
     CurvatureOptions options;
-    options.scale = 0.03;
+    options.scale = scale;
+    const double diagonal = made_object(name).box().diagonal().norm();
     std::size_t parts = 0;
-    for (const std::string name : {"sphere", "capsule", "cylinder", "torus", "chair", "teapot"}) {
-        const double diagonal = made_object(name).box().diagonal().norm();
-        for (const Compared& c :
-             compare(name, 20000, options.scale, [&](const Mesh& mesh) { return curvature(mesh, options).mean; })) {
-            if (std::abs(c.clean) * diagonal < 1) continue;  // nearly flat: there is no share to speak of
-            EXPECT_NEAR(c.noisy, c.clean, 0.05 * std::abs(c.clean)) << c.part;
-            std::cout << "mean curvature of " << c.part << ": " << c.clean << " with noise " << c.noisy << '\n';
-            ++parts;
-        }
+    for (const Compared& c : compare(name, vertices, scale, [&](const Mesh& mesh) { return curvature(mesh, options).mean; })) {
+        if (std::abs(c.clean) * diagonal < 1) continue;  // nearly flat: there is no share to speak of
+        EXPECT_NEAR(c.noisy, c.clean, 0.05 * std::abs(c.clean)) << c.part;
+        std::cout << "mean curvature of " << c.part << ": " << c.clean << " with noise " << c.noisy << '\n';
+        ++parts;
     }
-    EXPECT_GE(parts, 18U);
+    return parts;
+}
+
+TEST(Noise, MeanCurvatureKeepsItsMedianPerPart) {
+    std::size_t parts = 0;
+    for (const std::string name : {"sphere", "capsule", "cylinder", "torus", "chair", "teapot"})
+        parts += expect_mean_curvature_kept(name, 20000, 0.03);
+    // The hand's palm is thin and nearly flat: it takes more vertices and a wider scale.
+    parts += expect_mean_curvature_kept("hand", 60000, 0.035);
+    EXPECT_GE(parts, 25U);
 }
 
 TEST(Noise, ThicknessKeepsItsMedianPerPart) {
