@@ -1,12 +1,12 @@
 // A template's parts, each by itself and all together.
-#include "npy_shape.h"
-
 #include "ostraka/bundle/template.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/npy.h"
 #include "ostraka/relation/topology.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace ostraka {
 
@@ -139,9 +139,7 @@ private:
     }
 
     std::string read_coordinates(const TemplatePart& part) {
-        const auto shape = npy_shape(part.file);
-        if (shape.size() != 2)
-            fail_input(part.file.string(), "the array has " + counted(shape.size(), "dimension", "dimensions") + ", not two");
+        const std::vector<std::size_t> shape = shape_of_matrix(part.file);
         if (result_.mesh && shape[0] != result_.mesh->mesh.number_of_vertices())
             defect(part.name, "the coordinates have " + to_string(shape[0]) + " rows, the mesh " +
                                   to_string(result_.mesh->mesh.number_of_vertices()) + " vertices");
@@ -153,6 +151,21 @@ private:
                    "the coordinates have " + to_string(shape[1]) + " columns, which is no cage's number of vertices or faces");
         if (result_.cages.empty()) defect(part.name, "coordinates without a cage");
         return to_string(shape[0]) + " x " + to_string(shape[1]);
+    }
+
+    static std::vector<std::size_t> shape_of_matrix(const Path& file) {
+        const std::string bytes = read_file(file);
+        const NpyView view = view_npy(bytes, file.string());
+        if (view.shape.size() != 2) fail_input(file.string(), "the array has one dimension, not two");
+        if (view.type != "<f8")
+            fail_input(file.string(), "the array is not of little-endian float64", "write it with numpy.save, as float64");
+        for (std::size_t i = 0; i < view.count(); ++i) {
+            double value = 0;
+            std::memcpy(&value, view.data.data() + i * sizeof value, sizeof value);
+            if (!std::isfinite(value))
+                fail_input(file.string(), "number " + to_string(i) + " of the array is not finite", "compute it anew");
+        }
+        return view.shape;
     }
 
     std::string read_landmarks(const TemplatePart& part) {

@@ -1,0 +1,53 @@
+// A cage as the loops over points read it.
+#pragma once
+
+#include "lanes.h"
+
+#include "ostraka/core/mesh.h"
+
+#include <array>
+#include <vector>
+
+namespace ostraka::coords {
+
+using Three = std::array<double, 3>;
+
+OSTRAKA_INLINE Three operator+(const Three& a, const Three& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+OSTRAKA_INLINE Three operator-(const Three& a, const Three& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+OSTRAKA_INLINE Three operator*(double s, const Three& a) { return {s * a[0], s * a[1], s * a[2]}; }
+OSTRAKA_INLINE double dot(const Three& a, const Three& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+OSTRAKA_INLINE Three cross(const Three& a, const Three& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+inline double length(const Three& a) { return std::sqrt(dot(a, a)); }
+
+struct CageEdge {
+    Index from, to;
+    Three along;  ///< to - from
+    double length;
+};
+
+/// Edge k of a face lies opposite to its corner k; it runs from corner k + 1 to corner k + 2 if its sign is 1, else the other
+/// way.
+struct CageFace {
+    std::array<Index, 3> corner, edge;
+    Three sign;
+    Three normal;        ///< twice the area vector
+    double double_area;  ///< its length
+};
+
+/// Lengths are multiplied by a power of two that brings the diagonal near one, which no rounding follows from.
+struct CageArrays {
+    double scale = 1, diagonal = 1;  ///< the diagonal is the scaled one
+    std::vector<Three> points;       ///< as they are, not scaled
+    std::vector<CageEdge> edges;
+    std::vector<CageFace> faces;
+
+    explicit CageArrays(const Mesh& cage);
+    /// Scaled vector from x to vertex i.
+    [[nodiscard]] Three from(const Three& x, Index i) const { return scale * (points[i] - x); }
+};
+
+inline Three three(const Point& p) { return {p.x(), p.y(), p.z()}; }
+
+}  // namespace ostraka::coords

@@ -1,0 +1,11 @@
+// The kinds of coordinates that are built in.
+#pragma once
+
+#include "ostraka/coords/coordinates.h"
+
+namespace ostraka::coords {
+
+Coordinates mean_value(const Mesh& cage, const std::vector<Point>& points, const CoordinateOptions& options);
+Coordinates green(const Mesh& cage, const std::vector<Point>& points, const CoordinateOptions& options);
+
+}  // namespace ostraka::coords

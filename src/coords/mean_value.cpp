@@ -1,0 +1,246 @@
+// Mean value coordinates of a triangle mesh (Ju, Schaefer, Warren 2005), in vector form.
+//
+// Seen from x, a face is a spherical triangle. Its mean vector m, the integral of the direction over it, is half the sum of
+// angle times unit normal over the planes through x and its edges; written as W_1 p_1 + W_2 p_2 + W_3 p_3 with the vectors p from
+// x to the corners it gives the weights W. The mean vectors of a closed mesh add up to nothing, hence linear precision. An edge's
+// part of m serves both its faces. W_i = (m . c_i) / det with c_i = p_(i+1) x p_(i+2) and det = p_1 . (p_2 x p_3).
+#include "cage_arrays.h"
+#include "kinds.h"
+#include "lanes.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+
+#include <optional>
+
+namespace ostraka::coords {
+
+namespace {
+
+/// Where the mean vector of a face is shorter than this share of half its perimeter (seen from x: the face is a sliver), the
+/// weights come from `sliver_weights`.
+constexpr double sliver = 1.0 / 1024;
+
+/// What the loops write for eight points; one for each thread's block.
+struct Work {
+    explicit Work(const CageArrays& cage)
+        : vertex(cage.points.size()), edge(cage.edges.size()), sliver_lanes(cage.faces.size()) {}
+    struct OfVertex {
+        Lanes p[3], weight;
+    };
+    struct OfEdge {
+        Lanes c[3], theta, over_sine;  ///< p_from x p_to, the angle between them, the angle over the length of c
+    };
+    std::vector<OfVertex> vertex;
+    std::vector<OfEdge> edge;
+    std::vector<std::uint8_t> sliver_lanes;  ///< per face: bit l is set where lane l sees a sliver
+    Lanes x[3];
+    Lanes near;  ///< 1 where the point may lie on the cage
+};
+
+OSTRAKA_EACH_WIDTH
+void sum_weights(const CageArrays& cage, double snap, Work& work) {
+    const double snap_squared = snap * snap;
+    const double scale = cage.scale;
+    Lanes near{};
+    for (std::size_t i = 0; i < work.vertex.size(); ++i) {
+        Work::OfVertex& v = work.vertex[i];
+        const Three& point = cage.points[i];
+        for (int l = 0; l < lanes; ++l) {
+            const double px = scale * (point[0] - work.x[0][l]), py = scale * (point[1] - work.x[1][l]),
+                         pz = scale * (point[2] - work.x[2][l]);
+            near[l] = px * px + py * py + pz * pz <= snap_squared ? 1 : near[l];
+            v.p[0][l] = px;
+            v.p[1][l] = py;
+            v.p[2][l] = pz;
+            v.weight[l] = 0;
+        }
+    }
+    for (std::size_t i = 0; i < work.edge.size(); ++i) {
+        const CageEdge& edge = cage.edges[i];
+        Work::OfEdge& e = work.edge[i];
+        const Work::OfVertex &from = work.vertex[edge.from], &to = work.vertex[edge.to];
+        const double ax = edge.along[0], ay = edge.along[1], az = edge.along[2];
+        const double close = snap_squared * edge.length * edge.length;
+        for (int l = 0; l < lanes; ++l) {
+            const double px = from.p[0][l], py = from.p[1][l], pz = from.p[2][l];
+            const double qx = to.p[0][l], qy = to.p[1][l], qz = to.p[2][l];
+            // The nearer end and the edge itself: p_from x p_to without the error of the longer way.
+            const bool first = px * px + py * py + pz * pz <= qx * qx + qy * qy + qz * qz;
+            const double nx = first ? px : qx, ny = first ? py : qy, nz = first ? pz : qz;
+            const double cx = ny * az - nz * ay, cy = nz * ax - nx * az, cz = nx * ay - ny * ax;
+            const double square = cx * cx + cy * cy + cz * cz, cosine = px * qx + py * qy + pz * qz;
+            const double sine = std::sqrt(square), theta = angle(sine, cosine);
+            near[l] = square <= close && cosine <= 0 ? 1 : near[l];
+            e.c[0][l] = cx;
+            e.c[1][l] = cy;
+            e.c[2][l] = cz;
+            e.theta[l] = theta;
+            e.over_sine[l] = sine > 0 ? theta / (sine > 0 ? sine : 1) : 0;
+        }
+    }
+    for (std::size_t i = 0; i < work.sliver_lanes.size(); ++i) {
+        const CageFace& face = cage.faces[i];
+        const Work::OfEdge &e0 = work.edge[face.edge[0]], &e1 = work.edge[face.edge[1]], &e2 = work.edge[face.edge[2]];
+        Work::OfVertex &v0 = work.vertex[face.corner[0]], &v1 = work.vertex[face.corner[1]], &v2 = work.vertex[face.corner[2]];
+        const double s0 = face.sign[0], s1 = face.sign[1], s2 = face.sign[2];
+        const double Nx = face.normal[0], Ny = face.normal[1], Nz = face.normal[2];
+        const double flat = snap * face.double_area;
+        std::int64_t slivers[lanes];
+        for (int l = 0; l < lanes; ++l) {
+            const double k0 = s0 * e0.over_sine[l], k1 = s1 * e1.over_sine[l], k2 = s2 * e2.over_sine[l];
+            const double mx = k0 * e0.c[0][l] + k1 * e1.c[0][l] + k2 * e2.c[0][l];
+            const double my = k0 * e0.c[1][l] + k1 * e1.c[1][l] + k2 * e2.c[1][l];
+            const double mz = k0 * e0.c[2][l] + k1 * e1.c[2][l] + k2 * e2.c[2][l];
+            const double perimeter = e0.theta[l] + e1.theta[l] + e2.theta[l];
+            const double det = v0.p[0][l] * Nx + v0.p[1][l] * Ny + v0.p[2][l] * Nz;
+            const bool thin = mx * mx + my * my + mz * mz <= sliver * sliver * perimeter * perimeter;
+            const bool touches = std::fabs(det) <= flat;
+            near[l] = touches && !thin ? 1 : near[l];
+            slivers[l] = thin ? 1 : 0;
+            const double over = thin || det == 0 ? 0 : 0.5 / (det == 0 ? 1 : det);
+            v0.weight[l] += over * s0 * (mx * e0.c[0][l] + my * e0.c[1][l] + mz * e0.c[2][l]);
+            v1.weight[l] += over * s1 * (mx * e1.c[0][l] + my * e1.c[1][l] + mz * e1.c[2][l]);
+            v2.weight[l] += over * s2 * (mx * e2.c[0][l] + my * e2.c[1][l] + mz * e2.c[2][l]);
+        }
+        std::int64_t bits = 0;
+        for (int l = 0; l < lanes; ++l) bits |= slivers[l] << l;
+        work.sliver_lanes[i] = static_cast<std::uint8_t>(bits);
+    }
+    for (int l = 0; l < lanes; ++l) work.near[l] = near[l];
+}
+
+/// The weights of a face whose plane passes close by x, outside the face: m is nearly nothing there and its digits are lost.
+/// W_i = |c_i| N_i / (2 det), N_i = theta_i - theta_(i+1) cos A_(i-1) - theta_(i-1) cos A_(i+1) with the angles A of the
+/// spherical triangle; the small difference of its sides comes from sin((b + c - a) / 2) sin((a + b + c) / 2) =
+/// sin b sin c cos^2(A / 2), and 1 - |cos A| from sin A = |p| det / (|c| |c|). N vanishes as det^2, so that W does as det.
+Three sliver_weights(const Three (&p)[3], const Three (&c)[3], const Three& theta, double det) {
+    Three cl, pl;
+    for (std::size_t k = 0; k < 3; ++k) cl[k] = length(c[k]), pl[k] = length(p[k]);
+    if (!(cl[0] * cl[1] * cl[2] > 0) || det == 0) return {0, 0, 0};
+    Three one_minus, one_plus, sine;  // 1 - cos A, 1 + cos A; sines of the sides
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
+        const double cosine = -dot(c[i], c[j]) / (cl[i] * cl[j]), s = pl[k] * det / (cl[i] * cl[j]);
+        const double small = s * s / (1 + std::fabs(cosine));
+        one_minus[k] = cosine >= 0 ? small : 2 - small;
+        one_plus[k] = cosine < 0 ? small : 2 - small;
+        sine[k] = cl[k] / (pl[i] * pl[j]);
+    }
+    std::size_t k = 0;
+    for (std::size_t i = 1; i < 3; ++i)
+        if (theta[i] > theta[k]) k = i;
+    const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
+    const double half = std::sin(0.5 * (theta[0] + theta[1] + theta[2]));
+    if (!(half > 0)) return {0, 0, 0};
+    const double excess = 2 * std::asin(std::min(1.0, 0.5 * sine[i] * sine[j] * one_plus[k] / half));
+    Three N;
+    N[k] = -excess + theta[i] * one_minus[j] + theta[j] * one_minus[i];
+    N[i] = excess - theta[j] * one_plus[k] + theta[k] * one_minus[j];
+    N[j] = excess - theta[i] * one_plus[k] + theta[k] * one_minus[i];
+    return {cl[0] * N[0] / (2 * det), cl[1] * N[1] / (2 * det), cl[2] * N[2] / (2 * det)};
+}
+
+void add_slivers(const CageArrays& cage, Work& work) {
+    for (std::size_t i = 0; i < cage.faces.size(); ++i) {
+        if (work.sliver_lanes[i] == 0) continue;
+        const CageFace& face = cage.faces[i];
+        for (int l = 0; l < lanes; ++l) {
+            if ((work.sliver_lanes[i] >> l & 1) == 0) continue;
+            Three p[3], c[3], theta;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const auto& vertex = work.vertex[face.corner[k]].p;
+                const Work::OfEdge& edge = work.edge[face.edge[k]];
+                p[k] = {vertex[0][l], vertex[1][l], vertex[2][l]};
+                c[k] = face.sign[k] * Three{edge.c[0][l], edge.c[1][l], edge.c[2][l]};
+                theta[k] = edge.theta[l];
+            }
+            const Three weights = sliver_weights(p, c, theta, dot(p[0], face.normal));
+            for (std::size_t k = 0; k < 3; ++k) work.vertex[face.corner[k]].weight[l] += weights[k];
+        }
+    }
+}
+
+/// The weights of a point that lies on the cage: linear on the vertex, edge or face nearest to it, in this order.
+bool weights_on_cage(const CageArrays& cage, const Three& x, double snap, double* row) {
+    const auto clear = [&] { std::fill(row, row + cage.points.size(), 0.0); };
+    double least = snap;
+    std::size_t best = cage.points.size();
+    for (std::size_t i = 0; i < cage.points.size(); ++i) {
+        const double d = length(cage.from(x, static_cast<Index>(i)));
+        if (d <= least && (best == cage.points.size() || d < least)) least = d, best = i;
+    }
+    if (best < cage.points.size()) {
+        clear();
+        row[best] = 1;
+        return true;
+    }
+    best = cage.edges.size(), least = snap;
+    double share = 0;
+    for (std::size_t i = 0; i < cage.edges.size(); ++i) {
+        const CageEdge& edge = cage.edges[i];
+        if (!(edge.length > 0)) continue;
+        const double t = -dot(cage.from(x, edge.from), edge.along) / (edge.length * edge.length);
+        if (!(t >= 0 && t <= 1)) continue;
+        const double d = length(cage.from(x, edge.from) + t * edge.along);
+        if (d <= least && (best == cage.edges.size() || d < least)) least = d, best = i, share = t;
+    }
+    if (best < cage.edges.size()) {
+        clear();
+        row[cage.edges[best].from] = 1 - share;
+        row[cage.edges[best].to] = share;
+        return true;
+    }
+    best = cage.faces.size(), least = snap;
+    Three barycentric{};
+    for (std::size_t i = 0; i < cage.faces.size(); ++i) {
+        const CageFace& face = cage.faces[i];
+        if (!(face.double_area > 0)) continue;
+        const Three p[3]{cage.from(x, face.corner[0]), cage.from(x, face.corner[1]), cage.from(x, face.corner[2])};
+        const double d = std::fabs(dot(p[0], face.normal)) / face.double_area;
+        if (!(d <= least) || (best < cage.faces.size() && !(d < least))) continue;
+        Three b;
+        for (std::size_t k = 0; k < 3; ++k) b[k] = dot(cross(p[(k + 1) % 3], p[(k + 2) % 3]), face.normal);
+        if (!(b[0] >= 0 && b[1] >= 0 && b[2] >= 0)) continue;
+        least = d, best = i, barycentric = 1 / (b[0] + b[1] + b[2]) * b;
+    }
+    if (best == cage.faces.size()) return false;
+    clear();
+    for (std::size_t k = 0; k < 3; ++k) row[cage.faces[best].corner[k]] = barycentric[k];
+    return true;
+}
+
+}  // namespace
+
+Coordinates mean_value(const Mesh& mesh, const std::vector<Point>& points, const CoordinateOptions& options) {
+    const CageArrays cage(mesh);
+    const double snap = options.snap * cage.diagonal;
+    Coordinates result;
+    result.vertex.resize(static_cast<Eigen::Index>(points.size()), static_cast<Eigen::Index>(cage.points.size()));
+    parallel_blocks(points.size(), 64, [&](std::size_t begin, std::size_t end) {
+        Work work(cage);
+        for (std::size_t first = begin; first < end; first += lanes) {
+            const std::size_t count = std::min<std::size_t>(lanes, end - first);
+            for (std::size_t l = 0; l < lanes; ++l) {
+                const Three x = three(points[first + std::min(l, count - 1)]);
+                for (std::size_t k = 0; k < 3; ++k) work.x[k][l] = x[k];
+            }
+            sum_weights(cage, snap, work);
+            add_slivers(cage, work);
+            for (std::size_t l = 0; l < count; ++l) {
+                double* row = result.vertex.row(static_cast<Eigen::Index>(first + l)).data();
+                if (work.near[l] != 0 && weights_on_cage(cage, three(points[first + l]), snap, row)) continue;
+                double sum = 0;
+                for (const Work::OfVertex& v : work.vertex) sum += v.weight[l];
+                if (!(std::fabs(sum) > 0) || !std::isfinite(sum))
+                    fail_input("point " + std::to_string(first + l),
+                               "has no mean value coordinates in this cage: its weights have no sum",
+                               "it lies too far from the cage, or the cage encloses nothing");
+                for (std::size_t i = 0; i < work.vertex.size(); ++i) row[i] = work.vertex[i].weight[l] / sum;
+            }
+        }
+    });
+    return result;
+}
+
+}  // namespace ostraka::coords
