@@ -16,9 +16,9 @@ using exchange::digits;
 using std::to_string;
 
 const std::vector<std::string>& column_names() {
-    static const std::vector<std::string> names{"annotation", "tag",       "type", "colour", "attribute", "name",
-                                                "kind",       "value",     "unit", "note",   "tool",      "points",
-                                                "direction",  "locations", "file", "stale"};
+    static const std::vector<std::string> names{
+        "annotation", "tag",    "type",      "colour",    "attribute", "name",  "kind",     "value",   "unit",        "note",
+        "tool",       "points", "direction", "locations", "file",      "stale", "geodesic", "repeats", "uncertainty", "origin"};
     return names;
 }
 
@@ -38,6 +38,12 @@ std::string joined(const std::vector<Location>& locations) {
     std::string text;
     for (const Location& location : locations)
         text += (text.empty() ? "" : " ") + to_string(location.face) + " " + joined(location.barycentric);
+    return text;
+}
+
+std::string joined(const std::vector<std::vector<Index>>& pickings) {
+    std::string text;
+    for (const auto& pins : pickings) text += (text.empty() ? "" : " | ") + joined(pins);
     return text;
 }
 
@@ -107,9 +113,9 @@ private:
             fail(column, "'" + exchange::one_line(cell(column)).substr(0, 40) + "' is not a whole number", "mend the cell");
         return *value;
     }
-    [[nodiscard]] std::vector<double> numbers(const std::string& column) const {
+    [[nodiscard]] std::vector<double> numbers(const std::string& column) const { return numbers(column, cell(column)); }
+    [[nodiscard]] std::vector<double> numbers(const std::string& column, const std::string& text) const {
         std::vector<double> list;
-        const std::string text = cell(column);
         for (std::size_t from = 0; from < text.size();) {
             const std::size_t begin = text.find_first_not_of(" \t\r\n", from);
             if (begin == std::string::npos) break;
@@ -127,6 +133,19 @@ private:
         if (!(value >= 0 && value < no_index) || value != static_cast<double>(static_cast<Index>(value)))
             fail(column, digits(value) + " is not an index", "give indices of the mesh, from 0");
         return static_cast<Index>(value);
+    }
+
+    /// Pins picked again: indices separated by blanks, pickings by '|'.
+    [[nodiscard]] std::vector<std::vector<Index>> pickings() const {
+        std::vector<std::vector<Index>> list;
+        const std::string text = cell("repeats");
+        for (std::size_t from = 0; from < text.size();) {
+            const std::size_t end = std::min(text.find('|', from), text.size());
+            std::vector<Index>& pins = list.emplace_back();
+            for (const double value : numbers("repeats", text.substr(from, end - from))) pins.push_back(index("repeats", value));
+            from = end + 1;
+        }
+        return list;
     }
 
     /// Tag, type and colour, which stand on each row of an annotation; they must agree.
@@ -163,6 +182,7 @@ private:
         const bool is_stale = exchange::lower(stale) == "true";
         if (kind == "semantic") {
             attribute.note = cell("note");
+            attribute.origin = cell("origin");
         } else if (kind == "measure") {
             attribute.type = AttributeType::measure;
             attribute.measure = measure();
@@ -195,6 +215,13 @@ private:
         if (value.size() > 1) fail("value", "more than one number", "a measure has one value");
         if (!value.empty()) measure.value = value.front();
         measure.unit = cell("unit");
+        measure.exact = cell("geodesic") == "exact";
+        if (!measure.exact && !cell("geodesic").empty())
+            fail("geodesic", "is not 'exact'", "leave it empty for a way along edges");
+        measure.repeats = pickings();
+        const auto uncertainty = numbers("uncertainty");
+        if (uncertainty.size() > 1) fail("uncertainty", "more than one number", "a measure has one");
+        if (!uncertainty.empty()) measure.uncertainty = uncertainty.front();
         return measure;
     }
 
@@ -224,11 +251,13 @@ std::string attribute_table(const AnnotationSet& set) {
             const Descriptor& d = attribute.descriptor;
             switch (attribute.type) {
                 case AttributeType::semantic:
-                    add({id, attribute.name, "semantic", "", "", attribute.note});
+                    add({id, attribute.name, "semantic", "", "", attribute.note, "", "", "", "", "", "", "", "", "",
+                         attribute.origin});
                     break;
                 case AttributeType::measure:
                     add({id, attribute.name, "measure", m.value ? digits(*m.value) : "", m.unit, "", m.tool, joined(m.points),
-                         m.direction ? joined(*m.direction) : "", joined(m.locations), "", m.stale ? "true" : ""});
+                         m.direction ? joined(*m.direction) : "", joined(m.locations), "", m.stale ? "true" : "",
+                         m.exact ? "exact" : "", joined(m.repeats), m.uncertainty ? digits(*m.uncertainty) : ""});
                     break;
                 case AttributeType::descriptor:
                     add({id, attribute.name, d.is_list ? "list" : "descriptor", joined(d.values), d.unit, "", "", "", "", "",

@@ -195,6 +195,18 @@ private:
         return true;
     }
 
+    /// Vertices of the file's mesh on this one; nothing if one of them is not in the file.
+    std::optional<std::vector<Index>> found_again(const JsonValue* points) {
+        if (points == nullptr || !points->IsArray()) return {};
+        std::vector<Index> vertices;
+        for (const auto& point : points->GetArray()) {
+            const auto found = point.IsUint() ? positions().find(point.GetUint()) : positions_.end();
+            if (found == positions_.end()) return {};
+            vertices.push_back(placer().place(found->second).vertex);
+        }
+        return vertices;
+    }
+
     /// Pins are vertices of the file's mesh: found again by _VERTEX, otherwise the measure becomes a number.
     void without_pins(JsonValue& attributes) {
         if (!attributes.IsArray()) return;
@@ -203,19 +215,17 @@ private:
                 !attribute["measure"].IsObject())
                 continue;
             JsonValue& measure = attribute["measure"];
-            const JsonValue* points = find_member(measure, "points");
-            std::vector<Index> vertices;
-            bool known = points != nullptr && points->IsArray();
-            for (rapidjson::SizeType i = 0; known && i < points->Size(); ++i) {
-                const auto found = (*points)[i].IsUint() ? positions().find((*points)[i].GetUint()) : positions_.end();
-                known = found != positions_.end();
-                if (known) vertices.push_back(placer().place(found->second).vertex);
-            }
-            if (known) {
+            if (const auto vertices = found_again(find_member(measure, "points"))) {
+                JsonValue again(rapidjson::kArrayType);
+                if (const JsonValue* repeats = find_member(measure, "repeats"); repeats != nullptr && repeats->IsArray())
+                    for (const auto& picked : repeats->GetArray())
+                        if (const auto places = found_again(&picked)) again.PushBack(json_of(*places), a());
+                measure.RemoveMember("repeats");
+                if (!again.Empty()) add_member(measure, "repeats", std::move(again), a());
                 measure.RemoveMember("points");
                 measure.RemoveMember("locations");
                 measure.RemoveMember("stale");
-                add_member(measure, "points", json_of(vertices), a());
+                add_member(measure, "points", json_of(*vertices), a());
                 add_member(measure, "stale", JsonValue(true), a());
                 continue;
             }

@@ -4,27 +4,10 @@
 
 namespace ostraka::exchange {
 
-namespace {
-
-bool same(const Location& a, const Location& b) { return a.face == b.face && a.barycentric == b.barycentric; }
-
-bool same(const Measure& a, const Measure& b) {
-    return a.tool == b.tool && a.points == b.points && a.direction == b.direction && a.value == b.value && a.unit == b.unit &&
-           a.stale == b.stale &&
-           std::equal(a.locations.begin(), a.locations.end(), b.locations.begin(), b.locations.end(),
-                      [](const Location& x, const Location& y) { return same(x, y); });
-}
-
-bool same(const Descriptor& a, const Descriptor& b) {
-    return a.values == b.values && a.is_list == b.is_list && a.file == b.file && a.unit == b.unit && a.stale == b.stale;
-}
-
-}  // namespace
-
 bool same(const Attribute& a, const Attribute& b) {
     if (a.id != b.id || a.name != b.name || a.type != b.type) return false;
     if (a.type == AttributeType::semantic) return a.note == b.note && a.origin == b.origin;
-    return a.type == AttributeType::measure ? same(a.measure, b.measure) : same(a.descriptor, b.descriptor);
+    return a.type == AttributeType::measure ? a.measure == b.measure : a.descriptor == b.descriptor;
 }
 
 bool same_geometry(const Annotation& a, const Annotation& b) {
@@ -67,12 +50,15 @@ std::string words(const std::vector<int>& ids) {
 }
 
 std::string words(const Attribute& attribute) {
-    if (attribute.type == AttributeType::semantic) return words(attribute.name + ": " + attribute.note);
+    if (attribute.type == AttributeType::semantic)
+        return words(attribute.name + ": " + attribute.note +
+                     (attribute.origin.empty() ? "" : " (inferred: " + attribute.origin + ")"));
     const bool measured = attribute.type == AttributeType::measure;
     std::string text = attribute.name + ":";
     if (measured) {
-        text += " " + attribute.measure.tool;
+        text += " " + attribute.measure.tool + (attribute.measure.exact ? " (exact)" : "");
         if (attribute.measure.value) text += " " + digits(*attribute.measure.value);
+        if (attribute.measure.uncertainty) text += " +- " + digits(*attribute.measure.uncertainty);
     }
     for (std::size_t i = 0; !measured && i < attribute.descriptor.values.size() && i < 4; ++i)
         text += " " + digits(attribute.descriptor.values[i]);
@@ -83,7 +69,10 @@ std::string words(const Attribute& attribute) {
         text += " (pins";
         for (std::size_t i = 0; i < attribute.measure.points.size() && i < 4; ++i)
             text += " " + std::to_string(attribute.measure.points[i]);
-        text += attribute.measure.points.size() > 4 ? " ...)" : ")";
+        text += attribute.measure.points.size() > 4 ? " ..." : "";
+        if (!attribute.measure.repeats.empty())
+            text += ", picked " + std::to_string(attribute.measure.repeats.size() + 1) + " times";
+        text += ")";
     }
     return words(text + ((measured ? attribute.measure.stale : attribute.descriptor.stale) ? " (stale)" : ""));
 }

@@ -296,12 +296,13 @@ private:
             note(pointer, "a selector without places, left out");
             return false;
         }
-        if (const JsonValue* pins = find_member(places, "pins")) place_pins(*pins, attributes, pointer);
+        if (const JsonValue* pins = find_member(places, "pins"))
+            place_pins(*pins, find_member(places, "repeats"), attributes, pointer);
         return true;
     }
 
     /// Pins go to the nearest places of the surface; what they measured is stale until it is taken anew.
-    void place_pins(const JsonValue& pins, JsonValue& attributes, const std::string& pointer) {
+    void place_pins(const JsonValue& pins, const JsonValue* repeats, JsonValue& attributes, const std::string& pointer) {
         if (!attributes.IsArray()) return;
         for (auto& attribute : attributes.GetArray()) {
             if (!attribute.IsObject() || text_member(attribute, "type") != "measure") continue;
@@ -329,6 +330,13 @@ private:
             }
             if (inside) add_member(measure, "locations", std::move(locations), a());
             add_member(measure, "stale", JsonValue(true), a());
+            measure.RemoveMember("repeats");
+            const JsonValue* pickings = repeats == nullptr ? nullptr : find_member(*repeats, std::to_string(id->GetInt()));
+            if (pickings == nullptr) continue;
+            JsonValue again(rapidjson::kArrayType);
+            for (const auto& picked : pickings->GetArray())
+                if (const auto places = placed(picked, pinned, pointer)) again.PushBack(json_of(vertices(*places)), a());
+            if (!again.Empty()) add_member(measure, "repeats", std::move(again), a());
         }
     }
 

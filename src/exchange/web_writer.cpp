@@ -250,7 +250,7 @@ private:
                 else add_member(result, "parts", parts(annotation), a());
                 break;
         }
-        JsonValue pins(rapidjson::kObjectType);
+        JsonValue pins(rapidjson::kObjectType), repeats(rapidjson::kObjectType);
         for (const Attribute& attribute : annotation.attributes) {
             if (attribute.type != AttributeType::measure) continue;
             const Measure& measure = attribute.measure;
@@ -258,8 +258,17 @@ private:
             for (std::size_t i = 0; i < measure.points.size(); ++i)
                 list.PushBack(measure.locations.empty() ? place(measure.points[i]) : place(at(measure.locations[i])), a());
             add_member(pins, std::to_string(attribute.id), std::move(list), a());
+            if (measure.repeats.empty()) continue;
+            JsonValue pickings(rapidjson::kArrayType);
+            for (const auto& picked : measure.repeats) {
+                JsonValue again(rapidjson::kArrayType);
+                for (const Index vertex : picked) again.PushBack(place(vertex), a());
+                pickings.PushBack(again, a());
+            }
+            add_member(repeats, std::to_string(attribute.id), std::move(pickings), a());
         }
         if (pins.MemberCount() > 0) add_member(result, "pins", std::move(pins), a());
+        if (repeats.MemberCount() > 0) add_member(result, "repeats", std::move(repeats), a());
         return result;
     }
 

@@ -19,7 +19,7 @@ AnnotationSet edited(const AnnotationSet& set, const Mesh& mesh, std::uint64_t s
     for (int step = 0; step < 6; ++step) {
         const std::size_t at = random() % copy.annotations.size();
         Annotation& annotation = copy.annotations[at];
-        switch (random() % 9) {
+        switch (random() % 10) {
             case 0:
                 annotation.tag += "!";
                 break;
@@ -50,6 +50,19 @@ AnnotationSet edited(const AnnotationSet& set, const Mesh& mesh, std::uint64_t s
                 copy.annotations.insert(copy.annotations.begin() + static_cast<std::ptrdiff_t>(at), fresh);
                 break;
             }
+            case 8:
+                for (Attribute& attribute : annotation.attributes) {  // what else may differ, one at a time
+                    Measure& measure = attribute.measure;
+                    if (attribute.type == AttributeType::semantic) {
+                        attribute.origin += "rule";
+                    } else if (attribute.type == AttributeType::measure) {
+                        const auto what = random() % 3;
+                        if (what == 0) measure.uncertainty = measure.uncertainty.value_or(0) + 0.5;
+                        if (what == 1 && measure.tool == "tape") measure.exact = !measure.exact;
+                        if (what == 2) measure.repeats.push_back(measure.points);
+                    }
+                }
+                break;
             case 7:
                 std::swap(copy.annotations[at], copy.annotations[random() % copy.annotations.size()]);
                 break;
@@ -94,6 +107,27 @@ TEST(Difference, IsEmptyExactlyWhereFilesAgreeAndChangesSides) {
             EXPECT_EQ(there[i].only_after, back[i].only_before);
             EXPECT_EQ(there[i].kind == Difference::Kind::added, back[i].kind == Difference::Kind::removed);
         }
+    }
+}
+
+TEST(Merge, TakesUncertaintiesAndRepeatsOfOneSide) {
+    const Mesh mesh = spheres(3);
+    const AnnotationSet base = wild_set(mesh);
+    AnnotationSet changed = copy_of(base);
+    for (Annotation& annotation : changed.annotations)
+        for (Attribute& attribute : annotation.attributes)
+            if (attribute.type == AttributeType::measure)
+                attribute.measure.uncertainty = 3, attribute.measure.repeats.push_back(attribute.measure.points);
+    AnnotationSet other = copy_of(base);
+    other.annotations.back().tag = "another";
+    for (const bool swapped : {false, true}) {
+        const MergedAnnotations merged =
+            swapped ? merge_annotations(base, other, changed) : merge_annotations(base, changed, other);
+        EXPECT_TRUE(merged.conflicts.empty());
+        EXPECT_EQ(merged.set.annotations.back().tag, "another");
+        changed.annotations.back().tag = "another";
+        EXPECT_TRUE(differences(merged.set, changed).empty());
+        changed.annotations.back().tag = base.annotations.back().tag;
     }
 }
 

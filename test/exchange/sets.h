@@ -96,7 +96,13 @@ inline AnnotationSet wild_set(const Mesh& mesh) {
     measure.id = 5;
     measure.name = "=way";
     measure.measure = {"tape", {1, 2, 3}, {}, {}, {}, "", false};
+    measure.measure.repeats = {{2, 2, 3}, {1, 7, 3}};
+    measure.measure.uncertainty = 0.25;
+    measure.measure.exact = true;
     upper.attributes.push_back(measure);
+    Attribute inferred = semantic(9, "size", "small");
+    inferred.origin = "rule \"small\": height < 1, of <this>";
+    upper.attributes.push_back(inferred);
     Attribute descriptor;
     descriptor.id = 6;
     descriptor.name = "area";

@@ -120,6 +120,11 @@ TEST(WebAnnotation, TheSameShapeWithOtherIndicesGivesTheSameSelections) {
             if (before.attributes[k].type == AttributeType::measure && before.attributes[k].measure.locations.empty()) {
                 EXPECT_EQ(other.point(Vertex(after.attributes[k].measure.points[0])),
                           mesh.point(Vertex(before.attributes[k].measure.points[0])));
+                const auto &then = before.attributes[k].measure.repeats, &now = after.attributes[k].measure.repeats;
+                ASSERT_EQ(now.size(), then.size());
+                for (std::size_t n = 0; n < then.size(); ++n)
+                    for (std::size_t j = 0; j < then[n].size(); ++j)
+                        EXPECT_EQ(other.point(Vertex(now[n].at(j))), mesh.point(Vertex(then[n][j])));
             }
     }
 }

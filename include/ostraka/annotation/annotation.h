@@ -15,6 +15,7 @@ namespace ostraka {
 struct Location {
     Index face = no_index;
     std::array<double, 3> barycentric{1, 0, 0};  ///< weights of corners(mesh, face), summing to one
+    bool operator==(const Location&) const = default;
 };
 
 /// A measure with the pins that define it (Appendix B.1).
@@ -29,6 +30,7 @@ struct Measure {
     bool exact = false;  ///< a tape along the shortest curve over the faces ("geodesic": "exact") instead of along edges
     std::vector<std::vector<Index>> repeats = {};      ///< the pins picked again, once or more: as many each as `points`
     std::optional<double> uncertainty = std::nullopt;  ///< standard deviation of the value, in `unit`
+    bool operator==(const Measure&) const = default;
 };
 
 /// A quantity that is not a measure: area, curvature map, thickness ...
@@ -38,6 +40,7 @@ struct Descriptor {
     std::string file;      ///< a .npy array instead of values
     std::string unit;
     bool stale = false;
+    bool operator==(const Descriptor&) const = default;
 };
 
 enum class AttributeType { semantic, measure, descriptor };

@@ -6,9 +6,9 @@
 namespace ostraka {
 
 /// A row an attribute, a row an annotation without any; UTF-8, comma separated (RFC 4180). Columns: annotation, tag, type,
-/// colour, attribute, name, kind, value, unit, note, tool, points, direction, locations, file, stale. Lists stand in one cell,
-/// separated by blanks. Text that a spreadsheet would take for a formula gets an apostrophe in front, which reading takes off
-/// again.
+/// colour, attribute, name, kind, value, unit, note, tool, points, direction, locations, file, stale, geodesic, repeats,
+/// uncertainty, origin. Lists stand in one cell, separated by blanks, pins picked again by |. Text that a spreadsheet would take
+/// for a formula gets an apostrophe in front, which reading takes off again.
 std::string attribute_table(const AnnotationSet& set);
 
 /// True if the first row is that of an attribute table.
