@@ -170,7 +170,7 @@ struct Take {
         const MeshFile file = read_mesh(subject.mesh_file);
         AnnotationSet set = subject.read(session, file);
         Annotation& holder = annotation.empty() ? ensure_root(set, file.mesh) : subject.one(set, annotation);
-        for (const auto& place : coordinates) measure.points.push_back(nearest_vertex(file.mesh, place));
+        for (const auto& place : coordinates) measure.points.push_back(pin(session, file.mesh, place));
         if (measure.points.empty()) {
             const auto ends = extremes(file.mesh, holder, *measure.direction);
             measure.points.assign(ends.begin(), ends.end());
@@ -186,6 +186,22 @@ struct Take {
     }
 
 private:
+    /// The nearest vertex; a place far from it is a mistake, of the unit or of the position, say.
+    static Index pin(const Session& session, const Mesh& mesh, const std::array<double, 3>& place) {
+        const Index found = nearest_vertex(mesh, place);
+        const double moved = std::sqrt(CGAL::squared_distance(Point(place[0], place[1], place[2]), mesh.point(Vertex(found))));
+        const double diagonal = box_diagonal(mesh);
+        const std::string where = number(place[0], 6) + "," + number(place[1], 6) + "," + number(place[2], 6);
+        if (moved > 0.02 * diagonal)
+            fail_input("--at " + where,
+                       "the nearest vertex is " + number(moved, 4) + " away, farther than 2 % of the diagonal (" +
+                           number(0.02 * diagonal, 4) + ")",
+                       "give a place on the surface, in the unit of the mesh, or vertices with --points");
+        if (moved > 0.001 * diagonal)
+            session.note("the pin at " + where + " is vertex " + std::to_string(found) + ", " + number(moved, 3) + " away");
+        return found;
+    }
+
     void keep(Annotation& holder, const Measure& measure) const {
         Attribute attribute;
         attribute.name = name.empty() ? tool : name;

@@ -24,10 +24,13 @@ void FeatureFile::refuse_what_is_not_read() const {
                                      std::string(name.GetString()) != "EXT_structural_metadata"))
                 file.fail("/extensionsRequired", "asks for an extension that is not known here");
     if (const JsonValue* nodes = find_member(file.document(), "nodes"); nodes != nullptr && nodes->IsArray())
-        for (rapidjson::SizeType i = 0; i < nodes->Size(); ++i)
+        for (rapidjson::SizeType i = 0; i < nodes->Size(); ++i) {
+            const JsonValue* extras = find_member((*nodes)[i], "extras");
+            if (extras != nullptr && find_member(*extras, glb::display_only) != nullptr) continue;
             for (const char* name : {"matrix", "translation", "rotation", "scale"})
                 if (find_member((*nodes)[i], name) != nullptr)
                     file.fail("/nodes/" + std::to_string(i) + "/" + name, "transformations of nodes are not read");
+        }
 }
 
 const JsonValue* FeatureFile::extras() const {

@@ -7,6 +7,9 @@
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/core/error.h"
+#include "ostraka/vocabulary/text_match.h"
+
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -18,6 +21,7 @@ namespace ostraka {
 namespace {
 
 using namespace exchange;
+using Eigen::Vector3d;
 using glb::append;
 
 constexpr std::size_t exact_in_float = std::size_t{1} << 24;
@@ -67,7 +71,9 @@ public:
         add_member(ours, "ostraka", std::move(extras), a());
         add_member(mesh, "extras", std::move(ours), a());
         add_member(node, "mesh", JsonValue(0), a());
-        add_member(scene, "nodes", in_list(JsonValue(0)), a());
+        JsonValue nodes = in_list(std::move(node));
+        const bool turned = add_display_node(nodes);
+        add_member(scene, "nodes", in_list(JsonValue(turned ? 1 : 0)), a());
         add_member(surface_material, "metallicFactor", JsonValue(0), a());
         add_member(surface_material, "roughnessFactor", JsonValue(1), a());
         add_member(material, "pbrMetallicRoughness", std::move(surface_material), a());
@@ -75,7 +81,7 @@ public:
         Json& root = builder_.document();
         add_member(root, "scene", JsonValue(0), a());
         add_member(root, "scenes", in_list(std::move(scene)), a());
-        add_member(root, "nodes", in_list(std::move(node)), a());
+        add_member(root, "nodes", std::move(nodes), a());
         add_member(root, "meshes", in_list(std::move(mesh)), a());
         add_member(root, "materials", in_list(std::move(material)), a());
         JsonValue used(rapidjson::kArrayType);
@@ -171,6 +177,30 @@ private:
                     add(result, polyline[k], i);
                 }
         return result;
+    }
+
+    /// glTF's y points up and its unit is the metre: a node that shows the mesh so, above one that has its own coordinates.
+    bool add_display_node(JsonValue& nodes) {
+        const auto metres = converted(1, set_.unit, "m");
+        Vector3d up = Vector3d::UnitY();
+        if (set_.up) up = Vector3d((*set_.up)[0], (*set_.up)[1], (*set_.up)[2]).normalized();
+        const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(up, Vector3d::UnitY());
+        const bool turns = (up - Vector3d::UnitY()).norm() > 1e-12, scales = metres && *metres != 1;
+        if (!turns && !scales) return false;
+        JsonValue shown(rapidjson::kObjectType), extras(rapidjson::kObjectType);
+        add_member(shown, "name", "as glTF wants it: y up, in metres", a());
+        add_member(shown, "children", in_list(JsonValue(0)), a());
+        const auto numbers = [&](std::initializer_list<double> values) {
+            JsonValue list(rapidjson::kArrayType);
+            for (const double value : values) list.PushBack(value, a());
+            return list;
+        };
+        if (turns) add_member(shown, "rotation", numbers({turn.x(), turn.y(), turn.z(), turn.w()}), a());
+        if (scales) add_member(shown, "scale", numbers({*metres, *metres, *metres}), a());
+        add_member(extras, glb::display_only, JsonValue(true), a());
+        add_member(shown, "extras", std::move(extras), a());
+        nodes.PushBack(shown, a());
+        return true;
     }
 
     Corners points() {

@@ -6,6 +6,7 @@
 #include "sets.h"
 
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <cstring>
 #include <map>
@@ -130,6 +131,25 @@ TEST(FeatureGlb, KeepsTheRulesOfTheFormat) {
         }
 }
 
+TEST(FeatureGlb, IsShownUprightInMetres) {
+    const Mesh mesh = spheres(3);
+    AnnotationSet set = wild_set(mesh);
+    const Json json = json_of(written(mesh, set));
+    const JsonValue& node = json["nodes"][json["scenes"][0]["nodes"][0].GetUint()];
+    EXPECT_EQ(node["children"][0].GetInt(), 0);
+    EXPECT_NEAR(node["scale"][0].GetDouble(), 0.001, 1e-15);
+    // The quaternion takes z, up in the set, to y.
+    const auto& q = node["rotation"];
+    const Eigen::Quaterniond turn(q[3].GetDouble(), q[0].GetDouble(), q[1].GetDouble(), q[2].GetDouble());
+    EXPECT_LT((turn * Eigen::Vector3d::UnitZ() - Eigen::Vector3d::UnitY()).norm(), 1e-12);
+    set.up.reset();
+    set.unit = "";
+    EXPECT_EQ(json_of(written(mesh, set))["nodes"].Size(), 1U);
+    set.up = {0, -1, 0};  // upside down
+    const Json turned = json_of(written(mesh, set));
+    EXPECT_NEAR(std::abs(turned["nodes"][1]["rotation"][3].GetDouble()), 0, 1e-12);
+}
+
 TEST(FeatureGlb, TheSmallestRegionLiesInTheFirstSet) {
     const Mesh mesh = grid(4);
     AnnotationSet set;
@@ -205,7 +225,7 @@ TEST(FeatureGlb, BadFilesAreRefusedWithTheirPlace) {
         const std::string text = message(with(glb, from, to), mesh);
         EXPECT_NE(text.find(said), std::string::npos) << to << ": " << text;
     };
-    expect(R"("nodes":[{"mesh":0}])", R"("nodes":[{"mesh":0,"scale":[2,2,2]}])", "/nodes/0/scale");
+    expect(R"("nodes":[{"mesh":0})", R"("nodes":[{"mesh":0,"scale":[2,2,2]})", "/nodes/0/scale");
     expect(R"("type":"VEC3","min")", R"("type":"VEC2","min")", "/accessors/0/type");
     expect(R"("componentType":5126)", R"("componentType":5199)", "/accessors/0/componentType");
     expect(R"("bufferView":0)", R"("bufferView":4000)", "bufferViews");
