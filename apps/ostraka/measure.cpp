@@ -3,6 +3,7 @@
 #include "number_lists.h"
 
 #include "ostraka/annotation/annotation_file.h"
+#include "ostraka/geom/surface_search.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/measure/descriptors.h"
 #include "ostraka/measure/measure.h"
@@ -186,17 +187,20 @@ struct Take {
     }
 
 private:
-    /// The nearest vertex; a place far from it is a mistake, of the unit or of the position, say.
+    /// The nearest vertex; a place far from the surface is a mistake, of the unit or of the position, say.
     static Index pin(const Session& session, const Mesh& mesh, const std::array<double, 3>& place) {
         const Index found = nearest_vertex(mesh, place);
-        const double moved = std::sqrt(CGAL::squared_distance(Point(place[0], place[1], place[2]), mesh.point(Vertex(found))));
-        const double diagonal = box_diagonal(mesh);
+        const Point here(place[0], place[1], place[2]);
+        const double moved = std::sqrt(CGAL::squared_distance(here, mesh.point(Vertex(found)))), diagonal = box_diagonal(mesh);
         const std::string where = number(place[0], 6) + "," + number(place[1], 6) + "," + number(place[2], 6);
-        if (moved > 0.02 * diagonal)
-            fail_input("--at " + where,
-                       "the nearest vertex is " + number(moved, 4) + " away, farther than 2 % of the diagonal (" +
-                           number(0.02 * diagonal, 4) + ")",
-                       "give a place on the surface, in the unit of the mesh, or vertices with --points");
+        if (moved > 0.02 * diagonal) {
+            const double away = SurfaceSearch(mesh).closest(here).distance;
+            if (away > 0.02 * diagonal)
+                fail_input("--at " + where,
+                           "the surface is " + number(away, 4) + " away, farther than 2 % of the diagonal (" +
+                               number(0.02 * diagonal, 4) + ")",
+                           "give a place on the surface, in the unit of the mesh, or vertices with --points");
+        }
         if (moved > 0.001 * diagonal)
             session.note("the pin at " + where + " is vertex " + std::to_string(found) + ", " + number(moved, 3) + " away");
         return found;

@@ -77,6 +77,9 @@ TEST_F(MeasureCommand, TakesStoresAndRefreshes) {
     EXPECT_EQ(set.find(7)->attributes[0].measure.value, way.value);
     EXPECT_EQ(set.find(7)->attributes[0].measure.uncertainty, way.uncertainty);
     // By coordinates; along a direction, the whole annotation.
+    result = run("take " + cube.string() + " --tool ruler --at 0.1,0,0 --at 5,0.9,0");
+    EXPECT_EQ(result.code, 1);
+    EXPECT_NE(result.err.find("the surface is 4 away"), std::string::npos) << result.err;
     result = run("take " + cube.string() + " --tool ruler --at 0.1,0,0 --at 1,0.9,0 --json");
     EXPECT_DOUBLE_EQ(parse_json(result.out, "report")["result"]["value"].GetDouble(), std::sqrt(2));
     result = run("take " + cube.string() + " --tool bounding --direction 0,2,0 --json");
