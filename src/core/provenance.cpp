@@ -1,5 +1,7 @@
 #include "ostraka/core/provenance.h"
 
+#include <algorithm>
+
 namespace ostraka {
 
 std::string version() { return OSTRAKA_VERSION; }
@@ -11,7 +13,14 @@ JsonValue Provenance::to_json(JsonAllocator& allocator) const {
     add_member(result, "tool", "ostraka " + version(), allocator);
     add_member(result, "command", command, allocator);
     JsonValue option_values(rapidjson::kObjectType);
-    for (const auto& [name, value] : options) add_member(option_values, name, value, allocator);
+    // An option that was given several times is one member: no name stands twice in an object.
+    std::vector<std::pair<std::string, std::string>> members;
+    for (const auto& [name, value] : options) {
+        const auto known = std::find_if(members.begin(), members.end(), [&](const auto& member) { return member.first == name; });
+        if (known == members.end()) members.emplace_back(name, value);
+        else known->second += "; " + value;
+    }
+    for (const auto& [name, value] : members) add_member(option_values, name, value, allocator);
     add_member(result, "options", std::move(option_values), allocator);
     JsonValue input_values(rapidjson::kArrayType);
     for (const auto& [name, hash] : inputs) {
