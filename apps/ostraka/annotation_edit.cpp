@@ -1,10 +1,12 @@
 // ostraka annotation edit
 #include "command.h"
+#include "number_lists.h"
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/exchange/difference.h"
 #include "ostraka/exchange/edit.h"
 #include "ostraka/io/mesh_file.h"
+#include "ostraka/measure/measure.h"
 
 #include <algorithm>
 #include <charconv>
@@ -54,17 +56,45 @@ std::array<int, 3> colour_of(const std::string& text) {
     return colour;
 }
 
+/// A unit made of one of length ("mm^2", "1/mm") in terms of another.
+std::string unit_after(const std::string& unit, const std::string& old, const std::string& fresh) {
+    if (old.empty() || fresh.empty()) return unit == old ? fresh : unit;
+    for (const std::string before : {"", "1/"})
+        if (unit == before + old || unit.starts_with(before + old + '^'))
+            return before + fresh + unit.substr((before + old).size());
+    return unit;
+}
+
+/// Calls the unit of length another; no number changes. The units of values taken of the coordinates follow.
+void rename_unit(const Mesh& mesh, AnnotationSet& set, const std::string& fresh) {
+    const std::string old = set.unit;
+    set.unit = fresh;
+    for (Annotation& annotation : set.annotations)
+        for (Attribute& attribute : annotation.attributes) {
+            if (attribute.type == AttributeType::measure) attribute.measure.unit = unit_after(attribute.measure.unit, old, fresh);
+            if (attribute.type != AttributeType::descriptor) continue;
+            std::string& unit = attribute.descriptor.unit;
+            const bool computed = (old.empty() ? unit.empty() : unit == descriptor_unit(attribute.name, old)) &&
+                                  evaluate(mesh, annotation, attribute.name);
+            unit = computed ? descriptor_unit(attribute.name, fresh) : old.empty() ? unit : unit_after(unit, old, fresh);
+        }
+}
+
 struct Edit {
-    std::string mesh, annotations, output, list, annotation, tag, colour, note, id;
+    std::string mesh, annotations, output, list, annotation, tag, colour, note, id, object_class, unit, up;
     std::vector<std::string> attributes, remove_attributes, merge;
     bool duplicate = false, split = false, remove = false;
-    CLI::Option *tag_given = nullptr, *note_given = nullptr;
+    CLI::Option *tag_given = nullptr, *note_given = nullptr, *class_given = nullptr, *unit_given = nullptr, *up_given = nullptr;
     ReadAnnotationsOptions reading;
 
     int run(const Session& session) const {
-        if (list.empty() == annotation.empty())
-            fail_usage("one annotation or a list of edits",
-                       "name an annotation with --annotation, or give --edits FILE, not both");
+        const bool of_set = class_given->count() + unit_given->count() + up_given->count() > 0;
+        if (list.empty() == annotation.empty() && !(of_set && list.empty()))
+            fail_usage(
+                "one annotation or a list of edits",
+                "name an annotation with --annotation, or give --edits FILE, not both; or --set-class, --set-unit, --set-up");
+        std::optional<std::array<double, 3>> direction;
+        if (!up.empty()) direction = direction_of(up, "--set-up");
         std::vector<Path> inputs{mesh, annotations};
         if (!list.empty()) inputs.emplace_back(list);
         check_outputs(inputs, {output});
@@ -78,8 +108,19 @@ struct Edit {
         before.unit = set.unit;
         before.up = set.up;
         before.annotations = set.annotations;
-        const std::vector<AnnotationEdit> edits = list.empty() ? std::vector{by_flags(provenance, set)} : read_edits(list);
-        const auto notes = edit_annotations(file.mesh, set, edits, list.empty() ? "flags" : list);
+        std::vector<AnnotationEdit> edits;
+        if (!list.empty()) edits = read_edits(list);
+        else if (!annotation.empty()) edits = {by_flags(provenance, set)};
+        auto notes = edit_annotations(file.mesh, set, edits, list.empty() ? "flags" : list);
+        for (const auto& [name, option, value] :
+             {std::tuple{"set-class", class_given, &object_class}, {"set-unit", unit_given, &unit}, {"set-up", up_given, &up}})
+            if (option->count() > 0) provenance.options.emplace_back(name, *value);
+        if (class_given->count() > 0) set.object_class = object_class;
+        if (up_given->count() > 0) set.up = direction;
+        if (unit_given->count() > 0 && unit != set.unit) {
+            rename_unit(file.mesh, set, unit);
+            notes.push_back("the numbers stay as they are: the unit is that of the mesh's coordinates");
+        }
         write_annotations(output, set, file.mesh, mesh, provenance);
         for (const auto& text : notes) session.note("note: " + text);
         print(session, provenance, set, differences(before, set), notes);
@@ -154,8 +195,10 @@ private:
 
 void add_annotation_edit(CLI::App& annotation, Session& session) {
     const auto edit = std::make_shared<Edit>();
-    CLI::App* command = session.add(annotation, "edit", "change tags, colours, ids, attributes; remove, duplicate, merge, split",
-                                    [&session, edit] { return edit->run(session); });
+    CLI::App* command =
+        session.add(annotation, "edit",
+                    "change tags, colours, ids, attributes, the file's class, unit and up; remove, duplicate, merge, split",
+                    [&session, edit] { return edit->run(session); });
     command->add_option("mesh", edit->mesh, "mesh file")->required();
     command->add_option("annotations", edit->annotations, "its annotations (.ant.json)")->required();
     command->add_option("output", edit->output, "annotations to write")->required();
@@ -169,6 +212,12 @@ void add_annotation_edit(CLI::App& annotation, Session& session) {
     command->add_option("--id", edit->id, "new id");
     command->add_option("--remove-attribute", edit->remove_attributes, "id or name of an attribute to remove")->expected(1);
     command->add_option("--attribute", edit->attributes, "NAME=TEXT: a semantic attribute, new or changed")->expected(1);
+    edit->class_given =
+        command->add_option("--set-class", edit->object_class, "class of the object, of the whole file; '' for none");
+    edit->unit_given =
+        command->add_option("--set-unit", edit->unit,
+                            "unit of the coordinates, of the whole file (any text, such as mm); no number changes; '' for none");
+    edit->up_given = command->add_option("--set-up", edit->up, "x,y,z: upward direction, of the whole file; '' for none");
     command->add_flag("--duplicate", edit->duplicate, "add a copy");
     command->add_flag("--split", edit->split, "make each patch, poly-line or point an annotation of its own");
     command->add_flag("--remove", edit->remove, "remove the annotation");

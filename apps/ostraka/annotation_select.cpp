@@ -1,4 +1,5 @@
 // ostraka annotation select: one step of a recipe, given by flags.
+#include "number_lists.h"
 #include "step_flags.h"
 
 #include "ostraka/annotation/annotation_file.h"
@@ -22,12 +23,25 @@ struct Select {
     int run(const Session& session) const;
 
 private:
-    Json recipe_before(bool& fresh) const;
+    [[nodiscard]] Json recipe_before(bool& fresh, bool new_file) const;
+    void add_head(Json& recipe, bool new_file) const;
     void print(const Session& session, const Provenance& provenance, const Mesh& on, const AnnotationSet& set, int id) const;
 };
 
+/// What the flags say of the object, where the recipe does not. With an older file --up turns the camera only.
+void Select::add_head(Json& recipe, bool new_file) const {
+    auto& a = recipe.GetAllocator();
+    const auto missing = [&](const char* name) { return find_member(recipe, name) == nullptr; };
+    if (!object_class.empty() && missing("class")) add_member(recipe, "class", object_class, a);
+    if (!unit.empty() && missing("unit")) add_member(recipe, "unit", unit, a);
+    if (!new_file || step.up.empty() || !missing("up")) return;
+    JsonValue list(rapidjson::kArrayType);
+    for (const double x : direction_of(step.up, "--up")) list.PushBack(x, a);
+    add_member(recipe, "up", std::move(list), a);
+}
+
 /// The recipe to add to; a fresh one with the head as the flags say.
-Json Select::recipe_before(bool& fresh) const {
+Json Select::recipe_before(bool& fresh, bool new_file) const {
     fresh = record.empty() || !std::filesystem::exists(record);
     if (!fresh) {
         Json recipe = read_json(record);
@@ -38,8 +52,7 @@ Json Select::recipe_before(bool& fresh) const {
     auto& a = recipe.GetAllocator();
     add_member(recipe, "format", "ostraka-recipe", a);
     add_member(recipe, "version", JsonValue(1), a);
-    if (!object_class.empty()) add_member(recipe, "class", object_class, a);
-    if (!unit.empty()) add_member(recipe, "unit", unit, a);
+    add_head(recipe, new_file);
     add_member(recipe, "annotations", JsonValue(rapidjson::kArrayType), a);
     return recipe;
 }
@@ -71,12 +84,13 @@ int Select::run(const Session& session) const {
     if (exists) start.annotations = read_annotations(annotations, file.mesh, options);
 
     bool fresh = false;
-    Json recipe = recipe_before(fresh);
+    Json recipe = recipe_before(fresh, !exists);
     const bool replayable = !record.empty() && (fresh ? !exists : exists && stems_from(start.annotations, read_file(record)));
     // This step alone, with the head of the recipe, on what there is.
     Json now(rapidjson::kObjectType);
     now.CopyFrom(recipe, now.GetAllocator());
     now["annotations"].Clear();
+    if (!exists) add_head(now, true);
     const auto append = [&](const JsonValue& made) {
         for (Json* to : {&recipe, &now}) {
             JsonValue copy;

@@ -3,7 +3,9 @@
 
 #include "command.h"
 
+#include <array>
 #include <charconv>
+#include <cmath>
 
 namespace ostraka::app {
 
@@ -22,6 +24,17 @@ std::vector<Number> numbers_of(const std::string& text, const std::string& optio
     }
     if (numbers.empty()) fail_usage(option + " is empty", "give numbers with commas between them");
     return numbers;
+}
+
+/// The direction "0,0,1"; Error (usage) names the option.
+inline std::array<double, 3> direction_of(const std::string& text, const std::string& option) {
+    const auto numbers = numbers_of<double>(text, option);
+    const auto fails = [&](const char* remedy) { fail_usage(option + " is '" + printable(text, 60) + "'", remedy); };
+    if (numbers.size() != 3) fails("give three numbers, like 0,0,1");
+    for (const double x : numbers)
+        if (!std::isfinite(x)) fails("give finite numbers");
+    if (numbers[0] == 0 && numbers[1] == 0 && numbers[2] == 0) fails("give a vector that is not zero");
+    return {numbers[0], numbers[1], numbers[2]};
 }
 
 }  // namespace ostraka::app

@@ -335,7 +335,9 @@ void StepFlags::add_to(CLI::App& command) {
                     "one of the recipe's by its name, or as JSON ('render --json' reports it), instead of the following")
         ->group(camera);
     command.add_option("--view", view, "front, back, left, right, top, bottom, iso or azimuth,elevation")->group(camera);
-    command.add_option("--up", up, "three numbers; else as the annotations say, else z")->group(camera);
+    command
+        .add_option("--up", up, "x,y,z: upward direction, kept where a new file is made; else as the annotations say, else 0,0,1")
+        ->group(camera);
     command.add_option("--projection", projection, "orthographic or perspective")
         ->check(CLI::IsMember({"orthographic", "perspective"}))
         ->group(camera);

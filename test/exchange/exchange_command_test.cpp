@@ -110,6 +110,47 @@ TEST(ExchangeCommand, EditByFlagsAndByList) {
     EXPECT_NE(list.out.find("added"), std::string::npos) << list.out;
 }
 
+TEST(ExchangeCommand, EditOfClassUnitAndUp) {
+    const Folder folder;
+    AnnotationSet set;
+    set.unit = "mm";
+    Annotation& cap = set.annotations.emplace_back();
+    cap.tag = "cap";
+    cap.faces = {0, 1, 2};
+    const auto descriptor = [&](int id, const char* name, const char* unit) {
+        Attribute attribute;
+        attribute.id = id;
+        attribute.name = name;
+        attribute.type = AttributeType::descriptor;
+        attribute.descriptor = {{2}, false, "", unit, false};
+        cap.attributes.push_back(attribute);
+    };
+    descriptor(0, "area", "mm^2");
+    descriptor(1, "bend", "1/mm");
+    descriptor(2, "weight", "g");
+    folder.write(set, "m.ant.json");
+    const auto edited = folder.run("edit", {"m.ant.json", "n.ant.json"}, "--set-class jar --set-unit cm --set-up=0,0,-1");
+    ASSERT_EQ(edited.code, 0) << edited.err;
+    EXPECT_NE(edited.out.find("jar"), std::string::npos) << edited.out;
+    const AnnotationSet after = folder.read("n.ant.json");
+    EXPECT_EQ(after.object_class, "jar");
+    EXPECT_EQ(after.unit, "cm");
+    EXPECT_EQ(*after.up, (std::array<double, 3>{0, 0, -1}));
+    const auto& attributes = after.annotations.at(0).attributes;
+    EXPECT_EQ(attributes.at(0).descriptor.unit, "cm^2");
+    EXPECT_EQ(attributes.at(1).descriptor.unit, "1/cm");
+    EXPECT_EQ(attributes.at(2).descriptor.unit, "g");
+    EXPECT_EQ(attributes.at(0).descriptor.values.at(0), 2) << "no number changes";
+    ASSERT_EQ(folder.run("edit", {"n.ant.json", "o.ant.json"}, "--set-unit '' --annotation cap --tag lid").code, 0);
+    const AnnotationSet bare = folder.read("o.ant.json");
+    EXPECT_EQ(bare.unit, "");
+    EXPECT_EQ(bare.annotations.at(0).tag, "lid");
+    EXPECT_EQ(bare.annotations.at(0).attributes.at(0).descriptor.unit, "");
+    EXPECT_EQ(folder.run("edit", {"n.ant.json", "p.ant.json"}, "--set-up=0,0,0").code, 2);
+    EXPECT_EQ(folder.run("edit", {"n.ant.json", "p.ant.json"}, "--set-up=0,0").code, 2);
+    EXPECT_FALSE(std::filesystem::exists(folder / "p.ant.json"));
+}
+
 TEST(ExchangeCommand, DiffAndMerge) {
     const Folder folder;
     EXPECT_EQ(folder.run("diff", {"a.ant.json", "a.ant.json"}).code, 0);

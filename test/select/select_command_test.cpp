@@ -57,6 +57,43 @@ TEST(SelectCommand, StepsAreRecordedAndReplayedToTheByte) {
     EXPECT_EQ(run_command("annotation check " + folder.at("ball.ply") + " " + folder.at("a.ant.json")).code, 0);
 }
 
+TEST(SelectCommand, ANewFileKeepsClassUnitAndUp) {
+    const Folder folder;
+    const std::string record = " --record " + folder.at("r.recipe.json");
+    const auto first =
+        folder.select("--class ball --unit mm --up 0,1,0 --tag top --view top --rectangle 500,350,700,550" + record);
+    ASSERT_EQ(first.code, 0) << first.err;
+    const Mesh mesh = read_mesh(folder / "ball.ply").mesh;
+    const AnnotationSet made = read_annotations(folder / "a.ant.json", mesh);
+    EXPECT_EQ(made.object_class, "ball");
+    EXPECT_EQ(made.unit, "mm");
+    ASSERT_TRUE(made.up);
+    EXPECT_EQ(*made.up, (std::array<double, 3>{0, 1, 0}));
+    // The next step looks down the same direction without being told, and another --up turns its camera only.
+    ASSERT_EQ(folder.select("--tag again --view top --rectangle 500,350,700,550" + record).code, 0);
+    ASSERT_EQ(folder.select("--tag side --view top --up 0,0,1 --rectangle 500,350,700,550" + record).code, 0);
+    const AnnotationSet set = read_annotations(folder / "a.ant.json", mesh);
+    EXPECT_EQ(*set.up, *made.up);
+    EXPECT_EQ(set.find(2)->faces, set.find(1)->faces);
+    EXPECT_NE(set.find(3)->faces, set.find(1)->faces);
+    ASSERT_EQ(run_command("annotation apply " + folder.at("ball.ply") + " " + folder.at("r.recipe.json") + " " +
+                          folder.at("replayed.ant.json"))
+                  .code,
+              0);
+    EXPECT_EQ(read_file(folder / "replayed.ant.json"), read_file(folder / "a.ant.json"));
+    // A recipe that was there already does not hide what is said of a new file.
+    ASSERT_EQ(folder.select("--tag cap --sphere 0,0,1,0.5 --record " + folder.at("s.recipe.json"), "b.ant.json").code, 0);
+    ASSERT_EQ(folder
+                  .select("--tag cap --unit m --up 1,0,0 --sphere 0,0,1,0.5 --id 5 --record " + folder.at("s.recipe.json"),
+                          "c.ant.json")
+                  .code,
+              0);
+    EXPECT_EQ(read_annotations(folder / "c.ant.json", mesh).unit, "m");
+    EXPECT_EQ(*read_annotations(folder / "c.ant.json", mesh).up, (std::array<double, 3>{1, 0, 0}));
+    EXPECT_EQ(folder.select("--tag cap --up 0,0,0 --all", "d.ant.json").code, 2);
+    EXPECT_FALSE(std::filesystem::exists(folder / "d.ant.json"));
+}
+
 TEST(SelectCommand, EditsBegunWithoutARecipeReplayOnWhatWasThere) {
     const Folder folder;
     ASSERT_EQ(folder.select("--tag cap --sphere 0,0,1,0.5").code, 0);
