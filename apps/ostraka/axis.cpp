@@ -1,6 +1,7 @@
 // ostraka axis
 #include "ostraka/axis/axis.h"
 
+#include "annotation_names.h"
 #include "command.h"
 
 #include "ostraka/annotation/annotation_file.h"
@@ -40,14 +41,14 @@ std::string obj_of(const Axis& axis) {
 
 struct AxisCommand {
     std::string mesh, annotations, output;
-    std::vector<int> ids;
+    std::vector<std::string> names;
     AxisOptions options;
     ReadAnnotationsOptions reading;
 
     int run(const Session& session) const {
-        if (annotations.empty() != ids.empty())
-            fail_usage(ids.empty() ? "no annotation is named" : "there are no annotations",
-                       "give an annotation file and --annotation ID, or neither for the whole mesh");
+        if (annotations.empty() != names.empty())
+            fail_usage(names.empty() ? "no annotation is named" : "there are no annotations",
+                       "give an annotation file and --annotation ID or TAG, or neither for the whole mesh");
         if (!output.empty() && extension(output) != ".json" && extension(output) != ".obj")
             fail_usage("'" + output + "' is not a file of axes", "end its name in .json or .obj");
         std::vector<Path> inputs{mesh};
@@ -55,7 +56,7 @@ struct AxisCommand {
         check_outputs(inputs, output.empty() ? std::vector<Path>() : std::vector<Path>{output});
         Provenance provenance{"axis", list_options(options), {}};
         for (const Path& file : inputs) provenance.add_input(file);
-        for (const int id : ids) provenance.options.emplace_back("annotation", std::to_string(id));
+        for (const auto& name : names) provenance.options.emplace_back("annotation", name);
         const MeshFile file = read_mesh(mesh);
         for (const auto& note : file.notes) session.note("note: " + note);
         std::string unit;
@@ -81,10 +82,8 @@ private:
         const AnnotationSet set = read_annotations(annotations, whole, reading);
         unit = set.unit;
         std::vector<Point> rim;
-        for (const int id : ids) {
-            const Annotation* annotation = set.find(id);
-            if (annotation == nullptr)
-                fail_input(annotations, "has no annotation " + std::to_string(id), "see 'ostraka annotation list'");
+        for (const auto& name : names) {
+            const Annotation* annotation = &find_annotation(set, name, annotations);
             if (annotation->type == AnnotationType::region)
                 faces.insert(faces.end(), annotation->faces.begin(), annotation->faces.end());
             else
@@ -172,7 +171,8 @@ void add_axis(CLI::App& tool, Session& session) {
                                     [&session, axis] { return axis->run(session); });
     command->add_option("mesh", axis->mesh, "mesh file")->required();
     command->add_option("annotations", axis->annotations, "its annotations (.ant.json)");
-    command->add_option("--annotation", axis->ids, "id of the part; more than one: all together; a line or points: its circle");
+    command->add_option("--annotation", axis->names,
+                        "id or tag of the part; more than one: all together; a line or points: its circle");
     command->add_option("--output", axis->output, "write the axis as poly-lines (.json, .obj)");
     add_flags(command, axis->options);
     add_flags(command, axis->reading);

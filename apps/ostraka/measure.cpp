@@ -1,4 +1,5 @@
 // ostraka measure take | describe | refresh
+#include "annotation_names.h"
 #include "command.h"
 #include "number_lists.h"
 
@@ -10,7 +11,6 @@
 #include "ostraka/render/values.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <iostream>
 #include <memory>
@@ -82,22 +82,8 @@ struct Subject {
 
     /// By id, or by tag if exactly one annotation has it.
     [[nodiscard]] Annotation& one(AnnotationSet& set, const std::string& name) const {
-        int id = 0;
-        const auto [end, code] = std::from_chars(name.data(), name.data() + name.size(), id);
-        if (code == std::errc() && end == name.data() + name.size())
-            if (Annotation* found = set.find(id)) return *found;
-        std::vector<Annotation*> tagged;
-        for (Annotation& annotation : set.annotations)
-            if (annotation.tag == name) tagged.push_back(&annotation);
-        const std::string where = annotations_file.empty() ? mesh_file : annotations_file;
-        if (tagged.empty())
-            throw Error(ErrorKind::input, where, "has no annotation '" + printable(name, 60) + "'",
-                        "give the id or the tag of one; 'ostraka annotation list' shows them");
-        if (tagged.size() > 1)
-            throw Error(ErrorKind::input, where,
-                        "has " + std::to_string(tagged.size()) + " annotations tagged '" + printable(name, 60) + "'",
-                        "give the id of one");
-        return *tagged.front();
+        const std::string& where = annotations_file.empty() ? mesh_file : annotations_file;
+        return *set.find(find_annotation(set, name, where).id);
     }
 
     std::vector<Annotation*> selected(AnnotationSet& set) const {

@@ -1,7 +1,9 @@
-// ostraka relation extract | add | check | export
+// ostraka relation extract | add | remove | list | check | export
+#include "annotation_names.h"
 #include "command.h"
 
 #include "ostraka/annotation/annotation_file.h"
+#include "ostraka/core/mesh.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/relation/geometric.h"
 #include "ostraka/relation/topology.h"
@@ -57,6 +59,14 @@ std::string members_of(const AnnotationSet& set, const Relationship& relationshi
     return text;
 }
 
+/// The type, of "equal attributes" with the attribute, of constraints with the weight.
+std::string type_of(const Relationship& relationship) {
+    std::string text = relationship.type;
+    if (!relationship.parameters.attribute.empty()) text += ": " + relationship.parameters.attribute;
+    if (relationship.is_constraint) text += " (constraint, weight " + number(relationship.weight) + ")";
+    return text;
+}
+
 std::string measured(const RelationParameters& parameters) {
     std::string text;
     for (const auto& deviation : parameters.deviations) {
@@ -68,8 +78,8 @@ std::string measured(const RelationParameters& parameters) {
     return text;
 }
 
-void print_graph(const Session& session, const Provenance& provenance, const AnnotationSet& set, const RelationGraph& graph,
-                 const ContainmentOrder* order) {
+void print_relationships(const Session& session, const Provenance& provenance, const AnnotationSet& set,
+                         const std::vector<Relationship>& relationships, const ContainmentOrder* order) {
     Json document(rapidjson::kObjectType);
     auto& allocator = document.GetAllocator();
     JsonValue result(rapidjson::kObjectType), tree(rapidjson::kArrayType), list(rapidjson::kArrayType);
@@ -90,10 +100,10 @@ void print_graph(const Session& session, const Provenance& provenance, const Ann
         add_member(result, "tree", std::move(tree), allocator);
     }
     std::vector<std::vector<std::string>> rows;
-    for (const auto& relationship : graph.relationships) {
+    for (const auto& relationship : relationships) {
         list.PushBack(relationship_to_json(relationship, allocator), allocator);
-        rows.push_back({std::to_string(relationship.id), relationship.type + (relationship.is_constraint ? " !" : ""),
-                        relationship.origin, members_of(set, relationship), measured(relationship.parameters)});
+        rows.push_back({std::to_string(relationship.id), type_of(relationship), relationship.origin,
+                        members_of(set, relationship), measured(relationship.parameters)});
     }
     add_member(result, "relationships", std::move(list), allocator);
     if (session.json) session.print_report(provenance, document, result);
@@ -124,27 +134,37 @@ struct Extract {
         const Mesh mesh = inputs.read(session, set, old);
         for (auto& relationship : old.relationships)
             if (relationship.origin != "extracted") graph.relationships.push_back(std::move(relationship));
+        RelationGraph stated;
+        stated.relationships = graph.relationships;
         const Topology found = in_file(inputs.annotations, [&] { return topology(mesh, set); });
         for (auto& relationship : relationships_of(found, set, free_id(graph)))
             if (wanted.empty() || std::find(wanted.begin(), wanted.end(), relationship.type) != wanted.end())
-                add(session, graph, std::move(relationship));
+                add(session, stated, graph, std::move(relationship));
+        if (!set.up) note_missing_up(session, wanted);
         RelationMeter meter(mesh, set, tolerances);
-        for (auto& relationship : meter.extract(wanted, free_id(graph))) add(session, graph, std::move(relationship));
+        for (auto& relationship : meter.extract(wanted, free_id(graph))) add(session, stated, graph, std::move(relationship));
         write_graph(output, graph, set, provenance);
-        print_graph(session, provenance, set, graph, &found.order);
+        print_relationships(session, provenance, set, graph.relationships, &found.order);
         return done;
     }
 
 private:
+    static void note_missing_up(const Session& session, const std::vector<std::string>& wanted) {
+        std::string left_out;
+        for (const char* type : {"same level", "horizontal support", "side contact"})
+            if (wanted.empty() || std::find(wanted.begin(), wanted.end(), type) != wanted.end())
+                left_out += (left_out.empty() ? "" : ", ") + std::string(type);
+        if (!left_out.empty())
+            session.note("note: not looked for, as the annotations do not say what is up: " + left_out +
+                         " ('ostraka annotation edit --set-up x,y,z' says it)");
+    }
+
     /// What is stated already is not said again.
-    static void add(const Session& session, RelationGraph& graph, Relationship relationship) {
-        for (const auto& known : graph.relationships)
-            if (known.origin != "extracted" && known.type == relationship.type && !known.is_constraint &&
-                known.annotations == relationship.annotations &&
-                known.parameters.attribute == relationship.parameters.attribute) {
-                session.note("note: relationship " + std::to_string(known.id) + " (" + known.type + ") is stated already");
-                return;
-            }
+    static void add(const Session& session, const RelationGraph& stated, RelationGraph& graph, Relationship relationship) {
+        if (const Relationship* known = find_twin(stated, relationship)) {
+            session.note("note: relationship " + std::to_string(known->id) + " (" + known->type + ") is stated already");
+            return;
+        }
         relationship.id = free_id(graph);
         graph.relationships.push_back(std::move(relationship));
     }
@@ -163,45 +183,43 @@ struct Add {
         provenance.options.emplace_back("type", type);
         AnnotationSet set;
         RelationGraph graph;
-        (void)inputs.read(session, set, graph);
-        Relationship relationship = make(set);
+        const Mesh on = inputs.read(session, set, graph);
+        Relationship relationship = make(on, set);
         relationship.id = free_id(graph);
-        graph.relationships.push_back(std::move(relationship));
+        check_relationship(relationship, set, "the relationship to add");
+        if (const Relationship* twin = find_twin(graph, relationship)) {
+            const std::string id = std::to_string(twin->id);
+            if (twin->origin != "extracted")
+                fail_input(inputs.graph, "relationship " + id + " says the same",
+                           "remove it first: 'ostraka relation remove ... --id " + id + "'");
+            relationship.id = twin->id;
+            session.note("note: relationship " + id + " was extracted and is stated now");
+            graph.relationships[static_cast<std::size_t>(twin - graph.relationships.data())] = relationship;
+        } else {
+            graph.relationships.push_back(relationship);
+        }
         write_graph(output, graph, set, provenance);
-        print_graph(session, provenance, set, graph, nullptr);
+        print_relationships(session, provenance, set, {relationship}, nullptr);
         return done;
     }
 
 private:
-    [[nodiscard]] int find(const AnnotationSet& set, const std::string& name) const {
-        int id = 0;
-        const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), id);
-        if (error == std::errc() && end == name.data() + name.size()) return id;
-        const Annotation* found = nullptr;
-        for (const auto& annotation : set.annotations) {
-            if (annotation.tag != name) continue;
-            if (found != nullptr)
-                fail_input(inputs.annotations, "has more than one annotation '" + name + "'", "name it by its id");
-            found = &annotation;
-        }
-        if (found == nullptr) fail_input(inputs.annotations, "has no annotation '" + name + "'", "see 'ostraka annotation list'");
-        return found->id;
-    }
-
     static std::string unit_of(const std::string& quantity, const std::string& length) {
         if (quantity == "angle" || quantity == "tilt") return "degree";
         return quantity == "distance" || quantity == "height" ? length : "%";
     }
 
-    [[nodiscard]] Relationship make(const AnnotationSet& set) const {
+    [[nodiscard]] Relationship make(const Mesh& on, const AnnotationSet& set) const {
         Relationship relationship;
         const RelationType* known = find_relation_type(type);
         if (known == nullptr && !own_type)
             fail_usage("'" + type + "' is not a known type of relationship",
                        "did you mean '" + nearest_relation_type(type) + "'? --own-type adds a type of your own");
         relationship.type = known == nullptr ? type : known->name;
+        if (relationship.type == "equal attributes" && attribute.empty())
+            fail_usage("nothing says which attribute is equal", "add --attribute NAME");
         relationship.directed = directed || (known != nullptr && known->directed);
-        for (const auto& name : members) relationship.annotations.push_back(find(set, name));
+        for (const auto& name : members) relationship.annotations.push_back(find_annotation(set, name, inputs.annotations).id);
         relationship.is_constraint = is_constraint || !constraint.empty() || (known != nullptr && !known->geometric);
         relationship.weight = weight;
         relationship.constraint = constraint;
@@ -210,10 +228,11 @@ private:
         for (const auto& text : tolerances) {
             const std::size_t sign = text.find('=');
             double value = 0;
-            const char* end = text.data() + text.size();
-            if (sign == std::string::npos || std::from_chars(text.data() + sign + 1, end, value).ptr != end ||
-                sign + 1 == text.size())
-                fail_usage("'" + text + "' is not a tolerance", "write QUANTITY=NUMBER, e.g. angle=5");
+            const bool percent = text.ends_with('%');
+            const char* end = text.data() + text.size() - (percent ? 1 : 0);
+            if (sign == std::string::npos || text.data() + sign + 1 >= end ||
+                std::from_chars(text.data() + sign + 1, end, value).ptr != end)
+                fail_usage("'" + text + "' is not a tolerance", "write QUANTITY=NUMBER, e.g. angle=5 or distance=1%");
             if (!(value >= 0)) fail_usage("the tolerance '" + text + "' is negative", "use 0 or more");
             const std::string quantity = text.substr(0, sign);
             const auto measured = measured_quantities(relationship.type);
@@ -223,9 +242,56 @@ private:
                 fail_usage("'" + relationship.type + "' does not measure '" + quantity + "'",
                            list.empty() ? "leave the tolerance out" : "it measures " + list);
             }
-            relationship.parameters.deviations.push_back({quantity, {}, value, unit_of(quantity, set.unit)});
+            const bool length = quantity == "distance" || quantity == "height";
+            const std::string unit = unit_of(quantity, set.unit);
+            if (percent && !length && unit != "%")
+                fail_usage("'" + text + "' is not a tolerance", "give an angle in degrees, without '%'");
+            if (percent && length) value *= box_diagonal(on) / 100;
+            relationship.parameters.deviations.push_back({quantity, {}, value, unit});
         }
         return relationship;
+    }
+};
+
+struct List {
+    Inputs inputs;
+
+    int run(const Session& session) const {
+        const Provenance provenance = inputs.provenance("relation list");
+        AnnotationSet set;
+        RelationGraph graph;
+        (void)inputs.read(session, set, graph);
+        print_relationships(session, provenance, set, graph.relationships, nullptr);
+        return done;
+    }
+};
+
+struct Remove {
+    Inputs inputs;
+    std::string output;
+    std::vector<int> ids;
+
+    int run(const Session& session) const {
+        inputs.check(output);
+        Provenance provenance = inputs.provenance("relation remove");
+        for (const int id : ids) provenance.options.emplace_back("id", std::to_string(id));
+        AnnotationSet set;
+        RelationGraph graph;
+        (void)inputs.read(session, set, graph);
+        std::vector<Relationship> removed;
+        for (const int id : ids) {
+            const auto has_id = [&](const Relationship& relationship) { return relationship.id == id; };
+            const auto place = std::find_if(graph.relationships.begin(), graph.relationships.end(), has_id);
+            if (place != graph.relationships.end()) {
+                removed.push_back(std::move(*place));
+                graph.relationships.erase(place);
+            } else if (std::none_of(removed.begin(), removed.end(), has_id)) {
+                fail_input(inputs.graph, "has no relationship " + std::to_string(id), "'ostraka relation list' shows them");
+            }
+        }
+        write_graph(output, graph, set, provenance);
+        print_relationships(session, provenance, set, removed, nullptr);
+        return done;
     }
 };
 
@@ -255,7 +321,7 @@ struct Check {
             add_member(entry, "text", checks[i].text, allocator);
             list.PushBack(entry, allocator);
             ++counts.at(static_cast<std::size_t>(checks[i].verdict));
-            rows.push_back({std::to_string(relationship.id), verdict, relationship.type, members_of(set, relationship),
+            rows.push_back({std::to_string(relationship.id), verdict, type_of(relationship), members_of(set, relationship),
                             measured(relationship.parameters), checks[i].text});
         }
         for (const Verdict verdict : {Verdict::holds, Verdict::fails, Verdict::unknown})
@@ -315,9 +381,27 @@ void add_relation(CLI::App& relation, Session& session) {
     command->add_flag("--constraint", add->is_constraint, "the relationship is a constraint on deformations");
     command->add_option("--parameters", add->constraint, "JSON object with the parameters of the constraint");
     command->add_option("--weight", add->weight, "weight of the constraint")->check(CLI::NonNegativeNumber);
-    command->add_option("--tolerance", add->tolerances, "QUANTITY=NUMBER that a check shall allow, e.g. angle=5");
-    command->add_option("--attribute", add->attribute, "name of the attribute that is equal");
+    command->add_option(
+        "--tolerance", add->tolerances,
+        "QUANTITY=NUMBER that a check shall allow: angle=5 (also tilt; degrees), distance=2 (also height; unit of the mesh's "
+        "coordinates), distance=1% (of the mesh's diagonal), area=10 (also shape, difference; per cent)");
+    command->add_option("--attribute", add->attribute, "name of the attribute that is equal, with --type 'equal attributes'");
     add_flags(command, add->inputs.options);
+
+    const auto remove = std::make_shared<Remove>();
+    command =
+        session.add(relation, "remove", "take relationships out of a graph", [&session, remove] { return remove->run(session); });
+    remove->inputs.add_to(*command);
+    command->add_option("graph", remove->inputs.graph, "graph (.graph.json)")->required();
+    command->add_option("output", remove->output, "graph to write (.graph.json)")->required();
+    command->add_option("--id", remove->ids, "id of a relationship, as 'relation list' shows it; once for each")->required();
+    add_flags(command, remove->inputs.options);
+
+    const auto list = std::make_shared<List>();
+    command = session.add(relation, "list", "the relationships of a graph", [&session, list] { return list->run(session); });
+    list->inputs.add_to(*command);
+    command->add_option("graph", list->inputs.graph, "graph (.graph.json)")->required();
+    add_flags(command, list->inputs.options);
 
     const auto check = std::make_shared<Check>();
     command = session.add(relation, "check", "tell which relationships hold on a mesh; exit code 3 if one fails",

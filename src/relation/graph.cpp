@@ -104,6 +104,16 @@ void check_members(const Relationship& relationship, const AnnotationSet& set, c
                    type->directed ? "set isDirected to true; the first annotation is the subject" : "set isDirected to false");
 }
 
+/// What a relationship says, whoever says it and with whatever tolerance.
+using Statement = std::tuple<std::string, std::vector<int>, bool, std::string, std::string>;
+
+Statement statement(const Relationship& relationship) {
+    std::vector<int> members = relationship.annotations;
+    if (!relationship.directed) std::sort(members.begin(), members.end());
+    return {relationship.type, std::move(members), relationship.is_constraint, relationship.constraint,
+            relationship.parameters.attribute};
+}
+
 }  // namespace
 
 const RelationType* find_relation_type(const std::string& name) {
@@ -131,41 +141,48 @@ int free_id(const RelationGraph& graph) {
     return id + 1;
 }
 
+void check_relationship(const Relationship& relationship, const AnnotationSet& set, const std::string& place) {
+    if (relationship.type.empty()) fail_input(place, "has no type", "name one");
+    check_members(relationship, set, place);
+    if (relationship.is_constraint && !(std::isfinite(relationship.weight) && relationship.weight >= 0))
+        fail_input(place, "its weight is negative or not a number", "use a weight of 0 or more");
+    if (!relationship.constraint.empty() && !parse_json(relationship.constraint, place).IsObject())
+        fail_input(place, "its constraint is not a JSON object", "give the parameters as {\"name\": value, ...}");
+    if (!relationship.constraint.empty() && !relationship.is_constraint)
+        fail_input(place, "has a constraint, but is none", "set isConstraint to true");
+    const RelationParameters& parameters = relationship.parameters;
+    for (const auto& deviation : parameters.deviations) {
+        if (deviation.tolerance && !(std::isfinite(*deviation.tolerance) && *deviation.tolerance >= 0))
+            fail_input(place, "the tolerance of '" + deviation.quantity + "' is negative or not a number",
+                       "use a tolerance of 0 or more");
+        if (deviation.value && !std::isfinite(*deviation.value))
+            fail_input(place, "the deviation of '" + deviation.quantity + "' is not a finite number", "leave it out");
+    }
+    if (parameters.plane) check_direction(parameters.plane->direction, "plane", place);
+    if (parameters.axis) check_direction(parameters.axis->direction, "axis", place);
+    if (parameters.up) check_direction(*parameters.up, "up", place);
+    for (const auto& part : {parameters.plane, parameters.axis})
+        if (part && !finite(part->point)) fail_input(place, "has a point that is not finite", "give three finite numbers");
+    if (relationship.type == "equal attributes" && parameters.attribute.empty())
+        fail_input(place, "does not say which attribute is equal", "name it in parameters.attribute");
+}
+
+const Relationship* find_twin(const RelationGraph& graph, const Relationship& relationship) {
+    const auto wanted = statement(relationship);
+    for (const auto& known : graph.relationships)
+        if (statement(known) == wanted) return &known;
+    return nullptr;
+}
+
 void check_graph(const RelationGraph& graph, const AnnotationSet& set, const std::string& where) {
     std::set<int> ids;
-    std::map<std::tuple<std::string, std::vector<int>, bool, std::string, std::string>, int> said;
+    std::map<Statement, int> said;
     for (const auto& relationship : graph.relationships) {
         const std::string place = where + ", relationship " + std::to_string(relationship.id);
         if (!ids.insert(relationship.id).second)
             fail_input(place, "its id is used twice", "give each relationship an id of its own");
-        if (relationship.type.empty()) fail_input(place, "has no type", "name one");
-        check_members(relationship, set, place);
-        if (relationship.is_constraint && !(std::isfinite(relationship.weight) && relationship.weight >= 0))
-            fail_input(place, "its weight is negative or not a number", "use a weight of 0 or more");
-        if (!relationship.constraint.empty() && !parse_json(relationship.constraint, place).IsObject())
-            fail_input(place, "its constraint is not a JSON object", "give the parameters as {\"name\": value, ...}");
-        if (!relationship.constraint.empty() && !relationship.is_constraint)
-            fail_input(place, "has a constraint, but is none", "set isConstraint to true");
-        const RelationParameters& parameters = relationship.parameters;
-        for (const auto& deviation : parameters.deviations) {
-            if (deviation.tolerance && !(std::isfinite(*deviation.tolerance) && *deviation.tolerance >= 0))
-                fail_input(place, "the tolerance of '" + deviation.quantity + "' is negative or not a number",
-                           "use a tolerance of 0 or more");
-            if (deviation.value && !std::isfinite(*deviation.value))
-                fail_input(place, "the deviation of '" + deviation.quantity + "' is not a finite number", "leave it out");
-        }
-        if (parameters.plane) check_direction(parameters.plane->direction, "plane", place);
-        if (parameters.axis) check_direction(parameters.axis->direction, "axis", place);
-        if (parameters.up) check_direction(*parameters.up, "up", place);
-        for (const auto& part : {parameters.plane, parameters.axis})
-            if (part && !finite(part->point)) fail_input(place, "has a point that is not finite", "give three finite numbers");
-        if (relationship.type == "equal attributes" && parameters.attribute.empty())
-            fail_input(place, "does not say which attribute is equal", "name it in parameters.attribute");
-        std::vector<int> members = relationship.annotations;
-        if (!relationship.directed) std::sort(members.begin(), members.end());
-        const auto [entry, added] = said.emplace(std::make_tuple(relationship.type, members, relationship.is_constraint,
-                                                                 relationship.constraint, parameters.attribute),
-                                                 relationship.id);
+        check_relationship(relationship, set, place);
+        const auto [entry, added] = said.emplace(statement(relationship), relationship.id);
         if (!added) fail_input(place, "says the same as relationship " + std::to_string(entry->second), "remove one of them");
     }
 }

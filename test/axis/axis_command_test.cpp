@@ -29,6 +29,9 @@ TEST(AxisCommand, OfAPartWithFiles) {
     const auto spout = run_command("axis " + pot + "--annotation 5 --method slices --output " + obj);
     EXPECT_EQ(spout.code, 0) << spout.out;
     EXPECT_NE(read_file(scratch / "a.obj").find("\nl 1 2 3"), std::string::npos);
+    // A tag says the same as an id.
+    const auto tagged = run_command("axis --json " + pot + "--annotation body");
+    EXPECT_EQ(parse_json(tagged.out, "report")["result"], report["result"]) << tagged.err;
     // A line has the axis of its circle.
     const auto girth = run_command("axis " + pot + "--annotation 12");
     EXPECT_EQ(girth.code, 0) << girth.out;
@@ -47,7 +50,7 @@ TEST(AxisCommand, NoneIsAnAnswerAndBadInputIsNot) {
         EXPECT_EQ(result.code, code) << line << result.err;
         EXPECT_NE(result.err.find(words), std::string::npos) << result.err;
     };
-    expect("axis " + pot + "--annotation 99", 1, "has no annotation 99");
+    expect("axis " + pot + "--annotation 99", 1, "has no annotation '99'");
     expect("axis " + pot, 2, "no annotation is named");
     expect("axis " + ball + " --annotation 1", 2, "there are no annotations");
     expect("axis " + ball + " --output " + (scratch / "o.txt").string(), 2, ".json or .obj");

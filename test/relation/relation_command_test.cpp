@@ -1,5 +1,6 @@
 // The built command, as people run it.
 #include "ostraka/core/json.h"
+#include "ostraka/io/mesh_file.h"
 #include "scratch.h"
 
 #include <gtest/gtest.h>
@@ -79,15 +80,109 @@ TEST(RelationCommand, BadInput) {
         EXPECT_NE(result.err.find(words), std::string::npos) << result.err;
         EXPECT_EQ(count_files(scratch.path()), 0U) << "nothing is left behind";
     };
-    expect(add + " --type adjacency --annotation body --annotation 77", 1, "annotation 77, which does not exist");
+    expect(add + " --type adjacency --annotation body --annotation 77", 1, "has no annotation '77'");
     expect(add + " --type adjacency --annotation body --annotation wing", 1, "has no annotation 'wing'");
     expect(add + " --type adjacency --annotation body", 1, "is said of 1 annotation");
     expect(add + " --type adjacensy --annotation body --annotation lid", 2, "did you mean 'adjacency'?");
     expect(add + " --type 'same level' --annotation body --annotation lid --tolerance height=-1", 2, "negative");
     expect(add + " --type 'same level' --annotation body --annotation lid --tolerance height", 2, "not a tolerance");
+    expect(add + " --type 'same level' --annotation body --annotation lid --tolerance height=%", 2, "not a tolerance");
+    expect(add + " --type co-axiality --annotation body --annotation lid --tolerance angle=3%", 2, "in degrees");
+    expect(add + " --type 'equal attributes' --annotation body --annotation lid", 2, "--attribute NAME");
     expect(add + " --type line --annotation body --parameters '[1]'", 1, "not a JSON object");
     expect(add + " --type line --annotation body --weight -3", 2, "weight");
     expect("relation extract " + pot + "nowhere/o.graph.json", 1, "nowhere");
     expect("relation check " + pot + out, 1, "o.graph.json");
     expect("relation extract " + data + "vase.ply " + data + "teapot.ant.json " + out, 1, "teapot.ant.json");
+}
+
+TEST(RelationCommand, WhatWasExtractedIsStatedListedAndRemoved) {
+    const Scratch scratch;
+    const auto at = [&](const char* name) { return (scratch / name).string(); };
+    (void)scratch.file("old.graph.json", R"({"relationships": [
+        {"id": 4, "type": "adjacency", "isDirected": false, "annotations": [1, 2], "isConstraint": false, "origin": "extracted"},
+        {"id": 7, "type": "equal attributes", "isDirected": false, "annotations": [1, 2], "isConstraint": false,
+         "origin": "extracted", "parameters": {"attribute": "area"}},
+        {"id": 9, "type": "proportion", "isDirected": false, "annotations": [1, 2], "isConstraint": true, "weight": 3,
+         "constraint": {}, "origin": "stated"}]})");
+    const auto listed = run_command("relation list " + pot + at("old.graph.json"));
+    ASSERT_EQ(listed.code, 0) << listed.err;
+    EXPECT_NE(listed.out.find("equal attributes: area"), std::string::npos) << listed.out;
+    EXPECT_NE(listed.out.find("proportion (constraint, weight 3)"), std::string::npos) << listed.out;
+    EXPECT_NE(run_command("relation check " + pot + at("old.graph.json")).out.find("equal attributes: area"), std::string::npos);
+
+    // The members of what has no direction may be named in any order.
+    const std::string state =
+        "relation add " + pot + at("new.graph.json") + " --graph " + at("old.graph.json") +
+        " --type 'equal attributes' --attribute area --annotation 2 --annotation 1 --tolerance difference=40";
+    const auto stated = run_command(state);
+    ASSERT_EQ(stated.code, 0) << stated.err;
+    EXPECT_NE(stated.err.find("relationship 7 was extracted and is stated now"), std::string::npos) << stated.err;
+    EXPECT_EQ(std::count(stated.out.begin(), stated.out.end(), '\n'), 2) << "what was added and no more: " << stated.out;
+    const Json graph = read_json(scratch / "new.graph.json");
+    ASSERT_EQ(graph["relationships"].Size(), 3U);
+    const JsonValue& changed = graph["relationships"][1];
+    EXPECT_EQ(changed["id"].GetInt(), 7);
+    EXPECT_STREQ(changed["origin"].GetString(), "stated");
+    EXPECT_EQ(changed["parameters"]["deviations"][0]["tolerance"].GetDouble(), 40);
+    EXPECT_STREQ(changed["parameters"]["deviations"][0]["unit"].GetString(), "%");
+    const auto twice = run_command("relation add " + pot + at("third.graph.json") + " --graph " + at("new.graph.json") +
+                                   " --type 'equal attributes' --attribute area --annotation 1 --annotation 2");
+    EXPECT_EQ(twice.code, 1);
+    EXPECT_NE(twice.err.find("new.graph.json: relationship 7 says the same"), std::string::npos) << twice.err;
+    EXPECT_FALSE(std::filesystem::exists(scratch / "third.graph.json"));
+
+    const std::string remove = "relation remove " + pot + at("new.graph.json") + " " + at("left.graph.json");
+    const auto unknown = run_command(remove + " --id 4 --id 5");
+    EXPECT_EQ(unknown.code, 1);
+    EXPECT_NE(unknown.err.find("new.graph.json: has no relationship 5"), std::string::npos) << unknown.err;
+    EXPECT_EQ(run_command(remove).code, 2) << "nothing is named";
+    const auto removed = run_command(remove + " --id 4 --id 9 --json");
+    ASSERT_EQ(removed.code, 0) << removed.err;
+    EXPECT_EQ(report_of(removed.out)["result"]["relationships"].Size(), 2U);
+    const Json left = read_json(scratch / "left.graph.json");
+    ASSERT_EQ(left["relationships"].Size(), 1U);
+    EXPECT_EQ(left["relationships"][0]["id"].GetInt(), 7);
+}
+
+TEST(RelationCommand, TolerancesAreInTheUnitOfTheMeshOrInPerCentOfItsDiagonal) {
+    const Scratch scratch;
+    const auto tolerance = [&](const std::string& text) {
+        const auto added = run_command("relation add --json " + pot + (scratch / "g.graph.json").string() +
+                                       " --type 'same level' --annotation body --annotation lid --tolerance height=" + text);
+        EXPECT_EQ(added.code, 0) << added.err;
+        const Json report = report_of(added.out);
+        const JsonValue& deviation = report["result"]["relationships"][0]["parameters"]["deviations"][0];
+        EXPECT_STREQ(deviation["unit"].GetString(), "mm");
+        return deviation["tolerance"].GetDouble();
+    };
+    EXPECT_EQ(tolerance("2"), 2);
+    const double diagonal = box_diagonal(read_mesh(Path(data) / "teapot.ply").mesh);
+    EXPECT_NEAR(tolerance("1%"), diagonal / 100, 1e-12 * diagonal);
+}
+
+TEST(RelationCommand, OptionsGivenSeveralTimesMakeAFileThatCanBeRead) {
+    const Scratch scratch;
+    const std::string graph = (scratch / "g.graph.json").string();
+    ASSERT_EQ(run_command("relation extract " + pot + graph + " --type adjacency --type containment").code, 0);
+    EXPECT_STREQ(read_json(graph)["provenance"]["options"]["type"].GetString(), "adjacency; containment");
+    EXPECT_EQ(run_command("relation check " + pot + graph).code, 0);
+}
+
+TEST(RelationCommand, WithoutUpItIsSaidWhatWasNotLookedFor) {
+    const Scratch scratch;
+    const auto at = [&](const char* name) { return (scratch / name).string(); };
+    ASSERT_EQ(run_command("annotation edit " + pot + at("flat.ant.json") + " --set-up ''").code, 0);
+    const std::string flat = data + "teapot.ply " + at("flat.ant.json") + " ";
+    const std::string extract = "relation extract " + flat + at("g.graph.json");
+    const auto all = run_command(extract);
+    ASSERT_EQ(all.code, 0) << all.err;
+    EXPECT_NE(all.err.find("same level, horizontal support, side contact"), std::string::npos) << all.err;
+    EXPECT_EQ(run_command(extract + " --type 'part similarity'").err, "") << "it needs no upward direction";
+    ASSERT_EQ(run_command("annotation edit " + flat + at("up.ant.json") + " --set-up 0,0,2").code, 0);
+    const auto up = run_command("relation extract " + data + "teapot.ply " + at("up.ant.json") + " " + at("u.graph.json") +
+                                " --type 'horizontal support'");
+    ASSERT_EQ(up.code, 0) << up.err;
+    EXPECT_EQ(up.err, "");
+    EXPECT_GT(read_json(scratch / "u.graph.json")["relationships"].Size(), 0U);
 }

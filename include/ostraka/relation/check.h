@@ -15,7 +15,8 @@ struct RelationOptions {
 
     template <class Visitor>
     void describe(Visitor& visit) {
-        visit("distance", distance, "tolerance of distances and heights, as a share of the mesh's diagonal", Range{0, 1});
+        visit("distance", distance, "tolerance of distances and heights, as a share of the mesh's diagonal: 0.01 is one per cent",
+              Range{0, 1});
         visit("angle", angle, "tolerance of angles between axes, degrees", Range{0, 90});
         visit("tilt", tilt, "tolerance of the tilt of a contact, degrees", Range{0, 90});
         visit("ratio", ratio, "tolerance of areas, shapes and values of attributes, per cent", Range{0, 100});

@@ -61,6 +61,13 @@ struct RelationGraph {
 /// One more than the largest id, 0 in an empty graph.
 int free_id(const RelationGraph& graph);
 
+/// The relationship of `graph` that says the same as this one: type, members (in any order where there is no direction), the
+/// constraint, the attribute; nullptr if there is none. Tolerances and origin do not count.
+const Relationship* find_twin(const RelationGraph& graph, const Relationship& relationship);
+
+/// What `check_graph` demands of one relationship by itself; `place` is named in errors.
+void check_relationship(const Relationship& relationship, const AnnotationSet& set, const std::string& place);
+
 /// Throws Error (input) that names the relationship and the remedy: an id used twice, a missing annotation, an annotation twice
 /// in one relationship, too few or too many members for the type, a direction that is not the type's, a negative or non-finite
 /// weight or tolerance, a constraint that is no JSON object, a relationship that stands there twice. Own types are allowed.

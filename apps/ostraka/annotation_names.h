@@ -1,0 +1,11 @@
+// Annotations as they are named on the command line.
+#pragma once
+
+#include "ostraka/annotation/annotation.h"
+
+namespace ostraka::app {
+
+/// The annotation of this id, or of this tag if exactly one has it. Throws Error (input) that names the file.
+const Annotation& find_annotation(const AnnotationSet& set, const std::string& name, const std::string& file);
+
+}  // namespace ostraka::app
