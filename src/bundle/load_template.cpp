@@ -38,10 +38,7 @@ private:
 
     void attempt(const TemplatePart& part) {
         TemplateEntry entry{part.role, part.name, 0, {}};
-        if (part.role == "cage") {
-            result_.cages.emplace_back();
-            result_.enclosures.emplace_back();
-        }
+        if (part.role == "cage") result_.cages.emplace_back();
         try {
             std::error_code code;
             const auto bytes = std::filesystem::file_size(part.file, code);
@@ -120,12 +117,12 @@ private:
         MeshFile file = read_mesh(part.file);
         std::string text = size_of(file.mesh);
         if (result_.mesh) {
-            const Enclosure found = enclosure(file.mesh, result_.mesh->mesh);
-            result_.enclosures.back() = found;
+            const CageCheck found = check_cage(file.mesh, result_.mesh->mesh);
             if (!found.closed) defect(part.name, "the cage is not closed: it has a border");
             else if (!found.outward) defect(part.name, "the cage is inside out");
             else if (!found.encloses()) {
-                const std::string what = found.outside > 0    ? to_string(found.outside) + " vertices of the mesh lie outside"
+                const std::size_t beyond = found.outside.size() - found.touching;
+                const std::string what = beyond > 0           ? to_string(beyond) + " vertices of the mesh lie outside"
                                          : found.touching > 0 ? to_string(found.touching) + " vertices of the mesh lie on it"
                                                               : std::string("faces of the mesh cross it");
                 remark(part.name, "the cage does not enclose the mesh: " + what);
@@ -133,6 +130,9 @@ private:
             } else {
                 text += ", encloses the mesh";
             }
+            if (!found.intersections.empty())
+                remark(part.name, "the cage intersects itself, at " + counted(found.intersections.size(), "pair", "pairs") +
+                                      " of its faces");
         }
         result_.cages.back() = std::move(file.mesh);
         return text;

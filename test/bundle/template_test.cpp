@@ -98,35 +98,6 @@ struct Ball : Scratch {
 
 }  // namespace
 
-TEST(Enclosure, SpheresWithinEachOther) {
-    const Mesh mesh = spheres(2);
-    EXPECT_TRUE(enclosure(spheres(2, {{0, 0, 0}}, 1.5), mesh).encloses());
-    const Enclosure shifted = enclosure(spheres(2, {{1, 0, 0}}, 1.5), mesh);
-    EXPECT_FALSE(shifted.encloses());
-    EXPECT_GT(shifted.outside, 0U);
-    EXPECT_LT(shifted.outside, mesh.number_of_vertices());
-    EXPECT_EQ(enclosure(spheres(2, {{10, 0, 0}}), mesh).outside, mesh.number_of_vertices());
-    EXPECT_EQ(enclosure(mesh, mesh).touching, mesh.number_of_vertices());
-    EXPECT_FALSE(enclosure(grid(3), mesh).closed);
-    EXPECT_FALSE(enclosure(Mesh(), mesh).closed);
-    // Far from the origin, small and large.
-    for (const double scale : {1e-6, 1.0, 1e6})
-        EXPECT_TRUE(
-            enclosure(spheres(1, {{1e3 * scale, 0, 0}}, 1.5 * scale), spheres(2, {{1e3 * scale, 0, 0}}, scale)).encloses())
-            << scale;
-    // Two balls in two parts of a cage; a bar between them would cross it.
-    EXPECT_TRUE(enclosure(spheres(2, {{0, 0, 0}, {5, 0, 0}}, 1.5), spheres(2, {{0, 0, 0}, {5, 0, 0}})).encloses());
-    TriangleSoup bar;
-    bar.points = {{0, -0.1, 0}, {5, -0.1, 0}, {0, 0.1, 0}, {0, 0, 0.1}};
-    bar.triangles = {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}};
-    const Enclosure crossing = enclosure(spheres(2, {{0, 0, 0}, {5, 0, 0}}, 1.5), build_mesh(bar));
-    EXPECT_EQ(crossing.outside, 0U);
-    EXPECT_TRUE(crossing.intersecting);
-    TriangleSoup inside_out = to_soup(spheres(1, {{0, 0, 0}}, 1.5));
-    for (auto& triangle : inside_out.triangles) std::swap(triangle[0], triangle[1]);
-    EXPECT_FALSE(enclosure(build_mesh(inside_out), mesh).outward);
-}
-
 TEST(Template, PackedCheckedShown) {
     const Ball ball;
     ball.pack();

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "ostraka/annotation/annotation_file.h"
-#include "ostraka/bundle/enclosure.h"
+#include "ostraka/cage/cage.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/relation/graph.h"
 #include "ostraka/vocabulary/class_rules.h"
@@ -64,7 +64,6 @@ struct Template {
     std::optional<AnnotationSet> annotations;
     std::optional<RelationGraph> graph;
     std::vector<std::optional<Mesh>> cages;
-    std::vector<std::optional<Enclosure>> enclosures;  ///< of the mesh by each cage
     std::optional<Vocabulary> vocabulary;
     std::optional<ClassRules> rules;
     std::vector<Finding> findings;  ///< `where` is the name of the file of the template

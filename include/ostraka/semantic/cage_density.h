@@ -1,0 +1,15 @@
+// Where annotations want the vertices of a cage.
+#pragma once
+
+#include "ostraka/annotation/annotation.h"
+#include "ostraka/cage/cage.h"
+
+namespace ostraka {
+
+/// Density of cage vertices by the annotation that is nearest (thesis, section 6.1.1). With `factors` (id, factor) the largest
+/// factor of the regions, lines and points within a twentieth of the diagonal counts; without, places that near to an annotated
+/// point, to a line, or to an outline of a region other than the whole get 4. Elsewhere 1. The result owns what it needs.
+CageDensity annotation_density(const Mesh& mesh, const AnnotationSet& set,
+                               const std::vector<std::pair<int, double>>& factors = {});
+
+}  // namespace ostraka

@@ -1,0 +1,142 @@
+#include "ostraka/cage/cage.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/geom/surface_search.h"
+#include "ostraka/io/diagnose.h"
+
+#include <CGAL/AABB_face_graph_triangle_primitive.h>
+#include <CGAL/AABB_traits.h>
+#include <CGAL/AABB_tree.h>
+#include <CGAL/Side_of_triangle_mesh.h>
+
+#include <cstdio>
+
+namespace ostraka {
+
+namespace {
+
+constexpr std::size_t most_listed = 1000;
+
+std::size_t count_components(const Mesh& mesh) {
+    std::vector<bool> seen(mesh.number_of_faces(), false);
+    std::size_t count = 0;
+    for (const Face first : mesh.faces()) {
+        if (seen[first]) continue;
+        ++count;
+        std::vector<Face> stack{first};
+        seen[first] = true;
+        while (!stack.empty()) {
+            const Face f = stack.back();
+            stack.pop_back();
+            for (const Face g : mesh.faces_around_face(mesh.halfedge(f)))
+                if (g != Mesh::null_face() && !seen[g]) seen[g] = true, stack.push_back(g);
+        }
+    }
+    return count;
+}
+
+std::string text(double value) {
+    char buffer[32];
+    std::snprintf(buffer, sizeof buffer, "%.4g", value);
+    return buffer;
+}
+
+std::string counted(std::size_t count, const std::string& one) {
+    return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
+}
+
+}  // namespace
+
+CageCheck check_cage(const Mesh& cage, const Mesh& mesh) {
+    CageCheck result;
+    if (cage.number_of_faces() == 0) return result;
+    result.components = count_components(cage);
+    for (const Face f : cage.faces()) {
+        const auto [a, b, c] = corners(cage, f);
+        result.degenerate += CGAL::collinear(cage.point(a), cage.point(b), cage.point(c));
+    }
+    result.intersections = self_intersections(to_soup(cage), most_listed).pairs;
+    result.closed = std::none_of(cage.halfedges().begin(), cage.halfedges().end(), [&](Halfedge h) { return cage.is_border(h); });
+    if (!result.closed) return result;
+    std::size_t vertices = 0;
+    for (const Vertex v : cage.vertices()) vertices += !cage.is_isolated(v);
+    const auto euler =
+        static_cast<long>(vertices) - static_cast<long>(cage.number_of_edges()) + static_cast<long>(cage.number_of_faces());
+    result.genus = static_cast<long>(result.components) - euler / 2;
+    double volume = 0;
+    const Point origin = *cage.points().begin();
+    for (const Face face : cage.faces()) volume += (centroid(cage, face) - origin) * area_vector(cage, face);
+    result.outward = volume > 0;
+    if (mesh.number_of_faces() == 0) return result;
+
+    using Primitive = CGAL::AABB_face_graph_triangle_primitive<Mesh>;
+    using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
+    Tree tree(cage.faces().begin(), cage.faces().end(), cage);
+    tree.build();
+    const CGAL::Side_of_triangle_mesh<Mesh, Kernel> side(tree);
+    const SurfaceSearch search(cage);
+    const std::size_t count = mesh.number_of_vertices();
+    std::vector<SurfaceHit> nearest(count);
+    std::vector<CGAL::Bounded_side> sides(count, CGAL::ON_BOUNDED_SIDE);
+    static_cast<void>(side(mesh.point(*mesh.vertices().begin())));  // what it prepares at first use
+    parallel_for(count, [&](std::size_t v) {
+        if (mesh.is_isolated(Vertex(static_cast<Index>(v)))) return;
+        sides[v] = side(mesh.point(Vertex(static_cast<Index>(v))));
+        nearest[v] = search.closest(mesh.point(Vertex(static_cast<Index>(v))));
+    });
+    result.clearance = std::numeric_limits<double>::infinity();
+    for (Index v = 0; v < count; ++v) {
+        if (mesh.is_isolated(Vertex(v))) continue;
+        result.clearance = std::min(result.clearance, nearest[v].distance);
+        if (sides[v] == CGAL::ON_BOUNDED_SIDE) continue;
+        const bool on = sides[v] == CGAL::ON_BOUNDARY;
+        result.touching += on;
+        result.outside.push_back({v, on ? 0 : nearest[v].distance, nearest[v].face});
+    }
+    std::vector<char> crossed(mesh.number_of_faces(), 0);
+    parallel_for(mesh.number_of_faces(), [&](std::size_t f) {
+        const auto [a, b, c] = corners(mesh, Face(static_cast<Index>(f)));
+        for (const Vertex v : {a, b, c})
+            if (sides[v] != CGAL::ON_BOUNDED_SIDE) return;
+        const Point &p = mesh.point(a), &q = mesh.point(b), &r = mesh.point(c);
+        crossed[f] = CGAL::collinear(p, q, r)
+                         ? tree.do_intersect(Kernel::Segment_3(p, q)) || tree.do_intersect(Kernel::Segment_3(q, r))
+                         : tree.do_intersect(Kernel::Triangle_3(p, q, r));
+    });
+    for (Index f = 0; f < crossed.size() && result.crossing.size() < most_listed; ++f)
+        if (crossed[f]) result.crossing.push_back(f);
+    if (!result.encloses()) result.clearance = 0;
+    return result;
+}
+
+std::vector<Finding> findings(const CageCheck& check, const std::string& unit) {
+    std::vector<Finding> list;
+    const std::string of_length = unit.empty() ? "" : " " + unit;
+    if (check.components == 0) return {{true, "cage", "has no faces: make one with 'cage make'"}};
+    if (!check.closed) list.push_back({true, "cage", "has a border: close it with 'mesh repair', or make one with 'cage make'"});
+    if (check.closed && !check.outward) list.push_back({true, "cage", "is inside out: turn its faces with 'mesh repair'"});
+    if (check.degenerate > 0)
+        list.push_back({true, "cage", counted(check.degenerate, "face") + " without area: move or merge its vertices"});
+    for (std::size_t i = 0; i < check.intersections.size() && i < 5; ++i)
+        list.push_back({true, "face " + std::to_string(check.intersections[i].first),
+                        "meets face " + std::to_string(check.intersections[i].second) + ": move their vertices apart"});
+    if (check.intersections.size() > 5)
+        list.push_back({true, "cage", std::to_string(check.intersections.size() - 5) + " more pairs of faces meet"});
+    for (std::size_t i = 0; i < check.outside.size() && i < 5; ++i) {
+        const OutsideVertex& o = check.outside[i];
+        const std::string place = o.distance > 0 ? "is " + text(o.distance) + of_length + " outside near face " : "is on face ";
+        list.push_back({true, "vertex " + std::to_string(o.vertex) + " of the mesh",
+                        place + std::to_string(o.face) + ": move that face's vertices outwards" +
+                            (o.distance > 0 ? " by more than that" : "")});
+    }
+    if (check.outside.size() > 5)
+        list.push_back({true, "mesh", std::to_string(check.outside.size() - 5) + " more vertices are not inside the cage"});
+    for (std::size_t i = 0; i < check.crossing.size() && i < 5; ++i)
+        list.push_back({true, "face " + std::to_string(check.crossing[i]) + " of the mesh",
+                        "is crossed by the cage though its vertices are inside: move the cage outwards there"});
+    if (check.crossing.size() > 5)
+        list.push_back({true, "mesh", std::to_string(check.crossing.size() - 5) + " more faces are crossed"});
+    if (check.components > 1) list.push_back({false, "cage", "has " + std::to_string(check.components) + " components"});
+    return list;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,48 @@
+#include "shrink.h"
+
+#include <CGAL/AABB_traits.h>
+#include <CGAL/AABB_tree.h>
+#include <CGAL/AABB_triangle_primitive.h>
+
+#include <numeric>
+
+namespace ostraka::cage {
+
+namespace {
+using Triangle3 = Kernel::Triangle_3;
+using Primitive = CGAL::AABB_triangle_primitive<Kernel, std::vector<Triangle3>::const_iterator>;
+}  // namespace
+
+struct Obstacle::Tree {
+    std::vector<Triangle3> triangles;
+    CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>> search;
+};
+
+Obstacle::Obstacle(const TriangleSoup& soup) : tree_(new Tree) {
+    const auto at = [&](Index v) { return Point(soup.points[v][0], soup.points[v][1], soup.points[v][2]); };
+    std::vector<Index> parent(soup.points.size());
+    std::iota(parent.begin(), parent.end(), 0);
+    const auto root = [&](Index v) {
+        while (parent[v] != v) v = parent[v] = parent[parent[v]];
+        return v;
+    };
+    std::vector<bool> used(soup.points.size(), false);
+    for (const auto& [a, b, c] : soup.triangles) {
+        parent[root(b)] = root(a);
+        parent[root(c)] = root(a);
+        used[a] = used[b] = used[c] = true;
+        // One without area is a part of its neighbours' edges, or a piece whose point stands for it.
+        if (!CGAL::collinear(at(a), at(b), at(c))) tree_->triangles.emplace_back(at(a), at(b), at(c));
+    }
+    for (Index v = 0; v < parent.size(); ++v)
+        if (used[v] && root(v) == v) pieces_.push_back(at(v));
+    tree_->search.insert(tree_->triangles.begin(), tree_->triangles.end());
+    tree_->search.build();
+}
+Obstacle::~Obstacle() = default;
+
+bool Obstacle::meets(const Point& a, const Point& b, const Point& c) const {
+    return tree_->search.do_intersect(Triangle3(a, b, c));
+}
+
+}  // namespace ostraka::cage

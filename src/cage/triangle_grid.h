@@ -1,0 +1,95 @@
+// Triangles that come and go, found by where they are.
+#pragma once
+
+#include "ostraka/core/mesh.h"
+
+#include <cmath>
+#include <unordered_map>
+
+namespace ostraka::cage {
+
+using Triangle = std::array<Vertex, 3>;
+
+/// True if two triangles share more than the vertices and edges they are joined at. Exact.
+bool overlap(const Triangle& s, const std::array<Point, 3>& at_s, const Triangle& t, const std::array<Point, 3>& at_t);
+
+/// Hash grids of doubling cell sizes: a triangle lies in the grid whose cells are as large as its box, in at most eight cells.
+class TriangleGrid {
+public:
+    explicit TriangleGrid(double cell) : cell_(cell) {}
+
+    void insert(Face face, const CGAL::Bbox_3& box) {
+        const int level = level_of(box);
+        Level& here = levels_[level];
+        ++here.size;
+        each_cell(level, box, [&](const Key& key) { here.cells[key].push_back(face); });
+    }
+    void remove(Face face, const CGAL::Bbox_3& box) {
+        const int level = level_of(box);
+        Level& here = levels_[level];
+        --here.size;
+        each_cell(level, box, [&](const Key& key) {
+            auto& list = here.cells[key];
+            list.erase(std::find(list.begin(), list.end(), face));
+            if (list.empty()) here.cells.erase(key);
+        });
+    }
+    /// Calls `visit(face)` for each triangle whose cells meet the box, some more than once, until it returns true; true if it
+    /// did.
+    template <class Visit>
+    bool any(const CGAL::Bbox_3& box, Visit&& visit) const {
+        for (const auto& [level, here] : levels_) {
+            if (here.size == 0) continue;
+            bool found = false;
+            if (cells_of(level, box) > static_cast<double>(here.cells.size())) {
+                for (const auto& [key, list] : here.cells)
+                    for (const Face face : list)
+                        if (!found && visit(face)) found = true;
+            } else {
+                each_cell(level, box, [&](const Key& key) {
+                    const auto list = here.cells.find(key);
+                    if (found || list == here.cells.end()) return;
+                    for (const Face face : list->second)
+                        if (!found && visit(face)) found = true;
+                });
+            }
+            if (found) return true;
+        }
+        return false;
+    }
+
+private:
+    using Key = std::array<std::int64_t, 3>;
+    struct Hash {
+        std::size_t operator()(const Key& key) const {
+            std::size_t hash = 0;
+            for (const std::int64_t k : key) hash = (hash ^ static_cast<std::size_t>(k)) * 0x9E3779B97F4A7C15ULL;
+            return hash ^ (hash >> 29U);
+        }
+    };
+    struct Level {
+        std::size_t size = 0;
+        std::unordered_map<Key, std::vector<Face>, Hash> cells;
+    };
+    [[nodiscard]] int level_of(const CGAL::Bbox_3& box) const {
+        const double size = std::max({box.x_span(), box.y_span(), box.z_span()});
+        return size <= cell_ ? 0 : static_cast<int>(std::ceil(std::log2(size / cell_)));
+    }
+    [[nodiscard]] double cells_of(int level, const CGAL::Bbox_3& box) const {
+        const double size = std::ldexp(cell_, level);
+        return (box.x_span() / size + 1) * (box.y_span() / size + 1) * (box.z_span() / size + 1);
+    }
+    template <class Visit>
+    void each_cell(int level, const CGAL::Bbox_3& box, Visit&& visit) const {
+        const double size = std::ldexp(cell_, level);
+        const auto cell = [&](double x) { return static_cast<std::int64_t>(std::floor(x / size)); };
+        for (auto x = cell(box.xmin()); x <= cell(box.xmax()); ++x)
+            for (auto y = cell(box.ymin()); y <= cell(box.ymax()); ++y)
+                for (auto z = cell(box.zmin()); z <= cell(box.zmax()); ++z) visit(Key{x, y, z});
+    }
+
+    double cell_;
+    std::map<int, Level> levels_;
+};
+
+}  // namespace ostraka::cage

@@ -1,0 +1,70 @@
+#include "ostraka/semantic/cage_density.h"
+
+#include "ostraka/core/error.h"
+
+#include <CGAL/Fuzzy_sphere.h>
+#include <CGAL/Kd_tree.h>
+#include <CGAL/Search_traits_3.h>
+#include <CGAL/Search_traits_adapter.h>
+#include <CGAL/property_map.h>
+
+#include <memory>
+
+namespace ostraka {
+
+namespace {
+
+using Weighted = std::pair<Point, double>;
+using Traits = CGAL::Search_traits_adapter<Weighted, CGAL::First_of_pair_property_map<Weighted>, CGAL::Search_traits_3<Kernel>>;
+using Tree = CGAL::Kd_tree<Traits>;
+
+}  // namespace
+
+CageDensity annotation_density(const Mesh& mesh, const AnnotationSet& set, const std::vector<std::pair<int, double>>& factors) {
+    std::map<Index, double> at;
+    const auto mark = [&](Index v, double factor) {
+        double& entry = at.try_emplace(v, factor).first->second;
+        entry = std::max(entry, factor);
+    };
+    const auto lines = [&](const Annotation& annotation, double factor) {
+        for (const Index v : annotation.points) mark(v, factor);
+        for (const auto& polyline : annotation.polylines)
+            for (const Index v : polyline) mark(v, factor);
+    };
+    if (factors.empty()) {
+        for (const Annotation& annotation : set.annotations) {
+            lines(annotation, 4);
+            if (annotation.all || annotation.faces.size() == mesh.number_of_faces()) continue;
+            std::vector<bool> inside(mesh.number_of_faces(), false);
+            for (const Index f : annotation.faces) inside[f] = true;
+            for (const Index f : annotation.faces)
+                for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(Face(f)))) {
+                    const Face other = mesh.face(mesh.opposite(h));
+                    if (other == Mesh::null_face() || !inside[other])
+                        mark(mesh.target(h).idx(), 4), mark(mesh.source(h).idx(), 4);
+                }
+        }
+    }
+    for (const auto& [id, factor] : factors) {
+        const Annotation* annotation = set.find(id);
+        if (annotation == nullptr)
+            fail_input("annotations", "there is no annotation " + std::to_string(id), "use an id that is there");
+        lines(*annotation, factor);
+        for (const Index f : annotation->faces)
+            for (const Vertex v : corners(mesh, Face(f))) mark(v.idx(), factor);
+    }
+    if (at.empty()) return {};
+    const auto tree = std::make_shared<Tree>();
+    for (const auto& [v, factor] : at) tree->insert({mesh.point(Vertex(v)), factor});
+    tree->build();
+    const double reach = box_diagonal(mesh) / 20;
+    return [tree, reach](const Point& p) {
+        double factor = 0;
+        std::vector<Weighted> near;
+        tree->search(std::back_inserter(near), CGAL::Fuzzy_sphere<Traits>(p, reach));
+        for (const Weighted& entry : near) factor = std::max(factor, entry.second);
+        return factor > 0 ? factor : 1.0;
+    };
+}
+
+}  // namespace ostraka

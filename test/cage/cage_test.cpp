@@ -1,0 +1,162 @@
+// Cages of made and real meshes.
+#include "ostraka/cage/cage.h"
+
+#include "annotation/example_meshes.h"
+#include "ostraka/core/error.h"
+#include "ostraka/io/mesh_file.h"
+#include "ostraka/shapes/make_mesh.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <iostream>
+#include <set>
+
+using namespace ostraka;
+using namespace ostraka::example;
+
+namespace {
+
+std::string words(const CageCheck& check) {
+    std::string text;
+    for (const Finding& f : findings(check, "mm")) text += f.where + " " + f.text + "\n";
+    return text;
+}
+
+}  // namespace
+
+TEST(Cage, OfMadeObjects) {
+    for (const char* name : {"teapot", "chair", "hand", "statuette", "vase"}) {
+        const MadeMesh made = make_mesh(made_object(name), {.vertices = 5000});
+        for (const std::uint64_t vertices : {100, 200, 500}) {
+            const CageResult result = make_cage(made.mesh, {.vertices = vertices});
+            const CageCheck check = check_cage(result.cage, made.mesh);
+            EXPECT_TRUE(check.valid()) << name << " " << words(check);
+            EXPECT_EQ(result.cage.number_of_vertices(), vertices) << name;
+            std::cout << name << " " << vertices << ": alpha " << result.alpha << ", wrap " << result.wrap_vertices << ", genus "
+                      << check.genus << ", clearance " << check.clearance << '\n';
+        }
+    }
+}
+
+TEST(Cage, OfRealMeshes) {
+    const Path folder = OSTRAKA_SHARED_DATA;
+    if (!std::filesystem::exists(folder)) GTEST_SKIP() << "the real meshes are not here: " << folder;
+    // A closed scan, a sculpture with holes, an object of several components, a hand.
+    for (const char* file : {"multires/bunny10k.ply", "heritage-scans/gargoyle.ply", "cage-hand-made/teapot.obj",
+                             "products-articulated/hand.off", "multires/anchor.off"}) {
+        const Mesh mesh = read_mesh(folder / file).mesh;
+        const CageResult result = make_cage(mesh, {.vertices = 200});
+        const CageCheck check = check_cage(result.cage, mesh);
+        EXPECT_TRUE(check.valid()) << file << " " << words(check);
+        EXPECT_TRUE(result.reached) << file << " " << result.cage.number_of_vertices();
+    }
+}
+
+TEST(Cage, MirroredToTheBit) {
+    const MadeMesh made = make_mesh(made_object("chair"), {.vertices = 4000});
+    const auto plane = std::optional<MirrorPlane>({Point(0, 0, 0), Vector(1, 0, 0)});
+    const CageResult result = make_cage(made.mesh, {.vertices = 150}, {}, plane);
+    const CageCheck check = check_cage(result.cage, made.mesh);
+    EXPECT_TRUE(check.valid()) << words(check);
+    EXPECT_LE(result.cage.number_of_vertices(), 150U);
+    EXPECT_GE(result.cage.number_of_vertices(), 149U);
+    std::set<std::array<double, 3>> places;
+    for (const Point& p : result.cage.points()) places.insert({p.x() == 0 ? 0 : p.x(), p.y(), p.z()});
+    for (const auto& [x, y, z] : places)
+        if (std::abs(x) > 1e-6) {
+            EXPECT_TRUE(places.count({-x, y, z})) << x << " " << y << " " << z;
+        }
+}
+
+TEST(Cage, NestedLevelsEncloseEachOther) {
+    const MadeMesh made = make_mesh(made_object("statuette"), {.vertices = 3000});
+    const auto levels = make_nested_cages(made.mesh, {60, 240, 120});
+    ASSERT_EQ(levels.size(), 3U);
+    const Mesh* inner = &made.mesh;
+    std::size_t wanted = 240;
+    for (const CageResult& level : levels) {
+        EXPECT_TRUE(check_cage(level.cage, *inner).valid()) << words(check_cage(level.cage, *inner));
+        EXPECT_EQ(level.cage.number_of_vertices(), wanted);
+        wanted /= 2;
+        inner = &level.cage;
+    }
+}
+
+TEST(Cage, MoreVerticesWhereTheyAreWanted) {
+    const Mesh mesh = spheres(4);
+    const auto above = [](const Mesh& cage) {
+        std::size_t count = 0;
+        for (const Point& p : cage.points()) count += p.z() > 0;
+        return count;
+    };
+    const std::size_t even = above(make_cage(mesh, {.vertices = 100}).cage);
+    const CageResult uneven = make_cage(mesh, {.vertices = 100}, [](const Point& p) { return p.z() > 0 ? 6.0 : 1.0; });
+    EXPECT_TRUE(check_cage(uneven.cage, mesh).valid());
+    EXPECT_NEAR(static_cast<double>(even), 50, 12);
+    EXPECT_GT(above(uneven.cage), even + 15);
+}
+
+TEST(Cage, FollowsOrFillsHoles) {
+    const MadeMesh torus = make_mesh(made_object("torus"), {.vertices = 2000});
+    EXPECT_EQ(check_cage(make_cage(torus.mesh, {.vertices = 80}).cage, torus.mesh).genus, 1);
+    const CageResult filled = make_cage(torus.mesh, {.vertices = 80, .genus = "fill"});
+    EXPECT_EQ(check_cage(filled.cage, torus.mesh).genus, 0);
+    EXPECT_TRUE(check_cage(filled.cage, torus.mesh).valid());
+}
+
+TEST(Cage, OpenFlatTinyHugeAndFarMeshes) {
+    const Mesh sheet = grid(5);
+    EXPECT_TRUE(check_cage(make_cage(sheet, {.vertices = 30}).cage, sheet).valid());
+    const Mesh one = build_mesh({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}});
+    EXPECT_TRUE(check_cage(make_cage(one, {.vertices = 12}).cage, one).valid());
+    for (const auto& [scale, shift] : {std::pair{1e-6, 0.0}, {1e6, 0.0}, {1.0, 1e5}}) {
+        TriangleSoup soup = to_soup(spheres(3));
+        for (auto& p : soup.points) p = {p[0] * scale + shift, p[1] * scale, p[2] * scale - shift};
+        const Mesh mesh = build_mesh(soup);
+        const CageResult result = make_cage(mesh, {.vertices = 40});
+        EXPECT_TRUE(check_cage(result.cage, mesh).valid())
+            << scale << " " << shift << " " << words(check_cage(result.cage, mesh));
+        EXPECT_EQ(result.cage.number_of_vertices(), 40U);
+    }
+    EXPECT_THROW(make_cage(Mesh()), Error);
+    EXPECT_THROW(make_cage(build_mesh({{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}, {{0, 1, 2}}})), Error);
+    EXPECT_THROW(make_cage(one, {.vertices = 3}), Error);
+}
+
+TEST(Cage, OfSeveralComponentsLosesNone) {
+    const Mesh mesh = spheres(2, {{0, 0, 0}, {40, 0, 0}, {0, 30, 0}}, 0.5);
+    const CageResult result = make_cage(mesh, {.vertices = 40});
+    EXPECT_TRUE(check_cage(result.cage, mesh).valid()) << words(check_cage(result.cage, mesh));
+}
+
+TEST(CheckCage, SaysWhatIsWrongAndWhere) {
+    const Mesh mesh = spheres(2);
+    const Mesh cage = spheres(1, {{0, 0, 0}}, 1.5);
+    EXPECT_TRUE(check_cage(cage, mesh).valid());
+    EXPECT_TRUE(findings(check_cage(cage, mesh), "mm").empty());
+    const CageCheck shifted = check_cage(spheres(1, {{1, 0, 0}}, 1.5), mesh);
+    EXPECT_FALSE(shifted.valid());
+    ASSERT_FALSE(shifted.outside.empty());
+    // Each outside vertex lies as far from the nearest face as is said.
+    for (const OutsideVertex& o : shifted.outside) EXPECT_GT(o.distance, 0);
+    EXPECT_NE(findings(shifted, "mm").front().text.find(" mm outside near face "), std::string::npos);
+    EXPECT_EQ(check_cage(mesh, mesh).touching, mesh.number_of_vertices());
+    EXPECT_FALSE(check_cage(grid(3), mesh).closed);
+    EXPECT_EQ(check_cage(Mesh(), mesh).components, 0U);
+    TriangleSoup inside_out = to_soup(cage);
+    for (auto& t : inside_out.triangles) std::swap(t[0], t[1]);
+    EXPECT_FALSE(check_cage(build_mesh(inside_out), mesh).outward);
+    // Two balls that cut each other.
+    const CageCheck cut = check_cage(spheres(2, {{0, 0, 0}, {1, 0, 0}}, 1.5), mesh);
+    EXPECT_FALSE(cut.intersections.empty());
+    EXPECT_EQ(cut.components, 2U);
+    // Two balls in two parts of a cage; a bar between them would cross it.
+    EXPECT_TRUE(check_cage(spheres(2, {{0, 0, 0}, {5, 0, 0}}, 1.5), spheres(2, {{0, 0, 0}, {5, 0, 0}})).encloses());
+    TriangleSoup bar;
+    bar.points = {{0, -0.1, 0}, {5, -0.1, 0}, {0, 0.1, 0}, {0, 0, 0.1}};
+    bar.triangles = {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}};
+    const CageCheck crossing = check_cage(spheres(2, {{0, 0, 0}, {5, 0, 0}}, 1.5), build_mesh(bar));
+    EXPECT_TRUE(crossing.outside.empty());
+    EXPECT_FALSE(crossing.crossing.empty());
+}
