@@ -25,6 +25,13 @@ struct LabelOptions {
 };
 void label_transfer(const LabelOptions& options);
 
+struct CageTableOptions {
+    std::vector<std::string> meshes;
+    std::vector<std::uint64_t> vertices{100, 200, 500};
+    std::string csv;
+};
+void cages(const CageTableOptions& options);
+
 /// The faces nearest to a seed vertex (by edge paths), up to a share of the mesh's area.
 std::vector<Index> disc(const Mesh& mesh, Vertex seed, double share);
 

@@ -1,4 +1,5 @@
-// Experiments that show how faithful transfer is. Each prints Markdown tables and writes the raw rows as CSV.
+// Experiments that show how faithful transfer is and how sound cages are. Each prints Markdown tables and writes the raw rows as
+// CSV.
 #include "experiments.h"
 
 #include "ostraka/core/error.h"
@@ -10,7 +11,7 @@
 
 int main(int argc, char** argv) {
     using namespace ostraka;
-    CLI::App tool("Experiments on annotation transfer", "ostraka_experiments");
+    CLI::App tool("Experiments on annotation transfer and cages", "ostraka_experiments");
     tool.require_subcommand(1);
     int threads = 0;
     tool.add_option("--threads", threads, "number of threads, 0 for all cores")->check(CLI::Range(0, 1024));
@@ -36,10 +37,17 @@ int main(int argc, char** argv) {
     label_command->add_option("--csv", labels.csv, "raw rows");
     label_command->add_option("--limit", labels.limit, "use only the first models");
 
+    experiments::CageTableOptions cages;
+    CLI::App* cage_command = tool.add_subcommand("cages", "cages of many meshes: how many are sound, and how long they take");
+    cage_command->add_option("meshes", cages.meshes, "closed meshes; open ones are left out")->required();
+    cage_command->add_option("--vertices", cages.vertices, "wanted numbers of vertices")->delimiter(',');
+    cage_command->add_option("--csv", cages.csv, "raw rows");
+
     try {
         tool.parse(argc, argv);
         set_threads(threads);
         if (table_command->parsed()) experiments::transfer_table(table);
+        if (cage_command->parsed()) experiments::cages(cages);
         if (label_command->parsed()) experiments::label_transfer(labels);
         return 0;
     } catch (const CLI::ParseError& error) {
