@@ -84,10 +84,17 @@ struct Pack {
         if (!object_class.empty()) provenance.options.emplace_back("class", object_class);
         if (!unit.empty()) provenance.options.emplace_back("unit", unit);
         // The file as it will be read: names that lead out of the folder are refused here.
-        const Json document = template_to_json(file, provenance);
-        (void)template_from_json(document, folder, output, options);
-        const Template bundle = load_template(file, options);
+        (void)template_from_json(template_to_json(file, provenance), folder, output, options);
+        Template bundle = load_template(file, options);
+        // What is not said of the object is as the annotations say.
+        if (bundle.annotations) {
+            if (file.object_class.empty()) file.object_class = bundle.annotations->object_class;
+            if (file.unit.empty()) file.unit = bundle.annotations->unit;
+            if (!file.up) file.up = bundle.annotations->up;
+            bundle.file = file;
+        }
         if (bundle.sound()) {
+            const Json document = template_to_json(file, provenance);
             if (copy)
                 for (const TemplatePart& part : file.parts) {
                     const Path place = folder / part.name;
@@ -135,9 +142,9 @@ void add_template(CLI::App& bundle, Session& session) {
     part("rules", "rules of the class (.rules.json)", false);
     part("ranges", "ranges of the class's measures (JSON)", false);
     part("landmarks", "landmarks (.ant.json)", false);
-    command->add_option("--class", pack->object_class, "class of the object");
-    command->add_option("--unit", pack->unit, "unit of length");
-    command->add_option("--up", pack->up, "upward direction, three numbers")->expected(3);
+    command->add_option("--class", pack->object_class, "class of the object; else as the annotations say");
+    command->add_option("--unit", pack->unit, "unit of the coordinates, any text such as mm; else as the annotations say");
+    command->add_option("--up", pack->up, "upward direction, three numbers; else as the annotations say")->expected(3);
     command->add_flag("--copy", pack->copy, "copy the parts into the template's folder");
     add_flags(command, pack->options);
 

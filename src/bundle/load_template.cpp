@@ -185,7 +185,7 @@ private:
         return counted(points, "landmark", "landmarks");
     }
 
-    /// The template wins; both are named.
+    /// The template wins; both are named. Two units are a defect: measures would be taken for others.
     void contradictions() {
         AnnotationSet& set = *result_.annotations;
         const TemplateFile& file = result_.file;
@@ -195,7 +195,8 @@ private:
                              ": the template's counts");
         };
         if (!file.unit.empty() && !set.unit.empty() && file.unit != set.unit)
-            differ("unit", "'" + file.unit + "'", "'" + set.unit + "'");
+            defect(name, "the unit of the annotations is '" + set.unit + "', that of the template '" + file.unit +
+                             "': one mesh has one unit");
         if (!file.object_class.empty() && !set.object_class.empty() && file.object_class != set.object_class)
             differ("class", "'" + file.object_class + "'", "'" + set.object_class + "'");
         if (file.up && set.up) {

@@ -125,6 +125,27 @@ TEST(Template, PackedCheckedShown) {
     EXPECT_EQ((*bundle.annotations->up)[2], 2) << "the template's";
 }
 
+TEST(Template, ClassUnitAndUpAreThoseOfTheAnnotations) {
+    const Ball ball;
+    const std::string pack = "template pack " + ball.at("bare.template.json") + " --mesh " + ball.at("ball.ply") +
+                             " --annotations " + ball.at("ball.ant.json");
+    const auto packed = run_command(pack);
+    ASSERT_EQ(packed.code, 0) << packed.out << packed.err;
+    EXPECT_TRUE(holds(packed.out, "ball, in mm")) << packed.out;
+    const TemplateFile file = read_template(ball / "bare.template.json");
+    EXPECT_EQ(file.object_class, "ball");
+    EXPECT_EQ(file.unit, "mm");
+    ASSERT_TRUE(file.up);
+    EXPECT_EQ((*file.up)[2], 1);
+    const std::string before = read_file(ball / "bare.template.json");
+    const auto other = run_command(pack + " --unit cm");
+    EXPECT_EQ(other.code, 3);
+    EXPECT_TRUE(holds(other.out, "one mesh has one unit")) << other.out;
+    EXPECT_EQ(read_file(ball / "bare.template.json"), before);
+    EXPECT_EQ(run_command(pack + " --class globe").code, 0) << "another class is a remark";
+    EXPECT_EQ(read_template(ball / "bare.template.json").object_class, "globe");
+}
+
 TEST(Template, TheFolderMayMove) {
     const Ball ball;
     ball.pack();
@@ -172,8 +193,8 @@ TEST(Template, EachPartThatDoesNotFitIsNamed) {
         holds(after([](const Ball& b) { write_file(b / "ball.npy", array(66, 18).substr(0, 1000)); }), "does not fit the size"));
     EXPECT_TRUE(holds(after([](const Ball& b) { write_file(b / "ranges.json", "{"); }), "ranges.json: line 1"));
     // What contradicts without being wrong.
-    EXPECT_TRUE(holds(after(text("ball.template.json", "\"unit\": \"mm\"", "\"unit\": \"cm\""), false),
-                      "the unit of the annotations is 'mm', that of the template 'cm': the template's counts"));
+    EXPECT_TRUE(holds(after(text("ball.template.json", "\"unit\": \"mm\"", "\"unit\": \"cm\"")),
+                      "the unit of the annotations is 'mm', that of the template 'cm': one mesh has one unit"));
     EXPECT_TRUE(holds(after(text("ball.template.json", "\"up\": [0.0, 0.0, 2.0]", "\"up\": [0, 1, 0]"), false),
                       "the upward direction of the annotations is (0, 0, 1), that of the template (0, 1, 0)"));
     EXPECT_TRUE(

@@ -75,9 +75,9 @@ struct Template {
 /// Reads every part and looks at them together. Defects: a part that is missing or does not parse, a checksum that is not that of
 /// the file, annotations that do not fit the mesh, a graph that names annotations that are not there, tags and attributes that
 /// are not in the vocabulary, rules of the class that are broken, a cage that is not closed, coordinates without a row for each
-/// vertex of the mesh or a column for each vertex (or face) of a cage. Remarks: units, upward directions and classes that
-/// contradict each other (the template's counts), a cage that does not enclose the mesh, parts without a checksum. Throws only
-/// where there is no memory.
+/// vertex of the mesh or a column for each vertex (or face) of a cage, a unit that is not that of the annotations. Remarks:
+/// upward directions and classes that contradict each other (the template's counts), a cage that does not enclose the mesh, parts
+/// without a checksum. Throws only where there is no memory.
 Template load_template(TemplateFile file, const TemplateOptions& options = {});
 
 }  // namespace ostraka
