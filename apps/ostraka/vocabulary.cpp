@@ -7,6 +7,7 @@
 #include <functional>
 #include <iostream>
 #include <memory>
+#include <set>
 
 namespace ostraka::app {
 
@@ -72,6 +73,7 @@ struct Show {
             }
             roots = found;
         }
+        check_language(session, vocabulary);
         Json document(rapidjson::kObjectType);
         auto& allocator = document.GetAllocator();
         JsonValue result(rapidjson::kObjectType), list(rapidjson::kArrayType);
@@ -118,8 +120,28 @@ struct Show {
                 std::cout << (i == 0 ? " " : "; ") << printable(text_of(vocabulary.attributes[i]));
             std::cout << '\n';
         }
-        if (!vocabulary.rules.empty()) std::cout << vocabulary.rules.size() << " rules\n";
+        // Of those about the concepts shown, and of all.
+        const auto about = std::count_if(vocabulary.rules.begin(), vocabulary.rules.end(), [&](const InferenceRule& rule) {
+            return rule.concept_id.empty() || seen[*search.find(rule.concept_id)];
+        });
+        if (!vocabulary.rules.empty())
+            std::cout << about << (under.empty() ? "" : " of " + std::to_string(vocabulary.rules.size()))
+                      << (vocabulary.rules.size() == 1 ? " rule" : " rules") << (under.empty() ? "" : " may apply to them")
+                      << '\n';
         return done;
+    }
+
+private:
+    /// Says so where no concept has a label in the language asked for.
+    void check_language(const Session& session, const Vocabulary& vocabulary) const {
+        std::set<std::string> known;
+        for (const Concept& entry : vocabulary.concepts)
+            for (const auto& [tongue, text] : entry.labels) known.insert(tongue);
+        known.erase("");
+        if (known.empty() || known.contains(language)) return;
+        std::string list;
+        for (const auto& tongue : known) list += (list.empty() ? "" : ", ") + tongue;
+        session.note("note: no label is in the language '" + language + "'; there are " + list);
     }
 };
 

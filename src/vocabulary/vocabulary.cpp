@@ -326,7 +326,7 @@ std::vector<std::string> VocabularySearch::suggestions(const std::string& tag) c
 
 std::string VocabularySearch::label(std::size_t concept_index, const std::string& language) const {
     const Concept& entry = vocabulary_.concepts[concept_index];
-    for (const std::string& wanted : {language, std::string()})
+    for (const std::string& wanted : {language, std::string(), std::string("en")})
         if (const auto found = entry.labels.find(wanted); found != entry.labels.end()) return found->second;
     return entry.labels.empty() ? entry.id : entry.labels.begin()->second;
 }

@@ -131,7 +131,7 @@ public:
     [[nodiscard]] const AllowedAttribute* attribute_of(std::size_t concept_index, const std::string& name) const;
     /// Ids and labels close to a text, closest first.
     [[nodiscard]] std::vector<std::string> suggestions(const std::string& tag) const;
-    /// The concept's label in a language, or in none, or in any; the id if it has no label.
+    /// The concept's label in a language, or in none, or in English, or in any; the id if it has no label.
     [[nodiscard]] std::string label(std::size_t concept_index, const std::string& language) const;
 
     [[nodiscard]] const Vocabulary& vocabulary() const { return vocabulary_; }
