@@ -218,7 +218,7 @@ void add_annotation_edit(CLI::App& annotation, Session& session) {
         command->add_option("--set-unit", edit->unit,
                             "unit of the coordinates, of the whole file (any text, such as mm); no number changes; '' for none");
     edit->up_given = command->add_option("--set-up", edit->up, "x,y,z: upward direction, of the whole file; '' for none");
-    command->add_flag("--duplicate", edit->duplicate, "add a copy");
+    command->add_flag("--duplicate", edit->duplicate, "add a copy; the other changes are made to the copy, the original stays");
     command->add_flag("--split", edit->split, "make each patch, poly-line or point an annotation of its own");
     command->add_flag("--remove", edit->remove, "remove the annotation");
     add_flags(command, edit->reading);

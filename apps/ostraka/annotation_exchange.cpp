@@ -44,15 +44,17 @@ struct Export {
         for (const auto& note : set.notes) session.note("note: " + note);
         for (const auto& note : exported.notes) session.note("note: " + note);
         if (!session.json) {
-            std::cout << set.annotations.size() << (set.annotations.size() == 1 ? " annotation" : " annotations") << " as "
-                      << chosen << ", " << exported.bytes.size() << " bytes\n";
+            const std::size_t all = set.annotations.size(), written = exported.annotations;
+            std::cout << written << (written == all ? "" : " of " + std::to_string(all))
+                      << (all == 1 ? " annotation" : " annotations") << " as " << chosen << ", " << exported.bytes.size()
+                      << " bytes\n";
             return done;
         }
         Json document(rapidjson::kObjectType);
         auto& allocator = document.GetAllocator();
         JsonValue result(rapidjson::kObjectType);
         add_member(result, "format", chosen, allocator);
-        add_member(result, "annotations", JsonValue(static_cast<std::uint64_t>(set.annotations.size())), allocator);
+        add_member(result, "annotations", JsonValue(static_cast<std::uint64_t>(exported.annotations)), allocator);
         add_member(result, "bytes", JsonValue(static_cast<std::uint64_t>(exported.bytes.size())), allocator);
         add_member(result, "sha256", sha256(exported.bytes), allocator);
         add_member(result, "notes", text_list(exported.notes, allocator), allocator);

@@ -117,9 +117,15 @@ private:
             return;
         }
         if (!rows.empty()) std::cout << table({"id", "tag", "conflict", "base", "ours", "theirs"}, rows);
+        const auto any = [&](const std::string& field) {
+            return std::any_of(merged.conflicts.begin(), merged.conflicts.end(),
+                               [&](const Conflict& conflict) { return conflict.field == field; });
+        };
         if (!settled)
             std::cout << rows.size() << (rows.size() == 1 ? " conflict" : " conflicts")
-                      << "; nothing written (settle them in the files, or choose with --prefer)\n";
+                      << "; nothing written (settle them in the files, or choose with --prefer"
+                      << (any("both added") ? "; --renumber keeps both where both added under one id" : "")
+                      << (any("geometry") ? "; --merge-faces joins regions that both changed" : "") << ")\n";
         else
             std::cout << merged.set.annotations.size() << " annotations"
                       << (rows.empty() ? "" : ", conflicts settled for " + options.prefer) << '\n';

@@ -75,18 +75,20 @@ bool is_number(const std::string& text) {
 std::string table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& raw_rows) {
     std::vector<std::vector<std::string>> rows = raw_rows;
     for (auto& row : rows)
-        for (auto& cell : row) cell = printable(cell, 100);
+        for (auto& cell : row) cell = printable(cell, std::string::npos);
+    // Nothing is cut; a cell that is wider than this pushes the rest of its own row aside only.
+    constexpr std::size_t widest = 100;
     std::vector<std::size_t> widths(header.size());
     for (std::size_t c = 0; c < header.size(); ++c) {
         widths[c] = width(header[c]);
-        for (const auto& row : rows) widths[c] = std::max(widths[c], c < row.size() ? width(row[c]) : 0);
+        for (const auto& row : rows) widths[c] = std::max(widths[c], c < row.size() ? std::min(width(row[c]), widest) : 0);
     }
     std::string text;
     const auto line = [&](const std::vector<std::string>& cells, bool is_header) {
         std::string out;
         for (std::size_t c = 0; c < header.size(); ++c) {
             const std::string cell = c < cells.size() ? cells[c] : "";
-            const std::string gap(widths[c] - width(cell), ' ');
+            const std::string gap(widths[c] - std::min(widths[c], width(cell)), ' ');
             bool right = is_number(cell);
             if (is_header) {
                 right = !rows.empty();

@@ -85,7 +85,7 @@ void print_findings(const std::string& place, const std::vector<std::vector<std:
 /// Prints what a check found, as a table or a report. Returns the exit code: `answer_is_no` if there is a defect.
 int report_findings(const Session& session, const Provenance& provenance, const std::vector<Finding>& findings);
 
-/// A table for people: columns padded, numbers right-aligned.
+/// A table for people: columns padded, numbers right-aligned, no text cut.
 std::string table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows);
 /// A number for people: `digits` significant digits.
 std::string number(double value, int digits = 5);

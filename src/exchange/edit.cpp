@@ -76,6 +76,11 @@ private:
             merge(at, find(other));
             at = find({merged_id_, {}});
         }
+        if (edit.duplicate) {
+            Annotation copy = set_.annotations[at];
+            copy.id = free_id(set_);
+            set_.annotations.insert(set_.annotations.begin() + static_cast<std::ptrdiff_t>(++at), std::move(copy));
+        }
         Annotation& annotation = set_.annotations[at];
         if (edit.tag) annotation.tag = *edit.tag;
         if (edit.note) annotation.note = *edit.note;
@@ -84,18 +89,14 @@ private:
             if (set_.find(*edit.id) != nullptr)
                 fail_input(here_, "the id " + to_string(*edit.id) + " is taken",
                            "choose another; free is " + to_string(free_id(set_)));
-            notes_.push_back("annotation " + to_string(annotation.id) + " is " + to_string(*edit.id) +
-                             " now: relations that name it by its old id must follow");
+            if (!edit.duplicate)
+                notes_.push_back("annotation " + to_string(annotation.id) + " is " + to_string(*edit.id) +
+                                 " now: relations that name it by its old id must follow");
             annotation.id = *edit.id;
         }
         for (const EntryName& name : edit.remove_attributes) remove_attribute(annotation, name);
         for (const Attribute& attribute : edit.attributes) put(annotation, attribute);
         for (const auto& [name, text] : edit.texts) put(annotation, name, text);
-        if (edit.duplicate) {
-            Annotation copy = annotation;
-            copy.id = free_id(set_);
-            set_.annotations.insert(set_.annotations.begin() + static_cast<std::ptrdiff_t>(at) + 1, std::move(copy));
-        }
         if (edit.split) split(at);
         if (edit.remove) set_.annotations.erase(set_.annotations.begin() + static_cast<std::ptrdiff_t>(at));
     }

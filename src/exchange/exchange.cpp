@@ -8,6 +8,7 @@
 #include "ostraka/exchange/prototype_files.h"
 #include "ostraka/exchange/web_annotation.h"
 
+#include <algorithm>
 #include <map>
 #include <set>
 
@@ -89,9 +90,17 @@ ExportedAnnotations export_annotations(const Mesh& mesh, const AnnotationSet& se
     check_options(options, "annotation export");
     check_annotations(set, mesh, mesh_file.empty() ? "annotations" : "annotations of " + mesh_file);
     ExportedAnnotations result;
+    const auto count = [&](auto&& written) {
+        return static_cast<std::size_t>(std::count_if(set.annotations.begin(), set.annotations.end(), written));
+    };
+    result.annotations = set.annotations.size();
     if (const auto landmarks = landmark_format(format)) {
-        const LandmarkSet places = landmarks_of(mesh, set);
+        const LandmarkSet places = landmarks_of(mesh, set, *landmarks);
         result.notes = places.notes;
+        result.annotations = count([&](const Annotation& annotation) {
+            return annotation.type == AnnotationType::point ||
+                   (annotation.type == AnnotationType::line && *landmarks == LandmarkFormat::mrk);
+        });
         result.bytes = landmarks_to_text(places, *landmarks, mesh_file, provenance, result.notes, options.landmarks);
     } else if (format == "attributes-csv") {
         result.bytes = attribute_table(set);
@@ -102,6 +111,7 @@ ExportedAnnotations export_annotations(const Mesh& mesh, const AnnotationSet& se
     } else if (format == "ant") {
         result.bytes = prototype_annotations(mesh, set, result.notes);
     } else if (format == "fct") {
+        result.annotations = count(has_facet);
         result.bytes = prototype_facets(mesh, set, mesh_file, result.notes);
     } else {
         unknown_format(format);

@@ -24,16 +24,7 @@ bool same(const Annotation& a, const Annotation& b) {
                       [](const Attribute& x, const Attribute& y) { return same(x, y); });
 }
 
-std::string words(const std::string& text) {
-    const std::string line = one_line(text);
-    std::size_t end = 0, count = 0;
-    while (end < line.size() && count < 60) {
-        ++end;
-        while (end < line.size() && (static_cast<unsigned char>(line[end]) & 0xC0) == 0x80) ++end;
-        ++count;
-    }
-    return end < line.size() ? line.substr(0, end) + "..." : line;
-}
+std::string words(const std::string& text) { return one_line(text); }
 
 std::string words(const std::array<int, 3>& colour) {
     return std::to_string(colour[0]) + " " + std::to_string(colour[1]) + " " + std::to_string(colour[2]);

@@ -11,7 +11,7 @@ bool same_geometry(const Annotation& a, const Annotation& b);
 bool same_head(const Annotation& a, const Annotation& b);
 bool same(const Annotation& a, const Annotation& b);
 
-/// In words, at most 60 characters and on one line.
+/// In words, whole and on one line.
 std::string words(const std::string& text);
 std::string words(const std::array<int, 3>& colour);
 std::string words(const std::optional<std::array<double, 3>>& direction);

@@ -25,6 +25,8 @@ std::array<double, 3> position_of(const Mesh& mesh, Index vertex) {
     return {p.x(), p.y(), p.z()};
 }
 
+constexpr const char* points_only = " left out: the format holds points only";
+
 Point point_of(const std::array<double, 3>& p) { return {p[0], p[1], p[2]}; }
 
 /// Everything of the file with where it came to lie.
@@ -196,7 +198,7 @@ std::string landmarks_to_text(const LandmarkSet& set, LandmarkFormat format, con
                               const Provenance& provenance, std::vector<std::string>& notes, const LandmarkFileOptions& options) {
     check_options(options, "landmarks");
     if (format != LandmarkFormat::mrk && !set.curves.empty())
-        notes.push_back(counted(set.curves.size(), "poly-line") + " left out: the format holds points only");
+        notes.push_back(counted(set.curves.size(), "poly-line") + points_only);
     switch (format) {
         case LandmarkFormat::tps:
             return exchange::write_tps(set, mesh_file);
@@ -212,13 +214,17 @@ std::string landmarks_to_text(const LandmarkSet& set, LandmarkFormat format, con
     return exchange::write_landmark_table(set);
 }
 
-LandmarkSet landmarks_of(const Mesh& mesh, const AnnotationSet& set) {
+LandmarkSet landmarks_of(const Mesh& mesh, const AnnotationSet& set, LandmarkFormat format) {
     LandmarkSet result;
     result.unit = set.unit;
-    std::size_t regions = 0, attributes = 0;
+    std::size_t regions = 0, polylines = 0, attributes = 0;
     for (const Annotation& annotation : set.annotations) {
         if (annotation.type == AnnotationType::region) {
             ++regions;
+            continue;
+        }
+        if (annotation.type == AnnotationType::line && format != LandmarkFormat::mrk) {
+            polylines += annotation.polylines.size();
             continue;
         }
         attributes += annotation.attributes.size();
@@ -233,6 +239,7 @@ LandmarkSet landmarks_of(const Mesh& mesh, const AnnotationSet& set) {
         }
     }
     if (regions > 0) result.notes.push_back(counted(regions, "region") + " left out: landmark files hold no regions");
+    if (polylines > 0) result.notes.push_back(counted(polylines, "poly-line") + points_only);
     if (attributes > 0) result.notes.push_back(counted(attributes, "attribute") + " left out: landmark files hold none");
     return result;
 }

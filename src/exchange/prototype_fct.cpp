@@ -178,12 +178,16 @@ private:
 
 }  // namespace
 
+bool has_facet(const Annotation& annotation) {
+    return annotation.type == AnnotationType::region && !annotation.all && !annotation.faces.empty();
+}
+
 std::string prototype_facets(const Mesh& mesh, const AnnotationSet& set, const std::string& mesh_file,
                              std::vector<std::string>& notes) {
     std::string body;
     std::size_t count = 0, others = 0, attributes = 0, changed = 0;
     for (const Annotation& annotation : set.annotations) {
-        if (annotation.type != AnnotationType::region || annotation.all || annotation.faces.empty()) {
+        if (!has_facet(annotation)) {
             ++others;
             continue;
         }

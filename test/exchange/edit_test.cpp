@@ -123,6 +123,17 @@ TEST(Edit, DuplicateAndRemove) {
     EXPECT_EQ(set.annotations[1].id, 4);
     EXPECT_EQ(set.annotations[1].faces, set.annotations[0].faces);
     EXPECT_TRUE(differences(set, copy_of(set)).empty());
+    // What else is asked for is done to the copy.
+    const AnnotationSet before = copy_of(set);
+    const auto notes = edit_annotations(
+        mesh, set, edits(R"({"annotation": 2, "duplicate": true, "id": 9, "tag": "twin", "colour": [1, 2, 3]})"), "edits");
+    EXPECT_TRUE(notes.empty()) << "no annotation lost its id";
+    ASSERT_EQ(set.annotations.size(), 4U);
+    EXPECT_EQ(set.annotations[0].tag, before.annotations[0].tag);
+    EXPECT_EQ(set.annotations[0].colour, before.annotations[0].colour);
+    EXPECT_EQ(set.annotations[1].id, 9);
+    EXPECT_EQ(set.annotations[1].tag, "twin");
+    EXPECT_EQ(set.annotations[1].faces, set.annotations[0].faces);
 }
 
 TEST(Edit, Refusals) {

@@ -151,6 +151,58 @@ TEST(ExchangeCommand, EditOfClassUnitAndUp) {
     EXPECT_FALSE(std::filesystem::exists(folder / "p.ant.json"));
 }
 
+TEST(ExchangeCommand, WhatIsWrittenIsCounted) {
+    const Folder folder;
+    AnnotationSet set;
+    set.unit = "mm";
+    const auto add = [&](AnnotationType type, const char* tag) -> Annotation& {
+        Annotation& annotation = set.annotations.emplace_back();
+        annotation.id = static_cast<int>(set.annotations.size());
+        annotation.type = type;
+        annotation.tag = tag;
+        annotation.attributes = {semantic(0, "note", tag)};
+        return annotation;
+    };
+    add(AnnotationType::region, "cap").faces = {0, 1};
+    add(AnnotationType::point, "tip").points = {3};
+    const Vertex from = folder.mesh.source(Halfedge(0)), to = folder.mesh.target(Halfedge(0));
+    add(AnnotationType::line, "rim").polylines = {{Index(from), Index(to)}};
+    folder.write(set, "m.ant.json");
+    const auto exported = [&](const std::string& file, const std::string& flags = "") {
+        const auto result = folder.run("export", {"m.ant.json", file}, flags);
+        EXPECT_EQ(result.code, 0) << file << result.err;
+        return result.out + result.err;
+    };
+    for (const auto& [file, flags] :
+         {std::pair{"l.csv", "--format landmarks-csv"}, {"l.tps", ""}, {"l.pp", ""}, {"l.fcsv", ""}}) {
+        const std::string text = exported(file, flags);
+        EXPECT_EQ(text.find("1 of 3 annotations as "), 0U) << text;
+        EXPECT_NE(text.find("1 attribute left out"), std::string::npos) << "that of the point alone: " << text;
+        EXPECT_NE(text.find("1 poly-line left out"), std::string::npos) << text;
+    }
+    const std::string markups = exported("l.mrk.json");
+    EXPECT_EQ(markups.find("2 of 3 annotations as mrk"), 0U) << markups;
+    EXPECT_NE(markups.find("2 attributes left out"), std::string::npos) << markups;
+    EXPECT_EQ(exported("l.fct").find("1 of 3 annotations as fct"), 0U);
+    EXPECT_EQ(exported("l.jsonld").find("3 annotations as web"), 0U);
+    const auto report = folder.run("export", {"m.ant.json", "l.tps"}, "--json");
+    EXPECT_EQ(parse_json(report.out, "report")["result"]["annotations"].GetInt(), 1);
+}
+
+TEST(ExchangeCommand, TablesCutNoText) {
+    const Folder folder;
+    const std::string text = std::string(150, 'x') + "end";
+    const auto edited = folder.run("edit", {"a.ant.json", "b.ant.json"}, "--annotation 3 --attribute note=" + text);
+    ASSERT_EQ(edited.code, 0) << edited.err;
+    EXPECT_NE(edited.out.find(text), std::string::npos) << edited.out;
+    EXPECT_NE(folder.run("list", {"b.ant.json"}).out.find(text), std::string::npos);
+    // A long cell widens no other row.
+    const auto tagged = folder.run("edit", {"a.ant.json", "c.ant.json"}, "--annotation 3 --tag " + text + text);
+    const auto list = folder.run("list", {"c.ant.json"});
+    EXPECT_NE(list.out.find(text + text), std::string::npos);
+    EXPECT_LT(list.out.find('\n'), 250U) << "the header keeps its width";
+}
+
 TEST(ExchangeCommand, DiffAndMerge) {
     const Folder folder;
     EXPECT_EQ(folder.run("diff", {"a.ant.json", "a.ant.json"}).code, 0);
@@ -169,7 +221,19 @@ TEST(ExchangeCommand, DiffAndMerge) {
     const auto conflict = folder.run("merge", {"a.ant.json", "ours.ant.json", "theirs.ant.json", "n.ant.json"});
     EXPECT_EQ(conflict.code, 3);
     EXPECT_NE(conflict.out.find("1 conflict"), std::string::npos) << conflict.out;
+    EXPECT_EQ(conflict.out.find("--renumber"), std::string::npos) << conflict.out;
     EXPECT_FALSE(std::filesystem::exists(folder / "n.ant.json"));
+    // Two annotations under one id: the way out is named.
+    for (const char* name : {"ours", "theirs"}) {
+        const std::string file = std::string(name) + "2.ant.json";
+        ASSERT_EQ(folder.run("edit", {"a.ant.json", file}, "--annotation 3 --duplicate --id 77 --tag " + std::string(name)).code,
+                  0);
+    }
+    const auto twice = folder.run("merge", {"a.ant.json", "ours2.ant.json", "theirs2.ant.json", "n.ant.json"});
+    EXPECT_EQ(twice.code, 3);
+    EXPECT_NE(twice.out.find("--renumber keeps both"), std::string::npos) << twice.out;
+    EXPECT_EQ(folder.run("merge", {"a.ant.json", "ours2.ant.json", "theirs2.ant.json", "both.ant.json"}, "--renumber").code, 0);
+    EXPECT_EQ(folder.read("both.ant.json").annotations.size(), folder.read("a.ant.json").annotations.size() + 2);
     ASSERT_EQ(folder.run("merge", {"a.ant.json", "ours.ant.json", "theirs.ant.json", "n.ant.json"}, "--prefer theirs").code, 0);
     EXPECT_EQ(folder.read("n.ant.json").find(3)->tag, "theirs");
 }

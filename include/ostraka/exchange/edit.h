@@ -16,15 +16,15 @@ struct EntryName {
 struct AnnotationEdit {
     EntryName annotation;
     std::vector<EntryName> merge;  ///< annotations of the same type that become part of this one and vanish
+    bool duplicate = false;        ///< the copy gets a free id and comes after the original; what follows is done to the copy
     std::optional<std::string> tag, note;
     std::optional<std::array<int, 3>> colour;
     std::optional<int> id;
     std::vector<EntryName> remove_attributes;
     std::vector<Attribute> attributes;  ///< each replaces the one with its id, or comes last; its pins are indices of the mesh
     std::vector<std::pair<std::string, std::string>>
-        texts;               ///< name and text: changes the semantic attribute of that name, or adds one
-    bool duplicate = false;  ///< the copy gets a free id and comes after the original
-    bool split = false;      ///< the patches of a region, poly-lines of a line, points become annotations of their own
+        texts;           ///< name and text: changes the semantic attribute of that name, or adds one
+    bool split = false;  ///< the patches of a region, poly-lines of a line, points become annotations of their own
     bool remove = false;
 };
 

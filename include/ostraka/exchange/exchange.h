@@ -26,6 +26,7 @@ struct ExportOptions {
 struct ExportedAnnotations {
     std::string bytes;               ///< of the file
     std::vector<std::string> notes;  ///< what the format does not hold, in words
+    std::size_t annotations = 0;     ///< how many of the set are in it
 };
 
 /// The set as a file of the format. The same set, mesh, name and provenance give the same bytes. Throws Error (usage) for an

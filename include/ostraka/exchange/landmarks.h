@@ -66,8 +66,9 @@ std::string landmarks_to_text(const LandmarkSet& set, LandmarkFormat format, con
                               const LandmarkFileOptions& options = {});
 
 /// The points and poly-lines of a set: an annotation of one point gives a landmark named by its tag, one of several points gives
-/// "tag 1", "tag 2" ...; a poly-line gives a curve. Regions, colours and attributes have no place; notes count them.
-LandmarkSet landmarks_of(const Mesh& mesh, const AnnotationSet& set);
+/// "tag 1", "tag 2" ...; a poly-line gives a curve. Regions, colours and attributes have no place, nor
+/// have poly-lines in formats other than mrk; notes count them, attributes where the annotation itself has a place.
+LandmarkSet landmarks_of(const Mesh& mesh, const AnnotationSet& set, LandmarkFormat format = LandmarkFormat::mrk);
 
 struct PlaceOptions {
     double tolerance = 0.02;

@@ -16,6 +16,8 @@ std::string prototype_annotations(const Mesh& mesh, const AnnotationSet& set, st
 /// no place there; `notes` counts them.
 std::string prototype_facets(const Mesh& mesh, const AnnotationSet& set, const std::string& mesh_file,
                              std::vector<std::string>& notes);
+/// Has this annotation a facet in such a file? Regions have that are not the whole object.
+bool has_facet(const Annotation& annotation);
 
 /// Reads facets onto the mesh they were made for: regions with the label as tag and a semantic attribute "facet". The side of the
 /// borders that holds the inner vertices is the region; without inner vertices, the side to the left. Throws Error (input) naming
