@@ -1,4 +1,5 @@
 // ostraka annotation apply | list | check | remap
+#include "annotation_names.h"
 #include "command.h"
 #include "word_checks.h"
 
@@ -83,7 +84,8 @@ void print_set(const Session& session, const Provenance& provenance, const Mesh&
     for (const auto& note : set.notes) session.note("note: " + note);
     if (session.json) session.print_report(provenance, document, result);
     else
-        std::cout << table({"id", "tag", "type", "elements", "patches", "outlines", "area", "perimeter / length", "attributes"},
+        std::cout << table({"id", "tag", "type", "elements", "patches", "outlines", in_unit("area", set),
+                            in_unit("perimeter / length", set), "attributes"},
                            rows);
 }
 
@@ -253,7 +255,10 @@ void add_annotation(CLI::App& annotation, Session& session) {
     CLI::App* command = session.add(annotation, "apply", "annotate a mesh by a recipe or from labels",
                                     [&session, apply] { return apply->run(session); });
     command
-        ->add_option("files", apply->files, "mesh, recipe (.recipe.json) or label file (one integer a face), output (.ant.json)")
+        ->add_option("files", apply->files,
+                     "the mesh; a recipe (.recipe.json) or a label file (one integer a face), not with --from-ply-labels; the "
+                     "output (.ant.json)")
+        ->option_text("MESH [RECIPE|LABELS] OUTPUT")
         ->required()
         ->expected(2, 3);
     command->add_flag("--from-ply-labels", apply->mesh_labels,

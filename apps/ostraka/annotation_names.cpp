@@ -2,6 +2,8 @@
 
 #include "command.h"
 
+#include "ostraka/measure/measure.h"
+
 #include <charconv>
 
 namespace ostraka::app {
@@ -21,6 +23,11 @@ const Annotation& find_annotation(const AnnotationSet& set, const std::string& n
         fail_input(file, "has " + std::to_string(tagged.size()) + " annotations tagged '" + printable(name, 60) + "'",
                    "give the id of one");
     return *tagged.front();
+}
+
+std::string in_unit(const std::string& quantity, const AnnotationSet& set) {
+    const std::string unit = descriptor_unit(quantity, set.unit);
+    return quantity + (unit.empty() ? "" : " " + printable(unit, 20));
 }
 
 }  // namespace ostraka::app

@@ -1,4 +1,5 @@
 // ostraka annotation select: one step of a recipe, given by flags.
+#include "annotation_names.h"
 #include "number_lists.h"
 #include "step_flags.h"
 
@@ -148,7 +149,7 @@ void Select::print(const Session& session, const Provenance& provenance, const M
         if (chosen->type != AnnotationType::point) add_member(result, "length", JsonValue(summary.length), allocator);
         if (!session.json)
             std::cout << table(
-                {"id", "tag", "type", "elements", "patches", "area", "perimeter / length"},
+                {"id", "tag", "type", "elements", "patches", in_unit("area", set), in_unit("perimeter / length", set)},
                 {{std::to_string(id), chosen->tag, to_string(chosen->type), std::to_string(summary.elements),
                   std::to_string(summary.patches), chosen->type == AnnotationType::region ? number(summary.area) : "-",
                   chosen->type == AnnotationType::point ? "-" : number(summary.length)}});
@@ -170,8 +171,8 @@ void add_annotation_select(CLI::App& annotation, Session& session) {
     select->step.add_to(*command);
     command->add_option("--output", select->output, "write the annotations here and leave the file as it is");
     command->add_option("--record", select->record, "recipe to which the step is added, or which is begun");
-    command->add_option("--class", select->object_class, "of a new file: what the object is");
-    command->add_option("--unit", select->unit, "of a new file: of the coordinates");
+    command->add_option("--class", select->object_class, "of a new file: what the object is (any text)");
+    command->add_option("--unit", select->unit, "of a new file: unit of the coordinates (any text, such as mm)");
     add_flags(command, select->options);
 }
 

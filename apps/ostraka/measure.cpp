@@ -46,7 +46,7 @@ struct Subject {
         if (several)
             command.add_option("--annotation", chosen, "id or tag of an annotation; once for each, all if left out")
                 ->allow_extra_args(false);
-        command.add_option("--unit", unit, "unit of length, where the annotations do not say (mm, m ...)");
+        command.add_option("--unit", unit, "unit of the coordinates, where the annotations do not say (any text, such as mm)");
         command.add_option("--output", output, "annotations to write, with the values as attributes (.ant.json)");
         add_flags(&command, reading);
     }
@@ -166,6 +166,7 @@ struct Take {
         const Evaluated taken = in_file(subject.mesh_file, [&] { return evaluate_with_uncertainty(file.mesh, holder, measure); });
         measure.value = taken.value;
         measure.uncertainty = taken.uncertainty;
+        note_namesake(session, holder);
         keep(holder, measure);
         subject.write(set, file.mesh, provenance);
         report(session, provenance, holder, measure, taken);
@@ -190,6 +191,16 @@ private:
         if (moved > 0.001 * diagonal)
             session.note("the pin at " + where + " is vertex " + std::to_string(found) + ", " + number(moved, 3) + " away");
         return found;
+    }
+
+    void note_namesake(const Session& session, const Annotation& holder) const {
+        const std::string& called = name.empty() ? tool : name;
+        for (const Attribute& other : holder.attributes)
+            if (other.name == called)
+                return session.note("note: annotation " + std::to_string(holder.id) + " has an attribute '" + called + "' (id " +
+                                    std::to_string(other.id) +
+                                    ") already, and both are kept: give another --name, remove one with 'annotation edit "
+                                    "--remove-attribute ID', or join pickings with 'measure refresh --merge-pickings'");
     }
 
     void keep(Annotation& holder, const Measure& measure) const {
@@ -293,9 +304,11 @@ private:
             for (const Quantity& quantity : quantities) {
                 JsonValue item(rapidjson::kObjectType), numbers(rapidjson::kArrayType);
                 std::string text;
-                for (const double value : quantity.values) {
-                    numbers.PushBack(value, allocator);
-                    text += (text.empty() ? "" : " ") + number(value, 6);
+                const bool axes = quantity.name == "box axes" && quantity.values.size() == 9;  // three vectors
+                for (std::size_t i = 0; i < quantity.values.size(); ++i) {
+                    numbers.PushBack(quantity.values[i], allocator);
+                    text += (text.empty() ? "" : " ") + std::string(axes && i % 3 == 0 ? "(" : "") +
+                            number(quantity.values[i], 6) + (axes && i % 3 == 2 ? ")" : "");
                 }
                 add_member(item, "name", quantity.name, allocator);
                 if (quantity.is_list) add_member(item, "value", std::move(numbers), allocator);
@@ -376,7 +389,10 @@ void add_measure(CLI::App& measure, Session& session) {
     command->add_option("--geodesic", take->geodesic, "a tape along edges, or the exact shortest curve over the faces")
         ->check(CLI::IsMember({"edges", "exact"}))
         ->capture_default_str();
-    command->add_option("--repeat", take->repeats, "the pins picked again; once for each picking: value is the mean")
+    command
+        ->add_option("--repeat", take->repeats,
+                     "the pins picked again, as vertex indices like 12,88, as many as the measure has; once for each picking: "
+                     "the value is the mean")
         ->allow_extra_args(false);
     command->add_option("--annotation", take->annotation,
                         "id or tag of the annotation that gets it; the whole object if left out");

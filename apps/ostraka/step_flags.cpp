@@ -102,6 +102,9 @@ JsonValue StepFlags::threshold(Alloc a) const {
         if (seed.empty()) fail_usage("a threshold on the distance needs a place to start from", "add --seed PICK");
         add_member(value, "distance", picks({seed}, "seed", a), a);
     } else {
+        if (extension(of).empty() && !std::filesystem::exists(of))
+            fail_usage("--threshold '" + of + "' is no known quantity and no file",
+                       "use x, y, z, mean-curvature, gaussian-curvature, thickness, distance or a file of values (.npy or text)");
         add_member(value, "map", of, a);
     }
     if (above) add_member(value, "above", JsonValue(*above), a);
@@ -295,7 +298,8 @@ void StepFlags::add_to(CLI::App& command) {
              {"--halfspace", tools.halfspace, "six numbers: a point of the plane, and the normal to the side wanted"},
              {"--nearest", tools.nearest, "x,y,z: the nearest vertex"},
              {"--threshold", tools.threshold,
-              "x, y, z, mean-curvature, gaussian-curvature, thickness, distance (from --seed) or a file"},
+              "x, y, z, mean-curvature, gaussian-curvature, thickness, distance (from --seed) or a file of values (.npy or "
+              "text)"},
              {"--segment", tools.segments, "levels of thickness to tell apart; the segment of --seed"}})
         command.add_option(flag, text, help)->group(tool_group);
     many("--path", tools.path, "picks joined by shortest paths along edges");
@@ -313,20 +317,33 @@ void StepFlags::add_to(CLI::App& command) {
     command.add_flag("--closed", closed, "path: back to the first pick")->group(how);
     command.add_option("--metric", metric, "path and lasso: what is short")
         ->check(CLI::IsMember({"euclidean", "segment", "combined"}))
+        ->capture_default_str()
         ->group(how);
     command.add_option("--seed", seed, "lasso, segment, distance: a pick")->group(how);
-    command.add_option("--radius", radius, "brush: geodesic radius")->group(how);
+    command.add_option("--radius", radius, "brush: geodesic radius, in lengths as --frame says")->group(how);
     command.add_flag("--stroke", stroke, "brush: drawn from pick to pick")->group(how);
-    command.add_option("--above", above, "threshold: least value")->group(how);
-    command.add_option("--below", below, "threshold: greatest value")->group(how);
+    command
+        .add_option("--above", above,
+                    "threshold: least value, in lengths as --frame says (curvature: one over them), of a file its own")
+        ->group(how);
+    command.add_option("--below", below, "threshold: greatest value, likewise")->group(how);
     command.add_flag("--quantiles", quantiles, "threshold: values are shares of the area, 0 to 1")->group(how);
-    command.add_option("--scale", scale, "curvature: radius as a share of the diagonal")->check(CLI::Range(0.0, 1.0))->group(how);
-    command.add_option("--smoothing", smoothing, "segment: 0 to 1")->check(CLI::Range(0.0, 1.0))->group(how);
+    command.add_option("--scale", scale, "curvature: radius as a share of the diagonal; 0: as the mesh is fine")
+        ->check(CLI::Range(0.0, 1.0))
+        ->group(how);
+    command.add_option("--smoothing", smoothing, "segment: 0 to 1")
+        ->check(CLI::Range(0.0, 1.0))
+        ->capture_default_str()
+        ->group(how);
     command.add_option("--grow", grow, "so many rings larger")->check(CLI::Range(0, 1000000))->group(how);
     command.add_option("--shrink", shrink, "so many rings smaller")->check(CLI::Range(0, 1000000))->group(how);
     command.add_flag("--invert", invert, "all but this")->group(how);
-    command.add_option("--frame", frame, "coordinates and lengths in the mesh's own, or as shares of its box")
+    command
+        .add_option("--frame", frame,
+                    "mesh: coordinates and lengths in the unit of the mesh's coordinates; box: as shares, 0 to 1, of its box and "
+                    "of the box's diagonal")
         ->check(CLI::IsMember({"mesh", "box"}))
+        ->capture_default_str()
         ->group(how);
 
     const std::string camera = "Camera (that of 'ostraka render' without legend and title)";
@@ -334,15 +351,21 @@ void StepFlags::add_to(CLI::App& command) {
         .add_option("--camera", camera_text,
                     "one of the recipe's by its name, or as JSON ('render --json' reports it), instead of the following")
         ->group(camera);
-    command.add_option("--view", view, "front, back, left, right, top, bottom, iso or azimuth,elevation")->group(camera);
+    command.add_option("--view", view, "front, back, left, right, top, bottom, iso or azimuth,elevation in degrees")
+        ->capture_default_str()
+        ->group(camera);
     command
         .add_option("--up", up, "x,y,z: upward direction, kept where a new file is made; else as the annotations say, else 0,0,1")
         ->group(camera);
     command.add_option("--projection", projection, "orthographic or perspective")
         ->check(CLI::IsMember({"orthographic", "perspective"}))
+        ->capture_default_str()
         ->group(camera);
-    command.add_option("--zoom", zoom, "magnification about the middle")->check(CLI::Range(0.01, 1000.0))->group(camera);
-    command.add_option("--size", size, "width and height of the picture")->group(camera);
+    command.add_option("--zoom", zoom, "magnification about the middle")
+        ->check(CLI::Range(0.01, 1000.0))
+        ->capture_default_str()
+        ->group(camera);
+    command.add_option("--size", size, "width and height of the picture in pixels")->capture_default_str()->group(camera);
 
     const std::string what = "Annotation";
     command.add_option("--tag", tag, "what it is")->group(what);
@@ -353,6 +376,7 @@ void StepFlags::add_to(CLI::App& command) {
     command.add_option("--colour", colour, "red,green,blue, each 0 to 255")->group(what);
     command.add_option("--action", action, "what to do with the annotation of this id")
         ->check(CLI::IsMember({"make", "add to", "remove from", "replace", "delete", "retag"}))
+        ->capture_default_str()
         ->group(what);
 }
 

@@ -95,7 +95,8 @@ private:
         const int id = step["id"].GetInt();
         if (set_.find(id) != nullptr)
             fail(at + "/id", "the id " + to_string(id) + " is taken",
-                 "give each annotation its own, or say how to edit the older one");
+                 "give each annotation its own (free is " + to_string(free_id(set_)) +
+                     "), or an action such as 'add to' that edits the older one");
         Annotation annotation = selected(type_of(step["type"].GetString()), step["select"], frame, at + "/select");
         annotation.id = id;
         annotation.colour = distinct_colour(set_.annotations.size());

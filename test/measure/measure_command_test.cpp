@@ -51,6 +51,29 @@ protected:
     }
 };
 
+TEST_F(MeasureCommand, ASecondMeasureOfOneNameIsNoted) {
+    const Path out = scratch / "out.ant.json", last = scratch / "last.ant.json";
+    const std::string measure = "take " + cube.string() + " --tool ruler --name r --annotation side --points " +
+                                pins({at(0, 0, 0), at(0, 1, 1)}) + " --annotations ";
+    const auto first = run(measure + annotated.string() + " --output " + out.string());
+    ASSERT_EQ(first.code, 0) << first.err;
+    EXPECT_EQ(first.err, "");
+    const auto second = run(measure + out.string() + " --output " + last.string());
+    ASSERT_EQ(second.code, 0) << second.err;
+    EXPECT_NE(second.err.find("annotation 7 has an attribute 'r' (id 0) already"), std::string::npos) << second.err;
+    EXPECT_EQ(read_annotations(last, mesh).find(7)->attributes.size(), 2U);
+}
+
+TEST_F(MeasureCommand, DescribeShowsAxesOneByOne) {
+    const auto result = run("describe " + cube.string() + " --annotations " + annotated.string() + " --annotation side");
+    ASSERT_EQ(result.code, 0) << result.err;
+    const std::size_t start = result.out.find("box axes"), end = result.out.find('\n', start);
+    ASSERT_NE(start, std::string::npos) << result.out;
+    const std::string line = result.out.substr(start, end - start);
+    EXPECT_EQ(std::count(line.begin(), line.end(), '('), 3) << line;
+    EXPECT_EQ(std::count(line.begin(), line.end(), ')'), 3) << line;
+}
+
 TEST_F(MeasureCommand, TakesStoresAndRefreshes) {
     const std::string o = pins({at(0, 0, 0), at(1, 1, 1)});
     auto result = run("take " + cube.string() + " --tool ruler --json --points " + o);

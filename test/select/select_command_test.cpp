@@ -67,6 +67,8 @@ TEST(SelectCommand, ANewFileKeepsClassUnitAndUp) {
     const AnnotationSet made = read_annotations(folder / "a.ant.json", mesh);
     EXPECT_EQ(made.object_class, "ball");
     EXPECT_EQ(made.unit, "mm");
+    EXPECT_NE(first.out.find("area mm^2"), std::string::npos) << first.out;
+    EXPECT_NE(first.out.find("perimeter / length mm"), std::string::npos) << first.out;
     ASSERT_TRUE(made.up);
     EXPECT_EQ(*made.up, (std::array<double, 3>{0, 1, 0}));
     // The next step looks down the same direction without being told, and another --up turns its camera only.
@@ -92,6 +94,13 @@ TEST(SelectCommand, ANewFileKeepsClassUnitAndUp) {
     EXPECT_EQ(*read_annotations(folder / "c.ant.json", mesh).up, (std::array<double, 3>{1, 0, 0}));
     EXPECT_EQ(folder.select("--tag cap --up 0,0,0 --all", "d.ant.json").code, 2);
     EXPECT_FALSE(std::filesystem::exists(folder / "d.ant.json"));
+}
+
+TEST(SelectCommand, HelpSaysDefaultsAndUnits) {
+    const std::string help = run_command("annotation select --help").out;
+    for (const char* words : {"=30,20", "=1200x900", "=orthographic", "=mesh", "in degrees", "in pixels", "any text"})
+        EXPECT_NE(help.find(words), std::string::npos) << words << "\n" << help;
+    EXPECT_NE(run_command("annotation apply --help").out.find("MESH [RECIPE|LABELS] OUTPUT"), std::string::npos);
 }
 
 TEST(SelectCommand, EditsBegunWithoutARecipeReplayOnWhatWasThere) {
@@ -144,6 +153,8 @@ TEST(SelectCommand, WhatIsRefusedLeavesTheFilesAsTheyWere) {
     refuse("--tag x '{\"cube\": 1}'", 1, "cube");
     refuse("--tag x --all --grow 1 --shrink 1", 2, "both --grow and --shrink");
     refuse("--tag x --all --id 0", 1, "the id 0 is taken");
+    refuse("--tag x --all --id 0", 1, "free is 1");
+    refuse("--tag x --threshold height --above 1", 2, "gaussian-curvature, thickness, distance or a file");
     refuse("--action delete --id 5", 1, "no annotation has the id 5");
     refuse("--action delete", 2, "needs the annotation's --id");
     refuse("--tag x --all --colour 1,2", 2, "--colour");
