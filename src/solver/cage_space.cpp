@@ -1,0 +1,447 @@
+// The solver over the points of a cage. All is in displacements d = c - c0 of the cage from rest, so that no digits are lost far
+// from the origin: rows are r0 + M d with M = B W.
+#include "ostraka/solver/solve.h"
+
+#include "ostraka/core/parallel.h"
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <span>
+
+namespace ostraka {
+
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::MatrixXd;
+using Thin = Eigen::Matrix<double, Eigen::Dynamic, 3>;  ///< a row a cage point
+
+/// Below this reciprocal condition number the system counts as singular.
+constexpr double singular = 1e-13;
+constexpr double least_regularisation = 1e-10;
+constexpr Eigen::Index rows_of_piece = 1024;
+constexpr std::size_t pieces_of_wave = 16;
+
+/// A large group, reduced: sums over its rows.
+struct Group {
+    std::size_t constraint = 0;
+    MatrixXd m_m;               ///< M^T M
+    Thin m_r0, m_q;             ///< M^T r0, M^T q
+    Matrix3d r0_r0, r0_q, q_q;  ///< sums of r0 r0^T, r0 q^T, q q^T
+    Thin right;                 ///< w M^T (p - r0) at the last projection
+    double objective = 0;
+};
+
+enum class Treatment { constant, group, rows };
+
+}  // namespace
+
+struct CageSpaceSolver::State {
+    Points rest;             ///< the cage's
+    std::vector<int> index;  ///< of each point of the shape among those that are constrained
+    CageWeights weights;     ///< of those
+    Points rest_points;      ///< of the shape, all of it; not constrained: zero
+    Eigen::Index cage = 0;
+    std::vector<Treatment> treatment;
+    std::vector<std::size_t> group_of;        ///< constraint -> group
+    std::vector<Eigen::RowVectorXd> mean_of;  ///< mean row of weights of centred constraints
+
+    bool formed = false, factored = false;
+    MatrixXd normal, constant_normal;
+    Thin constant_right;
+    double constant_objective = 0;
+    std::vector<Group> groups;
+    // Rows that are projected one by one.
+    std::vector<std::size_t> moving;      ///< constraints
+    std::vector<std::size_t> blocks;      ///< first of each block in `moving`, and the end
+    std::vector<Eigen::Index> first_row;  ///< of each of `moving`, and the number of rows
+    CageWeights m;
+    Points r0;
+    std::vector<Thin> parts;
+    std::vector<double> part_objective;
+
+    Eigen::LLT<MatrixXd> factor;
+    double regularisation = 0;
+    Thin right;
+
+    void weight_rows(const Constraint& c, std::size_t i, Eigen::Index first, Eigen::Index count, CageWeights& out) const;
+    Points rest_rows(const Constraint& c) const {
+        Points rows;
+        c.rows_of(rest_points, rows);
+        return rows;
+    }
+    void form(std::span<const std::unique_ptr<Constraint>> constraints);
+    void add_constant(const Constraint& c, std::size_t i, double by_weight);
+    void make_factor();
+};
+
+/// Rows first ... first + count of M.
+void CageSpaceSolver::State::weight_rows(const Constraint& c, std::size_t i, Eigen::Index first, Eigen::Index count,
+                                         CageWeights& out) const {
+    const auto& map = c.map();
+    const auto row = [&](Eigen::Index position) { return weights.row(index[c.ids()[position]]); };
+    out.setZero(count, cage);
+    for (Eigen::Index r = first; r < std::min(first + count, map.direct); ++r) {
+        out.row(r - first) = row(r);
+        if (map.centred) out.row(r - first) -= mean_of[i];
+    }
+    for (const auto& entry : map.entries) {
+        const Eigen::Index r = map.direct + entry.row;
+        if (r >= first && r < first + count) out.row(r - first) += entry.value * row(entry.position);
+    }
+}
+
+void CageSpaceSolver::State::form(std::span<const std::unique_ptr<Constraint>> constraints) {
+    struct Slice {
+        std::size_t constraint;
+        Eigen::Index first, count;
+    };
+    std::vector<std::vector<Slice>> pieces;
+    mean_of.assign(constraints.size(), {});
+    treatment.assign(constraints.size(), Treatment::rows);
+    group_of.assign(constraints.size(), 0);
+    groups.clear();
+    moving.clear();
+    first_row.assign(1, 0);
+    blocks.assign(1, 0);
+    for (std::size_t i = 0; i < constraints.size(); ++i) {
+        const Constraint& c = *constraints[i];
+        if (c.constant()) treatment[i] = Treatment::constant;
+        else if (c.by_moments() && c.map().rows > cage / 2) {
+            treatment[i] = Treatment::group;
+            group_of[i] = groups.size();
+            groups.emplace_back().constraint = i;
+        } else {
+            constexpr Eigen::Index rows_of_block = 128;
+            moving.push_back(i);
+            first_row.push_back(first_row.back() + c.map().rows);
+            if (first_row.back() - first_row[blocks.back()] >= rows_of_block) blocks.push_back(moving.size());
+        }
+        const bool joins =
+            !pieces.empty() && treatment[i] != Treatment::group && treatment[pieces.back().front().constraint] == treatment[i];
+        Eigen::Index size = rows_of_piece;
+        if (joins) {
+            size = 0;
+            for (const Slice& slice : pieces.back()) size += slice.count;
+        }
+        for (Eigen::Index first = 0; first < c.map().rows; first += rows_of_piece) {
+            const Eigen::Index count = std::min(rows_of_piece, c.map().rows - first);
+            if (size + count > rows_of_piece) {
+                pieces.emplace_back();
+                size = 0;
+            }
+            pieces.back().push_back({i, first, count});
+            size += count;
+        }
+    }
+    if (blocks.back() != moving.size()) blocks.push_back(moving.size());
+    parallel_for(
+        constraints.size(),
+        [&](std::size_t i) {
+            const Constraint& c = *constraints[i];
+            if (!c.map().centred) return;
+            Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(cage);
+            for (Eigen::Index r = 0; r < c.map().direct; ++r) sum += weights.row(index[c.ids()[r]]);
+            mean_of[i] = sum / static_cast<double>(c.map().direct);
+        },
+        16);
+
+    normal.setZero(cage, cage);
+    constant_normal.setZero(cage, cage);
+    constant_right.setZero(cage, 3);
+    constant_objective = 0;
+    m.resize(first_row.back(), cage);
+    r0.resize(3, first_row.back());
+    std::vector<std::size_t> place(constraints.size(), 0);
+    for (std::size_t k = 0; k < moving.size(); ++k) place[moving[k]] = k;
+    std::vector<Points> group_rows(groups.size());
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+        Group& group = groups[g];
+        const Constraint& c = *constraints[group.constraint];
+        group_rows[g] = rest_rows(c);
+        group.m_m.setZero(cage, cage);
+        group.m_r0.setZero(cage, 3);
+        group.m_q.setZero(cage, 3);
+        group.r0_r0 = group_rows[g] * group_rows[g].transpose();
+        group.r0_q = group.q_q = Matrix3d::Zero();
+        if (c.reference().cols() > 0) {
+            group.r0_q = group_rows[g] * c.reference().transpose();
+            group.q_q = c.reference() * c.reference().transpose();
+        }
+    }
+    struct Sum {
+        MatrixXd m_m;
+        Thin first, second;
+        double objective = 0;
+    };
+    // Pieces in waves, so that their sums need little memory; added up in their order.
+    for (std::size_t wave = 0; wave < pieces.size(); wave += pieces_of_wave) {
+        const std::size_t count = std::min(pieces_of_wave, pieces.size() - wave);
+        std::vector<Sum> sums(count);
+        parallel_for(
+            count,
+            [&](std::size_t k) {
+                const auto& piece = pieces[wave + k];
+                Sum& sum = sums[k];
+                sum.first.setZero(cage, 3);
+                sum.second.setZero(cage, 3);
+                Eigen::Index total = 0;
+                for (const Slice& slice : piece) total += slice.count;
+                CageWeights stacked(total, cage), rows;
+                Eigen::Index at = 0;
+                for (const Slice& slice : piece) {
+                    const std::size_t i = slice.constraint;
+                    const Constraint& c = *constraints[i];
+                    weight_rows(c, i, slice.first, slice.count, rows);
+                    double scale = 1;
+                    if (treatment[i] == Treatment::group) {
+                        const Points& own = group_rows[group_of[i]];
+                        sum.first += rows.transpose() * own.middleCols(slice.first, slice.count).transpose();
+                        if (c.reference().cols() > 0)
+                            sum.second += rows.transpose() * c.reference().middleCols(slice.first, slice.count).transpose();
+                    } else {
+                        scale = std::sqrt(c.weight());
+                        const Points own = rest_rows(c);
+                        if (treatment[i] == Treatment::constant) {
+                            Points wanted(3, own.cols());
+                            c.project(own, wanted);
+                            const Points gap = (wanted - own).middleCols(slice.first, slice.count);
+                            sum.first += c.weight() * (rows.transpose() * gap.transpose());
+                            sum.objective += c.weight() * gap.squaredNorm();
+                        } else {
+                            const Eigen::Index to = first_row[place[i]] + slice.first;
+                            m.middleRows(to, slice.count) = rows;
+                            r0.middleCols(to, slice.count) = own.middleCols(slice.first, slice.count);
+                            const Eigen::Index weighing = c.map().rows - c.map().observed - slice.first;
+                            if (weighing < slice.count)
+                                rows.bottomRows(slice.count - std::max<Eigen::Index>(weighing, 0)).setZero();
+                        }
+                    }
+                    stacked.middleRows(at, slice.count) = scale * rows;
+                    at += slice.count;
+                }
+                sum.m_m.setZero(cage, cage);
+                sum.m_m.selfadjointView<Eigen::Lower>().rankUpdate(stacked.transpose());
+            },
+            1);
+        for (std::size_t k = 0; k < count; ++k) {
+            const std::size_t i = pieces[wave + k].front().constraint;
+            const MatrixXd full = sums[k].m_m.selfadjointView<Eigen::Lower>();
+            if (treatment[i] == Treatment::group) {
+                Group& group = groups[group_of[i]];
+                group.m_m += full;
+                group.m_r0 += sums[k].first;
+                group.m_q += sums[k].second;
+            } else {
+                normal += full;
+                if (treatment[i] == Treatment::constant) {
+                    constant_normal += full;
+                    constant_right += sums[k].first;
+                    constant_objective += sums[k].objective;
+                }
+            }
+        }
+    }
+    for (const Group& group : groups) normal += constraints[group.constraint]->weight() * group.m_m;
+    parts.assign(blocks.size() - 1, Thin());
+    part_objective.assign(parts.size(), 0.0);
+    formed = true;
+}
+
+void CageSpaceSolver::State::add_constant(const Constraint& c, std::size_t i, double by_weight) {
+    CageWeights rows;
+    weight_rows(c, i, 0, c.map().rows, rows);
+    const Points own = rest_rows(c);
+    Points wanted(3, own.cols());
+    c.project(own, wanted);
+    constant_right += by_weight * (rows.transpose() * (wanted - own).transpose());
+    constant_objective += by_weight * (wanted - own).squaredNorm();
+}
+
+void CageSpaceSolver::State::make_factor() {
+    regularisation = 0;
+    const double mean = cage > 0 ? normal.trace() / static_cast<double>(cage) : 0;
+    factor.compute(normal);
+    for (double share = least_regularisation; factor.info() != Eigen::Success || !(factor.rcond() > singular); share *= 100) {
+        if (share > 1e4)
+            throw Error(ErrorKind::failure, "solver", "the system cannot be factorised", "bring weights closer to each other");
+        regularisation = mean > 0 ? share * mean : 1.0;
+        factor.compute(normal + regularisation * MatrixXd::Identity(cage, cage));
+    }
+    factored = true;
+}
+
+CageSpaceSolver::CageSpaceSolver(std::vector<std::unique_ptr<Constraint>> constraints, const CageWeights& weights,
+                                 Points rest_cage)
+    : Solver(std::move(constraints), rest_cage.cols(),
+             rest_cage.cols() > 0 ? (rest_cage.rowwise().maxCoeff() - rest_cage.rowwise().minCoeff()).norm() : 0.0),
+      state_(std::make_unique<State>()) {
+    State& s = *state_;
+    check_points(rest_cage, "rest points of the cage");
+    if (weights.cols() != rest_cage.cols())
+        fail_usage("the weights are of " + std::to_string(weights.cols()) + " cage points, and the cage has " +
+                   std::to_string(rest_cage.cols()));
+    s.rest = std::move(rest_cage);
+    s.cage = s.rest.cols();
+    s.index.assign(static_cast<std::size_t>(weights.rows()), -1);
+    std::vector<Eigen::Index> used;
+    for (const auto& c : constraints_)
+        for (const int id : c->ids()) {
+            if (id < 0 || id >= weights.rows())
+                fail_usage("a constraint names point " + std::to_string(id) + ", which does not exist");
+            if (s.index[id] >= 0) continue;
+            s.index[id] = static_cast<int>(used.size());
+            used.push_back(id);
+        }
+    s.weights.resize(static_cast<Eigen::Index>(used.size()), s.cage);
+    s.rest_points.setZero(3, weights.rows());
+    for (std::size_t k = 0; k < used.size(); ++k) {
+        if (!weights.row(used[k]).allFinite()) fail_usage("the weights of point " + std::to_string(used[k]) + " are not finite");
+        s.weights.row(static_cast<Eigen::Index>(k)) = weights.row(used[k]);
+        s.rest_points.col(used[k]) = s.rest * weights.row(used[k]).transpose();
+    }
+}
+
+CageSpaceSolver::~CageSpaceSolver() = default;
+
+void CageSpaceSolver::initialize() {
+    State& s = *state_;
+    if (s.formed && s.factored) return;
+    const auto seconds = [begin = std::chrono::steady_clock::now()] {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    };
+    if (!s.formed) {
+        s.form(constraints_);
+        setup_.times.symbolic += seconds();
+    }
+    const double before = seconds();
+    s.make_factor();
+    setup_.times.factor += seconds() - before;
+    setup_.regularised = s.regularisation > 0;
+    setup_.regularisation = s.regularisation;
+    total_weight_ = rounding_ = 0;
+    for (const auto& c : constraints_) total_weight_ += c->weight() * static_cast<double>(c->map().rows - c->map().observed);
+    for (const Group& group : s.groups)
+        rounding_ += 1e-15 * constraints_[group.constraint]->weight() * (group.r0_r0.trace() + group.q_q.trace());
+    rounding_ += 1e-15 * s.constant_objective;
+}
+
+double CageSpaceSolver::project(const Points& cage) {
+    State& s = *state_;
+    const Thin d = (cage - s.rest).transpose();
+    const std::size_t blocks = s.parts.size();
+    parallel_for(
+        blocks + s.groups.size(),
+        [&](std::size_t k) {
+            if (k >= blocks) {
+                Group& g = s.groups[k - blocks];
+                const Constraint& c = *constraints_[g.constraint];
+                const Thin e = g.m_m * d;
+                const Matrix3d cross = d.transpose() * g.m_r0;
+                const Constraint::Moments moments{d.transpose() * e + cross + cross.transpose() + g.r0_r0,
+                                                  d.transpose() * g.m_q + g.r0_q};
+                const auto p = c.project_moments(moments);
+                g.right = c.weight() * ((e + g.m_r0) * p.of_rows.transpose() + g.m_q * p.of_reference.transpose() - g.m_r0);
+                const Matrix3d left = Matrix3d::Identity() - p.of_rows;  // r - p = left r - of_reference q
+                const double squared = (left * moments.rows * left.transpose()).trace() -
+                                       2 * (left * moments.reference * p.of_reference.transpose()).trace() +
+                                       (p.of_reference * g.q_q * p.of_reference.transpose()).trace();
+                g.objective = c.weight() * std::max(squared, 0.0);
+                return;
+            }
+            // One pass over the block's part of M: it stays in the cache from the rows to the sums.
+            Points rows(3, s.first_row[s.blocks[k + 1]] - s.first_row[s.blocks[k]]), wanted(3, rows.cols());
+            const Eigen::Index start = s.first_row[s.blocks[k]];
+            for (Eigen::Index r = 0; r < rows.cols(); ++r)
+                for (int axis = 0; axis < 3; ++axis) rows(axis, r) = s.r0(axis, start + r) + s.m.row(start + r).dot(d.col(axis));
+            double objective = 0;
+            Thin& sum = s.parts[k];
+            sum.setZero(s.cage, 3);
+            for (std::size_t i = s.blocks[k]; i < s.blocks[k + 1]; ++i) {
+                const Constraint& c = *constraints_[s.moving[i]];
+                const Eigen::Index first = s.first_row[i] - start, count = c.map().rows, weighing = count - c.map().observed;
+                c.project(rows.middleCols(first, count), wanted.middleCols(first, count));
+                objective += c.weight() * (rows - wanted).middleCols(first, weighing).squaredNorm();
+                for (Eigen::Index r = first; r < first + weighing; ++r)
+                    for (int axis = 0; axis < 3; ++axis)
+                        sum.col(axis) +=
+                            (c.weight() * (wanted(axis, r) - s.r0(axis, start + r))) * s.m.row(start + r).transpose();
+            }
+            s.part_objective[k] = objective;
+        },
+        1);
+    s.right = s.constant_right;
+    double phi = std::max(s.constant_objective + (d.transpose() * (s.constant_normal * d - 2 * s.constant_right)).trace(), 0.0);
+    for (std::size_t k = 0; k < blocks; ++k) {
+        s.right += s.parts[k];
+        phi += s.part_objective[k];
+    }
+    for (const Group& g : s.groups) {
+        s.right += g.right;
+        phi += g.objective;
+    }
+    return phi;
+}
+
+void CageSpaceSolver::global_step(Points& cage) {
+    State& s = *state_;
+    const Thin d = s.factor.solve(s.right);
+    cage = s.rest + d.transpose();
+}
+
+void CageSpaceSolver::weight_changed(std::size_t constraint, double before) {
+    State& s = *state_;
+    s.factored = false;
+    if (!s.formed) return;
+    const Constraint& c = *constraints_[constraint];
+    const double change = c.weight() - before;
+    if (s.treatment[constraint] == Treatment::group) {
+        s.normal += change * s.groups[s.group_of[constraint]].m_m;
+        return;
+    }
+    if (c.map().rows > rows_of_piece) {  // as much work as forming all of it
+        s.formed = false;
+        return;
+    }
+    CageWeights rows;
+    s.weight_rows(c, constraint, 0, c.map().rows, rows);
+    rows.conservativeResize(c.map().rows - c.map().observed, s.cage);
+    const MatrixXd m_m = rows.transpose() * rows;
+    s.normal += change * m_m;
+    if (s.treatment[constraint] == Treatment::constant) {
+        s.constant_normal += change * m_m;
+        s.add_constant(c, constraint, change);
+    }
+}
+
+void CageSpaceSolver::target_changing(std::size_t constraint) {
+    State& s = *state_;
+    if (!s.formed || s.treatment[constraint] != Treatment::constant) return;
+    s.add_constant(*constraints_[constraint], constraint, -constraints_[constraint]->weight());
+}
+
+void CageSpaceSolver::target_changed(std::size_t constraint) {
+    State& s = *state_;
+    if (!s.formed) return;
+    if (s.treatment[constraint] == Treatment::constant)
+        s.add_constant(*constraints_[constraint], constraint, constraints_[constraint]->weight());
+    if (s.treatment[constraint] == Treatment::group) s.formed = s.factored = false;
+}
+
+Points points_of(const CageWeights& weights, const Points& cage) {
+    if (weights.cols() != cage.cols())
+        fail_usage("the weights are of " + std::to_string(weights.cols()) + " cage points, and the cage has " +
+                   std::to_string(cage.cols()));
+    Points points(3, weights.rows());
+    const Thin c = cage.transpose();
+    parallel_for(static_cast<std::size_t>(weights.rows()), [&](std::size_t i) {
+        const auto r = static_cast<Eigen::Index>(i);
+        for (int axis = 0; axis < 3; ++axis) points(axis, r) = weights.row(r).dot(c.col(axis));
+    });
+    return points;
+}
+
+}  // namespace ostraka

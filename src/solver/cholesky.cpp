@@ -1,0 +1,168 @@
+#include "cholesky.h"
+
+#include "ostraka/core/error.h"
+
+#include <suitesparse/cholmod.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+// A threaded BLAS may add up in another order with another number of threads: OpenBLAS is held to one where it is in use. The
+// symbol is resolved when the program is loaded, and is null where the BLAS is another one.
+extern "C" __attribute__((weak)) void openblas_set_num_threads(int threads);
+
+namespace ostraka::solver {
+
+struct SparseCholesky::State {
+    cholmod_common common;
+    cholmod_factor* factor = nullptr;
+    cholmod_dense *solution = nullptr, *work_y = nullptr, *work_e = nullptr;
+
+    State() {
+        if (openblas_set_num_threads != nullptr) openblas_set_num_threads(1);
+        cholmod_start(&common);
+        common.print = 0;
+        common.supernodal = CHOLMOD_SUPERNODAL;
+        common.quick_return_if_not_posdef = 1;
+    }
+    ~State() {
+        forget();
+        cholmod_finish(&common);
+    }
+    void forget() {
+        cholmod_free_factor(&factor, &common);
+        cholmod_free_dense(&solution, &common);
+        cholmod_free_dense(&work_y, &common);
+        cholmod_free_dense(&work_e, &common);
+    }
+    State(const State&) = delete;
+    State& operator=(const State&) = delete;
+
+    void check(bool done, const char* step) const {
+        if (done) return;
+        const bool memory = common.status == CHOLMOD_OUT_OF_MEMORY || common.status == CHOLMOD_TOO_LARGE;
+        throw Error(ErrorKind::failure, "solver", std::string(step) + (memory ? " needs more memory than there is" : " failed"),
+                    memory ? "solve through a cage, or a coarser mesh" : "");
+    }
+};
+
+namespace {
+
+cholmod_sparse view(const LowerTriangle& matrix) {
+    cholmod_sparse view{};
+    view.nrow = view.ncol = static_cast<std::size_t>(matrix.rows());
+    view.nzmax = static_cast<std::size_t>(matrix.nonZeros());
+    view.p = const_cast<int*>(matrix.outerIndexPtr());
+    view.i = const_cast<int*>(matrix.innerIndexPtr());
+    view.x = const_cast<double*>(matrix.valuePtr());
+    view.stype = -1;
+    view.itype = CHOLMOD_INT;
+    view.xtype = CHOLMOD_REAL;
+    view.dtype = CHOLMOD_DOUBLE;
+    view.sorted = 1;
+    view.packed = 1;
+    return view;
+}
+
+/// Unknowns with more neighbours than this spoil an ordering; as last ones they cost a row of the factor each.
+double dense_degree(Eigen::Index n) { return std::max(16.0, 10 * std::sqrt(static_cast<double>(n))); }
+
+/// The unknowns in order of elimination; `order` of the sparse part is found with nested dissection (METIS), or by minimum degree
+/// where that is as good and much faster.
+std::vector<int> elimination_order(const LowerTriangle& matrix, cholmod_common& common, bool& done) {
+    const auto n = static_cast<int>(matrix.rows());
+    std::vector<int> degree(n, 0);
+    for (int j = 0; j < n; ++j)
+        for (LowerTriangle::InnerIterator entry(matrix, j); entry; ++entry) {
+            ++degree[j];
+            ++degree[entry.row()];
+        }
+    std::vector<int> sparse, dense, index(n, -1);
+    for (int i = 0; i < n; ++i) {
+        if (degree[i] > dense_degree(n)) {
+            dense.push_back(i);
+        } else {
+            index[i] = static_cast<int>(sparse.size());
+            sparse.push_back(i);
+        }
+    }
+    std::vector<int> columns{0}, rows;
+    columns.reserve(sparse.size() + 1);
+    for (const int j : sparse) {
+        for (LowerTriangle::InnerIterator entry(matrix, j); entry; ++entry)
+            if (index[entry.row()] >= 0) rows.push_back(index[entry.row()]);
+        columns.push_back(static_cast<int>(rows.size()));
+    }
+    cholmod_sparse pattern{};
+    pattern.nrow = pattern.ncol = sparse.size();
+    pattern.nzmax = rows.size();
+    pattern.p = columns.data();
+    pattern.i = rows.data();
+    pattern.stype = -1;
+    pattern.itype = CHOLMOD_INT;
+    pattern.xtype = CHOLMOD_PATTERN;
+    pattern.dtype = CHOLMOD_DOUBLE;
+    pattern.sorted = 1;
+    pattern.packed = 1;
+    std::vector<int> order(sparse.size());
+    done = true;
+    if (!sparse.empty()) {
+        constexpr std::size_t few = 1000;
+        done = sparse.size() < few ? cholmod_amd(&pattern, nullptr, 0, order.data(), &common) != 0
+                                   : cholmod_metis(&pattern, nullptr, 0, 1, order.data(), &common) != 0;
+    }
+    for (int& i : order) i = sparse[i];
+    order.insert(order.end(), dense.begin(), dense.end());
+    return order;
+}
+
+}  // namespace
+
+SparseCholesky::SparseCholesky() : state_(std::make_unique<State>()) {}
+SparseCholesky::~SparseCholesky() = default;
+
+void SparseCholesky::analyse(const LowerTriangle& matrix) {
+    state_->forget();
+    if (matrix.rows() == 0) return;
+    bool done = true;
+    std::vector<int> order = elimination_order(matrix, state_->common, done);
+    state_->check(done, "ordering the unknowns");
+    state_->common.nmethods = 1;
+    state_->common.method[0].ordering = CHOLMOD_GIVEN;
+    cholmod_sparse a = view(matrix);
+    state_->factor = cholmod_analyze_p(&a, order.data(), nullptr, 0, &state_->common);
+    state_->check(state_->factor != nullptr, "the symbolic factorisation");
+}
+
+bool SparseCholesky::factor(const LowerTriangle& matrix) {
+    if (matrix.rows() == 0) return true;
+    cholmod_sparse a = view(matrix);
+    const bool done = cholmod_factorize(&a, state_->factor, &state_->common) != 0;
+    if (state_->common.status == CHOLMOD_NOT_POSDEF || (done && state_->factor->minor < state_->factor->n)) return false;
+    state_->check(done, "the factorisation");
+    return true;
+}
+
+double SparseCholesky::reciprocal_condition() const {
+    return state_->factor == nullptr ? 1 : cholmod_rcond(state_->factor, &state_->common);
+}
+
+double SparseCholesky::entries() const { return state_->factor == nullptr ? 0 : static_cast<double>(state_->factor->xsize); }
+
+void SparseCholesky::solve(Eigen::MatrixXd& columns) {
+    if (columns.rows() == 0) return;
+    cholmod_dense b{};
+    b.nrow = b.d = static_cast<std::size_t>(columns.rows());
+    b.ncol = static_cast<std::size_t>(columns.cols());
+    b.nzmax = b.nrow * b.ncol;
+    b.x = columns.data();
+    b.xtype = CHOLMOD_REAL;
+    b.dtype = CHOLMOD_DOUBLE;
+    const bool done = cholmod_solve2(CHOLMOD_A, state_->factor, &b, nullptr, &state_->solution, nullptr, &state_->work_y,
+                                     &state_->work_e, &state_->common) != 0;
+    state_->check(done, "solving");
+    std::copy_n(static_cast<const double*>(state_->solution->x), columns.size(), columns.data());
+}
+
+}  // namespace ostraka::solver

@@ -1,0 +1,208 @@
+// Differences of points: their lengths, angles and directions.
+#include "kinds.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+namespace ostraka::solver {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::Vector3d;
+
+/// Rows x_b - x_a for pairs (a, b) of positions.
+class Edges : public Constraint {
+protected:
+    Edges(const Making& m, const std::vector<std::pair<int, int>>& pairs) : Constraint(m.kind, m.ids, m.weight) {
+        map_.rows = static_cast<Index>(pairs.size());
+        rest_.resize(3, map_.rows);
+        for (Index r = 0; r < map_.rows; ++r) {
+            const auto [a, b] = pairs[static_cast<std::size_t>(r)];
+            map_.entries.push_back({static_cast<std::int32_t>(r), a, -1.0});
+            map_.entries.push_back({static_cast<std::int32_t>(r), b, 1.0});
+            rest_.col(r) = m.rest.col(b) - m.rest.col(a);
+        }
+    }
+    /// Row r at another length; a row of no length takes the direction it has in the rest state.
+    [[nodiscard]] Vector3d with_length(const RowsIn& rows, Index r, double length) const {
+        if (const double now = rows.col(r).norm(); now > 0) return rows.col(r) * (length / now);
+        if (const double then = rest_.col(r).norm(); then > 0) return rest_.col(r) * (length / then);
+        return {length, 0, 0};
+    }
+    Points rest_;
+};
+
+std::vector<std::pair<int, int>> chain(int begin, int end) {
+    std::vector<std::pair<int, int>> pairs;
+    for (int i = begin; i + 1 < end; ++i) pairs.emplace_back(i, i + 1);
+    return pairs;
+}
+
+std::vector<std::pair<int, int>> pairs_of(const Making& m) {
+    if (m.ids.size() % 2 != 0) m.fail("there is an odd number of points", "give two for each segment");
+    std::vector<std::pair<int, int>> pairs;
+    for (int i = 0; i + 1 < static_cast<int>(m.ids.size()); i += 2) pairs.emplace_back(i, i + 1);
+    return pairs;
+}
+
+/// The closest pair of vectors at an angle `wanted` to one another, in the plane of both. Both turn, the shorter one more: with A
+/// and B their squared lengths and D the angle in excess, A sin^2 a + B sin^2 (D - a) is least for 2 a = arg(A + B exp(2 i D)).
+void bring_to_angle(Vector3d& u, Vector3d& v, double wanted) {
+    const double lu = u.norm(), lv = v.norm();
+    if (!(lu > 0) || !(lv > 0)) return;  // a vector of no length is at any angle
+    const Vector3d eu = u / lu, ev = v / lv;
+    Vector3d across = ev - eu.dot(ev) * eu;  // at right angles to u, on v's side
+    const double sine = across.norm();
+    across = sine > 1e-15 ? Vector3d(across / sine) : any_perpendicular(eu);
+    const double now = std::atan2(across.dot(ev), eu.dot(ev));
+    const double excess = now - wanted;  // positive: the vectors must close in
+    if (std::abs(excess) > std::numbers::pi / 2) {
+        (lu < lv ? u : v).setZero();
+        return;
+    }
+    const double largest = std::max(lu, lv), a2 = (lu / largest) * (lu / largest), b2 = (lv / largest) * (lv / largest);
+    const double a = std::atan2(b2 * std::sin(2 * excess), a2 + b2 * std::cos(2 * excess)) / 2;
+    const auto at = [&](double angle) { return Vector3d(std::cos(angle) * eu + std::sin(angle) * across); };
+    u = lu * std::cos(a) * at(a);
+    v = lv * std::cos(excess - a) * at(a + wanted);
+}
+
+/// The angle at the first point, or between two segments, within a range.
+class Angle final : public Edges {
+public:
+    Angle(const Making& m, const std::vector<std::pair<int, int>>& pairs, Making::Interval range)
+        : Edges(m, pairs), range_(range) {}
+    void project(const RowsIn& rows, RowsOut projected) const override {
+        Vector3d u = rows.col(0), v = rows.col(1);
+        const double now = std::atan2(u.cross(v).norm(), u.dot(v)), wanted = range_.clamp(now);
+        if (now != wanted) bring_to_angle(u, v, wanted);
+        projected.col(0) = u;
+        projected.col(1) = v;
+    }
+
+private:
+    Making::Interval range_;
+};
+
+/// All segments along one direction, either way: the rank one matrix closest to the rows.
+class Parallel final : public Edges {
+public:
+    explicit Parallel(const Making& m) : Edges(m, pairs_of(m)) {}
+    void project(const RowsIn& rows, RowsOut projected) const override {
+        const Vector3d d = principal(outer_sum(rows, rows)).eigenvectors().col(2);
+        for (Index r = 0; r < rows.cols(); ++r) projected.col(r) = d * d.dot(rows.col(r));
+    }
+};
+
+/// Lengths l'_i = max(l_i + s_i delta, 0), s_i = 1 or -1, with sum of s_i l'_i = total: the closest ones. The sum is piecewise
+/// linear and increasing in delta.
+void shift_lengths(std::vector<double>& lengths, const std::vector<double>& sign, double total) {
+    std::vector<double> breaks;  // where a length reaches zero
+    for (std::size_t i = 0; i < lengths.size(); ++i) breaks.push_back(-sign[i] * lengths[i]);
+    std::sort(breaks.begin(), breaks.end());
+    const auto sum = [&](double delta) {
+        double s = 0;
+        for (std::size_t i = 0; i < lengths.size(); ++i) s += sign[i] * std::max(lengths[i] + sign[i] * delta, 0.0);
+        return s;
+    };
+    // The stretch of delta that holds the answer, by halves; within it the sum is linear.
+    std::size_t low = 0, high = breaks.size();
+    while (low < high) {
+        const std::size_t middle = (low + high) / 2;
+        if (sum(breaks[middle]) < total) low = middle + 1;
+        else high = middle;
+    }
+    const double from = low > 0 ? breaks[low - 1] : breaks.front() - 1;
+    double moving = 0, at_zero = 0;
+    for (std::size_t i = 0; i < lengths.size(); ++i) {
+        const double middle = low < breaks.size() ? (from + breaks[low]) / 2 : from + 1;
+        if (lengths[i] + sign[i] * middle > 0) {
+            moving += 1;
+            at_zero += sign[i] * lengths[i];
+        }
+    }
+    if (!(moving > 0)) return;
+    const double delta = (total - at_zero) / moving;
+    for (std::size_t i = 0; i < lengths.size(); ++i) lengths[i] = std::max(lengths[i] + sign[i] * delta, 0.0);
+}
+
+/// The length of a poly-line within a range: all edges become longer or shorter by the same amount.
+class PolylineLength final : public Edges {
+public:
+    explicit PolylineLength(const Making& m) : Edges(m, chain(0, static_cast<int>(m.ids.size()))) {
+        range_ = m.range_of(rest_.colwise().norm().sum());
+    }
+    void project(const RowsIn& rows, RowsOut projected) const override {
+        std::vector<double> lengths(static_cast<std::size_t>(rows.cols()));
+        for (Index r = 0; r < rows.cols(); ++r) lengths[static_cast<std::size_t>(r)] = rows.col(r).norm();
+        const double now = std::accumulate(lengths.begin(), lengths.end(), 0.0), wanted = range_.clamp(now);
+        projected = rows;
+        if (std::abs(now - wanted) <= 1e-15 * now) return;
+        shift_lengths(lengths, std::vector<double>(lengths.size(), 1.0), wanted);
+        for (Index r = 0; r < rows.cols(); ++r) projected.col(r) = with_length(rows, r, lengths[static_cast<std::size_t>(r)]);
+    }
+
+private:
+    Making::Interval range_{0, 0};
+};
+
+/// All segments of one length: their mean.
+class EqualLengths final : public Edges {
+public:
+    explicit EqualLengths(const Making& m) : Edges(m, pairs_of(m)) {}
+    void project(const RowsIn& rows, RowsOut projected) const override {
+        const double mean = rows.colwise().norm().mean();
+        for (Index r = 0; r < rows.cols(); ++r) projected.col(r) = with_length(rows, r, mean);
+    }
+};
+
+/// Two poly-lines of one length.
+class EqualLength final : public Edges {
+public:
+    EqualLength(const Making& m, std::vector<std::pair<int, int>> first, const std::vector<std::pair<int, int>>& second)
+        : Edges(m, joined(first, second)), first_(static_cast<Index>(first.size())) {}
+    void project(const RowsIn& rows, RowsOut projected) const override {
+        std::vector<double> lengths, sign;
+        for (Index r = 0; r < rows.cols(); ++r) {
+            lengths.push_back(rows.col(r).norm());
+            sign.push_back(r < first_ ? 1.0 : -1.0);
+        }
+        shift_lengths(lengths, sign, 0);
+        for (Index r = 0; r < rows.cols(); ++r) projected.col(r) = with_length(rows, r, lengths[static_cast<std::size_t>(r)]);
+    }
+
+private:
+    static std::vector<std::pair<int, int>> joined(std::vector<std::pair<int, int>> first,
+                                                   const std::vector<std::pair<int, int>>& second) {
+        first.insert(first.end(), second.begin(), second.end());
+        return first;
+    }
+    Index first_;
+};
+
+}  // namespace
+
+std::unique_ptr<Constraint> make_angle(Making&& m) {
+    const auto range = m.range(0, std::numbers::pi);
+    if (range.max > std::numbers::pi) m.fail("an angle is at most pi", "angles are in radians");
+    return std::make_unique<Angle>(m, std::vector<std::pair<int, int>>{{0, 1}, {0, 2}}, range);
+}
+
+std::unique_ptr<Constraint> make_perpendicular(Making&& m) {
+    return std::make_unique<Angle>(m, pairs_of(m), Making::Interval{std::numbers::pi / 2, std::numbers::pi / 2});
+}
+
+std::unique_ptr<Constraint> make_parallel(Making&& m) { return std::make_unique<Parallel>(m); }
+std::unique_ptr<Constraint> make_polyline_length(Making&& m) { return std::make_unique<PolylineLength>(m); }
+std::unique_ptr<Constraint> make_equal_lengths(Making&& m) { return std::make_unique<EqualLengths>(m); }
+
+std::unique_ptr<Constraint> make_equal_length(Making&& m) {
+    const int count = static_cast<int>(m.ids.size()), split = m.parameters.split;
+    if (split < 2 || split > count - 2) m.fail("split is " + std::to_string(split), "both poly-lines need two points at least");
+    return std::make_unique<EqualLength>(m, chain(0, split), chain(split, count));
+}
+
+}  // namespace ostraka::solver

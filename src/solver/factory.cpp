@@ -1,0 +1,151 @@
+// Constraints by name.
+#include "kinds.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ostraka {
+
+namespace solver {
+
+void Making::fail(const std::string& what, const std::string& remedy) const {
+    throw Error(ErrorKind::usage, "constraint " + std::string(kind), what, remedy);
+}
+
+Eigen::Vector3d Making::direction() const {
+    if (!parameters.direction) fail("the direction is missing");
+    const Eigen::Vector3d& d = *parameters.direction;
+    if (!d.allFinite()) fail("the direction is not finite");
+    const double size = d.cwiseAbs().maxCoeff();
+    if (!(size > 0)) fail("the direction has no length");
+    return (d / size).normalized();
+}
+
+Eigen::Vector3d Making::point() const {
+    if (!parameters.point) fail("the point is missing");
+    if (!parameters.point->allFinite()) fail("the point is not finite");
+    return *parameters.point;
+}
+
+Making::Interval Making::range(double default_min, double default_max, double least) const {
+    const Interval interval{parameters.min.value_or(default_min), parameters.max.value_or(default_max)};
+    if (std::isnan(interval.min) || std::isnan(interval.max)) fail("the range is not a number");
+    if (interval.min > interval.max)
+        fail("the range's min, " + std::to_string(interval.min) + ", is above its max, " + std::to_string(interval.max));
+    if (interval.min < least) fail("the range begins below " + std::to_string(least));
+    if (std::isinf(interval.min)) fail("the range's min is infinite");
+    return interval;
+}
+
+Making::Interval Making::range_of(double rest_measure) const {
+    if (parameters.absolute && !parameters.min && !parameters.max) fail("the absolute range is missing");
+    const bool absolute = parameters.absolute;
+    Interval interval = range(absolute ? 0 : 1, absolute ? std::numeric_limits<double>::infinity() : 1);
+    if (!absolute) {
+        interval.min *= rest_measure;
+        interval.max = std::isinf(interval.max) ? interval.max : interval.max * rest_measure;
+    }
+    return interval;
+}
+
+Points Making::target_or(const Points& rest_rows) const {
+    if (!parameters.target) return rest_rows;
+    if (parameters.target->cols() != rest_rows.cols())
+        fail("the target has " + std::to_string(parameters.target->cols()) + " columns for " + std::to_string(rest_rows.cols()) +
+             " points");
+    check_points(*parameters.target, "target of constraint " + std::string(kind));
+    return *parameters.target;
+}
+
+namespace {
+
+struct Entry {
+    ConstraintKind kind;
+    Maker make;
+};
+
+const std::vector<Entry>& table() {
+    static const std::vector<Entry> entries = {
+        {{"Closeness", 1, 0, "points at target positions"}, make_closeness},
+        {{"OnSurface", 1, 0, "points on a surface"}, make_on_surface},
+        {{"EdgeStrain", 2, 2, "a distance within a range of the rest length"}, make_edge_strain},
+        {{"TriangleStrain", 3, 3, "both principal stretches within a range"}, make_triangle_strain},
+        {{"TetrahedronStrain", 4, 4, "three principal stretches within a range"}, make_tetrahedron_strain},
+        {{"Area", 3, 3, "an area within a range of the rest area"}, make_area},
+        {{"Volume", 4, 4, "a volume within a range of the rest volume"}, make_volume},
+        {{"Bending", 4, 4, "a bend across an edge within a range of the rest bend"}, make_bending},
+        {{"Line", 2, 0, "points on a line"}, make_line},
+        {{"Plane", 3, 0, "points on a plane"}, make_plane},
+        {{"Orientation", 2, 0, "points on a plane of given normal"}, make_orientation},
+        {{"Circle", 3, 0, "points on a circle"}, make_circle},
+        {{"Sphere", 4, 0, "points on a sphere"}, make_sphere},
+        {{"Similarity", 2, 0, "a turned, moved and scaled copy of the reference shape"}, make_similarity},
+        {{"Rigid", 2, 0, "a turned and moved copy of the reference shape"}, make_rigid},
+        {{"NonUniformScaling", 2, 0, "a copy of the reference shape, stretched along its axis, turned and moved"},
+         make_non_uniform_scaling},
+        {{"Equilateral", 3, 0, "corners of a regular polygon, in order"}, make_equilateral},
+        {{"Parallelogram", 4, 4, "corners of a parallelogram, in order"}, make_parallelogram},
+        {{"Rectangle", 4, 4, "corners of a rectangle, in order"}, make_rectangle},
+        {{"Laplacian", 2, 0, "a point at the mean of its neighbours; the point comes first"}, make_laplacian},
+        {{"LaplacianDisplacement", 2, 0, "a point less the mean of its neighbours as in the rest state"},
+         make_laplacian_displacement},
+        {{"CotangentLaplacian", 2, 0, "as Laplacian, with cotangent weights"}, make_cotangent_laplacian},
+        {{"CotangentLaplacianDisplacement", 2, 0, "as LaplacianDisplacement, with cotangent weights"},
+         make_cotangent_laplacian_displacement},
+        {{"FittedPlaneOrientation", 3, 0, "the points as they are, turned so that their plane has a given normal"},
+         make_fitted_plane_orientation},
+        {{"CoAxiality", 2, 0, "the points as they are, moved so that their axis lies on a line"}, make_co_axiality},
+        {{"AxisOnLine", 1, 0, "means of groups of points, the stations of an axis, on a line"}, make_axis_on_line},
+        {{"MirrorSymmetry", 2, 0, "pairs of points that mirror each other in a given plane, or in some plane"},
+         make_mirror_symmetry},
+        {{"Proportion", 4, 0, "a part stretched along its measure to a range of another measure"}, make_proportion},
+        {{"Angle", 3, 3, "an angle at the first point within a range"}, make_angle},
+        {{"Parallel", 4, 0, "segments along one direction"}, make_parallel},
+        {{"Perpendicular", 4, 4, "two segments at a right angle"}, make_perpendicular},
+        {{"PolylineLength", 2, 0, "the length of a poly-line within a range of the rest length"}, make_polyline_length},
+        {{"EqualLengths", 4, 0, "segments of one length"}, make_equal_lengths},
+        {{"EqualLength", 4, 0, "two poly-lines of one length"}, make_equal_length},
+    };
+    return entries;
+}
+
+}  // namespace
+
+}  // namespace solver
+
+const std::vector<ConstraintKind>& constraint_kinds() {
+    static const std::vector<ConstraintKind> kinds = [] {
+        std::vector<ConstraintKind> list;
+        for (const auto& entry : solver::table()) list.push_back(entry.kind);
+        return list;
+    }();
+    return kinds;
+}
+
+std::unique_ptr<Constraint> make_constraint(std::string_view kind, std::vector<int> ids, double weight,
+                                            const ConstraintParameters& parameters, const Points& rest) {
+    const auto& table = solver::table();
+    const auto found = std::find_if(table.begin(), table.end(), [&](const auto& entry) { return entry.kind.name == kind; });
+    if (found == table.end()) {
+        std::string names;
+        for (const auto& entry : table) names += (names.empty() ? "" : ", ") + std::string(entry.kind.name);
+        throw Error(ErrorKind::usage, "constraint " + std::string(kind), "there is no such kind", "use one of: " + names);
+    }
+    const int count = static_cast<int>(ids.size());
+    solver::Making making{found->kind.name, std::move(ids), weight, parameters, Points(3, count)};
+    if (count < found->kind.least_ids || (found->kind.most_ids > 0 && count > found->kind.most_ids))
+        making.fail("there are " + std::to_string(count) + " points",
+                    found->kind.least_ids == found->kind.most_ids ? "give " + std::to_string(found->kind.least_ids)
+                                                                  : "give at least " + std::to_string(found->kind.least_ids));
+    for (int i = 0; i < count; ++i) {
+        const int id = making.ids[i];
+        if (id < 0 || id >= rest.cols())
+            making.fail("point " + std::to_string(id) + " does not exist",
+                        "there are " + std::to_string(rest.cols()) + " points");
+        making.rest.col(i) = rest.col(id);
+    }
+    check_points(making.rest, "rest points of constraint " + std::string(kind));
+    return found->make(std::move(making));
+}
+
+}  // namespace ostraka

@@ -1,0 +1,95 @@
+// What the files of constraint kinds share.
+#pragma once
+
+#include "ostraka/solver/constraint.h"
+
+namespace ostraka::solver {
+
+/// What a constraint is made of. `rest` holds the constraint's own points in the order of ids.
+struct Making {
+    std::string_view kind;
+    std::vector<int> ids;
+    double weight;
+    const ConstraintParameters& parameters;
+    Points rest;
+
+    [[noreturn]] void fail(const std::string& what, const std::string& remedy = {}) const;
+    /// Unit vector; fails where it is missing or has no length.
+    [[nodiscard]] Eigen::Vector3d direction() const;
+    [[nodiscard]] Eigen::Vector3d point() const;
+    struct Interval {
+        double min, max;
+        [[nodiscard]] double clamp(double value) const { return value < min ? min : (value > max ? max : value); }
+    };
+    /// The range, at least `least`; with `rest_measure` given, times that unless absolute.
+    [[nodiscard]] Interval range(double default_min, double default_max, double least = 0) const;
+    [[nodiscard]] Interval range_of(double rest_measure) const;
+    /// The target's points or the rest points, as many as `columns`.
+    [[nodiscard]] Points target_or(const Points& rest_rows) const;
+};
+
+using Maker = std::unique_ptr<Constraint> (*)(Making&&);
+
+// fits.cpp
+std::unique_ptr<Constraint> make_closeness(Making&&);
+std::unique_ptr<Constraint> make_on_surface(Making&&);
+std::unique_ptr<Constraint> make_line(Making&&);
+std::unique_ptr<Constraint> make_plane(Making&&);
+std::unique_ptr<Constraint> make_orientation(Making&&);
+// round.cpp
+std::unique_ptr<Constraint> make_circle(Making&&);
+std::unique_ptr<Constraint> make_sphere(Making&&);
+// strain.cpp
+std::unique_ptr<Constraint> make_edge_strain(Making&&);
+std::unique_ptr<Constraint> make_triangle_strain(Making&&);
+std::unique_ptr<Constraint> make_tetrahedron_strain(Making&&);
+std::unique_ptr<Constraint> make_area(Making&&);
+std::unique_ptr<Constraint> make_volume(Making&&);
+// laplacian.cpp
+std::unique_ptr<Constraint> make_laplacian(Making&&);
+std::unique_ptr<Constraint> make_laplacian_displacement(Making&&);
+std::unique_ptr<Constraint> make_cotangent_laplacian(Making&&);
+std::unique_ptr<Constraint> make_cotangent_laplacian_displacement(Making&&);
+std::unique_ptr<Constraint> make_bending(Making&&);
+// shape_groups.cpp
+std::unique_ptr<Constraint> make_rigid(Making&&);
+std::unique_ptr<Constraint> make_similarity(Making&&);
+std::unique_ptr<Constraint> make_equilateral(Making&&);
+std::unique_ptr<Constraint> make_non_uniform_scaling(Making&&);
+std::unique_ptr<Constraint> make_parallelogram(Making&&);
+std::unique_ptr<Constraint> make_rectangle(Making&&);
+// placement.cpp
+std::unique_ptr<Constraint> make_fitted_plane_orientation(Making&&);
+std::unique_ptr<Constraint> make_co_axiality(Making&&);
+std::unique_ptr<Constraint> make_axis_on_line(Making&&);
+std::unique_ptr<Constraint> make_mirror_symmetry(Making&&);
+std::unique_ptr<Constraint> make_proportion(Making&&);
+// edges.cpp
+std::unique_ptr<Constraint> make_angle(Making&&);
+std::unique_ptr<Constraint> make_perpendicular(Making&&);
+std::unique_ptr<Constraint> make_parallel(Making&&);
+std::unique_ptr<Constraint> make_polyline_length(Making&&);
+std::unique_ptr<Constraint> make_equal_lengths(Making&&);
+std::unique_ptr<Constraint> make_equal_length(Making&&);
+
+/// Sum of a_i b_i^T in the order of the columns.
+Eigen::Matrix3d outer_sum(const RowsIn& a, const RowsIn& b);
+
+/// The proper rotation R that maximises tr(R^T M): R q_i is closest to r_i for M = sum of r_i q_i^T.
+Eigen::Matrix3d best_rotation(const Eigen::Matrix3d& m);
+
+/// Unit eigenvectors of a symmetric matrix, least eigenvalue first.
+Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(const Eigen::Matrix3d& symmetric);
+
+/// Some unit vector at right angles to a unit vector.
+Eigen::Vector3d any_perpendicular(const Eigen::Vector3d& unit);
+
+/// A constraint whose projection follows from moments.
+class MomentConstraint : public Constraint {
+public:
+    using Constraint::Constraint;
+    [[nodiscard]] bool by_moments() const final { return true; }
+    void project(const RowsIn& rows, RowsOut projected) const final;
+};
+
+}  // namespace ostraka::solver

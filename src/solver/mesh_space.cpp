@@ -1,0 +1,230 @@
+// The solver over the points themselves.
+#include "ostraka/solver/solve.h"
+
+#include "assembly.h"
+#include "ostraka/core/parallel.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace ostraka {
+
+namespace {
+
+using solver::LowerTriangle;
+using solver::RowMatrix;
+
+double diagonal_of(const Points& points) {
+    if (points.cols() == 0) return 0;
+    return (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).norm();
+}
+
+double seconds_since(std::chrono::steady_clock::time_point begin) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+/// Below this the matrix counts as singular (see SparseCholesky::reciprocal_condition).
+constexpr double singular = 1e-14;
+/// Weight of the rest shape in singular systems, as a share of the mean diagonal entry.
+constexpr double least_regularisation = 1e-9;
+
+}  // namespace
+
+struct MeshSpaceSolver::State {
+    Points rest;
+    solver::Unknowns unknowns;
+    std::vector<double> row_weight;
+    RowMatrix columns;         ///< B^T of all rows
+    RowMatrix moving_columns;  ///< B^T of the rows whose projection changes
+    bool has_pattern = false, has_factor = false, has_constants = false;
+    solver::SparseCholesky cholesky;
+    solver::Floating floating;
+    std::vector<char> idle;
+    double pin = 0, regularisation = 0;
+    Points rows, projected;
+    Eigen::MatrixXd constant_right, right;
+    std::vector<std::size_t> blocks;  ///< constraints projected together: first of each, and the end
+
+    void prepare(std::span<const std::unique_ptr<Constraint>> constraints);
+    void renew_weights(std::span<const std::unique_ptr<Constraint>> constraints);
+    void renew_constants(std::span<const std::unique_ptr<Constraint>> constraints);
+    void add_right(const RowMatrix& by_column, Eigen::MatrixXd& sum) const;
+    bool factorise();
+};
+
+void MeshSpaceSolver::State::prepare(std::span<const std::unique_ptr<Constraint>> constraints) {
+    unknowns = solver::number_unknowns(constraints, rest.cols());
+    columns = solver::transposed(unknowns.rows, unknowns.count);
+    RowMatrix moving;
+    for (std::size_t c = 0; c < constraints.size(); ++c)
+        for (std::size_t r = unknowns.first_row[c]; r < unknowns.first_row[c + 1]; ++r) {
+            if (!constraints[c]->constant())
+                for (std::size_t k = unknowns.rows.begin[r]; k < unknowns.rows.begin[r + 1]; ++k) {
+                    moving.unknown.push_back(unknowns.rows.unknown[k]);
+                    moving.value.push_back(unknowns.rows.value[k]);
+                }
+            moving.begin.push_back(moving.unknown.size());
+        }
+    moving_columns = solver::transposed(moving, unknowns.count);
+    rows.setZero(3, static_cast<Eigen::Index>(unknowns.rows.rows()));
+    projected.setZero(3, rows.cols());
+    constexpr std::size_t rows_of_block = 1024;
+    blocks.assign(1, 0);
+    for (std::size_t c = 0; c < constraints.size(); ++c)
+        if (unknowns.first_row[c + 1] - unknowns.first_row[blocks.back()] >= rows_of_block || c + 1 == constraints.size())
+            blocks.push_back(c + 1);
+}
+
+void MeshSpaceSolver::State::renew_weights(std::span<const std::unique_ptr<Constraint>> constraints) {
+    row_weight.assign(unknowns.rows.rows(), 0.0);
+    for (std::size_t c = 0; c < constraints.size(); ++c)
+        std::fill(row_weight.begin() + static_cast<std::ptrdiff_t>(unknowns.first_row[c]),
+                  row_weight.begin() + static_cast<std::ptrdiff_t>(unknowns.first_row[c + 1]), constraints[c]->weight());
+    floating = solver::floating_parts(unknowns, row_weight);
+    idle.assign(static_cast<std::size_t>(unknowns.count), 0);
+    for (const int i : floating.idle) idle[i] = 1;
+}
+
+/// A part that floats is held by one of its points, which costs nothing, and moved back by its mean after each solve.
+bool MeshSpaceSolver::State::factorise() {
+    LowerTriangle matrix = solver::normal_matrix(unknowns.rows, columns, row_weight);
+    if (!has_pattern) {
+        cholesky.analyse(matrix);
+        has_pattern = true;
+    }
+    double sum = 0;
+    for (int i = 0; i < unknowns.count; ++i) sum += matrix.valuePtr()[matrix.outerIndexPtr()[i]];
+    const std::size_t active = static_cast<std::size_t>(unknowns.count) - floating.idle.size();
+    const double mean = sum > 0 ? sum / static_cast<double>(active) : 1.0;
+    pin = mean;
+    const auto add_to_diagonal = [&](int i, double value) { matrix.valuePtr()[matrix.outerIndexPtr()[i]] += value; };
+    for (const int i : floating.idle) add_to_diagonal(i, mean);
+    for (const auto& part : floating.parts) add_to_diagonal(part.front(), pin);
+    regularisation = 0;
+    for (double share = least_regularisation; !cholesky.factor(matrix) || cholesky.reciprocal_condition() < singular;
+         share *= 100) {
+        if (share > 1)
+            throw Error(ErrorKind::failure, "solver", "the system cannot be factorised", "bring weights closer to each other");
+        const double wanted = share * mean;
+        for (std::size_t i = 0; i < unknowns.point.size(); ++i) add_to_diagonal(static_cast<int>(i), wanted - regularisation);
+        regularisation = wanted;
+    }
+    return regularisation == 0;
+}
+
+void MeshSpaceSolver::State::renew_constants(std::span<const std::unique_ptr<Constraint>> constraints) {
+    parallel_for(constraints.size(), [&](std::size_t c) {
+        if (!constraints[c]->constant()) return;
+        const auto first = static_cast<Eigen::Index>(unknowns.first_row[c]), count = constraints[c]->map().rows;
+        constraints[c]->project(rows.middleCols(first, count), projected.middleCols(first, count));
+    });
+    constant_right.setZero(unknowns.count, 3);
+    // The rows that move have no say here.
+    std::vector<char> constant(unknowns.rows.rows(), 0);
+    for (std::size_t c = 0; c < constraints.size(); ++c)
+        if (constraints[c]->constant())
+            std::fill(constant.begin() + static_cast<std::ptrdiff_t>(unknowns.first_row[c]),
+                      constant.begin() + static_cast<std::ptrdiff_t>(unknowns.first_row[c + 1]), 1);
+    parallel_for(static_cast<std::size_t>(unknowns.count), [&](std::size_t i) {
+        Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+        for (std::size_t k = columns.begin[i]; k < columns.begin[i + 1]; ++k)
+            if (constant[columns.unknown[k]])
+                sum += (row_weight[columns.unknown[k]] * columns.value[k]) * projected.col(columns.unknown[k]);
+        constant_right.row(static_cast<Eigen::Index>(i)) = sum.transpose();
+    });
+    for (std::size_t i = 0; i < unknowns.point.size(); ++i)
+        constant_right.row(static_cast<Eigen::Index>(i)) += regularisation * rest.col(unknowns.point[i]).transpose();
+    for (const auto& part : floating.parts)
+        constant_right.row(part.front()) += pin * rest.col(unknowns.point[part.front()]).transpose();
+}
+
+void MeshSpaceSolver::State::add_right(const RowMatrix& by_column, Eigen::MatrixXd& sum) const {
+    parallel_for(static_cast<std::size_t>(unknowns.count), [&](std::size_t i) {
+        Eigen::Vector3d own = Eigen::Vector3d::Zero();
+        for (std::size_t k = by_column.begin[i]; k < by_column.begin[i + 1]; ++k) {
+            const int r = by_column.unknown[k];
+            own += (row_weight[r] * by_column.value[k]) * projected.col(r);
+        }
+        sum.row(static_cast<Eigen::Index>(i)) += own.transpose();
+    });
+}
+
+MeshSpaceSolver::MeshSpaceSolver(std::vector<std::unique_ptr<Constraint>> constraints, Points rest)
+    : Solver(std::move(constraints), rest.cols(), diagonal_of(rest)), state_(std::make_unique<State>()) {
+    check_points(rest, "rest points of the solver");
+    state_->rest = std::move(rest);
+    state_->prepare(constraints_);
+}
+
+MeshSpaceSolver::~MeshSpaceSolver() = default;
+
+void MeshSpaceSolver::initialize() {
+    State& s = *state_;
+    const auto begin = std::chrono::steady_clock::now();
+    if (!s.has_factor) {
+        s.renew_weights(constraints_);
+        s.factorise();
+        s.has_factor = true;
+        s.has_constants = false;
+        total_weight_ = 0;
+        for (const double w : s.row_weight) total_weight_ += w;
+        setup_.floating_parts = static_cast<int>(s.floating.parts.size());
+        setup_.regularised = s.regularisation > 0;
+        setup_.regularisation = s.regularisation;
+    }
+    if (!s.has_constants) {
+        s.renew_constants(constraints_);
+        s.has_constants = true;
+    }
+    setup_.times.factor += seconds_since(begin);
+}
+
+double MeshSpaceSolver::project(const Points& points) {
+    State& s = *state_;
+    std::vector<double> parts(s.blocks.size() - 1, 0.0);
+    parallel_for(
+        parts.size(),
+        [&](std::size_t b) {
+            Points rows;
+            for (std::size_t c = s.blocks[b]; c < s.blocks[b + 1]; ++c) {
+                const Constraint& constraint = *constraints_[c];
+                const auto first = static_cast<Eigen::Index>(s.unknowns.first_row[c]);
+                const Eigen::Index count = constraint.map().rows;
+                constraint.rows_of(points, rows);
+                if (!constraint.constant()) constraint.project(rows, s.projected.middleCols(first, count));
+                if (constraint.weight() > 0)
+                    parts[b] +=
+                        constraint.weight() *
+                        (rows - s.projected.middleCols(first, count)).leftCols(count - constraint.map().observed).squaredNorm();
+            }
+        },
+        1);
+    double sum = 0;
+    for (const double part : parts) sum += part;
+    return sum;
+}
+
+void MeshSpaceSolver::global_step(Points& points) {
+    State& s = *state_;
+    s.right = s.constant_right;
+    s.add_right(s.moving_columns, s.right);
+    s.cholesky.solve(s.right);
+    for (const auto& part : s.floating.parts) {
+        Eigen::RowVector3d shift = Eigen::RowVector3d::Zero();
+        for (const int i : part) shift += s.rest.col(s.unknowns.point[i]).transpose() - s.right.row(i);
+        shift /= static_cast<double>(part.size());
+        for (const int i : part) s.right.row(i) += shift;
+    }
+    parallel_for(
+        s.unknowns.point.size(),
+        [&](std::size_t i) {
+            if (!s.idle[i]) points.col(s.unknowns.point[i]) = s.right.row(static_cast<Eigen::Index>(i)).transpose();
+        },
+        4096);
+}
+
+void MeshSpaceSolver::weight_changed(std::size_t, double) { state_->has_factor = false; }
+
+void MeshSpaceSolver::target_changed(std::size_t) { state_->has_constants = false; }
+
+}  // namespace ostraka

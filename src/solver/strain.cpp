@@ -1,0 +1,185 @@
+// Edges, triangles and tetrahedra that stretch within limits (ShapeUp; Bouaziz et al. 2014, Projective Dynamics).
+#include "kinds.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace ostraka::solver {
+
+namespace {
+
+/// x_1 - x_0 has a length within a range.
+class EdgeStrain final : public Constraint {
+public:
+    explicit EdgeStrain(Making&& m)
+        : Constraint(m.kind, m.ids, m.weight), rest_(m.rest.col(1) - m.rest.col(0)), range_(m.range_of(rest_.norm())) {
+        map_.rows = 1;
+        map_.entries = {{0, 0, -1.0}, {0, 1, 1.0}};
+    }
+    void project(const RowsIn& rows, RowsOut projected) const override {
+        const double length = rows.col(0).norm(), wanted = range_.clamp(length), rest = rest_.norm();
+        if (length > 0) projected.col(0) = rows.col(0) * (wanted / length);
+        else projected.col(0) = rest > 0 ? Eigen::Vector3d(rest_ * (wanted / rest)) : Eigen::Vector3d(wanted, 0, 0);
+    }
+
+private:
+    Eigen::Vector3d rest_;
+    Making::Interval range_;
+};
+
+/// s >= 0 with product t closest to a >= b >= 0, of two: s_i = (a_i +- sqrt(a_i^2 + 4 mu)) / 2, where mu is a multiple of the
+/// Lagrange multiplier; the lesser one takes the minus sign where the product must shrink below its value at 4 mu = -b^2.
+std::array<double, 3> with_product(const std::array<double, 3>& a, int n, double t) {
+    if (!(t > 0)) {
+        std::array<double, 3> s = a;
+        s[n - 1] = 0;
+        return s;
+    }
+    const auto at = [&](double mu, bool minus) {
+        std::array<double, 3> s{1, 1, 1};
+        for (int i = 0; i < n; ++i) {
+            const double root = std::sqrt(std::max(a[i] * a[i] + 4 * mu, 0.0));
+            const bool less = minus && i == n - 1;
+            // Written so that no digits cancel.
+            if ((a[i] >= 0) != less) s[i] = (a[i] + (less ? -root : root)) / 2;
+            else s[i] = (less ? a[i] + root : a[i] - root) != 0 ? -2 * mu / (less ? a[i] + root : a[i] - root) : 0;
+        }
+        return s;
+    };
+    const auto excess = [&](double mu, bool minus) {
+        const auto s = at(mu, minus);
+        return s[0] * s[1] * s[2] - t;
+    };
+    const auto bisect = [&](double below, double above, bool minus) {  // excess(below) <= 0 <= excess(above)
+        for (int i = 0; i < 200 && below != above; ++i) {
+            const double middle = below + (above - below) / 2;
+            if (middle == below || middle == above) break;
+            (excess(middle, minus) < 0 ? below : above) = middle;
+        }
+        return at(above, minus);
+    };
+    const auto distance = [&](const std::array<double, 3>& s) {
+        double sum = 0;
+        for (int i = 0; i < n; ++i) sum += (s[i] - a[i]) * (s[i] - a[i]);
+        return sum;
+    };
+    const double least = a[n - 1];
+    const double start = least > 0 ? -least * least / 4 : 0.0;
+    std::array<double, 3> best{};
+    double best_distance = std::numeric_limits<double>::infinity();
+    const auto consider = [&](const std::array<double, 3>& s) {
+        if (const double here = distance(s); here < best_distance) {
+            best_distance = here;
+            best = s;
+        }
+    };
+    if (excess(start, false) <= 0) {
+        double high = std::max(std::abs(start), std::pow(t, 2.0 / n));
+        while (excess(high, false) < 0) high *= 2;
+        consider(bisect(start, high, false));
+    }
+    if (least > 0) {
+        // From `start` to 0 with the minus sign the product ends at 0, but it may rise before.
+        constexpr int samples = 64;
+        double previous = start, value = excess(start, true);
+        for (int i = 1; i <= samples; ++i) {
+            const double mu = start * (1 - static_cast<double>(i) / samples), here = excess(mu, true);
+            if (value >= 0 && here <= 0) consider(bisect(mu, previous, true));
+            if (value <= 0 && here >= 0) consider(bisect(previous, mu, true));
+            previous = mu;
+            value = here;
+        }
+    }
+    return best;
+}
+
+enum class Limits { singular_values, product };
+
+/// Rows: the columns of the deformation gradient F of a simplex times a length, the 1/2 or 1/3 power of its rest area or volume.
+/// Limits on each singular value (strain) or on their product (area, volume). A tetrahedron turned inside out is turned back.
+template <int N>
+class Simplex final : public Constraint {
+    using Edges = Eigen::Matrix<double, 3, N>;
+    using Square = Eigen::Matrix<double, N, N>;
+
+public:
+    Simplex(Making&& m, Limits limits) : Constraint(m.kind, m.ids, m.weight), limits_(limits) {
+        Edges edges;
+        for (int i = 0; i < N; ++i) edges.col(i) = m.rest.col(i + 1) - m.rest.col(0);
+        // Edges in a frame of their own.
+        const Eigen::HouseholderQR<Edges> qr(edges);
+        Square local = qr.matrixQR().template topRows<N>().template triangularView<Eigen::Upper>();
+        for (int i = 0; i < N; ++i)  // as Gram and Schmidt have it
+            if (local(i, i) < 0) local.row(i) *= -1;
+        const double measure = std::abs(local.determinant()) / (N == 2 ? 2.0 : 6.0);
+        const double size = edges.cwiseAbs().maxCoeff();
+        if (!(measure > 1e-14 * std::pow(size, N)))
+            m.fail(N == 2 ? "the triangle has no area in the rest state" : "the tetrahedron has no volume in the rest state",
+                   "leave it out");
+        scale_ = std::pow(measure, 1.0 / N);
+        const Square inverse = local.inverse();
+        // F = (x_i - x_0) inverse; a column of it is a combination of the points.
+        map_.rows = N;
+        for (int c = 0; c < N; ++c) {
+            map_.entries.push_back({c, 0, -scale_ * inverse.col(c).sum()});
+            for (int i = 0; i < N; ++i) map_.entries.push_back({c, i + 1, scale_ * inverse(i, c)});
+        }
+        if (limits == Limits::singular_values && m.parameters.absolute) m.fail("strain has no absolute range");
+        range_ = m.range(1, 1);
+        if (m.parameters.absolute) {
+            range_.min /= measure;
+            range_.max /= measure;
+        }
+        // Orientation: F of the rest state is the frame itself, whose determinant may be -1.
+        if constexpr (N == 3) flipped_ = (edges * inverse).determinant() < 0;
+    }
+
+    void project(const RowsIn& rows, RowsOut projected) const override {
+        const Edges f = rows / scale_;
+        const Eigen::JacobiSVD<Eigen::Matrix<double, 3, N>> svd(f, Eigen::ComputeFullU | Eigen::ComputeFullV);
+        if (svd.info() != Eigen::Success) {  // not finite
+            projected = rows;
+            return;
+        }
+        Eigen::Matrix<double, 3, N> u = svd.matrixU().template leftCols<N>();
+        const Square v = svd.matrixV();
+        std::array<double, 3> s{1, 1, 1};
+        for (int i = 0; i < N; ++i) s[i] = svd.singularValues()[i];
+        if constexpr (N == 3) {
+            if ((u.determinant() * v.determinant() < 0) != flipped_) {
+                u.col(2) *= -1;
+                s[2] *= -1;
+            }
+        }
+        if (limits_ == Limits::singular_values) {
+            for (int i = 0; i < N; ++i) s[i] = range_.clamp(s[i]);
+        } else {
+            const double product = s[0] * s[1] * s[2];
+            if (product < range_.min || product > range_.max) s = with_product(s, N, range_.clamp(product));
+        }
+        Edges result = Edges::Zero();
+        for (int i = 0; i < N; ++i) result += s[i] * u.col(i) * v.col(i).transpose();
+        projected = result * scale_;
+    }
+
+private:
+    Limits limits_;
+    double scale_ = 1;
+    bool flipped_ = false;
+    Making::Interval range_{1, 1};
+};
+
+}  // namespace
+
+std::unique_ptr<Constraint> make_edge_strain(Making&& m) { return std::make_unique<EdgeStrain>(std::move(m)); }
+std::unique_ptr<Constraint> make_triangle_strain(Making&& m) {
+    return std::make_unique<Simplex<2>>(std::move(m), Limits::singular_values);
+}
+std::unique_ptr<Constraint> make_tetrahedron_strain(Making&& m) {
+    return std::make_unique<Simplex<3>>(std::move(m), Limits::singular_values);
+}
+std::unique_ptr<Constraint> make_area(Making&& m) { return std::make_unique<Simplex<2>>(std::move(m), Limits::product); }
+std::unique_ptr<Constraint> make_volume(Making&& m) { return std::make_unique<Simplex<3>>(std::move(m), Limits::product); }
+
+}  // namespace ostraka::solver
