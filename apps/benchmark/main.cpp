@@ -11,6 +11,7 @@ int main(int argc, char** argv) {
     register_reading_benchmarks();
     register_picture_benchmarks();
     register_relation_benchmarks();
+    register_solver_benchmarks();
     register_transfer_benchmarks();
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;

@@ -2,6 +2,7 @@
 // from the origin: rows are r0 + M d with M = B W.
 #include "ostraka/solver/solve.h"
 
+#include "kernels.h"
 #include "ostraka/core/parallel.h"
 
 #include <Eigen/Cholesky>
@@ -58,6 +59,7 @@ struct CageSpaceSolver::State {
     std::vector<std::size_t> moving;      ///< constraints
     std::vector<std::size_t> blocks;      ///< first of each block in `moving`, and the end
     std::vector<Eigen::Index> first_row;  ///< of each of `moving`, and the number of rows
+    Eigen::Index stride = 0;              ///< of rows of m, which end in zeros
     CageWeights m;
     Points r0;
     std::vector<Thin> parts;
@@ -153,7 +155,8 @@ void CageSpaceSolver::State::form(std::span<const std::unique_ptr<Constraint>> c
     constant_normal.setZero(cage, cage);
     constant_right.setZero(cage, 3);
     constant_objective = 0;
-    m.resize(first_row.back(), cage);
+    stride = solver::padded(cage);
+    m.setZero(first_row.back(), stride);
     r0.resize(3, first_row.back());
     std::vector<std::size_t> place(constraints.size(), 0);
     for (std::size_t k = 0; k < moving.size(); ++k) place[moving[k]] = k;
@@ -213,7 +216,7 @@ void CageSpaceSolver::State::form(std::span<const std::unique_ptr<Constraint>> c
                             sum.objective += c.weight() * gap.squaredNorm();
                         } else {
                             const Eigen::Index to = first_row[place[i]] + slice.first;
-                            m.middleRows(to, slice.count) = rows;
+                            m.block(to, 0, slice.count, cage) = rows;
                             r0.middleCols(to, slice.count) = own.middleCols(slice.first, slice.count);
                             const Eigen::Index weighing = c.map().rows - c.map().observed - slice.first;
                             if (weighing < slice.count)
@@ -333,50 +336,54 @@ double CageSpaceSolver::project(const Points& cage) {
     State& s = *state_;
     const Thin d = (cage - s.rest).transpose();
     const std::size_t blocks = s.parts.size();
+    Thin padded_d = Thin::Zero(s.stride, 3);
+    padded_d.topRows(s.cage) = d;
+    constexpr std::size_t groups_together = 8;  // too little work to be worth a thread's while
     parallel_for(
-        blocks + s.groups.size(),
+        s.groups.size(),
         [&](std::size_t k) {
-            if (k >= blocks) {
-                Group& g = s.groups[k - blocks];
-                const Constraint& c = *constraints_[g.constraint];
-                const Thin e = g.m_m * d;
-                const Matrix3d cross = d.transpose() * g.m_r0;
-                const Constraint::Moments moments{d.transpose() * e + cross + cross.transpose() + g.r0_r0,
-                                                  d.transpose() * g.m_q + g.r0_q};
-                const auto p = c.project_moments(moments);
-                g.right = c.weight() * ((e + g.m_r0) * p.of_rows.transpose() + g.m_q * p.of_reference.transpose() - g.m_r0);
-                const Matrix3d left = Matrix3d::Identity() - p.of_rows;  // r - p = left r - of_reference q
-                const double squared = (left * moments.rows * left.transpose()).trace() -
-                                       2 * (left * moments.reference * p.of_reference.transpose()).trace() +
-                                       (p.of_reference * g.q_q * p.of_reference.transpose()).trace();
-                g.objective = c.weight() * std::max(squared, 0.0);
-                return;
-            }
+            Group& g = s.groups[k];
+            const Constraint& c = *constraints_[g.constraint];
+            const Thin e = g.m_m * d;
+            const Matrix3d cross = d.transpose() * g.m_r0;
+            const Constraint::Moments moments{d.transpose() * e + cross + cross.transpose() + g.r0_r0,
+                                              d.transpose() * g.m_q + g.r0_q};
+            const auto p = c.project_moments(moments);
+            g.right = c.weight() * ((e + g.m_r0) * p.of_rows.transpose() + g.m_q * p.of_reference.transpose() - g.m_r0);
+            const Matrix3d left = Matrix3d::Identity() - p.of_rows;  // r - p = left r - of_reference q
+            const double squared = (left * moments.rows * left.transpose()).trace() -
+                                   2 * (left * moments.reference * p.of_reference.transpose()).trace() +
+                                   (p.of_reference * g.q_q * p.of_reference.transpose()).trace();
+            g.objective = c.weight() * std::max(squared, 0.0);
+        },
+        groups_together);
+    parallel_for(
+        blocks,
+        [&](std::size_t k) {
             // One pass over the block's part of M: it stays in the cache from the rows to the sums.
-            Points rows(3, s.first_row[s.blocks[k + 1]] - s.first_row[s.blocks[k]]), wanted(3, rows.cols());
             const Eigen::Index start = s.first_row[s.blocks[k]];
-            for (Eigen::Index r = 0; r < rows.cols(); ++r)
-                for (int axis = 0; axis < 3; ++axis) rows(axis, r) = s.r0(axis, start + r) + s.m.row(start + r).dot(d.col(axis));
+            Points rows = s.r0.middleCols(start, s.first_row[s.blocks[k + 1]] - start), wanted(3, rows.cols());
+            const double* m = s.m.data() + start * s.stride;
+            solver::add_rows(m, rows.cols(), s.stride, padded_d.data(), rows.data());
             double objective = 0;
-            Thin& sum = s.parts[k];
-            sum.setZero(s.cage, 3);
             for (std::size_t i = s.blocks[k]; i < s.blocks[k + 1]; ++i) {
                 const Constraint& c = *constraints_[s.moving[i]];
                 const Eigen::Index first = s.first_row[i] - start, count = c.map().rows, weighing = count - c.map().observed;
                 c.project(rows.middleCols(first, count), wanted.middleCols(first, count));
                 objective += c.weight() * (rows - wanted).middleCols(first, weighing).squaredNorm();
-                for (Eigen::Index r = first; r < first + weighing; ++r)
-                    for (int axis = 0; axis < 3; ++axis)
-                        sum.col(axis) +=
-                            (c.weight() * (wanted(axis, r) - s.r0(axis, start + r))) * s.m.row(start + r).transpose();
+                wanted.middleCols(first, weighing) =
+                    c.weight() * (wanted.middleCols(first, weighing) - s.r0.middleCols(start + first, weighing));
+                wanted.middleCols(first + weighing, count - weighing).setZero();
             }
+            s.parts[k].setZero(s.stride, 3);
+            solver::add_sums(m, rows.cols(), s.stride, wanted.data(), s.parts[k].data());
             s.part_objective[k] = objective;
         },
         1);
     s.right = s.constant_right;
     double phi = std::max(s.constant_objective + (d.transpose() * (s.constant_normal * d - 2 * s.constant_right)).trace(), 0.0);
     for (std::size_t k = 0; k < blocks; ++k) {
-        s.right += s.parts[k];
+        s.right += s.parts[k].topRows(s.cage);
         phi += s.part_objective[k];
     }
     for (const Group& g : s.groups) {
@@ -429,19 +436,6 @@ void CageSpaceSolver::target_changed(std::size_t constraint) {
     if (s.treatment[constraint] == Treatment::constant)
         s.add_constant(*constraints_[constraint], constraint, constraints_[constraint]->weight());
     if (s.treatment[constraint] == Treatment::group) s.formed = s.factored = false;
-}
-
-Points points_of(const CageWeights& weights, const Points& cage) {
-    if (weights.cols() != cage.cols())
-        fail_usage("the weights are of " + std::to_string(weights.cols()) + " cage points, and the cage has " +
-                   std::to_string(cage.cols()));
-    Points points(3, weights.rows());
-    const Thin c = cage.transpose();
-    parallel_for(static_cast<std::size_t>(weights.rows()), [&](std::size_t i) {
-        const auto r = static_cast<Eigen::Index>(i);
-        for (int axis = 0; axis < 3; ++axis) points(axis, r) = weights.row(r).dot(c.col(axis));
-    });
-    return points;
 }
 
 }  // namespace ostraka

@@ -23,7 +23,7 @@ struct SparseCholesky::State {
         if (openblas_set_num_threads != nullptr) openblas_set_num_threads(1);
         cholmod_start(&common);
         common.print = 0;
-        common.supernodal = CHOLMOD_SUPERNODAL;
+        common.final_ll = 1;  // supernodal where there is enough to do in it (CHOLMOD_AUTO), else simplicial; always L L^T
         common.quick_return_if_not_posdef = 1;
     }
     ~State() {

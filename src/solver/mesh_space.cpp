@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
+#include <span>
 
 namespace ostraka {
 
@@ -40,11 +42,21 @@ struct MeshSpaceSolver::State {
     solver::SparseCholesky cholesky;
     solver::Floating floating;
     std::vector<char> idle;
-    double pin = 0, regularisation = 0;
+    double pin = 0, regularisation = 0, symbolic_seconds = 0;
     Points rows, projected;
     Eigen::MatrixXd constant_right, right;
     std::vector<std::size_t> blocks;  ///< constraints projected together: first of each, and the end
 
+    // Weights that have changed since the factorisation, few of them: A + U S U^T by the formula of Woodbury.
+    std::map<std::size_t, double> factored_weight;  ///< constraint -> weight that the factorisation has
+    bool updates_current = true;
+    std::vector<std::size_t> updated_rows;
+    Eigen::VectorXd update_sign, update_root;
+    Eigen::MatrixXd update_columns;  ///< A^-1 U
+    Eigen::PartialPivLU<Eigen::MatrixXd> capacity;
+
+    bool update(std::span<const std::unique_ptr<Constraint>> constraints);
+    void solve(Eigen::MatrixXd& x);
     void prepare(std::span<const std::unique_ptr<Constraint>> constraints);
     void renew_weights(std::span<const std::unique_ptr<Constraint>> constraints);
     void renew_constants(std::span<const std::unique_ptr<Constraint>> constraints);
@@ -89,7 +101,9 @@ void MeshSpaceSolver::State::renew_weights(std::span<const std::unique_ptr<Const
 bool MeshSpaceSolver::State::factorise() {
     LowerTriangle matrix = solver::normal_matrix(unknowns.rows, columns, row_weight);
     if (!has_pattern) {
+        const auto begin = std::chrono::steady_clock::now();
         cholesky.analyse(matrix);
+        symbolic_seconds = seconds_since(begin);
         has_pattern = true;
     }
     double sum = 0;
@@ -110,6 +124,64 @@ bool MeshSpaceSolver::State::factorise() {
         regularisation = wanted;
     }
     return regularisation == 0;
+}
+
+/// False where too many rows have changed, or the update is ill-conditioned.
+bool MeshSpaceSolver::State::update(std::span<const std::unique_ptr<Constraint>> constraints) {
+    constexpr std::size_t most_rows = 24;
+    updated_rows.clear();
+    std::vector<double> change;
+    for (const auto& [c, before] : factored_weight) {
+        const Constraint& constraint = *constraints[c];
+        std::fill(row_weight.begin() + static_cast<std::ptrdiff_t>(unknowns.first_row[c]),
+                  row_weight.begin() + static_cast<std::ptrdiff_t>(unknowns.first_row[c + 1]), constraint.weight());
+        if (constraint.weight() == before) continue;
+        // What holds parts in place may have changed, too.
+        if (constraint.weight() == 0 || before == 0 || static_cast<std::size_t>(constraint.map().rows) > most_rows) return false;
+        for (std::size_t r = unknowns.first_row[c]; r < unknowns.first_row[c + 1]; ++r) {
+            updated_rows.push_back(r);
+            change.push_back(constraint.weight() - before);
+        }
+        if (updated_rows.size() > most_rows) return false;
+    }
+    const auto rank = static_cast<Eigen::Index>(updated_rows.size());
+    update_sign.resize(rank);
+    update_root.resize(rank);
+    update_columns.setZero(unknowns.count, rank);
+    for (Eigen::Index k = 0; k < rank; ++k) {
+        const double d = change[static_cast<std::size_t>(k)];
+        update_sign[k] = d < 0 ? -1 : 1;
+        update_root[k] = std::sqrt(std::abs(d));
+        const std::size_t r = updated_rows[static_cast<std::size_t>(k)];
+        for (std::size_t e = unknowns.rows.begin[r]; e < unknowns.rows.begin[r + 1]; ++e)
+            update_columns(unknowns.rows.unknown[e], k) += update_root[k] * unknowns.rows.value[e];
+    }
+    if (rank == 0) return true;
+    cholesky.solve(update_columns);
+    Eigen::MatrixXd small = update_sign.asDiagonal().toDenseMatrix();
+    for (Eigen::Index k = 0; k < rank; ++k) {
+        const std::size_t r = updated_rows[static_cast<std::size_t>(k)];
+        for (std::size_t e = unknowns.rows.begin[r]; e < unknowns.rows.begin[r + 1]; ++e)
+            small.row(k) += update_root[k] * unknowns.rows.value[e] * update_columns.row(unknowns.rows.unknown[e]);
+    }
+    // The update takes back what the old factors give: as many digits are lost as this has.
+    constexpr double most_lost = 1e3;
+    if (!(small.cwiseAbs().maxCoeff() < most_lost)) return false;
+    capacity.compute(small);
+    return capacity.rcond() > 1 / most_lost;
+}
+
+void MeshSpaceSolver::State::solve(Eigen::MatrixXd& x) {
+    cholesky.solve(x);
+    const auto rank = static_cast<Eigen::Index>(updated_rows.size());
+    if (rank == 0) return;
+    Eigen::MatrixXd seen = Eigen::MatrixXd::Zero(rank, x.cols());
+    for (Eigen::Index k = 0; k < rank; ++k) {
+        const std::size_t r = updated_rows[static_cast<std::size_t>(k)];
+        for (std::size_t e = unknowns.rows.begin[r]; e < unknowns.rows.begin[r + 1]; ++e)
+            seen.row(k) += update_root[k] * unknowns.rows.value[e] * x.row(unknowns.rows.unknown[e]);
+    }
+    x.noalias() -= update_columns * capacity.solve(seen);
 }
 
 void MeshSpaceSolver::State::renew_constants(std::span<const std::unique_ptr<Constraint>> constraints) {
@@ -161,13 +233,18 @@ MeshSpaceSolver::~MeshSpaceSolver() = default;
 void MeshSpaceSolver::initialize() {
     State& s = *state_;
     const auto begin = std::chrono::steady_clock::now();
+    if (s.has_factor && !s.updates_current) {
+        s.has_factor = s.update(constraints_);
+        s.updates_current = true;
+        s.has_constants = false;
+    }
     if (!s.has_factor) {
+        s.factored_weight.clear();
+        s.updated_rows.clear();
         s.renew_weights(constraints_);
         s.factorise();
         s.has_factor = true;
         s.has_constants = false;
-        total_weight_ = 0;
-        for (const double w : s.row_weight) total_weight_ += w;
         setup_.floating_parts = static_cast<int>(s.floating.parts.size());
         setup_.regularised = s.regularisation > 0;
         setup_.regularisation = s.regularisation;
@@ -176,7 +253,12 @@ void MeshSpaceSolver::initialize() {
         s.renew_constants(constraints_);
         s.has_constants = true;
     }
-    setup_.times.factor += seconds_since(begin);
+    total_weight_ = 0;
+    for (const double w : s.row_weight) total_weight_ += w;
+    setup_.updated_rows = static_cast<int>(s.updated_rows.size());
+    setup_.times.symbolic += s.symbolic_seconds;
+    setup_.times.factor += seconds_since(begin) - s.symbolic_seconds;
+    s.symbolic_seconds = 0;
 }
 
 double MeshSpaceSolver::project(const Points& points) {
@@ -208,7 +290,7 @@ void MeshSpaceSolver::global_step(Points& points) {
     State& s = *state_;
     s.right = s.constant_right;
     s.add_right(s.moving_columns, s.right);
-    s.cholesky.solve(s.right);
+    s.solve(s.right);
     for (const auto& part : s.floating.parts) {
         Eigen::RowVector3d shift = Eigen::RowVector3d::Zero();
         for (const int i : part) shift += s.rest.col(s.unknowns.point[i]).transpose() - s.right.row(i);
@@ -223,7 +305,13 @@ void MeshSpaceSolver::global_step(Points& points) {
         4096);
 }
 
-void MeshSpaceSolver::weight_changed(std::size_t, double) { state_->has_factor = false; }
+void MeshSpaceSolver::weight_changed(std::size_t constraint, double before) {
+    constexpr std::size_t many = 1000;  // remembered one by one
+    if (!state_->has_factor) return;
+    state_->factored_weight.emplace(constraint, before);
+    state_->updates_current = false;
+    if (state_->factored_weight.size() > many) state_->has_factor = false;
+}
 
 void MeshSpaceSolver::target_changed(std::size_t) { state_->has_constants = false; }
 

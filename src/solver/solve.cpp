@@ -1,6 +1,7 @@
 #include "ostraka/solver/solve.h"
 
 #include "anderson.h"
+#include "ostraka/core/parallel.h"
 
 #include <chrono>
 #include <cmath>
@@ -157,6 +158,19 @@ SolveSummary Solver::solve(Points& variables, const SolveOptions& options) {
     }
     summary.usable = x.allFinite() && std::isfinite(phi) && phi <= start;
     return summary;
+}
+
+Points points_of(const CageWeights& weights, const Points& cage) {
+    if (weights.cols() != cage.cols())
+        fail_usage("the weights are of " + std::to_string(weights.cols()) + " cage points, and the cage has " +
+                   std::to_string(cage.cols()));
+    Points points(3, weights.rows());
+    const Eigen::Matrix<double, Eigen::Dynamic, 3> c = cage.transpose();
+    parallel_for(static_cast<std::size_t>(weights.rows()), [&](std::size_t i) {
+        const auto r = static_cast<Eigen::Index>(i);
+        for (int axis = 0; axis < 3; ++axis) points(axis, r) = weights.row(r).dot(c.col(axis));
+    });
+    return points;
 }
 
 }  // namespace ostraka

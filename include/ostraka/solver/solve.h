@@ -49,6 +49,7 @@ struct SolveSummary {
         0;  ///< sets of points that constraints tie together but nothing holds in place: their mean stays at rest
     bool regularised = false;  ///< singular beyond that: all was drawn towards the rest shape, with `regularisation` as weight
     double regularisation = 0;
+    int updated_rows = 0;      ///< rows of new weight that were taken as a low-rank update of an older factorisation
     bool usable = false;       ///< the result is finite and the objective no higher than at the start
     std::string text() const;  ///< in a few lines
 };

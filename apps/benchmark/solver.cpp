@@ -1,0 +1,168 @@
+// The local/global solver: set-up and iterations over the points of a mesh, and through a cage.
+#include "benchmarks.h"
+
+#include "ostraka/geom/eigen.h"
+#include "ostraka/solver/solve.h"
+
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <random>
+
+namespace ostraka::bench {
+
+namespace {
+
+constexpr int iterations = 50;
+constexpr Eigen::Index cage_size = 200;
+
+Points points_of_mesh(const Mesh& mesh) {
+    Points points(3, static_cast<Eigen::Index>(mesh.number_of_vertices()));
+    for (const Vertex v : mesh.vertices()) points.col(static_cast<Eigen::Index>(v.idx())) = eigen(mesh.point(v));
+    return points;
+}
+
+/// The `count` points nearest to the one with the greatest x.
+std::vector<int> patch(const Points& points, std::size_t count) {
+    Eigen::Index seed = 0;
+    points.row(0).maxCoeff(&seed);
+    std::vector<int> ids(static_cast<std::size_t>(points.cols()));
+    std::iota(ids.begin(), ids.end(), 0);
+    const auto distance = [&](int i) { return (points.col(i) - points.col(seed)).squaredNorm(); };
+    std::nth_element(ids.begin(), ids.begin() + static_cast<std::ptrdiff_t>(count), ids.end(),
+                     [&](int a, int b) { return distance(a) < distance(b); });
+    ids.resize(count);
+    return ids;
+}
+
+using List = std::vector<std::unique_ptr<Constraint>>;
+
+void add_plane(List& list, const Points& rest) {
+    list.push_back(make_constraint("Plane", patch(rest, static_cast<std::size_t>(rest.cols() / 40)), 1, {}, rest));
+}
+
+SolveOptions plain(int count) {
+    SolveOptions options;
+    options.iterations = count;
+    options.tolerance = 0;
+    options.window = 0;
+    return options;
+}
+
+void report(benchmark::State& state, const SolveSummary& summary) {
+    if (!summary.usable) state.SkipWithError("not solved");
+    state.counters["iterations"] = summary.iterations;  // fewer where nothing moves any more, to the bit
+    state.counters["symbolic_s"] = summary.times.symbolic;
+    state.counters["factor_s"] = summary.times.factor;
+    state.counters["project_s"] = summary.times.project;
+    state.counters["solve_s"] = summary.times.solve;
+}
+
+/// Laplacian displacement on every vertex and a plane on 2.5 % of them: set-up and 50 plain iterations.
+void laplacian_and_plane(benchmark::State& state, std::size_t vertices) {
+    const Mesh& mesh = target(vertices);
+    const Points rest = points_of_mesh(mesh);
+    SolveSummary summary;
+    for ([[maybe_unused]] const auto lap : state) {
+        List list;
+        for (const Vertex v : mesh.vertices()) {
+            std::vector<int> ids{static_cast<int>(v.idx())};
+            for (const Vertex w : CGAL::vertices_around_target(v, mesh)) ids.push_back(static_cast<int>(w.idx()));
+            list.push_back(make_constraint("LaplacianDisplacement", std::move(ids), 1, {}, rest));
+        }
+        add_plane(list, rest);
+        MeshSpaceSolver solver(std::move(list), rest);
+        Points x = rest;
+        summary = solver.solve(x, plain(iterations));
+    }
+    report(state, summary);
+}
+
+/// Closeness of every vertex to rest and the plane: a diagonal matrix but for rank one.
+void closeness_and_plane(benchmark::State& state, std::size_t vertices) {
+    const Points rest = points_of_mesh(target(vertices));
+    SolveSummary summary;
+    for ([[maybe_unused]] const auto lap : state) {
+        List list;
+        for (int i = 0; i < rest.cols(); ++i) list.push_back(make_constraint("Closeness", {i}, 1, {}, rest));
+        add_plane(list, rest);
+        MeshSpaceSolver solver(std::move(list), rest);
+        Points x = rest;
+        summary = solver.solve(x, plain(iterations));
+    }
+    report(state, summary);
+}
+
+/// Smooth weights of a cage: a made-up, well-conditioned stand-in, since the time does not depend on their values.
+CageWeights some_weights(const Points& rest, Points& cage) {
+    std::mt19937 random(3);
+    const Eigen::Vector3d low = rest.rowwise().minCoeff(), size = rest.rowwise().maxCoeff() - low;
+    cage.resize(3, cage_size);
+    for (Eigen::Index j = 0; j < cage_size; ++j)
+        for (int k = 0; k < 3; ++k) cage(k, j) = low[k] + size[k] * (1.4 * static_cast<double>(random()) / 4294967296.0 - 0.2);
+    CageWeights weights(rest.cols(), cage_size);
+    for (Eigen::Index i = 0; i < rest.cols(); ++i) {
+        weights.row(i) =
+            (1e-3 * size.squaredNorm() + (cage.colwise() - rest.col(i)).colwise().squaredNorm().array()).square().inverse();
+        weights.row(i) /= weights.row(i).sum();
+    }
+    return weights;
+}
+
+enum class Kind { edges, planes, rigid_groups };
+
+/// One iteration through a cage of 200 vertices, half of 100,000 vertices constrained.
+void through_cage(benchmark::State& state, Kind kind) {
+    const Points rest = points_of_mesh(target(100'000));
+    Points cage;
+    const CageWeights weights = some_weights(rest, cage);
+    List list;
+    const int half = static_cast<int>(rest.cols() / 2);
+    if (kind == Kind::edges) {
+        ConstraintParameters shorter;
+        shorter.min = shorter.max = 0.9;
+        for (int i = 0; i < half; ++i) list.push_back(make_constraint("EdgeStrain", {i, i + 1}, 1, shorter, rest));
+    } else {
+        for (int group = 0; group < 5; ++group) {
+            std::vector<int> ids;
+            for (int i = group * (half / 5); i < (group + 1) * (half / 5); ++i) ids.push_back(i);
+            list.push_back(make_constraint(kind == Kind::planes ? "Plane" : "Rigid", ids, 1, {}, rest));
+        }
+    }
+    list.push_back(make_constraint("Closeness", {static_cast<int>(rest.cols()) - 1}, 1, {}, rest));
+    const std::size_t rows = kind == Kind::edges ? static_cast<std::size_t>(half) : 0;
+    CageSpaceSolver solver(std::move(list), weights, cage);
+    solver.initialize();
+    Points c = 1.1 * cage;
+    const SolveSummary first = solver.solve(c, plain(1));
+    double count = 0, time = 0;
+    for ([[maybe_unused]] const auto lap : state) {
+        c = 1.1 * cage;
+        const SolveSummary summary = solver.solve(c, plain(iterations));
+        count += summary.iterations;
+        time += summary.seconds.back() - summary.seconds.front();
+    }
+    state.counters["iteration_ms"] = 1e3 * time / count;
+    state.counters["iterations"] = count / static_cast<double>(state.iterations());
+    state.counters["factor_s"] = first.times.factor;
+    // The rows of M are read once.
+    state.SetBytesProcessed(static_cast<std::int64_t>(count * static_cast<double>(rows * cage_size * sizeof(double))));
+}
+
+}  // namespace
+
+void register_solver_benchmarks() {
+    const auto add = [](const std::string& name, auto run) {
+        with_both_times(benchmark::RegisterBenchmark(name.c_str(), [run](benchmark::State& state) { run(state); }));
+    };
+    for (const std::size_t vertices : {20'000, 50'000, 100'000, 200'000, 500'000}) {
+        const std::string size = std::to_string(vertices);
+        add("solver/laplacian_and_plane/" + size, [vertices](benchmark::State& state) { laplacian_and_plane(state, vertices); });
+        add("solver/closeness_and_plane/" + size, [vertices](benchmark::State& state) { closeness_and_plane(state, vertices); });
+    }
+    add("solver/cage/edges", [](benchmark::State& state) { through_cage(state, Kind::edges); });
+    add("solver/cage/planes", [](benchmark::State& state) { through_cage(state, Kind::planes); });
+    add("solver/cage/rigid_groups", [](benchmark::State& state) { through_cage(state, Kind::rigid_groups); });
+}
+
+}  // namespace ostraka::bench

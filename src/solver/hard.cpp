@@ -1,0 +1,113 @@
+#include "ostraka/solver/hard.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ostraka {
+
+namespace {
+
+/// P(rows + u) - u: with the scaled multipliers u, the local step of the augmented Lagrangian (Boyd et al. 2011, section 3.1.1).
+class Shifted final : public Constraint {
+public:
+    explicit Shifted(std::unique_ptr<Constraint> inner)
+        : Constraint(inner->kind(), inner->ids(), inner->weight()),
+          u(Points::Zero(3, inner->map().rows)),
+          inner_(std::move(inner)) {
+        map_ = inner_->map();
+    }
+    void project(const RowsIn& rows, RowsOut projected) const override {
+        const Points shifted = rows + u;
+        inner_->project(shifted, projected);
+        projected -= u;
+    }
+    void set_target(const Points& target) override { inner_->set_target(target); }
+    [[nodiscard]] const Constraint& inner() const { return *inner_; }
+
+    /// Greatest distance of a row from what is admissible; the multipliers grow by how far the shifted rows are off.
+    double update(const Points& points) {
+        Points rows, own(3, map_.rows), shifted(3, map_.rows);
+        rows_of(points, rows);
+        inner_->project(rows, own);
+        project(rows, shifted);
+        u += rows - shifted;
+        u.rightCols(map_.observed).setZero();
+        const Eigen::Index weighing = map_.rows - map_.observed;
+        return weighing > 0 ? (rows - own).leftCols(weighing).colwise().norm().maxCoeff() : 0;
+    }
+    Points u;
+
+private:
+    std::unique_ptr<Constraint> inner_;
+};
+
+}  // namespace
+
+struct HardSolver::State {
+    std::vector<Shifted*> hard;  ///< of each constraint; null for the others
+    std::unique_ptr<MeshSpaceSolver> solver;
+    double diagonal = 0;
+};
+
+HardSolver::HardSolver(std::vector<std::unique_ptr<Constraint>> constraints, const std::vector<bool>& hard, const Points& rest)
+    : state_(std::make_unique<State>()) {
+    if (hard.size() != constraints.size()) fail_usage("there must be a flag, hard or not, for each constraint");
+    for (std::size_t i = 0; i < constraints.size(); ++i) {
+        state_->hard.push_back(nullptr);
+        if (!hard[i] || !constraints[i]) continue;
+        if (!(constraints[i]->weight() > 0))
+            fail_usage("hard constraint " + std::to_string(i) + " has no weight",
+                       "its enforcement starts from its weight: give one");
+        auto shifted = std::make_unique<Shifted>(std::move(constraints[i]));
+        state_->hard.back() = shifted.get();
+        constraints[i] = std::move(shifted);
+    }
+    if (rest.cols() > 0) state_->diagonal = (rest.rowwise().maxCoeff() - rest.rowwise().minCoeff()).norm();
+    state_->solver = std::make_unique<MeshSpaceSolver>(std::move(constraints), rest);
+}
+
+HardSolver::~HardSolver() = default;
+
+std::size_t HardSolver::size() const { return state_->hard.size(); }
+
+const Constraint& HardSolver::constraint(std::size_t i) const {
+    return state_->hard.at(i) != nullptr ? state_->hard[i]->inner() : state_->solver->constraint(i);
+}
+
+HardSummary HardSolver::solve(Points& points, const HardOptions& options) {
+    check_options(options, "solver");
+    HardSummary summary;
+    summary.tolerance = options.tolerance * state_->diagonal;
+    constexpr double raise = 4, most = 1e8;  // of weights, against where they start
+    for (std::size_t i = 0; i < state_->hard.size(); ++i)
+        if (state_->hard[i] != nullptr) {
+            state_->hard[i]->u.setZero();
+            state_->solver->set_weight(i, constraint(i).weight());
+        }
+    summary.of_constraint.assign(state_->hard.size(), 0.0);
+    std::vector<double> before(state_->hard.size(), std::numeric_limits<double>::infinity());
+    while (summary.rounds < options.rounds && !summary.met) {
+        summary.last = state_->solver->solve(points, options.inner);
+        ++summary.rounds;
+        double worst = 0;
+        for (std::size_t i = 0; i < state_->hard.size(); ++i) {
+            Shifted* const hard = state_->hard[i];
+            if (hard == nullptr) continue;
+            const double now = summary.of_constraint[i] = hard->update(points);
+            worst = std::max(worst, now);
+            // Where multipliers alone are too slow, the weight grows; the multipliers themselves, weight times u, stay.
+            constexpr double fast_enough = 0.5;
+            const double weight = hard->weight();
+            if (now > summary.tolerance && now > fast_enough * before[i] && weight < most * constraint(i).weight()) {
+                state_->solver->set_weight(i, raise * weight);
+                hard->u /= raise;
+            }
+            before[i] = now;
+        }
+        summary.violation.push_back(worst);
+        summary.met = worst <= summary.tolerance;
+    }
+    return summary;
+}
+
+}  // namespace ostraka
