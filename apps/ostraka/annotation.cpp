@@ -110,19 +110,17 @@ struct Outputs {
 };
 
 struct Apply {
-    std::vector<std::string> files;
+    std::string mesh_file, source, output;
     std::string names, edit;
     bool mesh_labels = false;
     Outputs outputs;
     WordChecks words;
 
     int run(const Session& session) {
-        if (files.size() != (mesh_labels ? 2U : 3U))
+        if (mesh_labels != output.empty())
             fail_usage(mesh_labels ? "annotation apply --from-ply-labels takes a mesh and an output"
                                    : "annotation apply takes a mesh, a recipe or label file, and an output");
-        const std::string& mesh_file = files.front();
-        const std::string source = mesh_labels ? "" : files[1];
-        const std::string& output = files.back();
+        if (mesh_labels) std::swap(source, output);
         outputs.check();
         if (!edit.empty() && (mesh_labels || !is_json(source)))
             fail_usage("--edit goes with a recipe", "give a recipe whose steps edit the annotations");
@@ -135,7 +133,7 @@ struct Apply {
         words.read(provenance);
         const MeshFile file = read_mesh(mesh_file);
         for (const auto& note : file.notes) session.note("note: " + note);
-        const AnnotationSet set = make(file, mesh_file, source);
+        const AnnotationSet set = make(file);
         words.require(set, source.empty() ? mesh_file : source);
         write_annotations(output, set, file.mesh, mesh_file, provenance);
         outputs.write(session, file.mesh, set, provenance);
@@ -144,7 +142,7 @@ struct Apply {
     }
 
 private:
-    AnnotationSet make(const MeshFile& file, const std::string& mesh_file, const std::string& source) const {
+    AnnotationSet make(const MeshFile& file) const {
         std::vector<std::int32_t> labels = file.extras.face_labels;
         if (labels.empty() && !file.extras.vertex_labels.empty())
             labels = face_labels_from_vertices(file.mesh, file.extras.vertex_labels);
@@ -254,13 +252,12 @@ void add_annotation(CLI::App& annotation, Session& session) {
     const auto apply = std::make_shared<Apply>();
     CLI::App* command = session.add(annotation, "apply", "annotate a mesh by a recipe or from labels",
                                     [&session, apply] { return apply->run(session); });
+    command->add_option("mesh", apply->mesh_file, "mesh file")->required();
     command
-        ->add_option("files", apply->files,
-                     "the mesh; a recipe (.recipe.json) or a label file (one integer a face), not with --from-ply-labels; the "
-                     "output (.ant.json)")
-        ->option_text("MESH [RECIPE|LABELS] OUTPUT")
-        ->required()
-        ->expected(2, 3);
+        ->add_option("recipe", apply->source,
+                     "recipe (.recipe.json) or label file (one integer a face); with --from-ply-labels the output")
+        ->required();
+    command->add_option("output", apply->output, "annotations to write (.ant.json)");
     command->add_flag("--from-ply-labels", apply->mesh_labels,
                       "take the labels of the mesh file itself instead of a recipe or label file");
     command->add_option("--names", apply->names, "JSON file with names of the labels");

@@ -205,13 +205,15 @@ void add_annotation_edit(CLI::App& annotation, Session& session) {
     command->add_option("--edits", edit->list, "list of edits (JSON, doc/schema/annotation-edits.schema.json)");
     command->add_option("--annotation", edit->annotation, "the annotation to edit: its id, or its tag if no other has it");
     command->add_option("--merge", edit->merge, "another annotation that becomes part of this one; may be given more than once")
-        ->expected(1);
+        ->allow_extra_args(false);
     edit->tag_given = command->add_option("--tag", edit->tag, "new tag");
     edit->note_given = command->add_option("--note", edit->note, "new note");
     command->add_option("--colour", edit->colour, "new colour: 200,30,60 or #c81e3c");
     command->add_option("--id", edit->id, "new id");
-    command->add_option("--remove-attribute", edit->remove_attributes, "id or name of an attribute to remove")->expected(1);
-    command->add_option("--attribute", edit->attributes, "NAME=TEXT: a semantic attribute, new or changed")->expected(1);
+    command->add_option("--remove-attribute", edit->remove_attributes, "id or name of an attribute to remove")
+        ->allow_extra_args(false);
+    command->add_option("--attribute", edit->attributes, "NAME=TEXT: a semantic attribute, new or changed")
+        ->allow_extra_args(false);
     edit->class_given =
         command->add_option("--set-class", edit->object_class, "class of the object, of the whole file; '' for none");
     edit->unit_given =

@@ -102,6 +102,9 @@ TEST(ExchangeCommand, EditByFlagsAndByList) {
     EXPECT_EQ(edited.find(3)->tag, "<new>");
     EXPECT_EQ(edited.find(3)->colour, (std::array<int, 3>{255, 0, 16}));
     EXPECT_EQ(edited.find(3)->attributes.back().note, "old, \"very\"");
+    // An option given twice leaves a file that can be read.
+    ASSERT_EQ(folder.run("edit", {"a.ant.json", "twice.ant.json"}, "--annotation 3 --attribute a=1 --attribute b=2").code, 0);
+    EXPECT_EQ(folder.read("twice.ant.json").find(3)->attributes.back().note, "2");
     (void)folder.file("e.json",
                       R"({"format": "ostraka-annotation-edits", "edits": [{"annotation": "two patches", "split": true}]})");
     const auto list = folder.run("edit", {"a.ant.json", "c.ant.json"}, "--edits " + folder.at("e.json"));

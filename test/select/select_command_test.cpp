@@ -100,7 +100,7 @@ TEST(SelectCommand, HelpSaysDefaultsAndUnits) {
     const std::string help = run_command("annotation select --help").out;
     for (const char* words : {"=30,20", "=1200x900", "=orthographic", "=mesh", "in degrees", "in pixels", "any text"})
         EXPECT_NE(help.find(words), std::string::npos) << words << "\n" << help;
-    EXPECT_NE(run_command("annotation apply --help").out.find("MESH [RECIPE|LABELS] OUTPUT"), std::string::npos);
+    EXPECT_NE(run_command("annotation apply --help").out.find("[OPTIONS] mesh recipe [output]"), std::string::npos);
 }
 
 TEST(SelectCommand, EditsBegunWithoutARecipeReplayOnWhatWasThere) {
