@@ -96,6 +96,7 @@ const std::vector<Entry>& table() {
          make_fitted_plane_orientation},
         {{"CoAxiality", 2, 0, "the points as they are, moved so that their axis lies on a line"}, make_co_axiality},
         {{"AxisOnLine", 1, 0, "means of groups of points, the stations of an axis, on a line"}, make_axis_on_line},
+        {{"MeansOnLevel", 2, 0, "means of groups of points on one plane of a given normal"}, make_means_on_level},
         {{"MirrorSymmetry", 2, 0, "pairs of points that mirror each other in a given plane, or in some plane"},
          make_mirror_symmetry},
         {{"Proportion", 4, 0, "a part stretched along its measure to a range of another measure"}, make_proportion},

@@ -62,6 +62,7 @@ std::unique_ptr<Constraint> make_rectangle(Making&&);
 std::unique_ptr<Constraint> make_fitted_plane_orientation(Making&&);
 std::unique_ptr<Constraint> make_co_axiality(Making&&);
 std::unique_ptr<Constraint> make_axis_on_line(Making&&);
+std::unique_ptr<Constraint> make_means_on_level(Making&&);
 std::unique_ptr<Constraint> make_mirror_symmetry(Making&&);
 std::unique_ptr<Constraint> make_proportion(Making&&);
 // edges.cpp

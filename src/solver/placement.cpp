@@ -94,11 +94,10 @@ private:
     Points shape_;
 };
 
-/// The means of groups of points (the stations of an axis) on a given line: the axis is constrained, and the surface follows.
-class AxisOnLine final : public Constraint {
-public:
-    AxisOnLine(Making&& m, const Vector3d& direction, const Vector3d& point)
-        : Constraint(m.kind, m.ids, m.weight), direction_(direction), point_(point) {
+/// Rows are the means of groups of points.
+class StationMeans : public Constraint {
+protected:
+    explicit StationMeans(const Making& m) : Constraint(m.kind, m.ids, m.weight) {
         std::vector<int> stations = m.parameters.stations;
         if (stations.empty())
             for (std::size_t i = 0; i < ids().size(); ++i) stations.push_back(static_cast<int>(i));
@@ -117,12 +116,32 @@ public:
         }
         map_.rows = count;
     }
+};
+
+/// The stations of an axis on a given line: the axis is constrained, and the surface follows.
+class AxisOnLine final : public StationMeans {
+public:
+    AxisOnLine(const Making& m, const Vector3d& direction, const Vector3d& point)
+        : StationMeans(m), direction_(direction), point_(point) {}
     void project(const RowsIn& rows, RowsOut projected) const override {
         for (Index i = 0; i < rows.cols(); ++i) projected.col(i) = point_ + direction_ * direction_.dot(rows.col(i) - point_);
     }
 
 private:
     Vector3d direction_, point_;
+};
+
+/// The closest common height of the means is the mean of theirs.
+class MeansOnLevel final : public StationMeans {
+public:
+    MeansOnLevel(const Making& m, const Vector3d& up) : StationMeans(m), up_(up) {}
+    void project(const RowsIn& rows, RowsOut projected) const override {
+        const double level = up_.dot(rows.rowwise().mean());
+        for (Index i = 0; i < rows.cols(); ++i) projected.col(i) = rows.col(i) + up_ * (level - up_.dot(rows.col(i)));
+    }
+
+private:
+    Vector3d up_;
 };
 
 /// Pairs of points that mirror each other: in a given plane (rows: the points), or in the best one (rows: the centred points),
@@ -227,7 +246,12 @@ std::unique_ptr<Constraint> make_co_axiality(Making&& m) {
 
 std::unique_ptr<Constraint> make_axis_on_line(Making&& m) {
     const Vector3d direction = m.direction(), point = m.point();
-    return std::make_unique<AxisOnLine>(std::move(m), direction, point);
+    return std::make_unique<AxisOnLine>(m, direction, point);
+}
+
+std::unique_ptr<Constraint> make_means_on_level(Making&& m) {
+    const Vector3d up = m.direction();
+    return std::make_unique<MeansOnLevel>(m, up);
 }
 
 std::unique_ptr<Constraint> make_mirror_symmetry(Making&& m) {

@@ -260,6 +260,9 @@ TEST(Constraint, AdmitsWhatItsNameSays) {
         } else if (e.kind == "AxisOnLine") {
             for (Eigen::Index i = 0; i < m.rows.cols(); ++i)
                 EXPECT_LT((m.rows.col(i) - *e.parameters.point).cross(e.parameters.direction->normalized()).norm(), 1e-12);
+        } else if (e.kind == "MeansOnLevel") {
+            for (Eigen::Index i = 1; i < m.rows.cols(); ++i)
+                EXPECT_NEAR((m.rows.col(i) - m.rows.col(0)).dot(*e.parameters.direction), 0, 1e-12);
         } else if (e.kind == "Proportion") {
             const Vector3d first = m.rows.col(1) - m.rows.col(0), second = m.rows.rightCols<1>();
             const double l1 = e.parameters.direction ? std::abs(first.dot(e.parameters.direction->normalized())) : first.norm();

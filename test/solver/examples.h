@@ -174,6 +174,11 @@ inline std::vector<Example> examples() {
         e.parameters.stations = {0, 0, 1, 1, 1, 2};
     }
     {
+        Example& e = add("MeansOnLevel", "MeansOnLevel", 6);
+        e.parameters.direction = tilted;
+        e.parameters.stations = {0, 0, 1, 1, 1, 2};
+    }
+    {
         Example& e = add("MirrorSymmetry", "MirrorSymmetry", 7);
         e.ids = {0, 1, 2, 3, 4, 4, 5, 6};
     }

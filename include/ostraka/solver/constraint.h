@@ -127,7 +127,8 @@ struct ConstraintParameters {
     std::vector<int> pins, anchors;
     /// Direction along which the second measure is taken (Proportion); without it, the distance of its ends.
     std::optional<Eigen::Vector3d> second_direction;
-    /// For each id, the station of the axis that it belongs to, from 0 on (AxisOnLine); without them, each is its own.
+    /// For each id, the station of the axis that it belongs to, from 0 on (AxisOnLine), or the group (MeansOnLevel); without
+    /// them, each is its own.
     std::vector<int> stations;
     /// Closest point of a surface (OnSurface). Called from several threads at once.
     std::function<Eigen::Vector3d(const Eigen::Vector3d&)> closest_point;

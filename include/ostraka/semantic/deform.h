@@ -1,0 +1,73 @@
+// Deformation that keeps what annotations and relations ask for (thesis, chapters 4 and 5; doc/deformation.md).
+#pragma once
+
+#include "ostraka/core/options.h"
+#include "ostraka/relation/check.h"
+#include "ostraka/semantic/edit.h"
+#include "ostraka/solver/hard.h"
+
+namespace ostraka {
+
+struct DeformOptions {
+    std::string space = "mesh";      ///< where constraints are solved: the mesh's points, or the cage's
+    std::string details = "edited";  ///< what the surface tends to between constraints
+    double closeness = 0.05;         ///< weight of the edited positions, on every vertex
+    double laplacian = 2;            ///< weight of the Laplacian displacements, on every vertex (mesh space)
+    double handles = 100;            ///< weight of the handles that the edit moves
+    SolveOptions solve;
+    int rounds = 100;  ///< of the loop that enforces hard constraints
+
+    template <class Visitor>
+    void describe(Visitor& visit) {
+        visit("space", space,
+              "mesh (constraints hold as well as weights let them) or cage (interactive; as well as the cage can): the unknowns",
+              Choices{"mesh", "cage"});
+        visit("details", details,
+              "Laplacian displacements that the surface tends to: edited (those of the shape as the edit alone leaves it) or "
+              "rest (those of the "
+              "shape before it, as in the thesis)",
+              Choices{"edited", "rest"});
+        visit("closeness", closeness, "weight of the edited position of each vertex", Range{0, 1e9});
+        visit("laplacian", laplacian, "weight of the Laplacian displacement of each vertex", Range{0, 1e9});
+        visit("handles", handles, "weight of the positions of the handles that the edit moves", Range{0, 1e9});
+        solve.describe(visit);
+        visit("rounds", rounds, "rounds in which hard constraints are enforced", Range{1, 1e6});
+    }
+};
+
+/// What became of one constraint.
+struct ConstraintReport {
+    int id = 0;              ///< of the relationship
+    std::string type, text;  ///< text: why it is left out, or what is wrong
+    bool used = false;       ///< it took part in the solution
+    bool hard = false;
+    double weight = 1;
+    Verdict before = Verdict::unknown, verdict = Verdict::unknown;  ///< on the edited shape, and after solving
+    std::vector<Deviation> deviations;                              ///< each with its unit and tolerance
+    std::vector<double> before_values;                              ///< of the same quantities on the edited shape
+    /// Normalised residuals of its low-level constraints, in the mesh's unit (section 4.2.3 with its erratum).
+    double mean = 0, median = 0, least = 0, most = 0;
+    std::size_t low_level = 0;
+};
+
+struct DeformResult {
+    std::vector<Point> points;  ///< of the mesh
+    std::vector<Point> edited;  ///< as the edit alone leaves them
+    std::vector<Point> cage;    ///< handles after solving, if there is a cage
+    std::vector<ConstraintReport> constraints;
+    SolveSummary summary;
+    bool solved = false;     ///< there were constraints to solve
+    bool acceptable = true;  ///< every constraint holds
+};
+
+/// Follows the edit and solves for the constraints of the graph (relationships that are constraints). With a cage the edit moves
+/// its vertices and the mesh by the weights; constraints are then solved over the mesh's points or over the cage's. Throws Error
+/// as follow_edit does, (input) for constraints that cannot be made sense of: a missing annotation, attribute or measure, a range
+/// upside down, an empty region, a part without an axis; (usage) for cage space without a cage.
+DeformResult deform(const HandleSpace& space, const RelationGraph& graph, const JsonValue& edit, const std::string& edit_name,
+                    const DeformOptions& options = {}, const RelationOptions& tolerances = {});
+
+/// The types that constrain a deformation.
+const std::vector<std::string>& semantic_constraint_types();
+
+}  // namespace ostraka

@@ -1,0 +1,246 @@
+#include "ostraka/semantic/edit.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/geom/eigen.h"
+
+#include <algorithm>
+#include <set>
+
+namespace ostraka {
+
+namespace {
+
+using Eigen::Vector3d;
+
+class Follower {
+public:
+    Follower(const HandleSpace& space, const std::string& where) : space_(space), where_(where) {
+        state_.handles = ostraka::points_of(space.cage != nullptr ? *space.cage : space.mesh);
+        state_.touched.assign(state_.handles.size(), false);
+    }
+
+    EditState step(const JsonValue& step, const std::string& at) {
+        at_ = at;
+        state_.threshold = 0;
+        state_.selected = select(step["select"]);
+        int operations = 0;
+        for (const char* name : {"translate", "rotate", "scale", "stretch", "moveTo"}) {
+            const JsonValue* value = find_member(step, name);
+            if (value == nullptr) continue;
+            if (++operations > 1) fail("has more than one operation", "make a step of each");
+            apply(name, *value);
+        }
+        if (operations == 0) fail("has no operation", "add translate, rotate, scale, stretch or moveTo");
+        for (const Index v : state_.selected) state_.touched[v] = true;
+        return state_;
+    }
+
+private:
+    [[noreturn]] void fail(const std::string& what, const std::string& remedy) const {
+        fail_input(where_ + ", " + at_, what, remedy);
+    }
+
+    [[nodiscard]] Vector3d vector(const JsonValue& value, const char* name, bool direction = false) const {
+        const Vector3d v(value[0].GetDouble(), value[1].GetDouble(), value[2].GetDouble());
+        const double largest = v.cwiseAbs().maxCoeff();
+        if (!v.allFinite() || largest > 1e60) fail(std::string(name) + " is beyond 1e60", "mend it");
+        if (direction && !(largest > 0)) fail(std::string(name) + " is zero", "give a direction");
+        return direction ? Vector3d((v / largest).normalized()) : v;
+    }
+
+    [[nodiscard]] double factor(const JsonValue& value) const {
+        const double f = value["factor"].GetDouble();
+        if (!(f > 0 && f < 1e6)) fail("the factor is not between 0 and a million", "give a positive factor; 1 changes nothing");
+        return f;
+    }
+
+    [[nodiscard]] std::vector<Index> select(const JsonValue& select) {
+        std::set<Index> chosen;
+        int ways = 0;
+        const auto add_mesh_vertices = [&](const std::vector<Index>& vertices, const std::string& what) {
+            if (space_.cage == nullptr) {
+                chosen.insert(vertices.begin(), vertices.end());
+                return;
+            }
+            const JsonValue* threshold = find_member(select, "threshold");
+            const JsonValue* scope = find_member(select, "scope");
+            const bool here = scope != nullptr && std::string(scope->GetString()) == "selection";
+            if (threshold == nullptr) state_.threshold = 0.4;  // as in the thesis, figure 5.11
+            else if (threshold->IsNumber()) state_.threshold = threshold->GetDouble();
+            else
+                state_.threshold = influence_threshold(space_.coordinates->vertex, threshold->GetString(),
+                                                       here ? vertices : std::vector<Index>());
+            const auto found = influential(space_.coordinates->vertex, vertices, state_.threshold);
+            if (found.empty()) {
+                double most = 0;
+                for (const Index v : vertices) most = std::max(most, space_.coordinates->vertex.row(v).maxCoeff());
+                fail("no cage vertex has an influence of " + std::to_string(state_.threshold) + " on " + what +
+                         "; the largest is " + std::to_string(most),
+                     "lower the threshold, use auto-mesh, or name cageVertices");
+            }
+            chosen.insert(found.begin(), found.end());
+        };
+        if (const JsonValue* name = find_member(select, "annotation")) {
+            ++ways;
+            const Annotation& annotation = named(*name);
+            add_mesh_vertices(vertices_of(space_.mesh, annotation), "annotation " + std::to_string(annotation.id));
+        }
+        if (const JsonValue* list = find_member(select, "vertices")) {
+            ++ways;
+            add_mesh_vertices(indices(*list, space_.mesh.number_of_vertices(), "mesh"), "these vertices");
+        }
+        if (const JsonValue* list = find_member(select, "cageVertices")) {
+            ++ways;
+            if (space_.cage == nullptr) fail("cageVertices without a cage", "give --cage and --weights, or select otherwise");
+            const auto found = indices(*list, space_.cage->number_of_vertices(), "cage");
+            chosen.insert(found.begin(), found.end());
+        }
+        if (const JsonValue* box = find_member(select, "box")) {
+            ++ways;
+            const Vector3d low = vector((*box)["min"], "min"), high = vector((*box)["max"], "max");
+            if ((low.array() > high.array()).any()) fail("the box has min > max", "exchange them");
+            for (Index v = 0; v < state_.handles.size(); ++v) {
+                const Vector3d p = eigen(state_.handles[v]);
+                if ((p.array() >= low.array()).all() && (p.array() <= high.array()).all()) chosen.insert(v);
+            }
+        }
+        if (find_member(select, "all") != nullptr) {
+            ++ways;
+            for (Index v = 0; v < state_.handles.size(); ++v) chosen.insert(v);
+        }
+        if (ways != 1)
+            fail("selects in " + std::to_string(ways) + " ways", "use one of annotation, vertices, cageVertices, box, all");
+        if (chosen.empty()) fail("selects nothing", "choose another box");
+        return {chosen.begin(), chosen.end()};
+    }
+
+    [[nodiscard]] std::vector<Index> indices(const JsonValue& list, std::size_t count, const std::string& of) const {
+        std::vector<Index> result;
+        for (const auto& value : list.GetArray()) {
+            if (value.GetUint64() >= count)
+                fail("vertex " + std::to_string(value.GetUint64()) + " is not one of the " + std::to_string(count) + " of the " +
+                         of,
+                     "mend the index");
+            result.push_back(static_cast<Index>(value.GetUint64()));
+        }
+        return result;
+    }
+
+    [[nodiscard]] const Annotation& named(const JsonValue& name) const {
+        const Annotation* found = nullptr;
+        for (const Annotation& annotation : space_.set.annotations) {
+            const bool here =
+                name.IsInt() ? annotation.id == name.GetInt() : name.IsString() && annotation.tag == name.GetString();
+            if (!here) continue;
+            if (found != nullptr) fail("several annotations are tagged '" + annotation.tag + "'", "use the id");
+            found = &annotation;
+        }
+        if (found == nullptr)
+            fail("there is no annotation " + (name.IsString() ? "tagged '" + std::string(name.GetString()) + "'" : to_text(name)),
+                 "see 'annotation list'");
+        return *found;
+    }
+
+    void apply(const std::string& name, const JsonValue& value) {
+        Vector3d middle = Vector3d::Zero();
+        for (const Index v : state_.selected) middle += eigen(state_.handles[v]);
+        middle /= static_cast<double>(state_.selected.size());
+        const auto centre = [&] {
+            const JsonValue* given = find_member(value, "centre");
+            return given == nullptr ? middle : vector(*given, "centre");
+        };
+        const auto each = [&](auto&& move) {
+            for (const Index v : state_.selected) {
+                const Vector3d p = move(eigen(state_.handles[v]));
+                if (!p.allFinite() || p.cwiseAbs().maxCoeff() > 1e60) fail("moves a handle beyond 1e60", "mend the numbers");
+                state_.handles[v] = point_of(p);
+            }
+        };
+        if (name == "translate") {
+            const Vector3d by = vector(value, "translate");
+            each([&](const Vector3d& p) -> Vector3d { return p + by; });
+        } else if (name == "rotate") {
+            const double angle = value["angle"].GetDouble();
+            if (!std::isfinite(angle)) fail("the angle is not finite", "give degrees");
+            const Eigen::Matrix3d turn =
+                Eigen::AngleAxisd(angle * M_PI / 180, vector(value["axis"], "axis", true)).toRotationMatrix();
+            const Vector3d c = centre();
+            each([&](const Vector3d& p) -> Vector3d { return c + turn * (p - c); });
+        } else if (name == "scale") {
+            const double f = factor(value);
+            const Vector3d c = centre();
+            each([&](const Vector3d& p) -> Vector3d { return c + f * (p - c); });
+        } else if (name == "stretch") {
+            const double f = factor(value);
+            const Vector3d d = vector(value["direction"], "direction", true);
+            const JsonValue* from = find_member(value, "from");
+            double start = std::numeric_limits<double>::infinity();
+            if (from != nullptr && from->IsArray()) start = d.dot(vector(*from, "from"));
+            else if (from != nullptr && std::string(from->GetString()) == "middle") start = d.dot(middle);
+            else
+                for (const Index v : state_.selected) start = std::min(start, d.dot(eigen(state_.handles[v])));
+            each([&](const Vector3d& p) -> Vector3d { return p + (f - 1) * (d.dot(p) - start) * d; });
+        } else {
+            if (value.Size() != state_.selected.size())
+                fail("moveTo has " + std::to_string(value.Size()) + " positions for " + std::to_string(state_.selected.size()) +
+                         " selected vertices",
+                     "give one for each, in the order of the vertices");
+            for (rapidjson::SizeType i = 0; i < value.Size(); ++i)
+                state_.handles[state_.selected[i]] = point_of(vector(value[i], "moveTo"));
+        }
+    }
+
+    const HandleSpace& space_;
+    const std::string& where_;
+    std::string at_;
+    EditState state_;
+};
+
+}  // namespace
+
+double influence_threshold(const WeightMatrix& weights, const std::string& rule, const std::vector<Index>& rows) {
+    if (rule != "auto-mesh" && rule != "auto-cage")
+        throw Error(ErrorKind::usage, "threshold", "'" + rule + "' is no rule", "use auto-mesh or auto-cage");
+    Eigen::VectorXd columns = Eigen::VectorXd::Constant(weights.cols(), -std::numeric_limits<double>::infinity());
+    double least = std::numeric_limits<double>::infinity();
+    const std::size_t count = rows.empty() ? static_cast<std::size_t>(weights.rows()) : rows.size();
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto row = weights.row(static_cast<Eigen::Index>(rows.empty() ? i : rows[i]));
+        least = std::min(least, row.maxCoeff());
+        columns = columns.cwiseMax(row.transpose());
+    }
+    return rule == "auto-mesh" ? least : columns.minCoeff();
+}
+
+std::vector<Index> influential(const WeightMatrix& weights, const std::vector<Index>& rows, double threshold) {
+    std::vector<bool> above(static_cast<std::size_t>(weights.cols()), false);
+    for (const Index row : rows)
+        for (Eigen::Index j = 0; j < weights.cols(); ++j)
+            if (weights(row, j) >= threshold) above[static_cast<std::size_t>(j)] = true;
+    std::vector<Index> list;
+    for (Index j = 0; j < above.size(); ++j)
+        if (above[j]) list.push_back(j);
+    return list;
+}
+
+std::vector<Index> vertices_of(const Mesh& mesh, const Annotation& annotation) {
+    std::set<Index> list(annotation.points.begin(), annotation.points.end());
+    for (const auto& polyline : annotation.polylines) list.insert(polyline.begin(), polyline.end());
+    for (const Index f : annotation.faces)
+        for (const Vertex v : corners(mesh, Face(f))) list.insert(v.idx());
+    return {list.begin(), list.end()};
+}
+
+std::vector<EditState> follow_edit(const JsonValue& edit, const HandleSpace& space, const std::string& where) {
+    validate(edit, "edit", where);
+    if ((space.cage == nullptr) != (space.coordinates == nullptr))
+        throw Error(ErrorKind::usage, where, "a cage and its weights belong together", "give both or none");
+    Follower follower(space, where);
+    std::vector<EditState> states;
+    const auto& steps = edit["steps"];
+    for (rapidjson::SizeType i = 0; i < steps.Size(); ++i)
+        states.push_back(follower.step(steps[i], "/steps/" + std::to_string(i)));
+    return states;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,203 @@
+// Edits through cages and without, and what constraints make of them.
+#include "ostraka/semantic/deform.h"
+
+#include "annotation/example_meshes.h"
+#include "ostraka/cage/cage.h"
+#include "ostraka/core/error.h"
+#include "ostraka/geom/eigen.h"
+#include "ostraka/select/recipe.h"
+#include "ostraka/shapes/make_mesh.h"
+
+#include <gtest/gtest.h>
+
+using namespace ostraka;
+using namespace ostraka::example;
+
+namespace {
+
+Json edit(const std::string& steps) {
+    return parse_json(R"({"format": "ostraka-edit", "version": 1, "steps": [)" + steps + "]}", "e");
+}
+
+/// A made object with the annotations of its recipe, a cage and mean value coordinates.
+struct Caged {
+    MadeMesh made;
+    AnnotationSet set;
+    Mesh cage;
+    Coordinates coordinates;
+    Caged(const std::string& name, std::uint64_t vertices, std::uint64_t cage_vertices)
+        : made(make_mesh(made_object(name), {.vertices = vertices})),
+          set(apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data" / (name + ".recipe.json"), made.mesh, made.face_labels)),
+          cage(make_cage(made.mesh, {.vertices = cage_vertices}).cage),
+          coordinates(compute_coordinates("mean-value", cage, made.mesh)) {}
+    [[nodiscard]] HandleSpace handles() const { return {made.mesh, set, &cage, &coordinates}; }
+    [[nodiscard]] HandleSpace bare() const { return {made.mesh, set}; }
+};
+
+const Caged& teapot() {
+    static const Caged object("teapot", 5000, 150);
+    return object;
+}
+
+Relationship constraint(int id, const std::string& type, std::vector<int> members, const std::string& parameters,
+                        double weight = 1) {
+    Relationship r;
+    r.id = id;
+    r.type = type;
+    r.annotations = std::move(members);
+    r.is_constraint = true;
+    r.weight = weight;
+    r.constraint = parameters;
+    return r;
+}
+
+std::string error_of(const HandleSpace& space, const std::string& steps, const RelationGraph& graph = {}) {
+    try {
+        deform(space, graph, edit(steps), "e.edit.json");
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return {};
+}
+
+double level_spread(const Caged& object, const std::vector<Point>& points, const std::vector<int>& ids) {
+    double low = 1e300, high = -1e300;
+    for (const int id : ids) {
+        double mean = 0;
+        const auto vertices = vertices_of(object.made.mesh, *object.set.find(id));
+        for (const Index v : vertices) mean += points[v].z() / static_cast<double>(vertices.size());
+        low = std::min(low, mean), high = std::max(high, mean);
+    }
+    return high - low;
+}
+
+}  // namespace
+
+TEST(Edit, OfAWholeCageIsThatOfTheMesh) {
+    const Caged& object = teapot();
+    const double diagonal = box_diagonal(object.made.mesh);
+    const auto expect = [&](const std::string& operation, auto&& move) {
+        const DeformResult result = deform(object.handles(), {}, edit(R"({"select": {"all": true}, )" + operation + "}"), "e");
+        for (const Vertex v : object.made.mesh.vertices())
+            ASSERT_LT((eigen(result.points[v]) - move(eigen(object.made.mesh.point(v)))).norm(), 1e-9 * diagonal) << operation;
+    };
+    using V = Eigen::Vector3d;
+    expect(R"("translate": [1, 2, 3])", [](const V& p) -> V { return p + V(1, 2, 3); });
+    expect(R"("scale": {"factor": 2, "centre": [0, 0, 0]})", [](const V& p) -> V { return 2 * p; });
+    expect(R"("rotate": {"axis": [0, 0, 2], "angle": 90, "centre": [0, 0, 0]})", [](const V& p) -> V {
+        return {-p.y(), p.x(), p.z()};
+    });
+    expect(R"("stretch": {"direction": [0, 0, 1], "factor": 1.4, "from": [0, 0, 0]})", [](const V& p) -> V {
+        return {p.x(), p.y(), 1.4 * p.z()};
+    });
+}
+
+TEST(Edit, SelectsByInfluence) {
+    const Caged& object = teapot();
+    const WeightMatrix& w = object.coordinates.vertex;
+    const double rows = influence_threshold(w, "auto-mesh"), columns = influence_threshold(w, "auto-cage");
+    EXPECT_EQ(rows, w.rowwise().maxCoeff().minCoeff());
+    EXPECT_EQ(columns, w.colwise().maxCoeff().minCoeff());
+    for (Index v = 0; v < 50; ++v) EXPECT_FALSE(influential(w, {v}, rows).empty());
+    std::vector<Index> everything(object.made.mesh.number_of_vertices());
+    for (Index v = 0; v < everything.size(); ++v) everything[v] = v;
+    EXPECT_EQ(influential(w, everything, columns).size(), object.cage.number_of_vertices());
+    // A part's own handles move it more than the rest.
+    const auto states = follow_edit(edit(R"({"select": {"annotation": "spout", "threshold": 0.2}, "translate": [0, 0, 5]})"),
+                                    object.handles(), "e");
+    EXPECT_EQ(states.front().selected, influential(w, vertices_of(object.made.mesh, *object.set.find(5)), 0.2));
+    EXPECT_NE(error_of(object.handles(), R"({"select": {"annotation": "spout", "threshold": 2}, "translate": [0, 0, 5]})")
+                  .find("the largest is"),
+              std::string::npos);
+}
+
+TEST(Edit, StepsFollowEachOther) {
+    const Caged& object = teapot();
+    const auto states = follow_edit(edit(R"({"select": {"vertices": [3, 4]}, "translate": [1, 0, 0]},
+        {"select": {"box": {"min": [-1000, -1000, -1000], "max": [1000, 1000, 1000]}}, "translate": [0, 1, 0]},
+        {"select": {"vertices": [3]}, "moveTo": [[7, 8, 9]]})"),
+                                    object.bare(), "e");
+    ASSERT_EQ(states.size(), 3U);
+    const Point p = object.made.mesh.point(Vertex(4));
+    EXPECT_EQ(states[0].handles[4], Point(p.x() + 1, p.y(), p.z()));
+    EXPECT_EQ(states[1].handles[4], Point(p.x() + 1, p.y() + 1, p.z()));
+    EXPECT_EQ(states[2].handles[3], Point(7, 8, 9));
+    EXPECT_EQ(std::count(states[0].touched.begin(), states[0].touched.end(), true), 2);
+}
+
+TEST(Edit, WhatMakesNoSenseIsRefused) {
+    const Caged& object = teapot();
+    const auto refused = [&](const std::string& step, const std::string& words) {
+        const std::string text = error_of(object.handles(), step);
+        EXPECT_NE(text.find(words), std::string::npos) << step << ": " << text;
+        EXPECT_TRUE(text.empty() || text.find("/steps/0") != std::string::npos || text.find("e.edit.json") != std::string::npos)
+            << text;
+    };
+    refused(R"({"select": {"annotation": "nose"}, "translate": [0, 0, 1]})", "no annotation tagged 'nose'");
+    refused(R"({"select": {"annotation": 99}, "translate": [0, 0, 1]})", "no annotation 99");
+    refused(R"({"select": {"cageVertices": [150]}, "translate": [0, 0, 1]})", "is not one of the 150");
+    refused(R"({"select": {"box": {"min": [1, 0, 0], "max": [0, 1, 1]}}, "translate": [0, 0, 1]})", "min > max");
+    refused(R"({"select": {"box": {"min": [1e5, 0, 0], "max": [2e5, 1, 1]}}, "translate": [0, 0, 1]})", "selects nothing");
+    refused(R"({"select": {"all": true}})", "no operation");
+    refused(R"({"select": {"all": true}, "translate": [0, 0, 1], "scale": {"factor": 2}})", "more than one operation");
+    refused(R"({"select": {"all": true}, "rotate": {"axis": [0, 0, 0], "angle": 3}})", "axis is zero");
+    refused(R"({"select": {"all": true}, "stretch": {"direction": [0, 0, 1], "factor": -1}})", "factor");
+    refused(R"({"select": {"cageVertices": [1, 2]}, "moveTo": [[0, 0, 0]]})", "1 positions for 2");
+    refused(R"({"select": {"all": true, "cageVertices": [1]}, "translate": [0, 0, 1]})", "2 ways");
+    EXPECT_NE(error_of(object.bare(), R"({"select": {"cageVertices": [1]}, "translate": [0, 0, 1]})").find("without a cage"),
+              std::string::npos);
+}
+
+TEST(Deform, FlowersOnOneLevelKeepTheirShape) {
+    // One side of the teapot is lifted by a turn about y: flowers leave their level and are sheared.
+    const Caged& object = teapot();
+    const std::vector<int> flowers{7, 8, 9, 10, 11};
+    const std::string steps = R"({"select": {"all": true}, "stretch": {"direction": [0, 0, 1], "factor": 1.4}},
+                                 {"select": {"annotation": "spout", "threshold": 0.15}, "translate": [0, 0, 12]})";
+    const double diagonal = box_diagonal(object.made.mesh);
+    for (const bool hard : {false, true}) {
+        RelationGraph graph;
+        graph.relationships.push_back(constraint(0, "same level", flowers, hard ? R"({"hard": true})" : "{}", 50));
+        const DeformResult result = deform(object.handles(), graph, edit(steps), "e");
+        ASSERT_EQ(result.constraints.size(), 1U);
+        EXPECT_TRUE(result.constraints[0].used);
+        EXPECT_EQ(result.constraints[0].low_level, 6U);
+        std::cout << (hard ? "hard" : "soft") << ": level spread " << level_spread(object, result.edited, flowers) << " -> "
+                  << level_spread(object, result.points, flowers) << " of " << diagonal << ", " << result.summary.iterations
+                  << " iterations\n";
+        EXPECT_LT(level_spread(object, result.points, flowers), (hard ? 1e-3 : 1e-2) * diagonal);
+        // Each flower is a rigid copy of what it was.
+        for (const int id : flowers) {
+            const auto vertices = vertices_of(object.made.mesh, *object.set.find(id));
+            const Points rest = [&] {
+                Points p(3, static_cast<Eigen::Index>(object.made.mesh.number_of_vertices()));
+                for (const Vertex v : object.made.mesh.vertices()) p.col(v.idx()) = eigen(object.made.mesh.point(v));
+                return p;
+            }();
+            Points now = rest;
+            for (const Vertex v : object.made.mesh.vertices()) now.col(v.idx()) = eigen(result.points[v]);
+            const auto rigid = make_constraint("Rigid", {vertices.begin(), vertices.end()}, 1, {}, rest);
+            const double off = std::sqrt(rigid->squared_distance(now) / static_cast<double>(vertices.size()));
+            EXPECT_LT(off, (hard ? 1e-3 : 5e-3) * diagonal) << id;
+        }
+    }
+}
+
+TEST(Deform, ThroughTheCageItComesAsNearAsTheCageCan) {
+    const Caged& object = teapot();
+    RelationGraph graph;
+    graph.relationships.push_back(constraint(0, "same level", {7, 8, 9, 10, 11}, "{}", 10));
+    DeformOptions options;
+    options.space = "cage";
+    const DeformResult result =
+        deform(object.handles(), graph,
+               edit(R"({"select": {"annotation": "spout", "threshold": 0.15}, "translate": [0, 0, 12]})"), "e", options);
+    EXPECT_TRUE(result.solved);
+    EXPECT_EQ(result.cage.size(), object.cage.number_of_vertices());
+    // The mesh is what the weights make of the cage.
+    const auto again = deformed(object.coordinates, object.cage, result.cage);
+    for (std::size_t i = 0; i < again.size(); ++i)
+        ASSERT_LT(std::sqrt(CGAL::squared_distance(again[i], result.points[i])), 1e-9 * box_diagonal(object.made.mesh));
+    EXPECT_LE(level_spread(object, result.points, {7, 8, 9, 10, 11}),
+              level_spread(object, result.edited, {7, 8, 9, 10, 11}) + 1e-9);
+}
