@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
     register_picture_benchmarks();
     register_relation_benchmarks();
     register_solver_benchmarks();
+    register_coordinate_benchmarks();
     register_transfer_benchmarks();
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;

@@ -111,6 +111,7 @@ void add_measure_map(CLI::App& measure, Session& session);             // measur
 void add_annotation_infer(CLI::App& annotation, Session& session);     // annotation_infer.cpp
 void add_template(CLI::App& bundle, Session& session);                 // template.cpp
 void add_vocabulary(CLI::App& vocabulary, Session& session);           // vocabulary.cpp
+void add_cage(CLI::App& cage, Session& session);                       // cage.cpp: weights, influence
 void add_render(CLI::App& tool, Session& session);                     // render.cpp
 
 }  // namespace ostraka::app

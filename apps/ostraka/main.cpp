@@ -29,6 +29,8 @@ int main(int argc, char** argv) {
     vocabulary->require_subcommand(1);
     CLI::App* bundle = tool.add_subcommand("template", "the files of a template, as one");
     bundle->require_subcommand(1);
+    CLI::App* cage = tool.add_subcommand("cage", "cages around meshes, and coordinates in them");
+    cage->require_subcommand(1);
     app::add_mesh_info(*mesh, session);
     app::add_mesh_convert(*mesh, session);
     app::add_mesh_repair(*mesh, session);
@@ -49,6 +51,7 @@ int main(int argc, char** argv) {
     app::add_annotation_infer(*annotation, session);
     app::add_template(*bundle, session);
     app::add_vocabulary(*vocabulary, session);
+    app::add_cage(*cage, session);
     app::add_render(tool, session);
     try {
         tool.parse(argc, argv);

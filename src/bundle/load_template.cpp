@@ -1,5 +1,6 @@
 // A template's parts, each by itself and all together.
 #include "ostraka/bundle/template.h"
+#include "ostraka/coords/coordinate_file.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/npy.h"
 #include "ostraka/relation/topology.h"
@@ -150,7 +151,28 @@ private:
             defect(part.name,
                    "the coordinates have " + to_string(shape[1]) + " columns, which is no cage's number of vertices or faces");
         if (result_.cages.empty()) defect(part.name, "coordinates without a cage");
+        check_header(part);
         return to_string(shape[0]) + " x " + to_string(shape[1]);
+    }
+
+    /// Where the weights have their header beside them, it says which mesh and cage they are of.
+    void check_header(const TemplatePart& part) {
+        std::error_code code;
+        if (!std::filesystem::exists(coordinate_header_file(part.file), code)) {
+            // The second array of Green coordinates belongs to the header of the first.
+            if (!part.name.ends_with(".normal.npy"))
+                remark(part.name, "has no header " + coordinate_header_file(part.file).filename().string() +
+                                      " that says which mesh and cage it is of");
+            return;
+        }
+        const CoordinateHeader header = read_coordinate_header(part.file);
+        if (sha256_of_file(part.file) != header.vertex.sha256) defect(part.name, "its header was written for another array");
+        if (result_.mesh && header.mesh.sha256 != mesh_checksum(result_.mesh->mesh))
+            defect(part.name, "its header says that it was computed for another mesh");
+        bool known = false, found = false;
+        for (const auto& cage : result_.cages)
+            if (cage) known = true, found = found || header.cage.sha256 == mesh_checksum(*cage);
+        if (known && !found) defect(part.name, "its header says that it was computed for another cage");
     }
 
     static std::vector<std::size_t> shape_of_matrix(const Path& file) {

@@ -20,6 +20,10 @@ namespace ostraka::coords {
 
 namespace {
 
+/// A face whose height is below this share of its longest edge is left out: what it adds is smaller than the rounding of
+/// dividing by that height.
+constexpr double flat = 1e-10;
+
 /// What a face's loop needs beside CageFace.
 struct FacePlane {
     Three unit;                ///< normal
@@ -46,6 +50,16 @@ struct Work {
     Lanes near;  ///< 1 where the point lies on the cage
 };
 
+/// The part of an edge in the solid angle of a face at the given height: the difference of atan(delta s / (|q|^2 + height r))
+/// over its ends, from `start` to `end` along its line, at the distances r.
+OSTRAKA_INLINE double turn(double delta, double square, double height, double size, double start, double end, double r_start,
+                           double r_end) {
+    const double A = square + height * r_start, B = square + height * r_end;
+    const double y = delta * (square * size + height * (end * r_start - start * r_end)), x = A * B + delta * delta * start * end;
+    const double value = angle(std::fabs(y), x);
+    return y < 0 ? -value : value;
+}
+
 OSTRAKA_EACH_WIDTH
 void integrate(const CageArrays& cage, const std::vector<FacePlane>& planes, double snap, Work& work) {
     const double scale = cage.scale;
@@ -53,6 +67,7 @@ void integrate(const CageArrays& cage, const std::vector<FacePlane>& planes, dou
     for (std::size_t i = 0; i < work.vertex.size(); ++i) {
         Work::OfVertex& v = work.vertex[i];
         const Three& point = cage.points[i];
+#pragma GCC ivdep
         for (int l = 0; l < lanes; ++l) {
             const double px = scale * (point[0] - work.x[0][l]), py = scale * (point[1] - work.x[1][l]),
                          pz = scale * (point[2] - work.x[2][l]);
@@ -71,6 +86,7 @@ void integrate(const CageArrays& cage, const std::vector<FacePlane>& planes, dou
         const Work::OfVertex &from = work.vertex[edge.from], &to = work.vertex[edge.to];
         const double size = edge.length, over = size > 0 ? 1 / size : 0;
         const double tx = over * edge.along[0], ty = over * edge.along[1], tz = over * edge.along[2];
+#pragma GCC ivdep
         for (int l = 0; l < lanes; ++l) {
             const bool first = from.r[l] <= to.r[l];
             const double px = first ? from.p[0][l] : to.p[0][l], py = first ? from.p[1][l] : to.p[1][l],
@@ -94,53 +110,47 @@ void integrate(const CageArrays& cage, const std::vector<FacePlane>& planes, dou
             e.square[l] = square;
             e.start[l] = a;
             e.end[l] = b;
-            e.log[l] = difference > 0 ? logarithm(std::fmax(1, sum * sum / (2 * (difference > 0 ? difference : 1)))) : 0;
+            const double ratio = sum * sum / (2 * (difference > 0 ? difference : 1));
+            e.log[l] = logarithm(difference > 0 && ratio > 1 ? ratio : 1);
         }
     }
     for (std::size_t i = 0; i < work.psi.size(); ++i) {
         const CageFace& face = cage.faces[i];
         const FacePlane& plane = planes[i];
-        Work::OfVertex* v[3];
-        const Work::OfEdge* e[3];
-        double size[3];
-        for (std::size_t k = 0; k < 3; ++k) {
-            v[k] = &work.vertex[face.corner[k]];
-            e[k] = &work.edge[face.edge[k]];
-            size[k] = cage.edges[face.edge[k]].length;
-        }
-        const double nx = plane.unit[0], ny = plane.unit[1], nz = plane.unit[2];
+        Work::OfVertex &v0 = work.vertex[face.corner[0]], &v1 = work.vertex[face.corner[1]], &v2 = work.vertex[face.corner[2]];
+        const Work::OfEdge &e0 = work.edge[face.edge[0]], &e1 = work.edge[face.edge[1]], &e2 = work.edge[face.edge[2]];
+        const double size0 = cage.edges[face.edge[0]].length, size1 = cage.edges[face.edge[1]].length,
+                     size2 = cage.edges[face.edge[2]].length;
+        // An edge's ends along the face's own direction, from corner k + 1 to corner k + 2.
+        const double s0 = face.sign[0], s1 = face.sign[1], s2 = face.sign[2];
+        const Lanes &start0 = s0 > 0 ? e0.start : e0.end, &end0 = s0 > 0 ? e0.end : e0.start;
+        const Lanes &start1 = s1 > 0 ? e1.start : e1.end, &end1 = s1 > 0 ? e1.end : e1.start;
+        const Lanes &start2 = s2 > 0 ? e2.start : e2.end, &end2 = s2 > 0 ? e2.end : e2.start;
+        const Three n = plane.unit, out0 = plane.out[0], out1 = plane.out[1], out2 = plane.out[2];
+        const double a0 = plane.across[0], a1 = plane.across[1], a2 = plane.across[2];
+        const double close = plane.over_height[0] > 0 ? snap : -1;  // not for a face that is left out
+        const double f0 = plane.over_height[0], f1 = plane.over_height[1], f2 = plane.over_height[2];
+#pragma GCC ivdep
         for (int l = 0; l < lanes; ++l) {
             // The height as the nearest edge sees it.
-            const double q0 = e[0]->square[l], q1 = e[1]->square[l], q2 = e[2]->square[l];
-            const bool take0 = q0 <= q1 && q0 <= q2, take1 = q1 <= q2;
-            const double qx = take0 ? e[0]->q[0][l] : (take1 ? e[1]->q[0][l] : e[2]->q[0][l]);
-            const double qy = take0 ? e[0]->q[1][l] : (take1 ? e[1]->q[1][l] : e[2]->q[1][l]);
-            const double qz = take0 ? e[0]->q[2][l] : (take1 ? e[1]->q[2][l] : e[2]->q[2][l]);
-            const double h = nx * qx + ny * qy + nz * qz, height = std::fabs(h);
-            double delta[3], omega = 0, inside = 1;
-#pragma GCC unroll 3
-            for (int k = 0; k < 3; ++k) {
-                const Three& out = plane.out[static_cast<std::size_t>(k)];
-                const double d = out[0] * e[k]->q[0][l] + out[1] * e[k]->q[1][l] + out[2] * e[k]->q[2][l];
-                // Along the face's own direction: from corner k + 1 to corner k + 2.
-                const bool along = face.sign[static_cast<std::size_t>(k)] > 0;
-                const double start = along ? e[k]->start[l] : -e[k]->end[l], end = along ? e[k]->end[l] : -e[k]->start[l];
-                const double rs = v[(k + 1) % 3]->r[l], re = v[(k + 2) % 3]->r[l], square = e[k]->square[l];
-                const double As = square + height * rs, Ae = square + height * re;
-                const double y = d * (square * size[k] + height * (end * rs - start * re)), x = As * Ae + d * d * start * end;
-                const double turn = angle(std::fabs(y), x);
-                omega += y < 0 ? -turn : turn;
-                inside = d >= -snap ? inside : 0;
-                delta[k] = d;
-            }
-            near[l] = height <= snap && inside > 0 ? 1 : near[l];
+            const double q0 = e0.square[l], q1 = e1.square[l], q2 = e2.square[l];
+            const double h0 = n[0] * e0.q[0][l] + n[1] * e0.q[1][l] + n[2] * e0.q[2][l];
+            const double h1 = n[0] * e1.q[0][l] + n[1] * e1.q[1][l] + n[2] * e1.q[2][l];
+            const double h2 = n[0] * e2.q[0][l] + n[1] * e2.q[1][l] + n[2] * e2.q[2][l];
+            const double h01 = q0 <= q1 ? h0 : h1, q01 = q0 <= q1 ? q0 : q1, h = q01 <= q2 ? h01 : h2, height = std::fabs(h);
+            const double d0 = out0[0] * e0.q[0][l] + out0[1] * e0.q[1][l] + out0[2] * e0.q[2][l];
+            const double d1 = out1[0] * e1.q[0][l] + out1[1] * e1.q[1][l] + out1[2] * e1.q[2][l];
+            const double d2 = out2[0] * e2.q[0][l] + out2[1] * e2.q[1][l] + out2[2] * e2.q[2][l];
+            const double omega = turn(d0, q0, height, size0, s0 * start0[l], s0 * end0[l], v1.r[l], v2.r[l]) +
+                                 turn(d1, q1, height, size1, s1 * start1[l], s1 * end1[l], v2.r[l], v0.r[l]) +
+                                 turn(d2, q2, height, size2, s2 * start2[l], s2 * end2[l], v0.r[l], v1.r[l]);
+            near[l] = height <= close && d0 >= -snap && d1 >= -snap && d2 >= -snap ? 1 : near[l];
             const double solid = h < 0 ? -omega : omega;
-            const double L0 = e[0]->log[l], L1 = e[1]->log[l], L2 = e[2]->log[l];
-            const double a0 = plane.across[0], a1 = plane.across[1], a2 = plane.across[2];
-            v[0]->phi[l] += plane.over_height[0] * (delta[0] * solid + h * (L0 + a2 * L1 + a1 * L2));
-            v[1]->phi[l] += plane.over_height[1] * (delta[1] * solid + h * (a2 * L0 + L1 + a0 * L2));
-            v[2]->phi[l] += plane.over_height[2] * (delta[2] * solid + h * (a1 * L0 + a0 * L1 + L2));
-            work.psi[i].psi[l] = delta[0] * L0 + delta[1] * L1 + delta[2] * L2 - h * solid;
+            const double L0 = e0.log[l], L1 = e1.log[l], L2 = e2.log[l];
+            v0.phi[l] += f0 * (d0 * solid + h * (L0 + a2 * L1 + a1 * L2));
+            v1.phi[l] += f1 * (d1 * solid + h * (a2 * L0 + L1 + a0 * L2));
+            v2.phi[l] += f2 * (d2 * solid + h * (a1 * L0 + a0 * L1 + L2));
+            work.psi[i].psi[l] = d0 * L0 + d1 * L1 + d2 * L2 - h * solid;
         }
     }
     for (int l = 0; l < lanes; ++l) work.near[l] = near[l];
@@ -150,7 +160,9 @@ std::vector<FacePlane> planes_of(const CageArrays& cage) {
     std::vector<FacePlane> planes;
     for (const CageFace& face : cage.faces) {
         FacePlane plane{};
-        if (face.double_area > 0) {
+        double longest = 0;
+        for (const Index e : face.edge) longest = std::max(longest, cage.edges[e].length);
+        if (face.double_area > flat * longest * longest) {
             plane.unit = 1 / face.double_area * face.normal;
             for (std::size_t k = 0; k < 3; ++k) {
                 const CageEdge& edge = cage.edges[face.edge[k]];

@@ -46,6 +46,7 @@ void sum_weights(const CageArrays& cage, double snap, Work& work) {
     for (std::size_t i = 0; i < work.vertex.size(); ++i) {
         Work::OfVertex& v = work.vertex[i];
         const Three& point = cage.points[i];
+#pragma GCC ivdep
         for (int l = 0; l < lanes; ++l) {
             const double px = scale * (point[0] - work.x[0][l]), py = scale * (point[1] - work.x[1][l]),
                          pz = scale * (point[2] - work.x[2][l]);
@@ -62,6 +63,7 @@ void sum_weights(const CageArrays& cage, double snap, Work& work) {
         const Work::OfVertex &from = work.vertex[edge.from], &to = work.vertex[edge.to];
         const double ax = edge.along[0], ay = edge.along[1], az = edge.along[2];
         const double close = snap_squared * edge.length * edge.length;
+#pragma GCC ivdep
         for (int l = 0; l < lanes; ++l) {
             const double px = from.p[0][l], py = from.p[1][l], pz = from.p[2][l];
             const double qx = to.p[0][l], qy = to.p[1][l], qz = to.p[2][l];
@@ -87,6 +89,7 @@ void sum_weights(const CageArrays& cage, double snap, Work& work) {
         const double Nx = face.normal[0], Ny = face.normal[1], Nz = face.normal[2];
         const double flat = snap * face.double_area;
         std::int64_t slivers[lanes];
+#pragma GCC ivdep
         for (int l = 0; l < lanes; ++l) {
             const double k0 = s0 * e0.over_sine[l], k1 = s1 * e1.over_sine[l], k2 = s2 * e2.over_sine[l];
             const double mx = k0 * e0.c[0][l] + k1 * e1.c[0][l] + k2 * e2.c[0][l];

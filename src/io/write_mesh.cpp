@@ -8,12 +8,13 @@ namespace ostraka {
 
 namespace {
 
-void check_extras(const MeshExtras& extras, std::size_t vertices, std::size_t triangles) {
+void check_extras(const MeshExtras& extras, const WriteOptions& options, std::size_t vertices, std::size_t triangles) {
     const auto check = [](std::size_t size, std::size_t wanted, const char* what) {
         if (size != 0 && size != wanted)
             throw std::logic_error(std::string("write_mesh: ") + what + " has " + std::to_string(size) + " entries instead of " +
                                    std::to_string(wanted));
     };
+    check(options.vertex_quality.size(), vertices, "vertex_quality");
     check(extras.vertex_colours.size(), vertices, "vertex_colours");
     check(extras.vertex_labels.size(), vertices, "vertex_labels");
     check(extras.vertex_texture.size(), vertices, "vertex_texture");
@@ -49,9 +50,16 @@ void check_mesh_extension(const Path& file) {
 std::vector<std::string> write_triangles(const Path& file, const TriangleSoup& soup, const MeshExtras& extras,
                                          const WriteOptions& options) {
     check_mesh_extension(file);
-    check_extras(extras, soup.points.size(), soup.triangles.size());
+    check_extras(extras, options, soup.points.size(), soup.triangles.size());
     check_soup(file, soup);
     const std::string ending = extension(file);
+    if (ending != ".ply" && !options.vertex_quality.empty()) {
+        WriteOptions rest = options;
+        rest.vertex_quality.clear();
+        std::vector<std::string> notes = write_triangles(file, soup, extras, rest);
+        notes.emplace_back("only PLY holds numbers of vertices: they are left out");
+        return notes;
+    }
     if (ending == ".obj") return io::write_obj(file, soup, extras, options);
     if (ending == ".off") return io::write_off(file, soup, extras, options);
     if (ending == ".stl") return io::write_stl(file, soup, extras, options);

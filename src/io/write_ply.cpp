@@ -58,6 +58,7 @@ Notes write_ply(const Path& file, const TriangleSoup& soup, const MeshExtras& ex
     if (!extras.vertex_colours.empty()) header += colour_properties(vertex_alpha);
     if (!extras.vertex_labels.empty()) header += "property int label\n";
     if (!extras.vertex_texture.empty()) header += "property float s\nproperty float t\n";
+    if (!options.vertex_quality.empty()) header += "property double quality\n";
     header += "element face " + std::to_string(soup.triangles.size()) + "\nproperty list uchar int vertex_indices\n";
     if (!extras.face_colours.empty()) header += colour_properties(face_alpha);
     if (!extras.face_labels.empty()) header += "property int label\n";
@@ -71,6 +72,7 @@ Notes write_ply(const Path& file, const TriangleSoup& soup, const MeshExtras& ex
         if (!extras.vertex_labels.empty()) values.put(extras.vertex_labels[v]);
         if (!extras.vertex_texture.empty())
             for (const float x : extras.vertex_texture[v]) values.put(x);
+        if (!options.vertex_quality.empty()) values.put(options.vertex_quality[v]);
         values.end_element();
     }
     for (std::size_t t = 0; t < soup.triangles.size(); ++t) {

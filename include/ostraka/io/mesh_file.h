@@ -66,6 +66,8 @@ enum class Encoding { binary, ascii };
 struct WriteOptions {
     Encoding encoding = Encoding::binary;  ///< for PLY and STL
     std::string comment;                   ///< one line (provenance), where the format has comments
+    std::vector<double>
+        vertex_quality{};  ///< empty or one number a vertex: the property "quality" of PLY, which viewers colour by
 };
 
 /// Writes OBJ, PLY, OFF, STL or GLB by extension, atomically. Coordinates as shortest round-trip text or float64

@@ -1,0 +1,180 @@
+#include "ostraka/coords/certificate.h"
+
+#include "ostraka/coords/influence.h"
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+namespace ostraka {
+
+namespace {
+
+/// Points on the cage with the weights of linear interpolation.
+struct OnCage {
+    std::vector<Point> points;
+    std::vector<std::array<Vertex, 3>> corners;
+    std::vector<std::array<double, 3>> weights;
+    void add(const Mesh& cage, const std::array<Vertex, 3>& corner, const std::array<double, 3>& weight) {
+        const Point& a = cage.point(corner[0]);
+        const Vector u = cage.point(corner[1]) - a, v = cage.point(corner[2]) - a;
+        points.push_back(a + (weight[1] * u + weight[2] * v));
+        corners.push_back(corner);
+        weights.push_back(weight);
+    }
+};
+
+/// One number for all vertices at one place.
+std::vector<Index> places_of(const Mesh& cage) {
+    std::map<std::array<double, 3>, Index> known;
+    std::vector<Index> place;
+    for (const Vertex v : cage.vertices()) {
+        const Point& p = cage.point(v);
+        place.push_back(known.try_emplace({p.x(), p.y(), p.z()}, static_cast<Index>(known.size())).first->second);
+    }
+    return place;
+}
+
+double deviation(const std::string& kind, const Mesh& cage, const OnCage& on, const CoordinateOptions& options) {
+    const Coordinates c = compute_coordinates(kind, cage, on.points, options);
+    const std::vector<Index> place = places_of(cage);
+    double worst = 0;
+    std::vector<double> row(place.size());
+    for (std::size_t i = 0; i < on.points.size(); ++i) {
+        std::fill(row.begin(), row.end(), 0.0);
+        for (std::size_t j = 0; j < place.size(); ++j)
+            row[place[j]] += c.vertex(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+        for (std::size_t k = 0; k < 3; ++k) row[place[on.corners[i][k]]] -= on.weights[i][k];
+        for (const double x : row) worst = std::max(worst, std::fabs(x));
+    }
+    return worst;
+}
+
+void certify_kind(const Mesh& cage, const CoordinateOptions& options, CoordinateCertificate& result) {
+    OnCage vertices, edges, faces;
+    // Isolated vertices have no say.
+    for (const Vertex v : cage.vertices())
+        if (!cage.is_isolated(v)) vertices.add(cage, {v, v, v}, {1, 0, 0});
+    for (const Edge e : cage.edges())
+        for (const double t : {0.25, 0.5, 0.9}) {
+            const Vertex a = cage.vertex(e, 0), b = cage.vertex(e, 1);
+            edges.add(cage, {a, b, b}, {1 - t, t, 0});
+        }
+    for (const Face f : cage.faces())
+        for (const std::array<double, 3>& weight :
+             {std::array<double, 3>{1.0 / 3, 1.0 / 3, 1.0 / 3}, {0.6, 0.3, 0.1}, {0.04, 0.16, 0.8}})
+            faces.add(cage, corners(cage, f), weight);
+    result.lagrange = deviation(result.kind, cage, vertices, options);
+    result.edges = deviation(result.kind, cage, edges, options);
+    result.on_faces = deviation(result.kind, cage, faces, options);
+}
+
+/// What one point adds to the certificate.
+struct OfPoint {
+    double partition = 0, linear = 0, least = 0, most = 0, negative_sum = 0;
+    Index negative = 0;
+    bool finite = true;
+};
+
+}  // namespace
+
+CoordinateCertificate certify(const Coordinates& coordinates, const Mesh& cage, const std::vector<Point>& points,
+                              const CoordinateOptions& options) {
+    const WeightMatrix &W = coordinates.vertex, &Q = coordinates.normal;
+    const auto rows = static_cast<Eigen::Index>(points.size()), columns = static_cast<Eigen::Index>(cage.number_of_vertices());
+    if (W.rows() != rows || W.cols() != columns ||
+        (coordinates.has_normals() && (Q.rows() != rows || Q.cols() != static_cast<Eigen::Index>(cage.number_of_faces()))))
+        fail_usage("the coordinates have " + std::to_string(W.rows()) + " rows and " + std::to_string(W.cols()) +
+                       " columns, not " + std::to_string(rows) + " and " + std::to_string(columns),
+                   "give the mesh and the cage that they were computed for");
+    if (columns == 0) fail_input("cage", "has no vertices");
+    CoordinateCertificate result;
+    result.kind = coordinates.kind;
+    result.points = points.size();
+    result.vertices = cage.number_of_vertices();
+    result.faces = cage.number_of_faces();
+    if (coordinate_kind(coordinates.kind).on_cage) certify_kind(cage, options, result);
+    if (points.empty()) return result;
+
+    const std::vector<Point> corner = points_of(cage);
+    const std::vector<Vector> normals = coordinates.has_normals() ? stretched_normals(cage, corner) : std::vector<Vector>();
+    // Divided by the largest extent first, so that squares stay within the range of numbers.
+    double extent = 0;
+    for (const Point& p : corner)
+        for (int k = 0; k < 3; ++k) extent = std::max(extent, std::fabs(p[k] - corner.front()[k]));
+    double diagonal = 0;
+    for (int k = 0; k < 3; ++k) {
+        const auto [low, high] =
+            std::minmax_element(corner.begin(), corner.end(), [k](const Point& a, const Point& b) { return a[k] < b[k]; });
+        diagonal = std::hypot(diagonal, ((*high)[k] - (*low)[k]) / extent);
+    }
+    std::vector<OfPoint> found(points.size());
+    parallel_for(points.size(), [&](std::size_t i) {
+        OfPoint& one = found[i];
+        const double* w = W.row(static_cast<Eigen::Index>(i)).data();
+        double sum = 0;
+        Vector off(0, 0, 0);
+        one.least = one.most = w[0];
+        for (std::size_t j = 0; j < corner.size(); ++j) {
+            sum += w[j];
+            off += w[j] / extent * (corner[j] - points[i]);
+            one.least = std::min(one.least, w[j]);
+            one.most = std::max(one.most, w[j]);
+            if (w[j] < 0) ++one.negative, one.negative_sum -= w[j];
+        }
+        if (coordinates.has_normals()) {
+            const double* q = Q.row(static_cast<Eigen::Index>(i)).data();
+            for (std::size_t j = 0; j < normals.size(); ++j) off += q[j] / extent * normals[j];
+        }
+        one.partition = std::fabs(sum - 1);
+        one.linear = std::sqrt(off.squared_length()) / diagonal;
+        one.finite = std::isfinite(sum) && std::isfinite(one.linear);
+    });
+    double negative = 0, negative_rows = 0;
+    result.least = found[0].least;
+    result.most = found[0].most;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        const OfPoint& one = found[i];
+        if (!one.finite)
+            fail_input("coordinates", "the weights of point " + std::to_string(i) + " are not finite", "compute them anew");
+        result.partition = std::max(result.partition, one.partition);
+        if (one.linear > result.linear || i == 0) result.linear = one.linear, result.worst_linear = static_cast<Index>(i);
+        result.least = std::min(result.least, one.least);
+        result.most = std::max(result.most, one.most);
+        result.negative_sum = std::max(result.negative_sum, one.negative_sum);
+        negative += one.negative;
+        negative_rows += one.negative > 0 ? 1 : 0;
+    }
+    const auto count = static_cast<double>(points.size());
+    result.negative = negative / count / static_cast<double>(corner.size());
+    result.negative_rows = negative_rows / count;
+    for (const Index n : carriers(W)) {
+        result.carriers_mean += n / count;
+        result.carriers_most = std::max(result.carriers_most, n);
+    }
+    return result;
+}
+
+JsonValue to_json(const CoordinateCertificate& c, JsonAllocator& allocator) {
+    JsonValue object(rapidjson::kObjectType);
+    const auto put = [&](const char* name, JsonValue value) { add_member(object, name, std::move(value), allocator); };
+    put("partition", JsonValue(c.partition));
+    put("linearPrecision", JsonValue(c.linear));
+    if (c.worst_linear != no_index) put("worstPoint", JsonValue(c.worst_linear));
+    if (c.lagrange) put("lagrange", JsonValue(*c.lagrange));
+    if (c.edges) put("edgeLinearity", JsonValue(*c.edges));
+    if (c.on_faces) put("faceLinearity", JsonValue(*c.on_faces));
+    put("negativeShare", JsonValue(c.negative));
+    put("negativeRows", JsonValue(c.negative_rows));
+    put("negativeSum", JsonValue(c.negative_sum));
+    put("least", JsonValue(c.least));
+    put("most", JsonValue(c.most));
+    put("carriersMean", JsonValue(c.carriers_mean));
+    put("carriersMost", JsonValue(c.carriers_most));
+    return object;
+}
+
+}  // namespace ostraka

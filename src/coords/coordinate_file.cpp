@@ -1,0 +1,148 @@
+#include "ostraka/coords/coordinate_file.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/npy.h"
+
+#include <cmath>
+
+namespace ostraka {
+
+namespace {
+
+constexpr const char* schema = "coordinates";
+constexpr const char* anew = "compute them anew with 'ostraka cage weights'";
+
+void check_name(const Path& weights) {
+    if (extension(weights) != ".npy")
+        throw Error(ErrorKind::usage, weights.string(), "is no name for a NumPy array", "end it in .npy");
+}
+
+JsonValue bound_json(const Mesh& mesh, JsonAllocator& allocator) {
+    JsonValue object(rapidjson::kObjectType);
+    add_member(object, "vertices", JsonValue(static_cast<std::uint64_t>(mesh.number_of_vertices())), allocator);
+    add_member(object, "faces", JsonValue(static_cast<std::uint64_t>(mesh.number_of_faces())), allocator);
+    add_member(object, "sha256", mesh_checksum(mesh), allocator);
+    return object;
+}
+
+JsonValue write_array(const Path& file, const WeightMatrix& matrix, JsonAllocator& allocator) {
+    const auto rows = static_cast<std::size_t>(matrix.rows()), columns = static_cast<std::size_t>(matrix.cols());
+    if (!matrix.allFinite()) throw Error(ErrorKind::failure, file.string(), "a weight is not finite");
+    const std::string checksum = write_npy(file, std::span(matrix.data(), rows * columns), {rows, columns});
+    JsonValue object(rapidjson::kObjectType);
+    add_member(object, "file", file.filename().string(), allocator);
+    add_member(object, "rows", JsonValue(static_cast<std::uint64_t>(rows)), allocator);
+    add_member(object, "columns", JsonValue(static_cast<std::uint64_t>(columns)), allocator);
+    add_member(object, "sha256", checksum, allocator);
+    return object;
+}
+
+CoordinateHeader::Array array_of(const JsonValue& value) {
+    return {value["file"].GetString(), static_cast<std::size_t>(value["rows"].GetUint64()),
+            static_cast<std::size_t>(value["columns"].GetUint64()), value["sha256"].GetString()};
+}
+CoordinateHeader::Bound bound_of(const JsonValue& value) {
+    return {static_cast<std::size_t>(value["vertices"].GetUint64()), static_cast<std::size_t>(value["faces"].GetUint64()),
+            value["sha256"].GetString()};
+}
+
+void check_bound(const Path& header, const std::string& what, const CoordinateHeader::Bound& bound, const Mesh& mesh) {
+    if (bound.vertices != mesh.number_of_vertices() || bound.faces != mesh.number_of_faces())
+        fail_input(header.string(),
+                   "the weights were computed for another " + what + ", of " + std::to_string(bound.vertices) + " vertices and " +
+                       std::to_string(bound.faces) + " faces instead of " + std::to_string(mesh.number_of_vertices()) + " and " +
+                       std::to_string(mesh.number_of_faces()),
+                   std::string("give that ") + what + ", or " + anew);
+    if (bound.sha256 != mesh_checksum(mesh))
+        fail_input(header.string(),
+                   "the weights were computed for another " + what + " (its checksum differs, the numbers of its elements agree)",
+                   std::string("give that ") + what + ", or " + anew);
+}
+
+WeightMatrix read_array(const Path& folder, const CoordinateHeader::Array& array, std::size_t rows, std::size_t columns) {
+    const Path file = folder / array.file;
+    const std::string bytes = read_file(file), where = file.string();
+    const NpyView view = view_npy(bytes, where);
+    if (view.shape.size() != 2 || view.rows() != rows || view.columns() != columns)
+        fail_input(where,
+                   "has " + std::to_string(view.rows()) + " rows and " + std::to_string(view.columns()) + " columns, not " +
+                       std::to_string(rows) + " and " + std::to_string(columns),
+                   anew);
+    if (view.type != "<f8") fail_input(where, "is not of little-endian float64", anew);
+    WeightMatrix matrix(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
+    view.copy_to(matrix.data());
+    for (Eigen::Index i = 0; i < matrix.size(); ++i)
+        if (!std::isfinite(matrix.data()[i])) fail_input(where, "weight " + std::to_string(i) + " is not finite", anew);
+    if (sha256(bytes) != array.sha256)
+        fail_input(where, "is another file than its header was written for (its checksum differs)", anew);
+    return matrix;
+}
+
+}  // namespace
+
+Path coordinate_header_file(const Path& weights) { return Path(weights).replace_extension(".coordinates.json"); }
+Path normal_weights_file(const Path& weights) { return Path(weights).replace_extension(".normal.npy"); }
+
+void write_coordinates(const Path& weights, const Coordinates& coordinates, const Mesh& mesh, const Mesh& cage,
+                       const CoordinateCertificate& certificate, const Provenance& provenance) {
+    check_name(weights);
+    const WeightMatrix &W = coordinates.vertex, &Q = coordinates.normal;
+    const auto rows = static_cast<Eigen::Index>(mesh.number_of_vertices());
+    if (W.rows() != rows || W.cols() != static_cast<Eigen::Index>(cage.number_of_vertices()) ||
+        (coordinates.has_normals() && (Q.rows() != rows || Q.cols() != static_cast<Eigen::Index>(cage.number_of_faces()))))
+        fail_usage("the coordinates do not fit the mesh and the cage", "give those that they were computed for");
+    Json document(rapidjson::kObjectType);
+    auto& allocator = document.GetAllocator();
+    add_member(document, "format", "ostraka-coordinates", allocator);
+    add_member(document, "version", JsonValue(1), allocator);
+    add_member(document, "kind", coordinates.kind, allocator);
+    add_member(document, "vertex", write_array(weights, W, allocator), allocator);
+    if (coordinates.has_normals())
+        add_member(document, "normal", write_array(normal_weights_file(weights), Q, allocator), allocator);
+    add_member(document, "mesh", bound_json(mesh, allocator), allocator);
+    add_member(document, "cage", bound_json(cage, allocator), allocator);
+    add_member(document, "certificate", to_json(certificate, allocator), allocator);
+    add_member(document, "provenance", provenance.to_json(allocator), allocator);
+    write_json(coordinate_header_file(weights), document);
+}
+
+CoordinateHeader read_coordinate_header(const Path& weights) {
+    check_name(weights);
+    const Path file = coordinate_header_file(weights);
+    std::error_code code;
+    if (!std::filesystem::exists(file, code))
+        fail_input(weights.string(), "has no header " + file.filename().string() + " beside it that says what it belongs to",
+                   anew);
+    const Json document = read_json(file);
+    validate(document, schema, file.string());
+    CoordinateHeader header;
+    header.kind = document["kind"].GetString();
+    header.vertex = array_of(document["vertex"]);
+    if (const JsonValue* normal = find_member(document, "normal")) header.normal = array_of(*normal);
+    header.mesh = bound_of(document["mesh"]);
+    header.cage = bound_of(document["cage"]);
+    // Names lead nowhere else: a header speaks of the files beside it.
+    const auto check = [&](const CoordinateHeader::Array& array, const Path& expected) {
+        if (array.file != expected.filename().string())
+            fail_input(file.string(), "speaks of the array '" + array.file + "' instead of " + expected.filename().string(),
+                       "give the files their old names, or compute them anew");
+    };
+    check(header.vertex, weights);
+    if (header.normal) check(*header.normal, normal_weights_file(weights));
+    return header;
+}
+
+Coordinates read_coordinates(const Path& weights, const Mesh& mesh, const Mesh& cage) {
+    const CoordinateHeader header = read_coordinate_header(weights);
+    const Path file = coordinate_header_file(weights);
+    check_bound(file, "mesh", header.mesh, mesh);
+    check_bound(file, "cage", header.cage, cage);
+    Coordinates result;
+    result.kind = header.kind;
+    result.vertex = read_array(weights.parent_path(), header.vertex, mesh.number_of_vertices(), cage.number_of_vertices());
+    if (header.normal)
+        result.normal = read_array(weights.parent_path(), *header.normal, mesh.number_of_vertices(), cage.number_of_faces());
+    return result;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,136 @@
+#include "ostraka/coords/coordinate_file.h"
+
+#include "cages.h"
+#include "mutate.h"
+#include "ostraka/core/error.h"
+#include "ostraka/core/npy.h"
+#include "scratch.h"
+
+namespace ostraka {
+namespace {
+
+struct Saved : test::Scratch {
+    Mesh cage = build_mesh(test::box(1)), mesh = build_mesh(test::moved(test::octahedron_sphere(1), 0.4, {0.5, 0.5, 0.5}));
+    Path file = *this / "ball.npy", header = *this / "ball.coordinates.json";
+    Coordinates save(const std::string& kind) const {
+        const Coordinates c = compute_coordinates(kind, cage, mesh);
+        write_coordinates(file, c, mesh, cage, certify(c, cage, points_of(mesh)), Provenance{"test", {}, {}});
+        return c;
+    }
+    std::string problem(const Mesh& of, const Mesh& in) const {
+        try {
+            (void)read_coordinates(file, of, in);
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::input);
+            EXPECT_FALSE(error.remedy().empty()) << error.what();
+            EXPECT_NE(error.where().find("ball"), std::string::npos);
+            return error.problem();
+        }
+        return "accepted";
+    }
+    std::string problem() const { return problem(mesh, cage); }
+};
+bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+TEST(CoordinateFile, WhatIsWrittenIsReadToTheBit) {
+    const Saved saved;
+    for (const char* kind : {"mean-value", "green"}) {
+        const Coordinates c = saved.save(kind), back = read_coordinates(saved.file, saved.mesh, saved.cage);
+        EXPECT_EQ(back.kind, kind);
+        EXPECT_EQ(back.vertex, c.vertex);
+        EXPECT_EQ(back.normal.size(), c.normal.size());
+        if (c.has_normals()) {
+            EXPECT_EQ(back.normal, c.normal);
+        }
+        // And by anybody else: a plain array.
+        const auto array = read_npy(saved.file);
+        EXPECT_EQ(array.shape, (std::vector<std::size_t>{saved.mesh.number_of_vertices(), 8}));
+        EXPECT_EQ(array.values[9], c.vertex(1, 1));
+        const Json document = read_json(saved.header);
+        EXPECT_LT(document["certificate"]["partition"].GetDouble(), 1e-12);
+    }
+    EXPECT_EQ(test::count_files(saved.path()), 3U);
+}
+
+TEST(CoordinateFile, AnotherMeshOrCageIsRefused) {
+    const Saved saved;
+    saved.save("mean-value");
+    EXPECT_EQ(saved.problem(), "accepted");
+    Mesh other = saved.mesh;
+    other.point(Vertex(5)) = Point(0.5, 0.5, 0.5);
+    EXPECT_TRUE(holds(saved.problem(other, saved.cage), "another mesh (its checksum"));
+    EXPECT_TRUE(holds(saved.problem(build_mesh(test::box(3)), saved.cage), "another mesh, of 18 vertices"));
+    other = saved.cage;
+    other.point(Vertex(0)) = Point(-1, -1, -1);
+    EXPECT_TRUE(holds(saved.problem(saved.mesh, other), "another cage (its checksum"));
+    EXPECT_TRUE(holds(saved.problem(saved.mesh, build_mesh(test::box(2))), "another cage, of 8 vertices"));
+}
+
+TEST(CoordinateFile, ArraysThatChangedAreRefused) {
+    const Saved saved;
+    const Coordinates c = saved.save("green");
+    const std::string good = read_file(saved.file);
+    std::vector<double> values(c.vertex.data(), c.vertex.data() + c.vertex.size());
+    values[7] += 1e-15;
+    write_npy(saved.file, values, {18, 8});
+    EXPECT_TRUE(holds(saved.problem(), "its checksum differs"));
+    values[7] = NAN;
+    write_npy(saved.file, values, {18, 8});
+    EXPECT_TRUE(holds(saved.problem(), "weight 7 is not finite"));
+    write_npy(saved.file, values, {8, 18});
+    EXPECT_TRUE(holds(saved.problem(), "8 rows and 18 columns, not 18 and 8"));
+    write_npy(saved.file, std::vector<std::int64_t>(144, 1), {18, 8});
+    EXPECT_TRUE(holds(saved.problem(), "float64"));
+    write_file(saved.file, good);
+    EXPECT_EQ(saved.problem(), "accepted");
+    std::filesystem::remove(saved / "ball.normal.npy");
+    EXPECT_TRUE(holds(saved.problem(), "cannot be opened"));
+    std::filesystem::remove(saved.header);
+    EXPECT_TRUE(holds(saved.problem(), "no header ball.coordinates.json"));
+}
+
+TEST(CoordinateFile, HeadersLeadNowhereElse) {
+    const Saved saved;
+    saved.save("mean-value");
+    std::string text = read_file(saved.header);
+    text.replace(text.find("\"ball.npy\""), 10, "\"../../x.npy\"");
+    write_file(saved.header, text);
+    EXPECT_TRUE(holds(saved.problem(), "'../../x.npy' instead of ball.npy"));
+}
+
+TEST(CoordinateFile, WhatDoesNotFitIsNotWritten) {
+    const test::Scratch scratch;
+    const Mesh cage = build_mesh(test::box(1)), mesh = build_mesh(test::moved(test::octahedron_sphere(0), 0.4, {0.5, 0.5, 0.5}));
+    Coordinates c = compute_coordinates("mean-value", cage, mesh);
+    const CoordinateCertificate certificate = certify(c, cage, points_of(mesh));
+    EXPECT_THROW(write_coordinates(scratch / "a.npy", c, cage, mesh, certificate, {}), Error);
+    EXPECT_THROW(write_coordinates(scratch / "a.txt", c, mesh, cage, certificate, {}), Error);
+    c.vertex(0, 0) = NAN;
+    EXPECT_THROW(write_coordinates(scratch / "a.npy", c, mesh, cage, certificate, {}), Error);
+    EXPECT_EQ(test::count_files(scratch.path()), 0U);
+}
+
+TEST(CoordinateFile, DamagedFilesAreRefusedOrTheSame) {
+    const Saved saved;
+    const Coordinates c = saved.save("green");
+    std::size_t refused = 0;
+    for (const char* name : {"ball.npy", "ball.normal.npy", "ball.coordinates.json"}) {
+        const std::string good = read_file(saved / name);
+        for (std::uint64_t seed = 0; seed < 300; ++seed) {
+            write_file(saved / name, test::mutate(good, seed));
+            try {
+                const Coordinates back = read_coordinates(saved.file, saved.mesh, saved.cage);
+                // The header may be hurt where it binds nothing (its certificate), the kind is text.
+                EXPECT_EQ(back.vertex, c.vertex) << name << ' ' << seed;
+            } catch (const Error& error) {
+                EXPECT_EQ(error.kind(), ErrorKind::input) << error.what();
+                ++refused;
+            }
+        }
+        write_file(saved / name, good);
+    }
+    EXPECT_GT(refused, 600U);
+}
+
+}  // namespace
+}  // namespace ostraka
