@@ -51,7 +51,9 @@ int main(int argc, char** argv) {
     app::add_annotation_infer(*annotation, session);
     app::add_template(*bundle, session);
     app::add_vocabulary(*vocabulary, session);
+    app::add_cage_make(*cage, session);
     app::add_cage(*cage, session);
+    app::add_deform(tool, session);
     app::add_render(tool, session);
     try {
         tool.parse(argc, argv);

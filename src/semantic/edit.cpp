@@ -1,5 +1,6 @@
 #include "ostraka/semantic/edit.h"
 
+#include "ostraka/coords/influence.h"
 #include "ostraka/core/error.h"
 #include "ostraka/geom/eigen.h"
 
@@ -70,7 +71,7 @@ private:
             else
                 state_.threshold = influence_threshold(space_.coordinates->vertex, threshold->GetString(),
                                                        here ? vertices : std::vector<Index>());
-            const auto found = influential(space_.coordinates->vertex, vertices, state_.threshold);
+            const auto found = influential(*space_.coordinates, vertices, state_.threshold);
             if (found.empty()) {
                 double most = 0;
                 for (const Index v : vertices) most = std::max(most, space_.coordinates->vertex.row(v).maxCoeff());
@@ -212,14 +213,11 @@ double influence_threshold(const WeightMatrix& weights, const std::string& rule,
     return rule == "auto-mesh" ? least : columns.minCoeff();
 }
 
-std::vector<Index> influential(const WeightMatrix& weights, const std::vector<Index>& rows, double threshold) {
-    std::vector<bool> above(static_cast<std::size_t>(weights.cols()), false);
-    for (const Index row : rows)
-        for (Eigen::Index j = 0; j < weights.cols(); ++j)
-            if (weights(row, j) >= threshold) above[static_cast<std::size_t>(j)] = true;
+std::vector<Index> influential(const Coordinates& coordinates, const std::vector<Index>& rows, double threshold) {
+    const std::vector<double> influence = influence_on(coordinates, rows);
     std::vector<Index> list;
-    for (Index j = 0; j < above.size(); ++j)
-        if (above[j]) list.push_back(j);
+    for (Index j = 0; j < influence.size(); ++j)
+        if (influence[j] >= threshold) list.push_back(j);
     return list;
 }
 

@@ -98,14 +98,14 @@ TEST(Edit, SelectsByInfluence) {
     const double rows = influence_threshold(w, "auto-mesh"), columns = influence_threshold(w, "auto-cage");
     EXPECT_EQ(rows, w.rowwise().maxCoeff().minCoeff());
     EXPECT_EQ(columns, w.colwise().maxCoeff().minCoeff());
-    for (Index v = 0; v < 50; ++v) EXPECT_FALSE(influential(w, {v}, rows).empty());
+    for (Index v = 0; v < 50; ++v) EXPECT_FALSE(influential(object.coordinates, {v}, rows).empty());
     std::vector<Index> everything(object.made.mesh.number_of_vertices());
     for (Index v = 0; v < everything.size(); ++v) everything[v] = v;
-    EXPECT_EQ(influential(w, everything, columns).size(), object.cage.number_of_vertices());
+    EXPECT_EQ(influential(object.coordinates, everything, columns).size(), object.cage.number_of_vertices());
     // A part's own handles move it more than the rest.
     const auto states = follow_edit(edit(R"({"select": {"annotation": "spout", "threshold": 0.2}, "translate": [0, 0, 5]})"),
                                     object.handles(), "e");
-    EXPECT_EQ(states.front().selected, influential(w, vertices_of(object.made.mesh, *object.set.find(5)), 0.2));
+    EXPECT_EQ(states.front().selected, influential(object.coordinates, vertices_of(object.made.mesh, *object.set.find(5)), 0.2));
     EXPECT_NE(error_of(object.handles(), R"({"select": {"annotation": "spout", "threshold": 2}, "translate": [0, 0, 5]})")
                   .find("the largest is"),
               std::string::npos);

@@ -28,7 +28,7 @@ struct EditState {
 /// mesh vertex. `rows` restricts it to some mesh vertices; all if empty. Throws Error (usage) for another rule.
 double influence_threshold(const WeightMatrix& weights, const std::string& rule, const std::vector<Index>& rows = {});
 /// Cage vertices with a weight of at least `threshold` on one of the mesh vertices, ascending.
-std::vector<Index> influential(const WeightMatrix& weights, const std::vector<Index>& rows, double threshold);
+std::vector<Index> influential(const Coordinates& coordinates, const std::vector<Index>& rows, double threshold);
 
 /// Vertices of an annotation's selection, ascending.
 std::vector<Index> vertices_of(const Mesh& mesh, const Annotation& annotation);
