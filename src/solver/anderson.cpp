@@ -40,7 +40,6 @@ void Anderson::next(const Points& x, const Points& g, Points& accelerated) {
             dg_.resize(window_);
             products_.setZero(window_, window_);
         }
-        if (used_ == 0) oldest_ = 0;
         const int slot = used_ < window_ ? used_ : oldest_;
         df_[slot].resize(3, x.cols());
         dg_[slot].resize(3, x.cols());

@@ -12,11 +12,6 @@ public:
     explicit Anderson(int window) : window_(window) {}
     /// The next iterate, from x and G(x).
     void next(const Points& x, const Points& g, Points& accelerated);
-    /// Forgets what came before.
-    void reset() {
-        used_ = 0;
-        started_ = false;
-    }
 
 private:
     int window_, used_ = 0, oldest_ = 0;

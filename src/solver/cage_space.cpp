@@ -323,6 +323,7 @@ void CageSpaceSolver::initialize() {
     const double before = seconds();
     s.make_factor();
     setup_.times.factor += seconds() - before;
+    setup_.factor_entries = static_cast<double>(s.cage * s.cage);
     setup_.regularised = s.regularisation > 0;
     setup_.regularisation = s.regularisation;
     total_weight_ = rounding_ = 0;

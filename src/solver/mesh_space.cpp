@@ -246,6 +246,7 @@ void MeshSpaceSolver::initialize() {
         s.has_factor = true;
         s.has_constants = false;
         setup_.floating_parts = static_cast<int>(s.floating.parts.size());
+        setup_.factor_entries = s.cholesky.entries();
         setup_.regularised = s.regularisation > 0;
         setup_.regularisation = s.regularisation;
     }

@@ -130,7 +130,6 @@ SolveSummary Solver::solve(Points& variables, const SolveOptions& options) {
             if (!(next <= phi)) {
                 ++summary.refused;
                 accelerated = false;
-                anderson.reset();
             }
         }
         if (!accelerated) {

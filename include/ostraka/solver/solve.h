@@ -49,9 +49,10 @@ struct SolveSummary {
         0;  ///< sets of points that constraints tie together but nothing holds in place: their mean stays at rest
     bool regularised = false;  ///< singular beyond that: all was drawn towards the rest shape, with `regularisation` as weight
     double regularisation = 0;
-    int updated_rows = 0;      ///< rows of new weight that were taken as a low-rank update of an older factorisation
-    bool usable = false;       ///< the result is finite and the objective no higher than at the start
-    std::string text() const;  ///< in a few lines
+    int updated_rows = 0;       ///< rows of new weight that were taken as a low-rank update of an older factorisation
+    double factor_entries = 0;  ///< numbers that the factorisation holds
+    bool usable = false;        ///< the result is finite and the objective no higher than at the start
+    std::string text() const;   ///< in a few lines
 };
 
 /// Constraints over points and the matrices they need. `rest` are the points that singular systems are drawn to; what constraints
