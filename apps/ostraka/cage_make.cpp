@@ -33,7 +33,7 @@ struct Make {
         for (const std::uint64_t size : sizes) files.push_back(levels.empty() ? Path(output) : level_file(size));
         std::vector<Path> inputs{mesh};
         if (!annotations.empty()) inputs.emplace_back(annotations);
-        check_outputs(files, inputs);
+        check_outputs(inputs, files);
         if (annotations.empty() && !details.empty()) fail_usage("--detail without --annotations", "add --annotations");
         Provenance provenance{"cage make", list_options(options), {}};
         for (const auto& [key, value] : {std::pair{"levels", levels}, {"mirror", mirror}})

@@ -30,7 +30,7 @@ struct Deform {
             if (!file.empty()) inputs.emplace_back(file);
         for (const std::string& file : {annotations_out, cage_out})
             if (!file.empty()) outputs.emplace_back(file);
-        check_outputs(outputs, inputs);
+        check_outputs(inputs, outputs);
         Provenance provenance{"deform", list_options(options), {}};
         for (const Path& input : inputs) provenance.add_input(input);
 

@@ -1,0 +1,140 @@
+// 'ostraka cage make', 'cage check' and 'deform', as people run them.
+#include "ostraka/core/json.h"
+#include "ostraka/io/mesh_file.h"
+#include "scratch.h"
+
+#include <gtest/gtest.h>
+
+using namespace ostraka;
+using ostraka::test::count_files;
+using ostraka::test::run_command;
+using ostraka::test::Scratch;
+
+namespace {
+
+const std::string data = OSTRAKA_SOURCE_DIR "/data/";
+const std::string pot = data + "teapot.ply ", parts = data + "teapot.ant.json ";
+
+/// A folder with a cage of the made teapot and its weights.
+struct Caged : Scratch {
+    [[nodiscard]] std::string at(const std::string& name) const { return (*this / name).string(); }
+    Caged() {
+        const auto made = run_command("cage make " + pot + at("cage.ply") + " --vertices 80");
+        EXPECT_EQ(made.code, 0) << made.err;
+        const auto weights = run_command("cage weights " + pot + at("cage.ply") + " " + at("w.npy"));
+        EXPECT_EQ(weights.code, 0) << weights.err;
+        static_cast<void>(file("lift.edit.json", R"({"format": "ostraka-edit", "version": 1, "steps": [
+            {"select": {"annotation": "spout", "threshold": 0.15}, "translate": [0, 0, 12]}]})"));
+        const auto stated = run_command("relation add " + pot + parts + at("k.graph.json") +
+                                        " --type 'same level' --annotation 7 --annotation 8 --annotation 9 --annotation 10 "
+                                        "--annotation 11 --constraint --weight 20");
+        EXPECT_EQ(stated.code, 0) << stated.err;
+    }
+    [[nodiscard]] std::string handles() const { return " --cage " + at("cage.ply") + " --weights " + at("w.npy"); }
+};
+
+}  // namespace
+
+TEST(CageCommand, MakesAndChecks) {
+    const Scratch scratch;
+    const std::string cage = (scratch / "cage.ply").string();
+    const auto made = run_command("cage make " + pot + cage + " --levels 120,60 --mirror auto --json");
+    ASSERT_EQ(made.code, 0) << made.err;
+    const Json report = parse_json(made.out, "report");
+    validate(report, "report", "report");
+    EXPECT_EQ(report["result"]["cages"].Size(), 2U);
+    const std::string fine = (scratch / "cage-120.ply").string(), coarse = (scratch / "cage-60.ply").string();
+    EXPECT_EQ(run_command("cage check " + pot + fine).code, 0);
+    EXPECT_EQ(run_command("cage check " + fine + " " + coarse).code, 0);
+    const auto wrong = run_command("cage check " + coarse + " " + fine);
+    EXPECT_EQ(wrong.code, 3);
+    EXPECT_NE(wrong.out.find("outside near face"), std::string::npos) << wrong.out;
+    const std::string first = read_file(fine);
+    ASSERT_EQ(run_command("cage make " + pot + cage + " --levels 120,60 --mirror auto --threads 1").code, 0);
+    EXPECT_EQ(read_file(fine), first);
+}
+
+TEST(CageCommand, BadInput) {
+    const Scratch scratch;
+    const std::string cage = (scratch / "cage.ply").string();
+    const auto refused = [&](const std::string& arguments, int code, const std::string& words) {
+        const auto result = run_command("cage make " + arguments);
+        EXPECT_EQ(result.code, code) << arguments << result.err;
+        EXPECT_NE(result.err.find(words), std::string::npos) << arguments << ": " << result.err;
+    };
+    refused(pot + cage + " --vertices 3", 2, "vertices");
+    refused(pot + cage + " --levels 10,10", 2, "twice");
+    refused(pot + cage + " --levels 10,x", 2, "--levels");
+    refused(pot + cage + " --mirror 1,2,3", 2, "six numbers");
+    refused(pot + cage + " --mirror 0,0,0,0,0,0", 2, "normal is zero");
+    refused(pot + cage + " --detail spout=4", 2, "--annotations");
+    refused(pot + cage + " --annotations " + parts + "--detail nose=4", 2, "no annotation");
+    refused(pot + pot, 2, "input");
+    EXPECT_EQ(count_files(scratch.path()), 0U);
+}
+
+TEST(DeformCommand, KeepsWhatIsAsked) {
+    const Caged folder;
+    const std::string base = "deform " + pot + parts + folder.at("lift.edit.json") + " ";
+    const auto plain = run_command(base + folder.at("plain.ply") + folder.handles());
+    EXPECT_EQ(plain.code, 0) << plain.err;
+    EXPECT_NE(plain.out.find("no constraints"), std::string::npos);
+    const auto kept =
+        run_command(base + folder.at("out.ply") + folder.handles() + " --graph " + folder.at("k.graph.json") +
+                    " --annotations-out " + folder.at("out.ant.json") + " --cage-out " + folder.at("out-cage.ply") + " --json");
+    ASSERT_EQ(kept.code, 0) << kept.err << kept.out;
+    const Json report = parse_json(kept.out, "report");
+    validate(report, "report", "report");
+    const JsonValue& constraint = report["result"]["constraints"][0];
+    EXPECT_STREQ(constraint["verdict"].GetString(), "holds");
+    EXPECT_TRUE(constraint["used"].GetBool());
+    EXPECT_EQ(constraint["residual"]["constraints"].GetInt(), 6);
+    EXPECT_EQ(run_command("annotation check " + folder.at("out.ply") + " " + folder.at("out.ant.json")).code, 0);
+    // The same to the bit with other threads.
+    const std::string first = read_file(folder / "out.ply");
+    ASSERT_EQ(
+        run_command(base + folder.at("out.ply") + folder.handles() + " --graph " + folder.at("k.graph.json") + " --threads 1")
+            .code,
+        0);
+    EXPECT_EQ(read_file(folder / "out.ply"), first);
+    // Through the cage, and without one.
+    EXPECT_NE(
+        run_command(base + folder.at("c.ply") + folder.handles() + " --graph " + folder.at("k.graph.json") + " --space cage")
+            .code,
+        1);
+    EXPECT_EQ(run_command(base + folder.at("d.ply")).code, 0);
+}
+
+TEST(DeformCommand, BadInput) {
+    const Caged folder;
+    const std::size_t before = count_files(folder.path());
+    const auto refused = [&](const std::string& arguments, int code, const std::string& words) {
+        const auto result = run_command("deform " + arguments);
+        EXPECT_EQ(result.code, code) << arguments << result.err;
+        EXPECT_NE(result.err.find(words), std::string::npos) << arguments << ": " << result.err;
+    };
+    const std::string edit = folder.at("lift.edit.json") + " ", out = folder.at("out.ply") + " ";
+    refused(pot + parts + edit + out + "--space cage", 2, "there is none");
+    refused(pot + parts + edit + out + "--cage " + folder.at("cage.ply"), 2, "belong together");
+    refused(pot + parts + parts + out, 1, "teapot.ant.json");
+    refused(pot + parts + edit + data + "teapot.ply", 2, "input");
+    refused(data + "vase.ply " + data + "vase.ant.json " + edit + out + folder.handles(), 1, "w.coordinates.json");
+    const auto graph = [&](const std::string& constraint) {
+        return "--graph " +
+               folder
+                   .file("bad.graph.json", R"({"format": "ostraka-graph", "version": 1, "relationships": [)" + constraint + "]}")
+                   .string();
+    };
+    const auto stated = [&](const std::string& type, const std::string& members, const std::string& parameters) {
+        return graph(R"({"id": 0, "type": ")" + type + R"(", "isDirected": false, "annotations": )" + members +
+                     R"(, "isConstraint": true, "weight": 1, "constraint": )" + parameters + "}");
+    };
+    const std::string all = pot + parts + edit + out + folder.handles() + " ";
+    refused(all + stated("proportion", "[5, 1]", R"({"minValue": 2, "maxValue": 1})"), 1, "minValue is greater");
+    refused(all + stated("proportion", "[5, 1]", R"({"minValue": 1})"), 1, "maxValue is missing");
+    refused(all + stated("proportion", "[7, 8]", R"({"minValue": 1, "maxValue": 2})"), 1, "no measure");
+    refused(all + stated("keep shape", "[7]", R"({"mode": "soft"})"), 1, "rigid, similar");
+    refused(all + stated("keep shape", "[99]", "{}"), 1, "99");
+    refused(all + stated("same level", "[7, 8]", R"({"direction": [0, 0, 0]})"), 1, "direction is zero");
+    EXPECT_EQ(count_files(folder.path()), before + 1);  // bad.graph.json
+}
