@@ -4,6 +4,8 @@
 #include "number_lists.h"
 
 #include "ostraka/annotation/annotation_file.h"
+#include "ostraka/core/ids.h"
+#include "ostraka/core/limits.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/measure/descriptors.h"
@@ -138,7 +140,12 @@ struct Take {
         if (!points.empty()) measure.points = numbers_of<Index>(points, "--points");
         for (const auto& text : repeats) measure.repeats.push_back(numbers_of<Index>(text, "--repeat"));
         std::vector<std::array<double, 3>> coordinates;
-        for (const auto& text : places) coordinates.push_back(vector_of(text, "--at"));
+        for (const auto& text : places) {
+            const auto& [x, y, z] = coordinates.emplace_back(vector_of(text, "--at"));
+            if (!is_place(x, y, z))
+                fail_usage("--at is '" + printable(text, 60) + "', beyond what can be computed with (coordinates up to 1e60)",
+                           "give a place on the surface, in the unit of the mesh");
+        }
         const std::size_t pins = measure.points.size() + coordinates.size();
         if (tool == "bounding" ? pins == 1 : pins < 2)
             fail_usage(
@@ -208,7 +215,7 @@ private:
         attribute.name = name.empty() ? tool : name;
         attribute.type = AttributeType::measure;
         attribute.measure = measure;
-        for (const Attribute& other : holder.attributes) attribute.id = std::max(attribute.id, other.id + 1);
+        attribute.id = next_free_id(holder.attributes);
         holder.attributes.push_back(std::move(attribute));
     }
 
@@ -280,8 +287,19 @@ struct Describe {
         DescriptorSearch search(file.mesh, options);
         std::vector<std::pair<const Annotation*, std::vector<Quantity>>> found;
         for (Annotation* annotation : subject.selected(set)) {
-            auto quantities = in_file(subject.annotations_file.empty() ? subject.mesh_file : subject.annotations_file,
-                                      [&] { return search.describe(*annotation, named); });
+            auto quantities = [&] {
+                try {
+                    return in_file(subject.annotations_file.empty() ? subject.mesh_file : subject.annotations_file,
+                                   [&] { return search.describe(*annotation, named); });
+                } catch (const Error& error) {
+                    // What is wrong with a map is said of its file.
+                    for (std::size_t i = 0; i < named.size(); ++i)
+                        if (error.where().ends_with("map '" + named[i].name + "'"))
+                            throw Error(error.kind(), map_files[i].string() + ", at " + error.where(), error.problem(),
+                                        error.remedy());
+                    throw;
+                }
+            }();
             store(*annotation, quantities, set.unit);
             found.emplace_back(annotation, std::move(quantities));
         }

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <iostream>
 #include <memory>
 
@@ -137,12 +138,12 @@ struct Extract {
         RelationGraph stated;
         stated.relationships = graph.relationships;
         const Topology found = in_file(inputs.annotations, [&] { return topology(mesh, set); });
-        for (auto& relationship : relationships_of(found, set, free_id(graph)))
+        for (auto& relationship : relationships_of(found, set, 0))
             if (wanted.empty() || std::find(wanted.begin(), wanted.end(), relationship.type) != wanted.end())
                 add(session, stated, graph, std::move(relationship));
         if (!set.up) note_missing_up(session, wanted);
         RelationMeter meter(mesh, set, tolerances);
-        for (auto& relationship : meter.extract(wanted, free_id(graph))) add(session, stated, graph, std::move(relationship));
+        for (auto& relationship : meter.extract(wanted, 0)) add(session, stated, graph, std::move(relationship));
         write_graph(output, graph, set, provenance);
         print_relationships(session, provenance, set, graph.relationships, &found.order);
         return done;
@@ -179,6 +180,8 @@ struct Add {
 
     int run(const Session& session) const {
         inputs.check(output);
+        if (!std::isfinite(weight)) fail_usage("--weight is not a finite number", "use 0 or more");
+        if (weight < 0) fail_usage("--weight is negative", "use 0 or more");
         Provenance provenance = inputs.provenance("relation add");
         provenance.options.emplace_back("type", type);
         AnnotationSet set;
@@ -230,10 +233,12 @@ private:
             double value = 0;
             const bool percent = text.ends_with('%');
             const char* end = text.data() + text.size() - (percent ? 1 : 0);
-            if (sign == std::string::npos || text.data() + sign + 1 >= end ||
-                std::from_chars(text.data() + sign + 1, end, value).ptr != end)
-                fail_usage("'" + text + "' is not a tolerance", "write QUANTITY=NUMBER, e.g. angle=5 or distance=1%");
-            if (!(value >= 0)) fail_usage("the tolerance '" + text + "' is negative", "use 0 or more");
+            const bool named = sign != std::string::npos && text.data() + sign + 1 < end;
+            const auto [rest, code] = std::from_chars(named ? text.data() + sign + 1 : end, end, value);
+            if (!named || rest != end || code != std::errc() || !std::isfinite(value))
+                fail_usage("'" + printable(text, 60) + "' is not a tolerance",
+                           "write QUANTITY=NUMBER, e.g. angle=5 or distance=1%");
+            if (value < 0) fail_usage("the tolerance '" + printable(text, 60) + "' is negative", "use 0 or more");
             const std::string quantity = text.substr(0, sign);
             const auto measured = measured_quantities(relationship.type);
             if (std::find(measured.begin(), measured.end(), quantity) == measured.end()) {
@@ -343,6 +348,7 @@ struct Export {
         inputs.check(output);
         if (extension(output) != ".dot" && extension(output) != ".gv")
             fail_usage("'" + output + "' is not a Graphviz file", "end its name in .dot or .gv");
+        const Provenance provenance = inputs.provenance("relation export");
         AnnotationSet set;
         RelationGraph graph;
         (void)inputs.read(session, set, graph);
@@ -351,6 +357,15 @@ struct Export {
         file.commit();
         session.note(std::to_string(graph.relationships.size()) + " relationships among " +
                      std::to_string(set.annotations.size()) + " annotations");
+        if (!session.json) return done;
+        Json document(rapidjson::kObjectType);
+        JsonValue result(rapidjson::kObjectType);
+        const auto add = [&](const char* name, std::size_t count) {
+            add_member(result, name, JsonValue(static_cast<std::uint64_t>(count)), document.GetAllocator());
+        };
+        add("relationships", graph.relationships.size());
+        add("annotations", set.annotations.size());
+        session.print_report(provenance, document, result);
         return done;
     }
 };
@@ -380,7 +395,7 @@ void add_relation(CLI::App& relation, Session& session) {
     command->add_flag("--directed", add->directed, "the first annotation is the subject");
     command->add_flag("--constraint", add->is_constraint, "the relationship is a constraint on deformations");
     command->add_option("--parameters", add->constraint, "JSON object with the parameters of the constraint");
-    command->add_option("--weight", add->weight, "weight of the constraint")->check(CLI::NonNegativeNumber);
+    command->add_option("--weight", add->weight, "weight of the constraint, 0 or more");
     command->add_option(
         "--tolerance", add->tolerances,
         "QUANTITY=NUMBER that a check shall allow: angle=5 (also tilt; degrees), distance=2 (also height; unit of the mesh's "

@@ -1,11 +1,10 @@
 #include "ostraka/annotation/annotation.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/ids.h"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
-#include <set>
 
 namespace ostraka {
 
@@ -28,16 +27,7 @@ std::string to_string(AnnotationType type) {
     return "region";
 }
 
-int free_id(const AnnotationSet& set) {
-    std::set<int> used;
-    for (const auto& annotation : set.annotations) used.insert(annotation.id);
-    if (used.empty()) return 0;
-    if (*used.rbegin() < std::numeric_limits<int>::max()) return std::max(0, *used.rbegin() + 1);
-    int id = 0;  // the largest integer is taken: the first gap
-    for (const int taken : used)
-        if (taken == id) ++id;
-    return id;
-}
+int free_id(const AnnotationSet& set) { return next_free_id(set.annotations); }
 
 Annotation& ensure_root(AnnotationSet& set, const Mesh& mesh) {
     auto root = std::find_if(set.annotations.begin(), set.annotations.end(), [](const Annotation& a) { return a.all; });

@@ -3,6 +3,7 @@
 #include "ostraka/annotation/annotation_file.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/limits.h"
 
 #include <cmath>
 #include <set>
@@ -65,8 +66,7 @@ void check_measure(const Measure& measure, const Mesh& mesh, const std::string& 
     if (measure.tool == "bounding") {
         if (!measure.direction) fail(where, at, "a bounding measure without a direction", "add the member \"direction\"");
         const auto& d = *measure.direction;
-        const double length = std::hypot(d[0], d[1], d[2]);
-        if (!(length > 0 && std::isfinite(length)))
+        if (unit_vector({d[0], d[1], d[2]}) == CGAL::NULL_VECTOR)
             fail(where, at + "/direction", "the direction has no length", "give a vector that is not zero");
     }
     if (measure.exact && measure.tool != "tape")
@@ -138,8 +138,8 @@ void check_annotations(const AnnotationSet& set, const Mesh& mesh, const std::st
     if (mesh.has_garbage())
         throw Error(ErrorKind::failure, where, "the mesh has removed elements", "collect the mesh's garbage first");
     if (set.up) {
-        const double length = std::hypot((*set.up)[0], (*set.up)[1], (*set.up)[2]);
-        if (!(length > 0 && std::isfinite(length)))
+        const auto& [x, y, z] = *set.up;
+        if (unit_vector({x, y, z}) == CGAL::NULL_VECTOR)
             fail(where, "/up", "the direction has no length", "give a vector that is not zero, or leave it out");
     }
     std::set<int> ids;

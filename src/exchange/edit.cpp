@@ -5,6 +5,7 @@
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/ids.h"
 #include "ostraka/measure/measure.h"
 
 #include <algorithm>
@@ -216,12 +217,9 @@ private:
         }
         set_.annotations[at] = parts.front();
         refresh(set_.annotations[at]);
-        std::set<int> taken;
-        for (const Annotation& annotation : set_.annotations) taken.insert(annotation.id);
-        int fresh = free_id(set_);
+        FreeIds ids(set_.annotations);
         for (std::size_t i = 1; i < parts.size(); ++i) {
-            while (taken.contains(fresh)) ++fresh;
-            parts[i].id = fresh++;
+            parts[i].id = ids.next();
             refresh(parts[i]);
         }
         set_.annotations.insert(set_.annotations.begin() + static_cast<std::ptrdiff_t>(at) + 1,

@@ -7,6 +7,8 @@
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/limits.h"
+#include "ostraka/geom/eigen.h"
 #include "ostraka/vocabulary/text_match.h"
 
 #include <Eigen/Geometry>
@@ -183,7 +185,7 @@ private:
     bool add_display_node(JsonValue& nodes) {
         const auto metres = converted(1, set_.unit, "m");
         Vector3d up = Vector3d::UnitY();
-        if (set_.up) up = Vector3d((*set_.up)[0], (*set_.up)[1], (*set_.up)[2]).normalized();
+        if (set_.up) up = eigen(unit_vector({(*set_.up)[0], (*set_.up)[1], (*set_.up)[2]}));
         const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(up, Vector3d::UnitY());
         const bool turns = (up - Vector3d::UnitY()).norm() > 1e-12, scales = metres && *metres != 1;
         if (!turns && !scales) return false;

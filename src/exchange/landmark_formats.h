@@ -23,6 +23,9 @@ std::string write_markups(const LandmarkSet& set, const LandmarkFileOptions& opt
 /// and RAS.
 std::array<double, 3> in_mesh_space(std::array<double, 3> position, const std::string& file_space, const std::string& mesh_space);
 
+/// Throws Error (input) naming `at` if the place is beyond what can be computed with, as a mesh's would be.
+void check_place(const std::array<double, 3>& position, const std::string& at);
+
 /// "1 landmark", "2 landmarks".
 std::string counted(std::size_t count, const std::string& noun);
 

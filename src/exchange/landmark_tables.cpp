@@ -3,6 +3,7 @@
 #include "text.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/limits.h"
 
 #include <algorithm>
 #include <map>
@@ -62,6 +63,12 @@ std::array<double, 3> in_mesh_space(std::array<double, 3> position, const std::s
     return position;
 }
 
+void check_place(const std::array<double, 3>& position, const std::string& at) {
+    if (!is_place(position[0], position[1], position[2]))
+        fail_input(at, "a place beyond what can be computed with (coordinates up to " + digits(largest_coordinate) + ")",
+                   "check its numbers, or choose another unit");
+}
+
 std::string counted(std::size_t count, const std::string& noun) {
     return to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
@@ -96,6 +103,7 @@ LandmarkSet read_landmark_table(const std::string& bytes, const std::string& whe
         Landmark landmark;
         landmark.name = columns.name ? as_utf8(cell(columns.name)) : to_string(i - first + 1);
         for (std::size_t k = 0; k < 3; ++k) landmark.position[k] = coordinate(row, columns.position[k], where);
+        check_place(landmark.position, at_line(where, row.line));
         landmark.position = in_mesh_space(landmark.position, columns.space, options.mesh_space);
         landmark.group = whole_of(cell(columns.id));
         set.landmarks.push_back(std::move(landmark));
@@ -117,6 +125,7 @@ LandmarkSet read_tps(const std::string& bytes, const std::string& where, const L
     struct Specimen {
         std::size_t line = 0;
         std::vector<std::optional<std::array<double, 3>>> points;
+        std::vector<std::size_t> lines;  ///< of the points
         std::string id, image, comment;
         double scale = 1;
     };
@@ -147,6 +156,7 @@ LandmarkSet read_tps(const std::string& bytes, const std::string& where, const L
             if (count != 3)
                 fail_input(at, "does not hold three coordinates", "give x, y and z, or NA NA NA for a missing landmark");
             specimens.back().points.push_back(missing > 0 ? std::optional<std::array<double, 3>>() : point);
+            specimens.back().lines.push_back(number);
             --expected;
             continue;
         }
@@ -210,6 +220,7 @@ LandmarkSet read_tps(const std::string& bytes, const std::string& where, const L
         Landmark landmark;
         landmark.name = names.empty() ? to_string(i + 1) : names[i];
         for (std::size_t k = 0; k < 3; ++k) landmark.position[k] = chosen->scale * (*chosen->points[i])[k];
+        check_place(landmark.position, at_line(where, chosen->lines[i]));
         set.landmarks.push_back(std::move(landmark));
     }
     if (missing > 0) set.notes.push_back(counted(missing, "missing landmark") + " (NA) left out");
@@ -226,7 +237,9 @@ std::string write_tps(const LandmarkSet& set, const std::string& mesh_file) {
         names.PushBack(json_string(landmark.name, comment.GetAllocator()), comment.GetAllocator());
     }
     add_member(comment, "names", std::move(names), comment.GetAllocator());
-    text += "COMMENT=" + std::string(trimmed(one_line(json_text(comment)))) + "\n";
+    std::string line = json_text(comment);  // its line breaks stand between values
+    std::replace(line.begin(), line.end(), '\n', ' ');
+    text += "COMMENT=" + std::string(trimmed(line)) + "\n";
     return text + "ID=" + one_line(Path(mesh_file).stem().string()) + "\n";
 }
 
@@ -272,6 +285,7 @@ LandmarkSet read_fcsv(const std::string& bytes, const std::string& where, const 
         landmark.name = columns->name && *columns->name < row.cells.size() ? as_utf8(unguarded(row.cells[*columns->name]))
                                                                            : to_string(set.landmarks.size() + 1);
         for (std::size_t k = 0; k < 3; ++k) landmark.position[k] = coordinate(row, columns->position[k], where);
+        check_place(landmark.position, at_line(where, row.line));
         landmark.position = in_mesh_space(landmark.position, space, options.mesh_space);
         set.landmarks.push_back(std::move(landmark));
     }

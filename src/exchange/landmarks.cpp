@@ -70,6 +70,9 @@ public:
     Assembler(const Mesh& mesh, const std::string& where) : placer_(mesh), where_(where) {}
 
     PlacedAnnotations assemble(const LandmarkSet& input, const PlaceOptions& options) {
+        for (const Landmark& landmark : input.landmarks) exchange::check_place(landmark.position, where_);
+        for (const LandmarkCurve& curve : input.curves)
+            for (const auto& position : curve.points) exchange::check_place(position, where_);
         std::vector<Entry> entries;
         for (const Landmark& landmark : input.landmarks)
             entries.push_back({landmark.name, "landmark", &landmark.position, placer_.place(point_of(landmark.position))});

@@ -39,6 +39,7 @@ struct Reader {
             if (!position)
                 fail_input(where, "at " + pointer + "/controlPoints/" + std::to_string(i) + "/position: not three numbers",
                            "give the position, or \"positionStatus\": \"undefined\"");
+            check_place(*position, where + ", at " + pointer + "/controlPoints/" + std::to_string(i) + "/position");
             points.push_back({text_member(point, "label"), in_mesh_space(*position, space, options.mesh_space), {}});
         }
         return points;

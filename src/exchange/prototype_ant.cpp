@@ -6,6 +6,7 @@
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/ids.h"
 #include "ostraka/measure/measure.h"
 
 namespace ostraka {
@@ -29,14 +30,14 @@ std::string prototype_annotations(const Mesh& mesh, const AnnotationSet& set, st
     auto& a = document.GetAllocator();
     JsonValue list(rapidjson::kArrayType);
     std::size_t descriptors = 0, unbounded = 0, renamed = 0, remarks = 0, untaken = 0;
-    int fresh = free_id(set);
+    FreeIds ids(set.annotations);
     for (std::size_t i = 0; i < set.annotations.size(); ++i) {
         const Annotation& annotation = set.annotations[i];
         const JsonValue& source = native["annotations"][static_cast<rapidjson::SizeType>(i)];
         JsonValue entry(rapidjson::kObjectType);
         renamed += annotation.id < 0 ? 1 : 0;
         remarks += annotation.note.empty() ? 0 : 1;
-        add_member(entry, "id", JsonValue(annotation.id < 0 ? fresh++ : annotation.id), a);
+        add_member(entry, "id", JsonValue(annotation.id < 0 ? ids.next() : annotation.id), a);
         add_member(entry, "tag", annotation.tag, a);
         add_member(entry, "color", JsonValue(source["colour"], a), a);
         const bool point = annotation.type == AnnotationType::point, line = annotation.type == AnnotationType::line;

@@ -216,6 +216,7 @@ private:
         for (const auto& entry : list.GetArray()) {
             const auto position = triple(&entry);
             if (!position) fail_input(where_, "in " + pointer + ": a place that is not finite", "mend or regenerate the file");
+            check_place(*position, where_ + ", in " + pointer);
             const Placed p = placer().place(Point((*position)[0], (*position)[1], (*position)[2]));
             if (p.to_surface > limit) {
                 const std::string what =
@@ -279,6 +280,7 @@ private:
                 next.area = part["area"].GetDouble();
                 const auto inside = triple(&part["inside"]);
                 if (!inside) fail_input(where_, "in " + pointer + ": a place that is not finite", "mend or regenerate the file");
+                check_place(*inside, where_ + ", in " + pointer);
                 next.inside = Point((*inside)[0], (*inside)[1], (*inside)[2]);
                 for (const auto& outline : part["outlines"].GetArray()) {
                     const auto found = placed(outline, placement, pointer);

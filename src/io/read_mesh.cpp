@@ -1,5 +1,6 @@
 #include "formats.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/limits.h"
 
 #include <algorithm>
 #include <cmath>
@@ -115,11 +116,10 @@ MeshFile read_mesh(const Path& file) {
     if (defects.any())
         fail_input(file.string(), "is not an oriented manifold: " + io::defects_in_words(defects),
                    "run: ostraka mesh repair " + file.string());
-    // Lengths to the fourth power must stay finite and above zero in all that follows.
     double largest = 0;
     for (const auto& point : triangles.soup.points)
         for (const double x : point) largest = std::max(largest, std::abs(x));
-    if (largest > 1e60 || (largest > 0 && box_diagonal(result.mesh) < 1e-60))
+    if (largest > largest_coordinate || (largest > 0 && box_diagonal(result.mesh) < 1e-60))
         fail_input(file.string(), "has coordinates beyond what can be computed with (1e-60 to 1e60)", "choose another unit");
     result.extras = std::move(triangles.extras);
     result.triangle_polygon = std::move(triangles.triangle_polygon);

@@ -2,6 +2,7 @@
 
 #include "ostraka/annotation/outline.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/ids.h"
 #include "ostraka/geom/oriented_box.h"
 #include "ostraka/measure/solid.h"
 
@@ -191,8 +192,7 @@ void store(Annotation& annotation, const std::vector<Quantity>& quantities, cons
             return a.type == AttributeType::descriptor && a.name == quantity.name;
         });
         if (place == annotation.attributes.end()) {
-            int id = 0;
-            for (const Attribute& attribute : annotation.attributes) id = std::max(id, attribute.id + 1);
+            const int id = next_free_id(annotation.attributes);
             annotation.attributes.emplace_back();
             place = annotation.attributes.end() - 1;
             place->id = id;

@@ -1,6 +1,7 @@
 #include "ostraka/measure/measure.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/limits.h"
 #include "ostraka/geom/geodesic.h"
 #include "ostraka/geom/shortest_path.h"
 #include "ostraka/geom/surface_trace.h"
@@ -170,19 +171,12 @@ private:
     static double bounding(const std::vector<Pin>& pins, const Measure& measure, const std::string& where) {
         if (!measure.direction) fail_input(where, "has no direction", "add one");
         const Vector direction = unit_direction(*measure.direction);
-        if (!(direction.squared_length() > 0))
-            fail_input(where, "has a direction without length", "give a vector that is not zero");
+        if (direction == CGAL::NULL_VECTOR) fail_input(where, "has a direction without length", "give a vector that is not zero");
         const auto [low, high] = outermost(pins, direction);
         return (pins[high].point - pins[low].point) * direction;
     }
 
-    /// The null vector for one without length or that is no number. Scaled first: squares of huge and tiny numbers are neither.
-    static Vector unit_direction(const std::array<double, 3>& d) {
-        const double scale = std::max({std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});
-        if (!(scale > 0 && std::isfinite(scale))) return {0, 0, 0};
-        const Vector scaled(d[0] / scale, d[1] / scale, d[2] / scale);
-        return scaled / std::sqrt(scaled.squared_length());
-    }
+    static Vector unit_direction(const std::array<double, 3>& d) { return unit_vector({d[0], d[1], d[2]}); }
 
     /// The pins lowest and highest along a unit vector, heights taken from the first so that nothing is lost far from the origin.
     static std::pair<std::size_t, std::size_t> outermost(const std::vector<Pin>& pins, const Vector& direction) {
@@ -280,7 +274,9 @@ std::string descriptor_unit(const std::string& descriptor, const std::string& un
 std::array<Index, 2> extremes(const Mesh& mesh, const Annotation& annotation, const std::array<double, 3>& direction) {
     const std::vector<Index> vertices = touched_vertices(mesh, annotation);
     if (vertices.empty()) fail_input(name_of(annotation), "has no elements to measure", "select some first");
-    const Vector along(direction[0], direction[1], direction[2]);
+    const Vector along = scaled_vector({direction[0], direction[1], direction[2]});
+    if (along == CGAL::NULL_VECTOR)
+        fail_input(name_of(annotation), "has a direction without length", "give a vector that is not zero");
     const Point origin = mesh.point(Vertex(vertices.front()));
     std::array<Index, 2> result{vertices.front(), vertices.front()};
     double low = 0, high = 0;

@@ -1,6 +1,8 @@
 // Candidates for the geometric relationships, each measured before it is told.
 #include "meter.h"
 
+#include "ostraka/core/limits.h"
+
 #include <set>
 
 namespace ostraka {
@@ -126,7 +128,7 @@ std::vector<Relationship> RelationMeter::extract(const std::vector<std::string>&
                 if (apart(flat[i], flat[j])) consider("co-planarity", {flat[i], flat[j]});
     }
     if (wanted("same level") && state.set.up) {
-        const Vector3d up = Vector3d((*state.set.up)[0], (*state.set.up)[1], (*state.set.up)[2]).normalized();
+        const Vector3d up = eigen(unit_vector({(*state.set.up)[0], (*state.set.up)[1], (*state.set.up)[2]}));
         std::vector<std::pair<double, int>> heights;
         for (const int id : regions) heights.emplace_back(up.dot(state.part(id).centroid()), id);
         for (auto& group : clusters(std::move(heights), state.options.distance * state.diagonal))

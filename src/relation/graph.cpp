@@ -2,6 +2,7 @@
 #include "ostraka/relation/graph.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/ids.h"
 
 #include <cmath>
 #include <limits>
@@ -74,7 +75,7 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 bool finite(const std::array<double, 3>& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
 
 void check_direction(const std::array<double, 3>& v, const char* what, const std::string& place) {
-    if (!finite(v) || !(std::hypot(v[0], v[1], v[2]) > 0))
+    if (!finite(v) || v == std::array<double, 3>{0, 0, 0})
         fail_input(place, std::string("has no direction in '") + what + "'", "give three finite numbers that are not all zero");
 }
 
@@ -134,12 +135,7 @@ std::string nearest_relation_type(const std::string& name) {
     return best->name;
 }
 
-int free_id(const RelationGraph& graph) {
-    int id = -1;
-    for (const auto& relationship : graph.relationships) id = std::max(id, relationship.id);
-    if (id == std::numeric_limits<int>::max()) fail_input("graph", "has no free id", "number the relationships anew");
-    return id + 1;
-}
+int free_id(const RelationGraph& graph) { return next_free_id(graph.relationships); }
 
 void check_relationship(const Relationship& relationship, const AnnotationSet& set, const std::string& place) {
     if (relationship.type.empty()) fail_input(place, "has no type", "name one");

@@ -2,6 +2,7 @@
 #include "meter.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/limits.h"
 #include "ostraka/measure/measure.h"
 #include "ostraka/relation/topology.h"
 
@@ -30,9 +31,9 @@ const PartAxis& axis_of(Part& part) {
 
 Vector3d up_of(const AnnotationSet& set, const Relationship& relationship) {
     const auto& up = relationship.parameters.up ? relationship.parameters.up : set.up;
-    if (!up || !(Vector3d((*up)[0], (*up)[1], (*up)[2]).norm() > 0))
-        throw Unknown{"it depends on what is up: give \"up\" in the annotations or the parameters"};
-    return Vector3d((*up)[0], (*up)[1], (*up)[2]).normalized();
+    const Vector3d unit = up ? eigen(unit_vector({(*up)[0], (*up)[1], (*up)[2]})) : Vector3d(0, 0, 0);
+    if (unit.isZero(0)) throw Unknown{"it depends on what is up: give \"up\" in the annotations or the parameters"};
+    return unit;
 }
 
 /// The measured quantities of one relationship with the tolerances that apply.

@@ -1,6 +1,7 @@
 #include "camera_reader.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/limits.h"
 #include "ostraka/select/screen.h"
 
 #include <algorithm>
@@ -10,13 +11,6 @@
 namespace ostraka {
 
 namespace {
-
-Vector unit(const Vector& v) {
-    const double scale = std::max({std::abs(v.x()), std::abs(v.y()), std::abs(v.z())});
-    if (!(scale > 0)) return CGAL::NULL_VECTOR;
-    const Vector w = v / scale;
-    return w / std::sqrt(w.squared_length());
-}
 
 double number(const JsonValue& object, const char* name, double otherwise) {
     const JsonValue* value = find_member(object, name);
@@ -33,12 +27,12 @@ PictureCamera looking(const JsonValue& value, const Mesh& mesh, const Vector& up
     camera.centre = place(*target);
     const Point eye = place(value["eye"]);
     const Vector offset = eye - camera.centre;
-    camera.toward = unit(offset);
+    camera.toward = unit_vector(offset);
     if (camera.toward == CGAL::NULL_VECTOR) fail_input(where, "the eye is at the target", "move one of them");
     camera.right = CGAL::cross_product(up, camera.toward);
     if (!(camera.right.squared_length() > 1e-12))
         fail_input(where, "\"up\" points along the view", "give another direction as \"up\"");
-    camera.right = unit(camera.right);
+    camera.right = unit_vector(camera.right);
     camera.up = CGAL::cross_product(camera.toward, camera.right);
     camera.middle_x = pane.left + pane.width / 2;
     camera.middle_y = pane.top + pane.height / 2;
@@ -92,7 +86,7 @@ ScreenCamera read_camera(const JsonValue& value, const Mesh& mesh, const std::ar
     Vector up(default_up[0], default_up[1], default_up[2]);
     if (const JsonValue* own = find_member(value, "up"))
         up = Vector((*own)[0].GetDouble(), (*own)[1].GetDouble(), (*own)[2].GetDouble());
-    up = unit(up);
+    up = unit_vector(up);
     if (up == CGAL::NULL_VECTOR) fail_input(where, "\"up\" has no length", "give a vector that is not zero");
     const JsonValue* projection = find_member(value, "projection");
     plan.perspective = projection != nullptr && std::string(projection->GetString()) == "perspective";

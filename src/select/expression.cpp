@@ -1,6 +1,7 @@
 #include "expression.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/limits.h"
 #include "ostraka/select/selections.h"
 
 #include <algorithm>
@@ -66,15 +67,19 @@ Frame ExpressionEvaluator::frame_of(const JsonValue& object, Frame around) {
     return frame == nullptr ? around : Frame{std::string(frame->GetString()) == "box"};
 }
 
-Point ExpressionEvaluator::point(const JsonValue& list, Frame frame) const {
+Point ExpressionEvaluator::point(const JsonValue& list, Frame frame, const std::string& at) const {
     const double x = list[0].GetDouble(), y = list[1].GetDouble(), z = list[2].GetDouble();
-    if (!frame.box) return Point(x, y, z);
-    return Point(bounds_.xmin() + x * (bounds_.xmax() - bounds_.xmin()), bounds_.ymin() + y * (bounds_.ymax() - bounds_.ymin()),
-                 bounds_.zmin() + z * (bounds_.zmax() - bounds_.zmin()));
+    const Point place = frame.box ? Point(bounds_.xmin() + x * (bounds_.xmax() - bounds_.xmin()),
+                                          bounds_.ymin() + y * (bounds_.ymax() - bounds_.ymin()),
+                                          bounds_.zmin() + z * (bounds_.zmax() - bounds_.zmin()))
+                                  : Point(x, y, z);
+    if (!is_place(place))
+        fail(at, "a place beyond what can be computed with (coordinates up to 1e60)", "give one near the mesh, in its unit");
+    return place;
 }
 
 Index ExpressionEvaluator::vertex(const JsonValue& pick, Frame frame, const std::string& at) const {
-    if (pick.IsArray()) return nearest_vertex(mesh_, point(pick, frame));
+    if (pick.IsArray()) return nearest_vertex(mesh_, point(pick, frame, at));
     if (pick.IsObject()) {
         const SurfaceHit hit = seen(pick, frame, at);
         const auto corner = corners(mesh_, Face(hit.face));
@@ -90,7 +95,7 @@ Index ExpressionEvaluator::vertex(const JsonValue& pick, Frame frame, const std:
 }
 
 Index ExpressionEvaluator::face(const JsonValue& pick, Frame frame, const std::string& at) const {
-    if (pick.IsArray()) return nearest_face(mesh_, point(pick, frame));
+    if (pick.IsArray()) return nearest_face(mesh_, point(pick, frame, at));
     if (pick.IsObject()) return seen(pick, frame, at).face;
     if (pick.GetUint() >= mesh_.number_of_faces())
         fail(at, "face " + to_string(pick.GetUint()) + " of a mesh with " + to_string(mesh_.number_of_faces()) + " faces",
@@ -107,7 +112,7 @@ std::vector<Index> ExpressionEvaluator::picks(const JsonValue& list, Frame frame
 std::function<bool(const Point&)> ExpressionEvaluator::volume(const std::string& kind, const JsonValue& value, Frame frame,
                                                               const std::string& at) const {
     if (kind == "box") {
-        const Point min = point(value["min"], frame), max = point(value["max"], frame);
+        const Point min = point(value["min"], frame, at + "/box/min"), max = point(value["max"], frame, at + "/box/max");
         if (min.x() > max.x() || min.y() > max.y() || min.z() > max.z()) fail(at + "/box", "min exceeds max", "exchange the two");
         return box_volume(min, max);
     }
@@ -115,12 +120,13 @@ std::function<bool(const Point&)> ExpressionEvaluator::volume(const std::string&
         const double scale = frame.box ? std::hypot(bounds_.xmax() - bounds_.xmin(), bounds_.ymax() - bounds_.ymin(),
                                                     bounds_.zmax() - bounds_.zmin())
                                        : 1;
-        return sphere_volume(point(value["centre"], frame), scale * value["radius"].GetDouble());
+        return sphere_volume(point(value["centre"], frame, at + "/sphere/centre"), scale * value["radius"].GetDouble());
     }
     const JsonValue& n = value["normal"];
     const Vector normal(n[0].GetDouble(), n[1].GetDouble(), n[2].GetDouble());
-    if (normal == CGAL::NULL_VECTOR) fail(at + "/halfspace/normal", "the normal has no length", "give a vector that is not zero");
-    return halfspace_volume(point(value["point"], frame), normal);
+    if (unit_vector(normal) == CGAL::NULL_VECTOR)
+        fail(at + "/halfspace/normal", "the normal has no length", "give a vector that is not zero");
+    return halfspace_volume(point(value["point"], frame, at + "/halfspace/point"), normal);
 }
 
 const Annotation& ExpressionEvaluator::earlier(const JsonValue& id, AnnotationType type, const std::string& at) const {
@@ -158,8 +164,8 @@ std::vector<bool> ExpressionEvaluator::faces(const JsonValue& expression, Frame 
         if (pick.IsObject()) place = seen(pick, frame, at + "/lasso/seed").point;
         if (pick.IsArray()) {
             const auto [a, b, c] = corners(mesh_, Face(seed));
-            place =
-                point_at(mesh_, seed, nearest_barycentric(mesh_.point(a), mesh_.point(b), mesh_.point(c), point(pick, frame)));
+            place = point_at(mesh_, seed,
+                             nearest_barycentric(mesh_.point(a), mesh_.point(b), mesh_.point(c), point(pick, frame, at)));
         }
         result = lasso(mesh_, picks((*value)["points"], frame, at + "/lasso/points"), seed, metric_of(*value),
                        where_ + ", at " + at + "/lasso", place);

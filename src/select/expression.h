@@ -49,7 +49,7 @@ public:
     static Frame frame_of(const JsonValue& object, Frame around);
 
 private:
-    Point point(const JsonValue& list, Frame frame) const;
+    Point point(const JsonValue& list, Frame frame, const std::string& at) const;
     Index face(const JsonValue& pick, Frame frame, const std::string& at) const;
     std::vector<Index> picks(const JsonValue& list, Frame frame, const std::string& at) const;
     std::function<bool(const Point&)> volume(const std::string& kind, const JsonValue& value, Frame frame,

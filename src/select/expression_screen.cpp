@@ -36,7 +36,7 @@ const SurfaceSearch& ExpressionEvaluator::search(const std::string& at) const {
 ScreenCamera ExpressionEvaluator::camera(const JsonValue& owner, Frame frame, const std::string& at) const {
     const auto read = [&](const JsonValue& value, Frame around, const std::string& here) {
         const Frame own = frame_of(value, around);
-        const auto place = [&](const JsonValue& list) { return point(list, own); };
+        const auto place = [&](const JsonValue& list) { return point(list, own, here); };
         ScreenCamera result;
         in_place(here, [&] { result = read_camera(value, mesh_, surroundings_.up, place, where_ + ", at " + here); });
         return result;

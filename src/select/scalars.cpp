@@ -1,6 +1,7 @@
 #include "ostraka/select/scalars.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/limits.h"
 #include "ostraka/fields/statistics.h"
 
 #include <algorithm>
@@ -19,10 +20,8 @@ double face_value(const Mesh& mesh, const ScalarMap& map, Face face) {
 }  // namespace
 
 ScalarMap coordinate_map(const Mesh& mesh, const Vector& direction, bool share, const std::string& where) {
-    const double scale = std::max({std::abs(direction.x()), std::abs(direction.y()), std::abs(direction.z())});
-    if (!(scale > 0)) fail_input(where, "the direction has no length", "give a vector that is not zero");
-    const Vector d = direction / scale;
-    const Vector unit = d / std::sqrt(d.squared_length());
+    const Vector unit = unit_vector(direction);
+    if (unit == CGAL::NULL_VECTOR) fail_input(where, "the direction has no length", "give a vector that is not zero");
     ScalarMap map;
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const Vertex v : mesh.vertices()) {

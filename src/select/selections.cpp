@@ -1,6 +1,7 @@
 #include "ostraka/select/selections.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/limits.h"
 #include "ostraka/geom/surface_search.h"
 
 #include "crossing.h"
@@ -124,7 +125,7 @@ Volume sphere_volume(const Point& centre, double radius) {
 }
 
 Volume halfspace_volume(const Point& point, const Vector& normal) {
-    return [point, normal](const Point& p) { return (p - point) * normal >= 0; };
+    return [point, normal = scaled_vector(normal)](const Point& p) { return (p - point) * normal >= 0; };
 }
 
 std::vector<bool> faces_within(const Mesh& mesh, const Volume& volume) {

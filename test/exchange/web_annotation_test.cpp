@@ -202,3 +202,16 @@ TEST(WebAnnotation, DamagedFilesEndInAClearError) {
     }
     EXPECT_LT(successes, 400U);
 }
+
+TEST(WebAnnotation, PlacesBeyondWhatMeshesMayHaveAreRefused) {
+    const Mesh mesh = spheres(2);
+    for (const std::string places :
+         {R"({"points": [[0, 0, 2e307]]})", R"({"polylines": [{"closed": false, "points": [[0, 0, 1], [-1e61, 0, 0]]}]})",
+          R"({"parts": [{"area": 1, "inside": [1e300, 0, 0], "outlines": []}]})"}) {
+        const std::string said = message(
+            R"({"type": "Annotation", "bodyValue": "a", "target": {"source": "x", "selector": {"type": "ostraka:PlaceSelector", "places": )" +
+                places + "}}}",
+            mesh);
+        EXPECT_NE(said.find("1e+60"), std::string::npos) << said;
+    }
+}

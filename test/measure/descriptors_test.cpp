@@ -12,6 +12,7 @@
 
 #include <Eigen/Geometry>
 
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <random>
@@ -332,6 +333,16 @@ TEST(Describe, RegionsLinesPointsAndMaps) {
     EXPECT_FALSE(search.find(point, "area"));
     EXPECT_EQ(unit_of({"k", {1}, false, -2, ""}, "mm"), "1/mm^2");
     EXPECT_EQ(unit_of({"k", {1}, false, -2, ""}, ""), "");
+}
+
+TEST(Describe, TheLargestIdLeavesFreeOnes) {
+    Annotation annotation;
+    annotation.attributes.emplace_back();
+    annotation.attributes[0].id = std::numeric_limits<int>::max();
+    store(annotation, {{"a", {1}, false, 0, ""}, {"b", {2}, false, 0, ""}}, "mm");
+    ASSERT_EQ(annotation.attributes.size(), 3U);
+    EXPECT_EQ(annotation.attributes[1].id, 0);
+    EXPECT_EQ(annotation.attributes[2].id, 1);
 }
 
 TEST(Uncertainty, OfARulerIsThatOfItsPins) {

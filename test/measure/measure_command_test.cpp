@@ -163,6 +163,7 @@ TEST_F(MeasureCommand, BadInputIsRefusedAndEarlierOutputsStay) {
     refused("take " + c + " --tool bounding --points 3,4" + o, 2, "direction");
     refused("take " + c + " --tool bounding --direction 0,0,0" + o, 2, "not zero");
     refused("take " + c + " --tool bounding --direction 0,0,nan" + o, 2, "finite");
+    refused("take " + c + " --tool ruler --at 0,0,0 --at 1e200,0,0" + o, 2, "beyond what can be computed with");
     refused("take " + c + " --tool ruler --geodesic exact --points 3,4" + o, 2, "tape");
     refused("take " + c + " --tool ruler --points 3,4 --repeat 3" + o, 1, "picked again");
     refused("take " + c + " --tool laser --points 3,4" + o, 2, "laser");
@@ -179,6 +180,9 @@ TEST_F(MeasureCommand, BadInputIsRefusedAndEarlierOutputsStay) {
     write_values(gap, values);
     refused("describe " + c + " --map m=" + few.string() + o, 1, "2 values");
     refused("describe " + c + " --map m=" + gap.string() + o, 1, "vertex 5");
+    refused("describe " + c + " --map m=" + gap.string() + o, 1, "ostraka: " + gap.string() + ", at ");
+    refused("describe " + c + " --map m=/dev/zero" + o, 1, "/dev/zero: is a device");
+    refused("map " + c + " " + out.string() + " --of geodesic --from 9999", 2, cube.string() + " has");
     refused("describe " + c + " --map " + few.string() + o, 2, "NAME=FILE");
     // Pins on separate parts.
     const Path two = scratch / "two.ply";

@@ -1,6 +1,7 @@
 #include "ostraka/measure/measure.h"
 
 #include "annotation/example_meshes.h"
+#include "ostraka/annotation/annotation_file.h"
 #include "ostraka/core/error.h"
 #include "ostraka/measure/examine.h"
 
@@ -55,6 +56,26 @@ TEST(Measure, ScaleAndPlaceDoNotMatter) {
     for (const char* tool : {"ruler", "tape"})
         EXPECT_NEAR(evaluate(near, whole(near), measure(tool, {0, 1})), evaluate(far, whole(far), measure(tool, {0, 1})), 1e-6);
     EXPECT_NEAR(*evaluate(near, whole(near), "volume"), *evaluate(far, whole(far), "volume"), 1e-6);
+}
+
+TEST(Measure, DirectionsOfAnyLengthAreTheSameDirection) {
+    const Mesh mesh = spheres(3);
+    const Annotation root = whole(mesh);
+    const std::array<double, 3> plain{1, 2, -3};
+    const auto ends = extremes(mesh, root, plain);
+    const double value = evaluate(mesh, root, measure("bounding", {ends[0], ends[1]}, plain));
+    for (const double length : {5e307, 1e200, 1e-200, 1e-307}) {
+        const std::array<double, 3> direction{length, 2 * length, -3 * length};
+        EXPECT_EQ(extremes(mesh, root, direction), ends) << length;
+        EXPECT_NEAR(evaluate(mesh, root, measure("bounding", {ends[0], ends[1]}, direction)), value, 1e-12) << length;
+        AnnotationSet set;
+        ensure_root(set, mesh).attributes.push_back({});
+        set.annotations[0].attributes[0].type = AttributeType::measure;
+        set.annotations[0].attributes[0].name = "height";
+        set.annotations[0].attributes[0].measure = measure("bounding", {ends[0], ends[1]}, direction);
+        set.up = direction;
+        EXPECT_NO_THROW(check_annotations(set, mesh, "set")) << length;
+    }
 }
 
 TEST(Measure, PinsInsideFaces) {

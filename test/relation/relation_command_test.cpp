@@ -91,9 +91,41 @@ TEST(RelationCommand, BadInput) {
     expect(add + " --type 'equal attributes' --annotation body --annotation lid", 2, "--attribute NAME");
     expect(add + " --type line --annotation body --parameters '[1]'", 1, "not a JSON object");
     expect(add + " --type line --annotation body --weight -3", 2, "weight");
+    for (const char* weight : {"nan", "inf", "1e999"}) {
+        expect(add + " --type adjacency --annotation body --annotation lid --weight " + weight, 2, "weight");
+        expect(add + " --type co-axiality --annotation body --annotation lid --tolerance angle=" + weight, 2, "not a tolerance");
+        EXPECT_LT(run_command(add + " --type line --annotation body --weight " + weight).err.size(), 200U);
+    }
     expect("relation extract " + pot + "nowhere/o.graph.json", 1, "nowhere");
     expect("relation check " + pot + out, 1, "o.graph.json");
     expect("relation extract " + data + "vase.ply " + data + "teapot.ant.json " + out, 1, "teapot.ant.json");
+}
+
+TEST(RelationCommand, TheLargestIdIsNoDeadEnd) {
+    const Scratch scratch;
+    const std::string graph = scratch
+                                  .file("g.graph.json", R"({"relationships": [{"id": 2147483647, "type": "adjacency",
+        "isDirected": false, "annotations": [1, 2], "isConstraint": false, "origin": "stated"}]})")
+                                  .string(),
+                      out = (scratch / "o.graph.json").string();
+    const auto added =
+        run_command("relation add " + pot + out + " --graph " + graph + " --type co-axiality --annotation 1 --annotation 2");
+    ASSERT_EQ(added.code, 0) << added.err;
+    EXPECT_EQ(read_json(out)["relationships"][1]["id"].GetInt(), 0);
+    EXPECT_EQ(run_command("relation list " + pot + out).code, 0);
+}
+
+TEST(RelationCommand, ExportReports) {
+    const Scratch scratch;
+    const std::string graph = scratch
+                                  .file("g.graph.json", R"({"relationships": [{"id": 1, "type": "adjacency", "isDirected": false,
+        "annotations": [1, 2], "isConstraint": false}]})")
+                                  .string();
+    const auto result = run_command("relation export " + pot + graph + " " + (scratch / "g.dot").string() + " --json");
+    ASSERT_EQ(result.code, 0) << result.err;
+    const Json report = parse_json(result.out, "report");
+    validate(report, "report", "report");
+    EXPECT_EQ(report["result"]["relationships"].GetInt(), 1);
 }
 
 TEST(RelationCommand, WhatWasExtractedIsStatedListedAndRemoved) {

@@ -58,7 +58,7 @@ struct RelationGraph {
     Json provenance;  ///< as read; null if none
 };
 
-/// One more than the largest id, 0 in an empty graph.
+/// A fresh id (core/ids.h).
 int free_id(const RelationGraph& graph);
 
 /// The relationship of `graph` that says the same as this one: type, members (in any order where there is no direction), the
