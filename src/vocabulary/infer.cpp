@@ -1,9 +1,11 @@
 #include "ostraka/vocabulary/infer.h"
 
+#include "ostraka/core/ids.h"
 #include "ostraka/vocabulary/text_match.h"
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <sstream>
 
@@ -50,15 +52,22 @@ public:
             concepts_.push_back(search_.concept_of(annotation.tag));
         }
         given_ = result_.annotations.annotations;
+        resolve();
     }
 
     InferenceResult run() {
         // Where rules disagree, their attribute is blocked and all is done again without it.
         for (std::size_t blocked = 0;; blocked = blocked_.size()) {
-            result_.annotations.annotations = given_;
-            result_.inferred.clear();
-            while (pass()) {
-            }
+            begin();
+            std::set<Task> tasks;
+            for (std::size_t i = 0; i < annotations().size(); ++i)
+                for (std::size_t r = 0; r < rules_of(i).size(); ++r) judge_task({i, r}, nullptr);
+            for (tasks.swap(later_); !tasks.empty(); tasks.swap(later_))
+                while (!tasks.empty()) {
+                    const Task task = *tasks.begin();
+                    tasks.erase(tasks.begin());
+                    judge_task(task, &tasks);
+                }
             if (blocked_.size() == blocked) break;
         }
         say_missing();
@@ -66,7 +75,12 @@ public:
     }
 
 private:
-    using Key = std::pair<std::size_t, std::string>;  // annotation, attribute
+    using Key = std::pair<std::size_t, std::string>;   // annotation, attribute
+    using Task = std::pair<std::size_t, std::size_t>;  // annotation, place in the list of rules that speak of it
+    struct Applicable {
+        const InferenceRule* rule;
+        const AllowedAttribute* allowed;  ///< what it infers
+    };
 
     static bool inferred(const Attribute& attribute) {
         return attribute.type == AttributeType::semantic && attribute.origin.starts_with("rule ");
@@ -74,31 +88,76 @@ private:
 
     [[nodiscard]] std::vector<Annotation>& annotations() { return result_.annotations.annotations; }
 
-    [[nodiscard]] bool speaks_of(const InferenceRule& rule, std::size_t i) const {
-        if (!concepts_[i]) return false;
-        if (!rule.concept_id.empty() && !search_.is_a(*concepts_[i], *search_.find(rule.concept_id))) return false;
-        return search_.attribute_of(*concepts_[i], rule.attribute) != nullptr;
+    [[nodiscard]] const std::vector<Applicable>& rules_of(std::size_t i) const {
+        static const std::vector<Applicable> none;
+        return concepts_[i] ? rules_.at(*concepts_[i]) : none;
+    }
+
+    /// Names are looked up once: which rules speak of which concept, whom conditions look at, and which rules an attribute
+    /// may make hold.
+    void resolve() {
+        for (const auto& entry : concepts_) {
+            if (!entry || rules_.contains(*entry)) continue;
+            const auto lineage = search_.lineage(*entry);
+            const std::set<std::size_t> line(lineage.begin(), lineage.end());
+            auto& list = rules_[*entry];
+            for (const InferenceRule& rule : search_.vocabulary().rules) {
+                if (!rule.concept_id.empty() && !line.contains(*search_.find(rule.concept_id))) continue;
+                if (const AllowedAttribute* allowed = search_.attribute_of(*entry, rule.attribute))
+                    list.push_back({&rule, allowed});
+            }
+        }
+        for (std::size_t i = 0; i < concepts_.size(); ++i)
+            if (concepts_[i])
+                for (const std::size_t k : search_.lineage(*concepts_[i])) owners_[k].push_back(i);
+        readers_.resize(concepts_.size());
+        for (std::size_t i = 0; i < concepts_.size(); ++i)
+            for (std::size_t r = 0; r < rules_of(i).size(); ++r)
+                for (const Condition& condition : rules_of(i)[r].rule->conditions)
+                    for (const Operand* operand : {&condition.operand, condition.divisor ? &*condition.divisor : nullptr}) {
+                        if (operand == nullptr) continue;
+                        const auto owner = owner_of(*operand, i);
+                        if (owner.size() == 1) readers_[owner[0]][meaning(owner[0], operand->attribute)].emplace_back(i, r);
+                    }
+    }
+
+    /// The annotations an operand may look at, seen from annotation `i`.
+    [[nodiscard]] std::vector<std::size_t> owner_of(const Operand& operand, std::size_t i) const {
+        if (operand.concept_id.empty()) return {i};
+        const auto found = owners_.find(*search_.find(operand.concept_id));
+        if (found == owners_.end()) return {};
+        // Two are as many as all.
+        return {found->second.begin(), found->second.begin() + std::min<std::ptrdiff_t>(2, std::ssize(found->second))};
+    }
+
+    /// All as it was given, without what was inferred.
+    void begin() {
+        annotations() = given_;
+        result_.inferred.clear();
+        named_.assign(given_.size(), {});
+        for (std::size_t i = 0; i < given_.size(); ++i)
+            for (std::size_t k = 0; k < given_[i].attributes.size(); ++k)
+                named_[i][meaning(i, given_[i].attributes[k].name)].push_back(k);
+    }
+
+    /// One text for all names of an attribute.
+    [[nodiscard]] std::string meaning(std::size_t i, const std::string& text) const {
+        const AllowedAttribute* allowed = concepts_[i] ? search_.attribute_of(*concepts_[i], text) : nullptr;
+        return folded(allowed == nullptr ? text : allowed->name);
     }
 
     /// The attributes of an annotation that a name means.
     [[nodiscard]] std::vector<const Attribute*> attributes_named(std::size_t i, const std::string& name) {
-        const auto meaning = [&](const std::string& text) {
-            const AllowedAttribute* allowed = concepts_[i] ? search_.attribute_of(*concepts_[i], text) : nullptr;
-            return folded(allowed == nullptr ? text : allowed->name);
-        };
         std::vector<const Attribute*> found;
-        const std::string wanted = meaning(name);
-        for (const Attribute& attribute : annotations()[i].attributes)
-            if (meaning(attribute.name) == wanted) found.push_back(&attribute);
+        if (const auto known = named_[i].find(meaning(i, name)); known != named_[i].end())
+            for (const std::size_t k : known->second) found.push_back(&annotations()[i].attributes[k]);
         return found;
     }
 
     Value value_of(const Operand& operand, std::size_t i) {
         Value value;
         if (!operand.concept_id.empty()) {
-            std::vector<std::size_t> owners;
-            for (std::size_t k = 0; k < annotations().size(); ++k)
-                if (concepts_[k] && search_.is_a(*concepts_[k], *search_.find(operand.concept_id))) owners.push_back(k);
+            const auto owners = owner_of(operand, i);
             if (owners.size() != 1) {
                 value.missing = (owners.empty() ? "there is no " : "there are several of ") + in_quotes(operand.concept_id);
                 return value;
@@ -197,19 +256,21 @@ private:
         return all;
     }
 
-    /// All rules over all annotations, once. True if a word was added, so that other rules may hold now.
-    bool pass() {
-        bool added = false;
-        for (std::size_t i = 0; i < annotations().size(); ++i)
-            for (const InferenceRule& rule : search_.vocabulary().rules) {
-                if (!speaks_of(rule, i)) continue;
-                const AllowedAttribute& allowed = *search_.attribute_of(*concepts_[i], rule.attribute);
-                const Key key{i, allowed.name};
-                if (blocked_.contains(key)) continue;
-                const Judgement judgement = judge(rule, i);
-                if (judgement.verdict == Verdict::holds) added = conclude(rule, allowed, key, judgement.why) || added;
-            }
-        return added;
+    /// Judges a rule on an annotation. What may hold by what it adds comes into `now` where it stands behind it in the order of
+    /// annotations and rules, and into the next pass otherwise; without `now` all behind it comes anyway.
+    void judge_task(const Task& task, std::set<Task>* now) {
+        const auto& [rule, allowed] = rules_of(task.first)[task.second];
+        const Key key{task.first, allowed->name};
+        if (blocked_.contains(key)) return;
+        const Judgement judgement = judge(*rule, task.first);
+        if (judgement.verdict != Verdict::holds || !conclude(*rule, *allowed, key, judgement.why)) return;
+        const std::string name = meaning(task.first, allowed->name);
+        named_[task.first][name].push_back(annotations()[task.first].attributes.size() - 1);
+        const auto readers = readers_[task.first].find(name);
+        if (readers == readers_[task.first].end()) return;
+        for (const Task& reader : readers->second)
+            if (reader <= task) later_.insert(reader);
+            else if (now != nullptr) now->insert(reader);
     }
 
     bool conclude(const InferenceRule& rule, const AllowedAttribute& allowed, const Key& key, const std::string& why) {
@@ -234,7 +295,7 @@ private:
             return false;
         }
         Attribute attribute;
-        for (const Attribute& other : annotation.attributes) attribute.id = std::max(attribute.id, other.id + 1);
+        attribute.id = next_free_id(annotation.attributes);
         attribute.name = allowed.name;
         attribute.note = value;
         attribute.origin = "rule " + in_quotes(rule.id) + ": " + why;
@@ -245,12 +306,11 @@ private:
 
     void say_missing() {
         for (std::size_t i = 0; i < annotations().size(); ++i)
-            for (const InferenceRule& rule : search_.vocabulary().rules) {
-                if (!speaks_of(rule, i)) continue;
-                const Judgement judgement = judge(rule, i);
+            for (const auto& [rule, allowed] : rules_of(i)) {
+                const Judgement judgement = judge(*rule, i);
                 if (judgement.verdict == Verdict::unknown)
                     result_.missing.push_back(in_quotes(annotations()[i].tag) + " (id " + std::to_string(annotations()[i].id) +
-                                              "): the rule " + in_quotes(rule.id) + " cannot be judged: " + judgement.missing);
+                                              "): the rule " + in_quotes(rule->id) + " cannot be judged: " + judgement.missing);
             }
     }
 
@@ -259,6 +319,11 @@ private:
     std::vector<std::optional<std::size_t>> concepts_;
     std::vector<Annotation> given_;
     std::set<Key> blocked_;
+    std::map<std::size_t, std::vector<Applicable>> rules_;                ///< by concept
+    std::map<std::size_t, std::vector<std::size_t>> owners_;              ///< concept -> annotations that are one
+    std::vector<std::map<std::string, std::vector<Task>>> readers_;       ///< by annotation and attribute: what looks at it
+    std::vector<std::map<std::string, std::vector<std::size_t>>> named_;  ///< by annotation and meaning: attributes
+    std::set<Task> later_;
 };
 
 }  // namespace
@@ -270,9 +335,8 @@ std::string condition_unit(const VocabularySearch& search, const InferenceRule& 
         const AllowedAttribute* allowed = search.attribute_of(*search.find(owner), condition.operand.attribute);
         return allowed == nullptr ? std::string() : allowed->unit;
     }
-    for (const AllowedAttribute& allowed : search.vocabulary().attributes)
-        if (folded(allowed.name) == folded(condition.operand.attribute)) return allowed.unit;
-    return {};
+    const AllowedAttribute* allowed = search.common_attribute(condition.operand.attribute);
+    return allowed == nullptr ? std::string() : allowed->unit;
 }
 
 InferenceResult infer(const AnnotationSet& set, const Vocabulary& vocabulary) { return Reasoner(set, vocabulary).run(); }

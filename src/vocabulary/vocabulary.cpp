@@ -83,7 +83,7 @@ private:
         for (const auto& [tag, text] : labels) language(tag, at);
     }
 
-    void attributes(const std::vector<AllowedAttribute>& list, const std::string& owner) const {
+    void attributes(const std::vector<AllowedAttribute>& list, const std::string& owner) {
         std::set<std::string> names;
         for (std::size_t i = 0; i < list.size(); ++i) {
             const AllowedAttribute& attribute = list[i];
@@ -97,6 +97,7 @@ private:
             if (attribute.min && attribute.max && *attribute.min > *attribute.max)
                 fail(at, "the range of '" + attribute.name + "' is upside down: its least value is above its greatest",
                      "swap min and max");
+            named_.emplace(folded(attribute.name), &attribute);
             languages(attribute.labels, at + "/label");
             languages(attribute.definition, at + "/definition");
             for (const Term& term : attribute.values) languages(term.labels, at + "/values");
@@ -173,12 +174,8 @@ private:
             if (const AllowedAttribute* one = search.attribute_of(*search.find(concept_id), name)) found.push_back(one);
             return found;
         }
-        const auto add = [&](const std::vector<AllowedAttribute>& list) {
-            for (const AllowedAttribute& one : list)
-                if (folded(one.name) == folded(name)) found.push_back(&one);
-        };
-        add(vocabulary_.attributes);
-        for (const Concept& entry : vocabulary_.concepts) add(entry.attributes);
+        const auto [first, last] = named_.equal_range(folded(name));
+        for (auto one = first; one != last; ++one) found.push_back(one->second);
         return found;
     }
 
@@ -227,6 +224,7 @@ private:
     const Vocabulary& vocabulary_;
     std::string where_;
     std::unordered_map<std::string, std::size_t> ids_;
+    std::multimap<std::string, const AllowedAttribute*> named_;  ///< all attributes by folded name, in the order of the file
 };
 
 }  // namespace
@@ -244,6 +242,7 @@ VocabularySearch::VocabularySearch(const Vocabulary& vocabulary) : vocabulary_(v
         auto& list = labels_[folded(text)];
         if (list.empty() || list.back() != i) list.push_back(i);
     };
+    for (const AllowedAttribute& attribute : vocabulary.attributes) common_.try_emplace(folded(attribute.name), &attribute);
     broader_.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
         const Concept& entry = vocabulary.concepts[i];
@@ -303,14 +302,21 @@ std::vector<const AllowedAttribute*> VocabularySearch::attributes_of(std::size_t
 }
 
 const AllowedAttribute* VocabularySearch::attribute_of(std::size_t concept_index, const std::string& name) const {
-    const std::string text = folded(name);
-    const auto list = attributes_of(concept_index);
-    for (const AllowedAttribute* attribute : list)
-        if (folded(attribute->name) == text) return attribute;
-    for (const AllowedAttribute* attribute : list)
-        for (const auto& [language, label] : attribute->labels)
-            if (folded(label) == text) return attribute;
-    return nullptr;
+    const auto [known, fresh] = attributes_.try_emplace(concept_index);
+    auto& meanings = known->second;
+    if (fresh) {
+        const auto list = attributes_of(concept_index);
+        for (const AllowedAttribute* attribute : list) meanings.try_emplace(folded(attribute->name), attribute);
+        for (const AllowedAttribute* attribute : list)
+            for (const auto& [language, label] : attribute->labels) meanings.try_emplace(folded(label), attribute);
+    }
+    const auto found = meanings.find(folded(name));
+    return found == meanings.end() ? nullptr : found->second;
+}
+
+const AllowedAttribute* VocabularySearch::common_attribute(const std::string& name) const {
+    const auto found = common_.find(folded(name));
+    return found == common_.end() ? nullptr : found->second;
 }
 
 std::vector<std::string> VocabularySearch::suggestions(const std::string& tag) const {

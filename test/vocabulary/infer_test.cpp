@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 using namespace ostraka;
 using namespace ostraka::example;
 using ostraka::test::run_command;
@@ -155,6 +157,69 @@ TEST(Infer, WordsAreInputsToo) {
     const InferenceResult broken = infer(set_of({point(0, "beard", {word("remark", "red")})}), vocabulary);
     EXPECT_EQ(words_of(broken.annotations, 0), "remark=red");
     EXPECT_EQ(broken.contradictions.size(), 1U);
+}
+
+TEST(Infer, LongChainsOfRulesInAnyOrder) {
+    // The value of each attribute follows from that of the one before. Work that grows with more than the number of rules would
+    // take this test from seconds to days.
+    constexpr int count = 4000;
+    Vocabulary vocabulary;
+    Concept thing;
+    thing.id = "thing";
+    std::vector<InferenceRule> rules;
+    for (int i = 0; i <= count; ++i) {
+        AllowedAttribute attribute;
+        attribute.name = "a" + std::to_string(i);
+        thing.attributes.push_back(attribute);
+        if (i == 0) continue;
+        InferenceRule rule;
+        rule.id = "r" + std::to_string(i);
+        rule.concept_id = i % 2 == 0 ? "thing" : "";
+        rule.attribute = attribute.name;
+        rule.value = "yes";
+        rule.conditions.emplace_back();
+        rule.conditions[0].operand.attribute = "A" + std::to_string(i - 1);
+        rule.conditions[0].is = {"yes"};
+        rules.push_back(rule);
+    }
+    vocabulary.concepts.push_back(thing);
+    for (const bool backwards : {false, true}) {
+        vocabulary.rules = rules;
+        if (backwards) std::reverse(vocabulary.rules.begin(), vocabulary.rules.end());
+        check_vocabulary(vocabulary, "v");
+        const InferenceResult result = infer(set_of({point(0, "thing", {word("a0", "yes")})}), vocabulary);
+        ASSERT_EQ(result.inferred.size(), std::size_t(count));
+        for (int i = 0; i < count; ++i) EXPECT_EQ(result.inferred[i].attribute, "a" + std::to_string(i + 1));
+        EXPECT_TRUE(result.missing.empty());
+        EXPECT_TRUE(examine(vocabulary).size() < 10);
+    }
+}
+
+TEST(Infer, RulesThatAllContradictAreCountedNotListed) {
+    Vocabulary vocabulary;
+    Concept thing;
+    thing.id = "thing";
+    thing.labels["en"] = "thing";
+    for (const char* name : {"style", "size"}) {
+        AllowedAttribute attribute;
+        attribute.name = name;
+        thing.attributes.push_back(attribute);
+    }
+    vocabulary.concepts.push_back(thing);
+    for (int i = 0; i < 1000; ++i) {
+        InferenceRule rule;
+        rule.id = "r" + std::to_string(i);
+        rule.attribute = "style";
+        rule.value = "style " + std::to_string(i);
+        rule.conditions.emplace_back();
+        rule.conditions[0].operand.attribute = "size";
+        rule.conditions[0].above = i;
+        vocabulary.rules.push_back(rule);
+    }
+    const auto findings = examine(vocabulary);
+    ASSERT_EQ(findings.size(), 101U);
+    EXPECT_TRUE(holds(findings[0].text, "the rules 'r0' and 'r1' can both hold")) << findings[0].text;
+    EXPECT_TRUE(holds(findings.back().text, "499400 more pairs")) << findings.back().text;
 }
 
 TEST(Infer, TheCommand) {

@@ -107,7 +107,8 @@ void check_vocabulary(const Vocabulary& vocabulary, const std::string& where);
 /// languages that only some concepts are labelled in, rules that contradict each other where both apply.
 std::vector<Finding> examine(const Vocabulary& vocabulary);
 
-/// Answers questions about a vocabulary, which must have passed check_vocabulary and outlive this. Construction is linear.
+/// Answers questions about a vocabulary, which must have passed check_vocabulary and outlive this. Construction is linear. Keeps
+/// the attribute names of the concepts asked for: not for several threads at once.
 class VocabularySearch {
 public:
     explicit VocabularySearch(const Vocabulary& vocabulary);
@@ -129,6 +130,8 @@ public:
     [[nodiscard]] std::vector<const AllowedAttribute*> attributes_of(std::size_t concept_index) const;
     /// The allowed attribute of a name or label, or nullptr.
     [[nodiscard]] const AllowedAttribute* attribute_of(std::size_t concept_index, const std::string& name) const;
+    /// The attribute of that name among those every concept may carry, or nullptr.
+    [[nodiscard]] const AllowedAttribute* common_attribute(const std::string& name) const;
     /// Ids and labels close to a text, closest first.
     [[nodiscard]] std::vector<std::string> suggestions(const std::string& tag) const;
     /// The concept's label in a language, or in none, or in English, or in any; the id if it has no label.
@@ -140,6 +143,9 @@ private:
     const Vocabulary& vocabulary_;
     std::unordered_map<std::string, std::size_t> ids_;
     std::unordered_map<std::string, std::vector<std::size_t>> labels_;  ///< folded text -> concepts
+    std::unordered_map<std::string, const AllowedAttribute*> common_;   ///< folded names of what every concept may carry
+    /// By concept, the attributes of folded names and labels.
+    mutable std::unordered_map<std::size_t, std::unordered_map<std::string, const AllowedAttribute*>> attributes_;
     std::vector<std::vector<std::size_t>> broader_;
 };
 
