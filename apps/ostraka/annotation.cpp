@@ -128,7 +128,9 @@ struct Apply {
         Provenance provenance{"annotation apply", {}, {}};
         for (const Path& file : given({mesh_file, source, names, edit})) provenance.add_input(file);
         if (is_json(source))
-            for (const Path& file : files_named_by(read_json(source), Path(source).parent_path())) provenance.add_input(file);
+            for (const Path& file :
+                 in_file(source, [&] { return files_named_by(read_json(source), Path(source).parent_path()); }))
+                provenance.add_input(file);
         if (mesh_labels) provenance.options.emplace_back("from-ply-labels", "true");
         words.read(provenance);
         const MeshFile file = read_mesh(mesh_file);

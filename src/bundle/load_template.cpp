@@ -2,6 +2,8 @@
 #include "ostraka/bundle/template.h"
 #include "ostraka/coords/coordinate_file.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/inside.h"
+#include "ostraka/core/limits.h"
 #include "ostraka/core/npy.h"
 #include "ostraka/relation/topology.h"
 
@@ -98,8 +100,17 @@ private:
         for (const Annotation& annotation : result_.annotations->annotations)
             for (const Attribute& attribute : annotation.attributes) {
                 const std::string& array = attribute.descriptor.file;
+                if (array.empty()) continue;
+                const std::string at = "the attribute '" + attribute.name + "'";
+                if (!options_.allow_outside) try {
+                        (void)file_inside(array, part.file.parent_path(), part.name, at, "the folder of the annotations",
+                                          "move the array into the folder, or allow it with --allow-outside");
+                    } catch (const Error& error) {
+                        defect(part.name, error.problem() + " (" + error.remedy() + ")");
+                        continue;
+                    }
                 std::error_code code;
-                if (!array.empty() && !std::filesystem::exists(part.file.parent_path() / array, code))
+                if (!std::filesystem::exists(part.file.parent_path() / array, code))
                     remark(part.name, "the array '" + array + "' of the attribute '" + attribute.name + "' is not there");
             }
         return counted(result_.annotations->annotations.size(), "annotation", "annotations");
@@ -223,9 +234,8 @@ private:
             differ("class", "'" + file.object_class + "'", "'" + set.object_class + "'");
         if (file.up && set.up) {
             const auto &a = *file.up, &b = *set.up;
-            const double dot = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-            const double lengths = std::hypot(a[0], a[1], a[2]) * std::hypot(b[0], b[1], b[2]);
-            if (!(dot >= lengths * (1 - 1e-9))) differ("upward direction", text_of(a), text_of(b));
+            if (!(unit_vector({a[0], a[1], a[2]}) * unit_vector({b[0], b[1], b[2]}) >= 1 - 1e-9))
+                differ("upward direction", text_of(a), text_of(b));
         }
         if (!file.unit.empty()) set.unit = file.unit;
         if (!file.object_class.empty()) set.object_class = file.object_class;

@@ -1,6 +1,7 @@
 // *.template.json
 #include "ostraka/bundle/template.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/inside.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,26 +15,13 @@ using std::to_string;
 
 std::string text_of(const JsonValue& value) { return {value.GetString(), value.GetStringLength()}; }
 
-/// Where a name leads, if that is within the folder: also over links.
+/// Where a name leads.
 Path locate(const std::string& name, const Path& folder, bool allow_outside, const std::string& where, const std::string& at) {
-    if (name.find('\0') != std::string::npos)
-        fail_input(where, "at " + at + ": the name holds a character that no file name can", "mend it");
-    const Path path(name);
-    const Path file = folder / path;
-    if (allow_outside) return file;
-    const std::string remedy =
-        "move the part into the template's folder ('template pack --copy' does so), or allow it with --allow-outside";
-    if (path.is_absolute()) fail_input(where, "at " + at + ": '" + name + "' is no relative name", remedy);
-    const auto within = [](const Path& inner, const Path& outer) {
-        const Path relative = inner.lexically_relative(outer);
-        return !relative.empty() && *relative.begin() != "..";
-    };
-    std::error_code code;
-    const Path home = std::filesystem::weakly_canonical(std::filesystem::absolute(folder), code);
-    const Path place = std::filesystem::weakly_canonical(std::filesystem::absolute(file), code);
-    if (*path.lexically_normal().begin() == ".." || code || !within(place, home))
-        fail_input(where, "at " + at + ": '" + name + "' leads out of the template's folder", remedy);
-    return file;
+    require_file_name(name, where, at);
+    if (allow_outside) return folder / Path(name);
+    return file_inside(
+        name, folder, where, at, "the template's folder",
+        "move the part into the template's folder ('template pack --copy' does so), or allow it with --allow-outside");
 }
 
 }  // namespace
@@ -62,7 +50,7 @@ TemplateFile template_from_json(const JsonValue& document, const Path& folder, c
     if (const JsonValue* unit = find_member(document, "unit")) result.unit = text_of(*unit);
     if (const JsonValue* up = find_member(document, "up")) {
         result.up = {(*up)[0].GetDouble(), (*up)[1].GetDouble(), (*up)[2].GetDouble()};
-        if (std::hypot((*result.up)[0], (*result.up)[1], (*result.up)[2]) == 0)
+        if (result.up == std::array<double, 3>{0, 0, 0})
             fail_input(where, "at /up: the upward direction is zero", "give a direction such as [0, 0, 1]");
     }
     for (const std::string& role : template_roles()) {

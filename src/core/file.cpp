@@ -11,7 +11,6 @@
 #include <cctype>
 #include <cerrno>
 #include <cstring>
-#include <memory>
 #include <new>
 
 namespace ostraka {
@@ -22,6 +21,30 @@ std::string reason() { return std::strerror(errno); }
 struct Descriptor {
     int number;
     ~Descriptor() { ::close(number); }
+};
+
+/// An input opened for reading. Devices may never end, and a pipe has no beginning to come back to: only files count. The open
+/// itself does not wait for the other end of a pipe.
+struct Input {
+    explicit Input(const Path& file) : descriptor{::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)} {
+        if (descriptor.number < 0) fail_input(file.string(), "cannot be opened: " + reason(), "check the path and its rights");
+        if (::fstat(descriptor.number, &status) != 0) fail_input(file.string(), "cannot be examined: " + reason());
+        if (S_ISREG(status.st_mode)) return;
+        if (S_ISDIR(status.st_mode)) fail_input(file.string(), "is a folder", "name a file");
+        if (S_ISFIFO(status.st_mode)) fail_input(file.string(), "is a pipe", "write it to a file first");
+        fail_input(file.string(), "is a device", "name a file");
+    }
+    /// Up to `size` bytes, 0 at the end.
+    std::size_t read(char* to, std::size_t size, const Path& file) const {
+        for (;;) {
+            const ssize_t more = ::read(descriptor.number, to, size);
+            if (more >= 0) return static_cast<std::size_t>(more);
+            if (errno != EINTR) fail_input(file.string(), "cannot be read: " + reason());
+        }
+    }
+
+    Descriptor descriptor;
+    struct stat status {};
 };
 
 thread_local OutputTransaction* open_transaction = nullptr;
@@ -39,33 +62,23 @@ Path behind_links(Path file) {
 }  // namespace
 
 std::string read_file(const Path& file) {
-    const Descriptor descriptor{::open(file.c_str(), O_RDONLY | O_CLOEXEC)};
-    if (descriptor.number < 0) fail_input(file.string(), "cannot be opened: " + reason(), "check the path and its rights");
-    struct stat status {};
-    if (::fstat(descriptor.number, &status) != 0) fail_input(file.string(), "cannot be examined: " + reason());
-    if (S_ISDIR(status.st_mode)) fail_input(file.string(), "is a folder", "name a file");
-    // Some devices never end.
-    if (S_ISCHR(status.st_mode) && ::isatty(descriptor.number) == 0) fail_input(file.string(), "is a device", "name a file");
+    const Input input(file);
     std::string bytes;
     try {
-        if (S_ISREG(status.st_mode)) bytes.resize(static_cast<std::size_t>(status.st_size));
+        bytes.resize(static_cast<std::size_t>(input.status.st_size));
         std::size_t used = 0;
         for (;;) {
-            if (used == bytes.size()) {
-                char extra[4096];
-                const ssize_t more = ::read(descriptor.number, extra, sizeof extra);
+            if (used < bytes.size()) {
+                const std::size_t more = input.read(bytes.data() + used, bytes.size() - used, file);
                 if (more == 0) break;
-                if (more < 0 && errno == EINTR) continue;
-                if (more < 0) fail_input(file.string(), "cannot be read: " + reason());
-                bytes.append(extra, static_cast<std::size_t>(more));
-                used = bytes.size();
+                used += more;
                 continue;
             }
-            const ssize_t more = ::read(descriptor.number, bytes.data() + used, bytes.size() - used);
-            if (more < 0 && errno == EINTR) continue;
-            if (more < 0) fail_input(file.string(), "cannot be read: " + reason());
+            char extra[4096];  // what was added meanwhile, and files that state no size
+            const std::size_t more = input.read(extra, sizeof extra, file);
             if (more == 0) break;
-            used += static_cast<std::size_t>(more);
+            bytes.append(extra, more);
+            used = bytes.size();
         }
         bytes.resize(used);
     } catch (const std::bad_alloc&) {
@@ -224,15 +237,10 @@ std::string sha256(std::string_view bytes) {
 }
 
 std::string sha256_of_file(const Path& file) {
-    // Content and checksum are read one after the other: a pipe gives its bytes once.
-    std::error_code code;
-    if (std::filesystem::is_fifo(file, code)) fail_input(file.string(), "is a pipe", "write it to a file first");
-    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"), &std::fclose);
-    if (!stream) fail_input(file.string(), "cannot be opened: " + reason(), "check the path and its rights");
+    const Input input(file);
     Sha256 hash;
     std::vector<char> buffer(1 << 20);
-    while (const std::size_t size = std::fread(buffer.data(), 1, buffer.size(), stream.get())) hash.update(buffer.data(), size);
-    if (std::ferror(stream.get()) != 0) fail_input(file.string(), "cannot be read: " + reason());
+    while (const std::size_t size = input.read(buffer.data(), buffer.size(), file)) hash.update(buffer.data(), size);
     return hash.hexadecimal();
 }
 

@@ -2,6 +2,7 @@
 #include "expression.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/inside.h"
 #include "ostraka/fields/curvature.h"
 #include "ostraka/fields/thickness.h"
 #include "ostraka/render/values.h"
@@ -73,7 +74,8 @@ ScalarMap ExpressionEvaluator::scalar(const JsonValue& value, Frame frame, const
         return map;
     }
     if (chosen == "map") {
-        const Path file = surroundings_.folder / std::string(of.GetString(), of.GetStringLength());
+        const Path file = file_inside(std::string(of.GetString(), of.GetStringLength()), surroundings_.folder, where_, here,
+                                      "the recipe's folder", "move the map beside the recipe");
         map.values = read_values(file);
         const JsonValue* on = find_member(value, "on");
         const bool vertices = map.values.size() == mesh_.number_of_vertices(),

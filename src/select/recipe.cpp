@@ -5,6 +5,7 @@
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/annotation/label_file.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/inside.h"
 #include "ostraka/measure/measure.h"
 
 #include <algorithm>
@@ -265,7 +266,8 @@ void collect_maps(const JsonValue& value, const Path& folder, std::vector<Path>&
     for (const auto& member : value.GetObject()) {
         if (std::string(member.name.GetString()) == "threshold" && member.value.IsObject())
             if (const JsonValue* map = find_member(member.value, "map"); map != nullptr && map->IsString()) {
-                const Path file = folder / map->GetString();
+                const Path file = file_inside(std::string(map->GetString(), map->GetStringLength()), folder, "", "threshold/map",
+                                              "the recipe's folder", "move the map beside the recipe");
                 if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
             }
         collect_maps(member.value, folder, files);

@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
+
 #include <cstring>
 #include <fstream>
 
@@ -235,6 +237,24 @@ TEST(Template, PartsStayInItsFolder) {
         EXPECT_TRUE(holds(refused.err, "--allow-outside")) << refused.err;
     }
     EXPECT_EQ(with("../ball.ply", " --allow-outside").code, 0);
+    // The arrays that attributes name stay as well, and a pipe is no part.
+    AnnotationSet set = read_annotations(ball / "ball.ant.json", ball.mesh);
+    for (const std::string& name : {std::string("../secret.npy"), ball.at("cage.ply"), std::string("cage.ply")}) {
+        set.annotations[0].attributes.resize(1);
+        set.annotations[0].attributes[0].name = "map";
+        set.annotations[0].attributes[0].type = AttributeType::descriptor;
+        set.annotations[0].attributes[0].descriptor.file = name;
+        write_annotations(ball / "o.ant.json", set, ball.mesh, "ball.ply", {});
+        write_file(ball / "o.template.json",
+                   R"({"format": "ostraka-template", "version": 1, "mesh": "ball.ply", "annotations": "o.ant.json"})");
+        const auto checked = run_command("template check " + ball.at("o.template.json"));
+        EXPECT_EQ(checked.code, name == "cage.ply" ? 0 : 3) << checked.out << checked.err;
+        EXPECT_EQ(run_command("template check " + ball.at("o.template.json") + " --allow-outside").code, 0);
+    }
+    ASSERT_EQ(::mkfifo((ball / "inner/pipe.ply").c_str(), 0600), 0);
+    const auto piped = with("pipe.ply");
+    EXPECT_EQ(piped.code, 3) << piped.err;
+    EXPECT_TRUE(holds(piped.out, "is a pipe")) << piped.out;
     // Packing from elsewhere: refused, allowed, or copied.
     const std::string pack = "template pack " + ball.at("inner/p.template.json") + " --mesh " + ball.at("ball.ply") +
                              " --annotations " + ball.at("ball.ant.json");

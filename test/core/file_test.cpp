@@ -1,7 +1,10 @@
 #include "ostraka/core/file.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/text.h"
 
 #include "scratch.h"
+
+#include <sys/stat.h>
 
 using namespace ostraka;
 using ostraka::test::Scratch;
@@ -95,6 +98,29 @@ TEST(ReadFile, GivesAllBytesOrSaysWhyNot) {
     EXPECT_THROW(read_file(scratch / "missing"), Error);
     EXPECT_THROW(read_file(scratch.path()), Error);
     EXPECT_THROW(read_file("/dev/zero"), Error);
+}
+
+TEST(ReadFile, InputsAreRegularFiles) {
+    const Scratch scratch;
+    const Path pipe = scratch / "pipe";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    for (const Path& file : {pipe, Path("/dev/zero"), Path("/dev/null"), scratch.path(), scratch / "none"}) {
+        EXPECT_THROW((void)read_file(file), Error) << file;
+        EXPECT_THROW((void)sha256_of_file(file), Error) << file;
+    }
+    const Path link = scratch / "link";
+    std::filesystem::create_symlink(scratch.file("a.txt", "text"), link);
+    EXPECT_EQ(read_file(link), "text");
+    EXPECT_EQ(sha256_of_file(link), sha256("text"));
+}
+
+TEST(Text, ControlCharactersAreC0C1AndTurnsOfDirection) {
+    EXPECT_EQ(without_controls("a\x1B\x7F\xC2\x80\xC2\x9F\xE2\x80\xAA\xE2\x80\xAE\xE2\x81\xA6\xE2\x81\xA9z", "?"), "a????????z");
+    const std::string plain = "na\xC3\xAFve \xC2\xA0\xE2\x80\xA9\xE2\x80\xAF\xE2\x81\xA5\xE2\x81\xAA \xF0\x9F\x8F\xBA";
+    EXPECT_EQ(without_controls(plain, "?"), plain);
+    const std::string broken = "\xC2 \x9B \xE2\x80";
+    EXPECT_EQ(without_controls(broken, "?"), broken) << "bytes that are no characters stay";
+    EXPECT_EQ(character_at("\xF0\x9F\x8F\xBA", 0).code, U'\U0001F3FA');
 }
 
 TEST(Sha256, MatchesThePublishedVectors) {

@@ -189,6 +189,21 @@ TEST(Threshold, OnAMapBesideTheRecipe) {
     EXPECT_THROW((void)from("region", R"({"threshold": {"map": "short.txt", "above": 1}})"), Error);
     EXPECT_THROW((void)from("region", R"({"threshold": {"map": "none.txt", "above": 1}})"), Error);
     EXPECT_THROW((void)from("region", R"({"threshold": {"map": "f.txt", "on": "vertex", "above": 1}})"), Error);
+    // A recipe of others reads what stands beside it and nothing else.
+    std::filesystem::create_directory(scratch / "sub");
+    std::filesystem::create_symlink("..", scratch / "sub" / "up");
+    for (const std::string& name :
+         {std::string("../v.txt"), (scratch / "v.txt").string(), std::string("x/../../v.txt"), std::string("up/v.txt")}) {
+        RecipeStart start;
+        start.folder = scratch / "sub";
+        const std::string text = R"({"threshold": {"map": ")" + name + R"(", "above": 2}})";
+        EXPECT_THROW(
+            (void)follow(R"({"id": 0, "tag": "t", "type": "point", "select": )" + text + "}", mesh, "", std::move(start)), Error)
+            << name;
+        EXPECT_THROW((void)files_named_by(parse_json(text, "r"), scratch / "sub"), Error) << name;
+    }
+    EXPECT_EQ(files_named_by(parse_json(R"({"threshold": {"map": "v.txt"}})", "r"), scratch.path()),
+              std::vector<Path>{scratch / "v.txt"});
 }
 
 TEST(Threshold, OnAScan) {

@@ -1,0 +1,24 @@
+// Characters of texts from outside.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace ostraka {
+
+/// A character of a text and its bytes; U+FFFD and one byte where no UTF-8 character begins.
+struct Character {
+    char32_t code = 0;
+    std::size_t length = 1;
+};
+Character character_at(std::string_view text, std::size_t at);
+
+/// What steers terminals and the order of letters instead of being shown: U+0000 to U+001F, U+007F to U+009F, and the marks that
+/// turn the direction of writing around (U+202A to U+202E, U+2066 to U+2069).
+bool is_control(char32_t code);
+
+/// The text with `instead` for each control character.
+std::string without_controls(std::string_view text, std::string_view instead);
+
+}  // namespace ostraka
