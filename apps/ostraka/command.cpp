@@ -2,6 +2,7 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/file.h"
+#include "ostraka/core/text.h"
 
 #include <cctype>
 #include <cstdio>
@@ -40,10 +41,13 @@ void check_standard_output() {
 std::string printable(const std::string& text, std::size_t most) {
     std::string clean;
     std::size_t columns = 0;
-    for (const char c : text) {
-        const auto byte = static_cast<unsigned char>(c);
-        if ((byte & 0xC0) != 0x80 && ++columns > most) return clean + "...";
-        clean += byte < 32 || byte == 127 ? '?' : c;
+    for (std::size_t at = 0; at < text.size();) {
+        const Character here = character_at(text, at);
+        if (++columns > most) return clean + "...";
+        // A byte that begins no character may steer a terminal that does not read UTF-8.
+        const bool odd = is_control(here.code) || (here.code == 0xFFFD && here.length == 1);
+        clean += odd ? "?" : text.substr(at, here.length);
+        at += here.length;
     }
     return clean;
 }

@@ -3,6 +3,7 @@
 #include "text.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/text.h"
 
 #include <pugixml.hpp>
 
@@ -12,16 +13,17 @@ namespace ostraka::exchange {
 
 namespace {
 
-/// Characters that XML 1.0 has no way to hold become U+FFFD.
+/// Characters that XML 1.0 has no way to hold, and other control characters, become U+FFFD.
 std::string for_xml(const std::string& text, std::size_t& changed) {
     std::string result;
     bool replaced = false;
-    for (const char c : text) {
-        const auto byte = static_cast<unsigned char>(c);
-        const bool forbidden = byte < 32 && c != '\t' && c != '\n' && c != '\r';
-        if (forbidden) result += "\xEF\xBF\xBD";
-        else result += c;
+    for (std::size_t at = 0; at < text.size();) {
+        const Character here = character_at(text, at);
+        const bool blank = here.code == '\t' || here.code == '\n' || here.code == '\r';
+        const bool forbidden = is_control(here.code) && !blank;
+        result += forbidden ? "\xEF\xBF\xBD" : text.substr(at, here.length);
         replaced = replaced || forbidden;
+        at += here.length;
     }
     // U+FFFE and U+FFFF are no characters of XML either.
     for (const std::string_view none : {"\xEF\xBF\xBE", "\xEF\xBF\xBF"})
@@ -61,6 +63,7 @@ LandmarkSet read_picked_points(const std::string& bytes, const std::string& wher
             if (!value) fail_input(at, std::string("the attribute ") + name + " is not a number", "give x, y and z");
             landmark.position[k] = *value;
         }
+        check_place(landmark.position, at);
         landmark.name = as_utf8(point.attribute("name").as_string(std::to_string(number).c_str()));
         set.landmarks.push_back(std::move(landmark));
     }
@@ -86,7 +89,7 @@ std::string write_picked_points(const LandmarkSet& set, const std::string& mesh_
         point.append_attribute("active") = "1";
         point.append_attribute("name") = for_xml(landmark.name, changed).c_str();
     }
-    if (changed > 0) notes.push_back(counted(changed, "name") + " held characters that XML has no place for");
+    if (changed > 0) notes.push_back(counted(changed, "name") + " held control characters or others that XML has no place for");
     struct Text : pugi::xml_writer {
         std::string text;
         void write(const void* part, std::size_t size) override { text.append(static_cast<const char*>(part), size); }

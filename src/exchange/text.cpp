@@ -1,6 +1,7 @@
 #include "text.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/text.h"
 
 #include <algorithm>
 #include <charconv>
@@ -50,28 +51,36 @@ std::string lower(std::string_view text) {
     return result;
 }
 
-bool has_control(std::string_view text) {
-    return std::any_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 32 || c == 127; });
-}
+bool has_control(std::string_view text) { return without_controls(text, "") != text; }
 
-std::string one_line(std::string_view text) {
-    std::string result(text);
-    for (char& c : result)
-        if (static_cast<unsigned char>(c) < 32 || c == 127) c = ' ';
-    return result;
-}
+std::string one_line(std::string_view text) { return without_controls(text, " "); }
 
 namespace {
 
+bool is_blank(char32_t code) {
+    return code == ' ' || code == '\t' || code == '\r' || code == '\n' || code == 0x85 || code == 0xA0 || code == 0x1680 ||
+           (code >= 0x2000 && code <= 0x200D) || code == 0x2028 || code == 0x2029 || code == 0x202F || code == 0x205F ||
+           code == 0x2060 || code == 0x3000 || code == 0xFEFF;
+}
+
+/// The signs that a formula begins with, and their small, wide and typographic forms.
+bool is_formula_sign(char32_t code) {
+    constexpr std::u32string_view signs = U"=+-@\u2212\uFE62\uFE63\uFE66\uFE6B\uFF0B\uFF0D\uFF1D\uFF20";
+    return signs.find(code) != std::u32string_view::npos;
+}
+
+/// Could a spreadsheet see a formula, at the front or where it may begin a cell: behind a semicolon, a tab, a line break or a
+/// blank that is not the plain one?
 bool dangerous(std::string_view text) {
     if (text.empty()) return false;
     if (text.front() == '\t' || text.front() == '\r' || text.front() == '\n') return true;
-    const std::size_t first = text.find_first_not_of(" \t\r\n");
-    if (first == std::string_view::npos) return false;
-    text.remove_prefix(first);
-    if (std::string_view("=+-@").find(text.front()) != std::string_view::npos) return true;
-    for (const std::string_view wide : {"\xEF\xBC\x9D", "\xEF\xBC\x8B", "\xEF\xBC\x8D", "\xEF\xBC\xA0"})
-        if (text.starts_with(wide)) return true;
+    bool begins = true;
+    for (std::size_t at = 0; at < text.size();) {
+        const auto [code, length] = character_at(text, at);
+        if (begins && is_formula_sign(code)) return true;
+        begins = code == ';' || (is_blank(code) && (begins || code != ' '));
+        at += length;
+    }
     return false;
 }
 

@@ -21,13 +21,14 @@ std::optional<int> whole_of(std::string_view text);
 /// Without blanks around it.
 std::string_view trimmed(std::string_view text);
 std::string lower(std::string_view text);
-/// Control characters and line breaks as blanks, for formats that keep a record on a line.
+/// Control characters (core/text.h), line breaks among them, as blanks, for formats that keep a record on a line.
 std::string one_line(std::string_view text);
 /// True if `one_line` would change the text.
 bool has_control(std::string_view text);
 
-/// A cell that no spreadsheet takes for a formula: text that begins (blanks apart) with one of = + - @, also in their wide forms,
-/// or with a tab or a line break gets an apostrophe in front, and so does text that `unguarded` would shorten.
+/// A cell that no spreadsheet takes for a formula: text that begins with a tab or a line break, or in which one of = + - @, also
+/// in their wide and small forms, stands at the front or behind a semicolon, a tab, a line break or a special blank (plain blanks
+/// between apart) gets an apostrophe in front, and so does text that `unguarded` would shorten.
 std::string guarded(const std::string& text);
 std::string unguarded(const std::string& text);
 

@@ -1,6 +1,8 @@
 // Graphviz DOT.
 #include "ostraka/relation/graph.h"
 
+#include "ostraka/core/text.h"
+
 #include <cstdio>
 
 namespace ostraka {
@@ -10,14 +12,13 @@ namespace {
 /// Inside quotes DOT knows \" and its own escapes after a backslash, and decodes the entities of HTML.
 std::string quoted(const std::string& text) {
     std::string out = "\"";
-    for (const char c : text) {
-        const auto byte = static_cast<unsigned char>(c);
+    for (const char c : without_controls(text, " ")) {
         if (c == '"') out += "&quot;";
         else if (c == '\\') out += "&#92;";
         else if (c == '&') out += "&amp;";
         else if (c == '<') out += "&lt;";
         else if (c == '>') out += "&gt;";
-        else out += byte < 32 || byte == 127 ? ' ' : c;
+        else out += c;
     }
     return out + '"';
 }

@@ -2,6 +2,7 @@
 #include "ostraka/exchange/landmarks.h"
 #include "mutate.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/text.h"
 #include "sets.h"
 
 #include <gtest/gtest.h>
@@ -28,11 +29,13 @@ LandmarkSet wild_landmarks() {
 /// What the format's own limits make of a name.
 std::string kept_name(const std::string& name, LandmarkFormat format) {
     std::string kept;
-    for (const char c : name) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (format == LandmarkFormat::fcsv && byte < 32) kept += ' ';
-        else if (format == LandmarkFormat::pp && byte < 32 && c != '\t' && c != '\n' && c != '\r') kept += "\xEF\xBF\xBD";
-        else kept += c;
+    for (std::size_t i = 0; i < name.size();) {
+        const auto [code, length] = character_at(name, i);
+        const bool control = is_control(code), blank = code == '\t' || code == '\n' || code == '\r';
+        if (format == LandmarkFormat::fcsv && control) kept += ' ';
+        else if (format == LandmarkFormat::pp && control && !blank) kept += "\xEF\xBF\xBD";
+        else kept += name.substr(i, length);
+        i += length;
     }
     return kept;
 }
@@ -254,4 +257,43 @@ TEST(Landmarks, DamagedFilesEndInAClearError) {
         }
         EXPECT_LT(successes, 200U);
     }
+}
+
+TEST(Landmarks, FormulasAreMarkedWhereverACellMayBegin) {
+    const auto marked = [](const std::string& name) {
+        LandmarkSet set;
+        set.landmarks.push_back({name, {}, {}});
+        const std::string text = written(set, LandmarkFormat::csv);
+        EXPECT_EQ(landmarks_from_text(text, LandmarkFormat::csv, "file").landmarks.at(0).name, name);
+        return text.find(",\"'" + name) != std::string::npos;
+    };
+    for (const std::string blank : {"", " ", ";", "a;", "a; ", "a\t", "\xC2\xA0", "a\xC2\xA0 ", "\xE3\x80\x80", "\xE2\x80\x8B",
+                                    "\xEF\xBB\xBF", "b\xE2\x80\xA8", "\xC2\x85", "''"})
+        for (const std::string sign :
+             {"=", "+", "-", "@", "\xEF\xB9\xA3", "\xE2\x88\x92", "\xEF\xBC\x9D", "\xEF\xBC\x8B", "\xEF\xBC\x8D", "\xEF\xBC\xA0"})
+            EXPECT_TRUE(marked(blank + sign + "x")) << blank << sign;
+    for (const std::string plain : {"a", "a - b", "a=b", "half-way", "o'clock", "'a'", "a;b", "\xC2\xA0 a", "3 + 4"})
+        EXPECT_FALSE(marked(plain)) << plain;
+}
+
+TEST(Landmarks, PlacesBeyondWhatMeshesMayHaveAreRefusedWithTheirLine) {
+    const auto refused = [](const std::string& text, LandmarkFormat format, const std::string& at) {
+        const std::string said = message([&] { (void)landmarks_from_text(text, format, "file"); });
+        EXPECT_NE(said.find("file, " + at), std::string::npos) << said;
+        EXPECT_NE(said.find("1e+60"), std::string::npos) << said;
+    };
+    for (const std::string huge : {"2e307", "-1.7e308", "1.1e60"}) {
+        refused("name,x,y,z\na,0,0,0\nb,0," + huge + ",0\n", LandmarkFormat::csv, "line 3");
+        refused("# CoordinateSystem = LPS\n# columns = id,x,y,z\n1," + huge + ",0,0\n", LandmarkFormat::fcsv, "line 3");
+        refused("<PickedPoints><point x=\"0\" y=\"0\" z=\"" + huge + "\" name=\"a\"/></PickedPoints>", LandmarkFormat::pp,
+                "point 1");
+        refused(R"({"markups": [{"type": "Fiducial", "controlPoints": [{"label": "a", "position": [0, 0, )" + huge + "]}]}]}",
+                LandmarkFormat::mrk, "at /markups/0/controlPoints/0/position");
+        refused("LM3=2\n0 0 0\n" + huge + " 0 0\n", LandmarkFormat::tps, "line 3");
+    }
+    refused("LM3=1\n1e200 0 0\nSCALE=1e200\n", LandmarkFormat::tps, "line 2");
+    EXPECT_EQ(landmarks_from_text("LM3=1\n1e200 0 0\nSCALE=1e-200\n", LandmarkFormat::tps, "file").landmarks[0].position[0], 1);
+    LandmarkSet set;
+    set.landmarks.push_back({"a", {1e300, 0, 0}, {}});
+    EXPECT_NE(message([&] { (void)place_landmarks(spheres(2), set, "file"); }).find("1e+60"), std::string::npos);
 }

@@ -30,6 +30,20 @@ inline std::vector<std::string> wild_texts() {
             std::string("control \x01\x02\x1B and nul \0 end", 26),
             "naïve Ὄστρακον 陶片 🏺",
             "# comment",
+            "a;=1+1",
+            "a\t @SUM(A1)",
+            "\xC2\xA0=1",
+            "b \xE3\x80\x80+1",
+            "\xE2\x80\x8B-1",
+            "\xEF\xBB\xBF=1",
+            "c\xE2\x80\xA8=1",
+            "\xC2\x85@x",
+            "\xEF\xB9\xA3"
+            "1",
+            "'\xE2\x88\x92"
+            "1",
+            "\xC2\x9B"
+            "31m and \xE2\x80\xAE turned \xE2\x81\xA6 around",
             "-5",
             " edges ",
             "back\\slash \\u003C",

@@ -126,14 +126,14 @@ TEST(Graph, NearestTypeIsSuggested) {
 
 TEST(Graph, TextStaysTextInDot) {
     AnnotationSet set = four();
-    set.annotations[0].tag = "a\"]; evil [label=\"<b>x</b>\\N &lt;i&gt;\n\x01 Ä";
+    set.annotations[0].tag = "a\"]; evil [label=\"<b>x</b>\\N &lt;i&gt;\n\x01 Ä \xC2\x9B \xE2\x80\xAE";
     RelationGraph graph = read(own_file);
     graph.relationships[1].type = "</text><script>alert(\"1\")</script>";
     const std::string dot = graph_to_dot(graph, set);
     EXPECT_EQ(dot.find("evil [label=\""), std::string::npos);
     EXPECT_EQ(dot.find('<'), std::string::npos);
     EXPECT_EQ(dot.find('\\'), std::string::npos);
-    EXPECT_EQ(dot.find('\x01'), std::string::npos);
+    for (const char* control : {"\x01", "\xC2\x9B", "\xE2\x80\xAE"}) EXPECT_EQ(dot.find(control), std::string::npos);
     EXPECT_NE(dot.find("&lt;b&gt;x&lt;/b&gt;&#92;N &amp;lt;i&amp;gt;"), std::string::npos) << dot;
     EXPECT_NE(dot.find("Ä"), std::string::npos);
     // Every quote opens or closes a string: an even number on each line.
