@@ -78,8 +78,15 @@ struct Import {
         const MeshFile file = read_mesh(mesh);
         AnnotationSet base;
         if (!onto.empty()) base = read_annotations(onto, file.mesh, reading);
-        const PlacedAnnotations placed =
-            import_annotations(file.mesh, bytes, chosen, input, onto.empty() ? nullptr : &base, options);
+        const PlacedAnnotations placed = [&] {
+            try {
+                return import_annotations(file.mesh, bytes, chosen, input, onto.empty() ? nullptr : &base, options);
+            } catch (const Error& error) {
+                // What is wrong with the mesh is said of its file.
+                if (error.kind() != ErrorKind::input || error.where() != "mesh") throw;
+                fail_input(mesh, error.problem(), error.remedy());
+            }
+        }();
         write_annotations(output, placed.set, file.mesh, mesh, provenance);
         print(session, provenance, chosen, placed);
         return done;

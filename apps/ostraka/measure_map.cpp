@@ -40,7 +40,15 @@ struct Map {
         else if (of == "gaussian-curvature") values = search.curvature().gaussian;
         else if (of == "thickness")
             values = on == "face" ? search.thickness() : vertices_from_faces(file.mesh, search.thickness());
-        else values = geodesic_distances(file.mesh, numbers_of<Index>(from, "--from"));
+        else {
+            const auto sources = numbers_of<Index>(from, "--from");
+            for (const Index source : sources)
+                if (source >= file.mesh.number_of_vertices())
+                    fail_usage("--from names vertex " + std::to_string(source) + ", but " + mesh + " has " +
+                                   std::to_string(file.mesh.number_of_vertices()) + " vertices",
+                               "was it picked on another mesh?");
+            values = geodesic_distances(file.mesh, sources);
+        }
         std::vector<double> finite;
         for (double& value : values) {
             if (std::isinf(value)) value = std::numeric_limits<double>::quiet_NaN();

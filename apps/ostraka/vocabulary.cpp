@@ -159,7 +159,14 @@ struct Convert {
         if (!scheme.empty()) provenance.options.emplace_back("scheme", scheme);
         provenance.add_input(input);
         const Vocabulary vocabulary = is_skos(input) ? read_skos(input, scheme) : read_vocabulary(input);
-        write_vocabulary(output, vocabulary);
+        try {
+            write_vocabulary(output, vocabulary);
+        } catch (const Error& error) {
+            // What cannot be written stands in the input.
+            if (error.kind() != ErrorKind::input) throw;
+            const bool named = error.where().starts_with(output);
+            fail_input(named ? input + error.where().substr(output.size()) : error.where(), error.problem(), error.remedy());
+        }
         for (const auto& note : vocabulary.notes) session.note("note: " + note);
         Json document(rapidjson::kObjectType);
         auto& allocator = document.GetAllocator();

@@ -122,9 +122,15 @@ ExportedAnnotations export_annotations(const Mesh& mesh, const AnnotationSet& se
 PlacedAnnotations import_annotations(const Mesh& mesh, const std::string& bytes, const std::string& format,
                                      const std::string& where, const AnnotationSet* onto, const ImportOptions& options) {
     check_options(options, "annotation import");
+    if (bytes.find_first_not_of(" \t\r\n") == std::string::npos)
+        fail_input(where, "is empty", "give a file that holds annotations");
     PlacedAnnotations result;
     if (const auto landmarks = landmark_format(format)) {
-        result = place_landmarks(mesh, landmarks_from_text(bytes, *landmarks, where, options.landmarks), where, options.place);
+        const LandmarkSet read = landmarks_from_text(bytes, *landmarks, where, options.landmarks);
+        if (read.landmarks.empty() && read.curves.empty())
+            fail_input(where, "holds no landmarks" + (read.notes.empty() ? "" : ": " + read.notes.back()),
+                       "give a file with places, or the right --format");
+        result = place_landmarks(mesh, read, where, options.place);
     } else if (format == "attributes-csv") {
         if (onto == nullptr)
             fail_usage("a table of attributes holds no selections", "give the annotations it was made of with --onto FILE");

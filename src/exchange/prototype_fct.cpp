@@ -48,7 +48,7 @@ public:
 
 private:
     [[noreturn]] void fail(const std::string& what, const std::string& remedy) const {
-        fail_input(where_ + ", line " + std::to_string(number_), what, remedy);
+        fail_input(where_ + ", line " + std::to_string(std::max<std::size_t>(number_, 1)), what, remedy);
     }
 
     /// The next line into `line_`; false at the end.

@@ -80,6 +80,21 @@ TEST(ExchangeCommand, BadInputLeavesOutputsAlone) {
     };
     (void)folder.file("bad.pp", "<PickedPoints><point x=\"1\"");
     refused(folder.run("import", {"bad.pp", "out.ant.json"}), 1, "bad.pp, line 1");
+    for (const char* name : {"no.csv", "no.fcsv", "no.pp", "no.tps", "no.mrk.json", "no.fct", "no.jsonld"}) {
+        (void)folder.file(name, "");
+        refused(folder.run("import", {name, "out.ant.json"}), 1, std::string(name) + ": is empty");
+    }
+    (void)folder.file("no.pp", "<PickedPoints></PickedPoints>");
+    refused(folder.run("import", {"no.pp", "out.ant.json"}), 1, "no.pp: holds no landmarks");
+    (void)folder.file("no.csv", "name,x,y,z\n");
+    refused(folder.run("import", {"no.csv", "out.ant.json"}), 1, "no.csv: holds no landmarks");
+    (void)folder.file("no.fcsv", "# CoordinateSystem = LPS\n");
+    refused(folder.run("import", {"no.fcsv", "out.ant.json"}), 1, "no.fcsv: holds no landmarks");
+    (void)folder.file("flat.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n");
+    (void)folder.file("one.csv", "name,x,y,z\na,0,0,0\n");
+    const auto flat =
+        run_command("annotation import " + folder.at("flat.off") + " " + folder.at("one.csv") + " " + folder.at("out.ant.json"));
+    refused(flat, 1, folder.at("flat.off") + ": has no face with an area");
     (void)folder.file("far.csv", "name,x,y,z\nnose,50,0,0\n");
     refused(folder.run("import", {"far.csv", "out.ant.json"}), 1, "'nose'");
     refused(folder.run("import", {"far.csv", "out.ant.json"}, "--tolerance 2"), 2, "tolerance");

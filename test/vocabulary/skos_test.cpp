@@ -238,6 +238,12 @@ TEST(VocabularyCommand, ConvertThereAndBack) {
     EXPECT_TRUE(holds(bad.err, "bad.ttl, line ")) << bad.err;
     EXPECT_EQ(read_file(scratch / "c.vocabulary.json"), read_file(words)) << "untouched";
     EXPECT_EQ(run_command("vocabulary check " + at("bad.ttl")).code, 1);
+    // What RDF has no place for stands in the input.
+    const std::string control = R"({"format": "ostraka-vocabulary", "version": 1, "concepts": [{"id": "a", "label": "\u0001"}]})";
+    const auto unfit =
+        run_command("vocabulary convert " + scratch.file("odd.vocabulary.json", control).string() + " " + at("o.rdf"));
+    EXPECT_EQ(unfit.code, 1);
+    EXPECT_TRUE(holds(unfit.err, "ostraka: " + at("odd.vocabulary.json") + ": a text holds a control")) << unfit.err;
     EXPECT_EQ(run_command("vocabulary convert " + words + " " + at("x.txt")).code, 2);
     EXPECT_EQ(run_command("vocabulary convert " + at("a.ttl") + " " + at("a.ttl")).code, 2);
     EXPECT_EQ(run_command("vocabulary convert " + words + " " + at("y.ttl") + " --scheme urn:x").code, 2);
