@@ -71,11 +71,11 @@ TEST(Recipe, NormalsOfAnyLengthAndPlacesWithinReason) {
     for (const std::string n : {"1e308", "1e-320"})
         EXPECT_EQ(faces_of(R"({"halfspace": {"point": [0.1, 0, 0], "normal": [)" + n + "," + n + ", -" + n + "]}}", ball), plain);
     // Squares of distances overflow long before: no face is nearest then.
-    for (const std::string select : {R"({"component": {"seed": [1e155, 0, 0]}})", R"({"faces": [[0, 0, -1e300]]})",
-                                     R"({"sphere": {"centre": [0, 1.1e60, 0], "radius": 1}})",
-                                     R"({"halfspace": {"point": [0, 0, 1e200], "normal": [0, 0, 1]}})",
-                                     R"({"threshold": {"distance": [[1e200, 0, 0]], "below": 1}})",
-                                     R"({"frame": "box", "box": {"min": [0, 0, 0], "max": [1, 1e308, 1]}})"})
+    for (const std::string select :
+         {R"({"component": {"seed": [1e155, 0, 0]}})", R"({"sphere": {"centre": [0, 1.1e60, 0], "radius": 1}})",
+          R"({"halfspace": {"point": [0, 0, 1e200], "normal": [0, 0, 1]}})",
+          R"({"threshold": {"distance": [[1e200, 0, 0]], "below": 1}})",
+          R"({"frame": "box", "box": {"min": [0, 0, 0], "max": [1, 1e308, 1]}})"})
         expect_error(recipe(step("region", select)), ball, "/annotations/0/select", "beyond what can be computed with");
 }
 
