@@ -1,4 +1,4 @@
-// ostraka cage make, check: cages around meshes.
+// ostraka cage make, check, edit: cages around meshes.
 #include "number_lists.h"
 
 #include "ostraka/annotation/annotation_file.h"
@@ -6,6 +6,7 @@
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/relation/geometric.h"
 #include "ostraka/semantic/cage_density.h"
+#include "ostraka/semantic/edit.h"
 
 #include <iostream>
 #include <memory>
@@ -131,6 +132,43 @@ private:
     }
 };
 
+/// Moves the vertices of a cage by an edit that knows no mesh.
+struct Move {
+    std::string cage, edit, output;
+
+    int run(const Session& session) const {
+        check_outputs({cage, edit}, {output});
+        Provenance provenance{"cage edit", {}, {}};
+        provenance.add_input(cage);
+        provenance.add_input(edit);
+        MeshFile around = read_mesh(cage);
+        const AnnotationSet none;
+        Coordinates own{"own", WeightMatrix::Identity(around.mesh.number_of_vertices(), around.mesh.number_of_vertices()), {}};
+        const Mesh rest = around.mesh;
+        const auto states = follow_edit(read_json(edit), {rest, none, &rest, &own}, edit);
+        std::size_t touched = 0;
+        if (!states.empty()) {
+            for (const Vertex v : around.mesh.vertices()) around.mesh.point(v) = states.back().handles[v];
+            touched = static_cast<std::size_t>(std::count(states.back().touched.begin(), states.back().touched.end(), true));
+        }
+        write_mesh(output, around.mesh, around.extras);
+        const CageCheck check = check_cage(around.mesh, Mesh());
+        Json document(rapidjson::kObjectType);
+        auto& allocator = document.GetAllocator();
+        JsonValue result(rapidjson::kObjectType);
+        add_member(result, "steps", JsonValue(static_cast<std::uint64_t>(states.size())), allocator);
+        add_member(result, "moved", JsonValue(static_cast<std::uint64_t>(touched)), allocator);
+        add_member(result, "intersects", JsonValue(!check.intersections.empty()), allocator);
+        if (session.json) session.print_report(provenance, document, result);
+        else
+            std::cout << states.size() << (states.size() == 1 ? " step, " : " steps, ") << touched << " of "
+                      << around.mesh.number_of_vertices() << " vertices moved\n";
+        if (!check.intersections.empty())
+            session.note("note: the moved cage intersects itself, which deforms a mesh all the same, but may fold it");
+        return done;
+    }
+};
+
 struct Check {
     std::string mesh, cage;
 
@@ -160,6 +198,14 @@ void add_cage_make(CLI::App& cage, Session& session) {
                         "annotations of the mesh (.ant.json): four times the vertices where points, lines and outlines are");
     command->add_option("--detail", make->details,
                         "annotation=factor: so many times the vertices there, instead; may be given several times");
+
+    const auto move = std::make_shared<Move>();
+    command =
+        session.add(cage, "edit", "move the vertices of a cage by an edit file", [&session, move] { return move->run(session); });
+    command->add_option("cage", move->cage, "cage file")->required();
+    command->add_option("edit", move->edit, "what is done to its vertices (.edit.json): select cageVertices, box or all")
+        ->required();
+    command->add_option("output", move->output, "cage to write")->required();
 
     const auto check = std::make_shared<Check>();
     command = session.add(cage, "check", "is a mesh a sound cage of another? (exit code 3: no)",

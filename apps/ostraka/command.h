@@ -112,7 +112,7 @@ void add_annotation_infer(CLI::App& annotation, Session& session);     // annota
 void add_template(CLI::App& bundle, Session& session);                 // template.cpp
 void add_vocabulary(CLI::App& vocabulary, Session& session);           // vocabulary.cpp
 void add_cage(CLI::App& cage, Session& session);                       // cage.cpp: weights, influence
-void add_cage_make(CLI::App& cage, Session& session);                  // cage_make.cpp: make, check
+void add_cage_make(CLI::App& cage, Session& session);                  // cage_make.cpp: make, check, edit
 void add_deform(CLI::App& tool, Session& session);                     // deform.cpp
 void add_render(CLI::App& tool, Session& session);                     // render.cpp
 

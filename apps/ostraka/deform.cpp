@@ -19,6 +19,7 @@ struct Deform {
     std::string mesh, annotations, edit, output, cage, weights, graph, annotations_out, cage_out;
     DeformOptions options;
     RelationOptions tolerances;
+    bool states = false;
 
     int run(const Session& session) {
         check_options(options, "deform");
@@ -30,6 +31,16 @@ struct Deform {
             if (!file.empty()) inputs.emplace_back(file);
         for (const std::string& file : {annotations_out, cage_out})
             if (!file.empty()) outputs.emplace_back(file);
+        const Json steps = read_json(edit);
+        validate(steps, "edit", edit);
+        std::vector<Path> state_files;
+        if (states)
+            for (rapidjson::SizeType i = 0; i < steps["steps"].Size(); ++i) {
+                const Path path(output);
+                state_files.push_back(path.parent_path() /
+                                      (path.stem().string() + "-step" + std::to_string(i + 1) + path.extension().string()));
+                outputs.push_back(state_files.back());
+            }
         check_outputs(inputs, outputs);
         Provenance provenance{"deform", list_options(options), {}};
         for (const Path& input : inputs) provenance.add_input(input);
@@ -48,13 +59,21 @@ struct Deform {
         }
         RelationGraph relations;
         if (!graph.empty()) relations = read_graph(graph, set);
-        const Json steps = read_json(edit);
         const DeformResult result = deform(space, relations, steps, edit, options, tolerances);
         const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
         Mesh shaped = object.mesh;
         for (const Vertex v : shaped.vertices()) shaped.point(v) = result.points[v];
         write_mesh(output, shaped, object.extras);
+        if (states) {
+            const auto followed = follow_edit(steps, space, edit);
+            for (std::size_t i = 0; i < followed.size(); ++i) {
+                const auto points = cage.empty() ? followed[i].handles : deformed(coordinates, around.mesh, followed[i].handles);
+                Mesh state = object.mesh;
+                for (const Vertex v : state.vertices()) state.point(v) = points[v];
+                write_mesh(state_files[i], state, object.extras);
+            }
+        }
         if (!cage_out.empty()) {
             for (const Vertex v : around.mesh.vertices()) around.mesh.point(v) = result.cage[v];
             write_mesh(cage_out, around.mesh, around.extras);
@@ -147,6 +166,8 @@ void add_deform(CLI::App& tool, Session& session) {
     command->add_option("--cage", deform->cage, "cage whose vertices are the handles; without it, the mesh's own are");
     command->add_option("--weights", deform->weights, "weights of 'cage weights' (.npy)");
     command->add_option("--annotations-out", deform->annotations_out, "annotations of the deformed mesh, measures taken anew");
+    command->add_flag("--states", deform->states,
+                      "also write the shape after each step of the edit, before constraints: output-step1 ...");
     command->add_option("--cage-out", deform->cage_out, "the cage after the deformation");
     add_flags(command, deform->options);
     add_flags(command, deform->tolerances);

@@ -105,6 +105,22 @@ TEST(DeformCommand, KeepsWhatIsAsked) {
     EXPECT_EQ(run_command(base + folder.at("d.ply")).code, 0);
 }
 
+TEST(DeformCommand, StatesAndEditedCages) {
+    const Caged folder;
+    static_cast<void>(folder.file("two.edit.json", R"({"format": "ostraka-edit", "version": 1, "steps": [
+        {"select": {"all": true}, "translate": [1, 0, 0]}, {"select": {"cageVertices": [0, 5]}, "translate": [0, 2, 0]}]})"));
+    const std::string two = folder.at("two.edit.json");
+    ASSERT_EQ(run_command("deform " + pot + parts + two + " " + folder.at("out.ply") + folder.handles() + " --states").code, 0);
+    const Mesh rest = read_mesh(data + "teapot.ply").mesh, first = read_mesh(folder / "out-step1.ply").mesh;
+    for (const Vertex v : rest.vertices()) ASSERT_NEAR(first.point(v).x(), rest.point(v).x() + 1, 1e-9);
+    EXPECT_EQ(read_file(folder / "out-step2.ply"), read_file(folder / "out.ply"));
+    ASSERT_EQ(run_command("cage edit " + folder.at("cage.ply") + " " + two + " " + folder.at("moved.ply")).code, 0);
+    const Mesh cage = read_mesh(folder / "cage.ply").mesh, moved = read_mesh(folder / "moved.ply").mesh;
+    EXPECT_NEAR(moved.point(Vertex(5)).y(), cage.point(Vertex(5)).y() + 2, 1e-12);
+    EXPECT_NEAR(moved.point(Vertex(6)).y(), cage.point(Vertex(6)).y(), 1e-12);
+    EXPECT_EQ(run_command("cage edit " + folder.at("cage.ply") + " " + two + " " + folder.at("cage.ply")).code, 2);
+}
+
 TEST(DeformCommand, BadInput) {
     const Caged folder;
     const std::size_t before = count_files(folder.path());
