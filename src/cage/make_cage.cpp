@@ -1,8 +1,8 @@
 #include "ostraka/cage/cage.h"
 #include "ostraka/core/error.h"
+#include "ostraka/io/wrap.h"
 
 #include "shrink.h"
-#include "wrap.h"
 
 #include <algorithm>
 
@@ -44,7 +44,7 @@ CageResult make_cage(const Mesh& mesh, const CageOptions& options, const CageDen
     double alpha = options.alpha > 0 ? options.alpha : 1.0 / 40;
     bool finer = options.alpha == 0;  // until the wrap has vertices enough
     while (alpha <= 4) {
-        Mesh surface = cage::wrap(soup, alpha * diagonal, options.offset * diagonal);
+        Mesh surface = build_mesh(wrap_soup(soup, alpha * diagonal, options.offset * diagonal));
         finer = finer && surface.number_of_vertices() < options.vertices && alpha > 1e-3;
         if (finer) {
             alpha /= 2;

@@ -2,6 +2,7 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/io/wrap.h"
 #include "repair_parts.h"
 #include "soup_geometry.h"
 #include "triangle_tree.h"
@@ -96,7 +97,7 @@ Point middle(const TriangleSoup& soup, Index t) {
 /// Replaces the soup by its wrap; values and maps go by the nearest triangle, and the nearest corner of that.
 void wrap(Worksoup& work, const TriangleSoup& original, const RepairOptions& options, RepairResult& result) {
     const double size = detail::diagonal(detail::box_of_triangles(work.soup));
-    TriangleSoup wrapped = detail::wrap_soup(work.soup, options.wrap_alpha * size, options.wrap_offset * size);
+    TriangleSoup wrapped = wrap_soup(work.soup, options.wrap_alpha * size, options.wrap_offset * size);
     const detail::TriangleTree old_tree(original), new_tree(wrapped);
     Worksoup made(wrapped);
     parallel_for(wrapped.points.size(), [&](std::size_t v) {

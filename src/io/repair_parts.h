@@ -52,7 +52,4 @@ Counts fill_holes(Worksoup& work, const HoleLimits& limits);
 
 Counts remove_self_intersections(Worksoup& work, std::vector<std::string>& notes);
 
-/// The wrap as a soup of its own. Throws Error (failure) if it cannot be made.
-TriangleSoup wrap_soup(const TriangleSoup& soup, double alpha, double offset);
-
 }  // namespace ostraka::detail

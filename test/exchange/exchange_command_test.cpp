@@ -244,8 +244,8 @@ TEST(ExchangeCommand, DiffAndMerge) {
     // Two annotations under one id: the way out is named.
     for (const char* name : {"ours", "theirs"}) {
         const std::string file = std::string(name) + "2.ant.json";
-        ASSERT_EQ(folder.run("edit", {"a.ant.json", file}, "--annotation 3 --duplicate --id 9977 --tag " + std::string(name)).code,
-                  0);
+        ASSERT_EQ(
+            folder.run("edit", {"a.ant.json", file}, "--annotation 3 --duplicate --id 9977 --tag " + std::string(name)).code, 0);
     }
     const auto twice = folder.run("merge", {"a.ant.json", "ours2.ant.json", "theirs2.ant.json", "n.ant.json"});
     EXPECT_EQ(twice.code, 3);

@@ -1,10 +1,10 @@
 // The watertight wrap (Portaneri, Rouxel-Labbé, Hemmer, Cohen-Steiner, Alliez 2022), by CGAL.
+#include "ostraka/io/wrap.h"
 #include "ostraka/core/error.h"
-#include "repair_parts.h"
 
 #include <CGAL/alpha_wrap_3.h>
 
-namespace ostraka::detail {
+namespace ostraka {
 
 TriangleSoup wrap_soup(const TriangleSoup& soup, double alpha, double offset) {
     std::vector<Point> points;
@@ -15,8 +15,8 @@ TriangleSoup wrap_soup(const TriangleSoup& soup, double alpha, double offset) {
     CGAL::alpha_wrap_3(points, triangles, alpha, offset, mesh);
     mesh.collect_garbage();
     if (mesh.number_of_faces() == 0)
-        throw Error(ErrorKind::failure, "mesh", "could not be wrapped", "use another --wrap-alpha and --wrap-offset");
+        throw Error(ErrorKind::failure, "mesh", "could not be wrapped", "use another alpha and offset");
     return to_soup(mesh);
 }
 
-}  // namespace ostraka::detail
+}  // namespace ostraka
