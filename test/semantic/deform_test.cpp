@@ -5,6 +5,7 @@
 #include "ostraka/cage/cage.h"
 #include "ostraka/core/error.h"
 #include "ostraka/geom/eigen.h"
+#include "ostraka/measure/measure.h"
 #include "ostraka/select/recipe.h"
 #include "ostraka/shapes/make_mesh.h"
 
@@ -200,4 +201,67 @@ TEST(Deform, ThroughTheCageItComesAsNearAsTheCageCan) {
         ASSERT_LT(std::sqrt(CGAL::squared_distance(again[i], result.points[i])), 1e-9 * box_diagonal(object.made.mesh));
     EXPECT_LE(level_spread(object, result.points, {7, 8, 9, 10, 11}),
               level_spread(object, result.edited, {7, 8, 9, 10, 11}) + 1e-9);
+}
+
+TEST(Deform, AProportionStretchesThePartFromItsJoint) {
+    // The little finger is to be as long as 0.9 to 1 of the ring finger: it grows at its tip and stays where it joins the palm.
+    const MadeMesh made = make_mesh(made_object("hand"), {.vertices = 6000});
+    AnnotationSet set = apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data/hand.recipe.json", made.mesh, made.face_labels);
+    for (Annotation& annotation : set.annotations) {
+        if (annotation.id != 6 && annotation.id != 7) continue;
+        Attribute length;
+        length.id = 50;
+        length.name = "length";
+        length.type = AttributeType::measure;
+        length.measure.tool = "bounding";
+        length.measure.direction = {0, 0, 1};
+        const auto ends = extremes(made.mesh, annotation, {0, 0, 1});
+        length.measure.points.assign(ends.begin(), ends.end());
+        annotation.attributes.push_back(length);
+    }
+    RelationGraph graph;
+    graph.relationships.push_back(constraint(
+        0, "proportion", {7, 6}, R"({"measure1": "length", "measure2": 50, "minValue": 0.9, "maxValue": 1, "hard": true})"));
+    const DeformResult result = deform({made.mesh, set}, graph, edit(""), "e");
+    ASSERT_TRUE(result.acceptable) << result.constraints[0].text;
+    EXPECT_EQ(result.constraints[0].before, Verdict::fails);
+    const auto height = [&](int id, const std::vector<Point>& points) {
+        double low = 1e300, high = -1e300;
+        for (const Index v : vertices_of(made.mesh, *set.find(id)))
+            low = std::min(low, points[v].z()), high = std::max(high, points[v].z());
+        return std::pair{low, high};
+    };
+    const auto rest = points_of(made.mesh);
+    const auto [low, high] = height(7, result.points);
+    const auto [was_low, was_high] = height(7, rest);
+    const auto [ring_low, ring_high] = height(6, result.points);
+    const double ratio = (high - low) / (ring_high - ring_low), diagonal = box_diagonal(made.mesh);
+    EXPECT_GE(ratio, 0.9 - 1e-3);
+    EXPECT_LE(ratio, 1 + 1e-3);
+    EXPECT_GT(high - was_high, 0.02 * diagonal);
+    EXPECT_LT(std::abs(low - was_low), 0.002 * diagonal);
+    // What is far from the finger stays.
+    for (const Index v : vertices_of(made.mesh, *set.find(3)))
+        ASSERT_LT(std::sqrt(CGAL::squared_distance(result.points[v], rest[v])), 1e-3 * diagonal);
+}
+
+TEST(Deform, ContradictionsAreToldAndLeaveNoHoles) {
+    const Caged& object = teapot();
+    RelationGraph graph;
+    // Upright and level planes at once, through one pair of flowers, both hard.
+    graph.relationships.push_back(constraint(0, "keep shape", {5}, R"({"hard": true})"));
+    graph.relationships.push_back(constraint(1, "same level", {5, 6}, R"({"hard": true, "direction": [1, 0, 0]})"));
+    graph.relationships.push_back(constraint(2, "adjacency", {5, 6}, "{}"));
+    DeformOptions options;
+    options.rounds = 5;
+    const DeformResult result = deform(object.handles(), graph, edit(""), "e", options);
+    EXPECT_FALSE(result.acceptable);
+    for (const Point& p : result.points) ASSERT_TRUE(std::isfinite(p.x()) && std::isfinite(p.y()) && std::isfinite(p.z()));
+    EXPECT_FALSE(result.constraints[2].used);
+    EXPECT_NE(result.constraints[2].text.find("left out"), std::string::npos);
+    // Weights all zero: nothing to solve, nothing moves.
+    for (auto& r : graph.relationships) r.weight = 0;
+    const DeformResult none = deform(object.handles(), graph, edit(""), "e");
+    EXPECT_FALSE(none.solved);
+    EXPECT_EQ(none.points, none.edited);
 }
