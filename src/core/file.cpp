@@ -127,7 +127,7 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::write(std::string_view bytes) {
-    if (std::fwrite(bytes.data(), 1, bytes.size(), stream_) != bytes.size())
+    if (!bytes.empty() && std::fwrite(bytes.data(), 1, bytes.size(), stream_) != bytes.size())
         throw Error(ErrorKind::failure, file_.string(), "cannot be written: " + reason(),
                     "free some space; an earlier file of that name is untouched");
 }

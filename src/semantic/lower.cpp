@@ -1,5 +1,7 @@
 #include "lower.h"
 
+#include "continuity.h"
+
 #include "ostraka/axis/axis.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/json.h"
@@ -79,6 +81,13 @@ public:
         if (const auto d = direction("direction")) return *d;
         if (!shape_.set.up) fail("no direction is up", "give direction in the constraint, or up in the annotations");
         return Vector3d((*shape_.set.up)[0], (*shape_.set.up)[1], (*shape_.set.up)[2]).normalized();
+    }
+    [[nodiscard]] double number(const char* name, double otherwise, double least, double most) const {
+        const JsonValue* value = find_member(parameters_, name);
+        if (value == nullptr) return otherwise;
+        if (!value->IsNumber() || !(value->GetDouble() >= least && value->GetDouble() <= most))
+            fail(std::string(name) + " is not a number from " + std::to_string(least) + " to " + std::to_string(most), "mend it");
+        return value->GetDouble();
     }
     /// minValue and maxValue (Appendix B.2), positive.
     [[nodiscard]] Range range() const {
@@ -310,12 +319,54 @@ Lowered co_axiality(const Reader& read) {
     return result;
 }
 
+/// The segment of the first member that continues the second, and the axis of the second on a mesh.
+AxisSegment segment_of(const Reader& read) {
+    read.need(2, 2);
+    for (const std::size_t i : {0, 1})
+        if (read.member(i).faces.empty())
+            read.fail("annotation " + std::to_string(read.member(i).id) + " is no region", "use regions");
+    const Axis reference = find_axis(read.shape().mesh, read.member(1).faces);
+    if (!reference.found)
+        read.fail("annotation " + std::to_string(read.member(1).id) + " has no axis: " + reference.reason, "use another part");
+    const AxisSegment segment = continuing_segment(read.shape().mesh, read.member(0), read.member(1), reference.direction,
+                                                   read.number("angle", 10, 0.1, 90));
+    if (!segment.reason.empty())
+        read.fail("annotation " + std::to_string(read.member(0).id) + " " + segment.reason, "raise angle, or state co-axiality");
+    return segment;
+}
+
+Lowered structural_continuity(const Reader& read) {
+    const AxisSegment segment = segment_of(read);
+    const Axis reference = find_axis(read.shape().mesh, read.member(1).faces);
+    ConstraintParameters parameters;
+    parameters.direction = eigen(reference.direction);
+    parameters.point = eigen(reference.point);
+    parameters.stations = segment.stations;
+    Lowered result;
+    result.constraints.push_back(read.make("AxisOnLine", segment.vertices, parameters));
+    return result;
+}
+
+/// Means of the stations on deformed points.
+std::vector<Vector3d> station_means(const AxisSegment& segment, const Points& points) {
+    std::vector<Vector3d> means(static_cast<std::size_t>(segment.count), Vector3d::Zero());
+    std::vector<double> sizes(means.size(), 0);
+    for (std::size_t i = 0; i < segment.vertices.size(); ++i) {
+        const auto s = static_cast<std::size_t>(segment.stations[i]);
+        means[s] += points.col(segment.vertices[i]);
+        sizes[s] += 1;
+    }
+    for (std::size_t s = 0; s < means.size(); ++s) means[s] /= sizes[s];
+    return means;
+}
+
 using Lowering = Lowered (*)(const Reader&);
 const std::map<std::string, Lowering>& table() {
     static const std::map<std::string, Lowering> rows{
-        {"keep shape", keep_shape},     {"same level", same_level}, {"co-planarity", co_planarity},
-        {"co-linearity", co_linearity}, {"proportion", proportion}, {"keep measure", keep_measure},
-        {"co-axiality", co_axiality},
+        {"keep shape", keep_shape},     {"same level", same_level},
+        {"co-planarity", co_planarity}, {"co-linearity", co_linearity},
+        {"proportion", proportion},     {"keep measure", keep_measure},
+        {"co-axiality", co_axiality},   {"structural continuity", structural_continuity},
     };
     return rows;
 }
@@ -372,6 +423,17 @@ Measured measure(const Shape& shape, const Mesh& deformed, const Relationship& r
         Measured result = verdict_of({{"out of range", std::isfinite(value) ? percent_out(value, range) : 1e9, 0.1, "%"}});
         result.text = std::to_string(value) + " in " + std::to_string(range.min) + " to " + std::to_string(range.max);
         return result;
+    }
+    if (relationship.type == "structural continuity") {
+        const AxisSegment segment = segment_of(read);
+        const Axis reference = find_axis(deformed, read.member(1).faces);
+        if (!reference.found) return {Verdict::unknown, {}, "the reference has no axis any more: " + reference.reason};
+        const auto means = station_means(segment, points);
+        const Vector3d direction = eigen(reference.direction), along = means.back() - means.front();
+        double off = 0;
+        for (const Vector3d& mean : means) off = std::max(off, direction.cross(mean - eigen(reference.point)).norm());
+        const double turned = std::atan2(direction.cross(along).norm(), std::abs(direction.dot(along))) * 180 / M_PI;
+        return verdict_of({{"angle", turned, tolerances.angle, "degree"}, {"distance", off, length, shape.set.unit}});
     }
     // What relations measure holds for constraints of the same name.
     RelationMeter meter(deformed, shape.set, tolerances);

@@ -265,3 +265,34 @@ TEST(Deform, ContradictionsAreToldAndLeaveNoHoles) {
     EXPECT_FALSE(none.solved);
     EXPECT_EQ(none.points, none.edited);
 }
+
+TEST(Deform, ASupportContinuesItsLegWhileTheArmIsMoved) {
+    const Caged object("chair", 8000, 200);
+    // The arm is drawn forwards and outwards with what is on it; its support's foot is to stay on the axis of the leg below.
+    const std::string steps = R"({"select": {"annotation": "left arm", "threshold": 0.3}, "translate": [0, -25, 0]})";
+    double angle_soft = 0;
+    for (const bool hard : {false, true}) {
+        RelationGraph graph;
+        graph.relationships.push_back(
+            constraint(0, "structural continuity", {4, 7}, hard ? R"({"hard": true})" : R"({"angle": 20})", 200));
+        const DeformResult result = deform(object.handles(), graph, edit(steps), "e");
+        const ConstraintReport& report = result.constraints[0];
+        ASSERT_TRUE(report.used);
+        ASSERT_EQ(report.deviations.size(), 2U);
+        std::cout << (hard ? "hard" : "soft") << ": angle " << report.before_values[0] << " -> " << *report.deviations[0].value
+                  << ", distance " << report.before_values[1] << " -> " << *report.deviations[1].value << '\n';
+        EXPECT_GT(report.before_values[0], 3);
+        if (hard) {
+            EXPECT_LT(*report.deviations[0].value, 1);
+            EXPECT_EQ(report.verdict, Verdict::holds);
+        } else {
+            angle_soft = *report.deviations[0].value;
+            EXPECT_LT(angle_soft, report.before_values[0]);
+        }
+    }
+    // A part that leaves the axis at once has nothing to continue.
+    RelationGraph graph;
+    graph.relationships.push_back(constraint(0, "structural continuity", {3, 7}, R"({"angle": 5})"));
+    EXPECT_NE(error_of(object.handles(), steps, graph).find("leaves it by more than"), std::string::npos)
+        << error_of(object.handles(), steps, graph);
+}

@@ -1,0 +1,86 @@
+#include "continuity.h"
+
+#include "ostraka/geom/eigen.h"
+#include "ostraka/semantic/edit.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ostraka::semantic {
+
+namespace {
+
+using Eigen::Vector3d;
+
+/// Points at equal steps along a poly-line.
+std::vector<Vector3d> resampled(const std::vector<Point>& line, int steps) {
+    std::vector<double> at{0};
+    for (std::size_t i = 1; i < line.size(); ++i) at.push_back(at.back() + (eigen(line[i]) - eigen(line[i - 1])).norm());
+    std::vector<Vector3d> points;
+    std::size_t i = 1;
+    for (int k = 0; k <= steps; ++k) {
+        const double s = at.back() * k / steps;
+        while (i + 1 < line.size() && at[i] < s) ++i;
+        const double length = at[i] - at[i - 1], share = length > 0 ? std::clamp((s - at[i - 1]) / length, 0.0, 1.0) : 0;
+        points.push_back((1 - share) * eigen(line[i - 1]) + share * eigen(line[i]));
+    }
+    return points;
+}
+
+}  // namespace
+
+AxisSegment continuing_segment(const Mesh& mesh, const Annotation& part, const Annotation& reference, const Vector& axis,
+                               double angle) {
+    AxisSegment result;
+    const Axis skeleton = skeleton_axis(mesh, part.faces);
+    if (!skeleton.found || skeleton.lines.empty() || skeleton.lines[0].size() < 2) {
+        result.reason = "has no skeleton: " + skeleton.reason;
+        return result;
+    }
+    constexpr int steps = 20;
+    std::vector<Vector3d> line = resampled(skeleton.lines[0], steps);
+    double to_front = std::numeric_limits<double>::infinity(), to_back = to_front;
+    for (const Index v : vertices_of(mesh, reference)) {
+        const Vector3d p = eigen(mesh.point(Vertex(v)));
+        to_front = std::min(to_front, (p - line.front()).norm());
+        to_back = std::min(to_back, (p - line.back()).norm());
+    }
+    if (to_back < to_front) std::reverse(line.begin(), line.end());
+    const Vector3d direction = eigen(axis).normalized();
+    const double limit = std::cos(angle * M_PI / 180);
+    int last = 0;
+    for (; last < steps; ++last) {
+        const Vector3d step = line[static_cast<std::size_t>(last) + 1] - line[static_cast<std::size_t>(last)];
+        if (!(step.norm() > 0) || std::abs(step.normalized().dot(direction)) < limit) break;
+    }
+    if (last < 2) {
+        result.reason = "does not begin in the direction of the reference: its skeleton leaves it by more than " +
+                        std::to_string(angle) + " degrees at once";
+        return result;
+    }
+    // A vertex belongs to the step of the skeleton that it is nearest to.
+    std::vector<int> step_of_station(static_cast<std::size_t>(steps), -1);
+    for (const Index v : vertices_of(mesh, part)) {
+        const Vector3d p = eigen(mesh.point(Vertex(v)));
+        double best = std::numeric_limits<double>::infinity();
+        int at = 0;
+        for (int k = 0; k < steps; ++k) {
+            const Vector3d a = line[static_cast<std::size_t>(k)], d = line[static_cast<std::size_t>(k) + 1] - a;
+            const double share = d.squaredNorm() > 0 ? std::clamp((p - a).dot(d) / d.squaredNorm(), 0.0, 1.0) : 0;
+            const double off = (p - a - share * d).squaredNorm();
+            if (off < best) best = off, at = k;
+        }
+        if (at >= last) continue;
+        result.vertices.push_back(static_cast<int>(v));
+        result.stations.push_back(at);
+    }
+    // Stations without gaps.
+    for (const int station : result.stations) step_of_station[static_cast<std::size_t>(station)] = 0;
+    for (int& number : step_of_station)
+        if (number == 0) number = result.count++;
+    for (int& station : result.stations) station = step_of_station[static_cast<std::size_t>(station)];
+    if (result.count < 2) result.reason = "has too few vertices beside its skeleton";
+    return result;
+}
+
+}  // namespace ostraka::semantic
