@@ -6,6 +6,7 @@
 #include "ostraka/geom/eigen.h"
 
 #include <algorithm>
+#include <set>
 
 namespace ostraka {
 
@@ -88,6 +89,7 @@ private:
             report.used = !lowered.constraints.empty() && relationship.weight > 0;
             if (lowered.constraints.empty()) report.text = "left out: deformation does not know this type";
             else if (!report.used) report.text = "left out: its weight is zero";
+            if (report.used) anchors_.insert(lowered.anchors.begin(), lowered.anchors.end());
             if (report.used)
                 for (auto& constraint : lowered.constraints) {
                     lowered_.push_back(std::move(constraint));
@@ -111,7 +113,7 @@ private:
         std::vector<int> used, moved;
         for (const Vertex v : space_.mesh.vertices()) {
             if (space_.mesh.is_isolated(v)) continue;
-            const bool handle = space_.cage == nullptr && last.touched[v];
+            const bool handle = (space_.cage == nullptr && last.touched[v]) || anchors_.count(v.idx()) > 0;
             (handle ? moved : used).push_back(static_cast<int>(v.idx()));
         }
         const auto closeness = [&](const std::vector<int>& ids, double weight) {
@@ -243,6 +245,7 @@ private:
     std::vector<std::size_t> owner_;  ///< of each lowered constraint, in the report
     std::size_t first_ = 0;           ///< its place in the solver's list
     std::vector<const Relationship*> relationships_;
+    std::set<Index> anchors_;
 };
 
 }  // namespace

@@ -275,10 +275,11 @@ Lowered proportion(const Reader& read) {
     parameters.second_direction = second.direction;
     parameters.pins = {place(first.from, part.size()), place(first.to, part.size())};
     // It stretches from where it joins the rest.
-    for (const Index v : joint(read.shape().mesh, read.member(0))) parameters.anchors.push_back(place(v, part.size()));
+    Lowered result;
+    result.anchors = joint(read.shape().mesh, read.member(0));
+    for (const Index v : result.anchors) parameters.anchors.push_back(place(v, part.size()));
     parameters.pins.push_back(place(second.from, part.size()));
     parameters.pins.push_back(place(second.to, part.size()));
-    Lowered result;
     result.constraints.push_back(read.make("Proportion", ids_of(part), parameters));
     return result;
 }

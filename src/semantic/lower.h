@@ -16,6 +16,7 @@ struct Shape {
 
 struct Lowered {
     std::vector<std::unique_ptr<Constraint>> constraints;
+    std::vector<Index> anchors;  ///< vertices that are to stay where the edit leaves them
 };
 
 /// Low-level constraints of one relationship that is a constraint. Throws Error (input) naming it where it makes no sense.

@@ -86,7 +86,7 @@ TEST_F(MeasureCommand, TakesStoresAndRefreshes) {
     ASSERT_EQ(result.code, 0) << result.err;
     AnnotationSet set = read_annotations(out, mesh);
     ASSERT_EQ(set.find(7)->attributes.size(), 1U);
-    const Measure& way = set.find(7)->attributes[0].measure;
+    const Measure way = set.find(7)->attributes[0].measure;
     EXPECT_TRUE(way.exact);
     EXPECT_EQ(way.unit, "mm");
     EXPECT_NEAR(*way.value, (std::sqrt(5) + std::hypot(1.5, 1)) / 2, 1e-12);

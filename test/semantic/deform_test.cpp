@@ -10,6 +10,10 @@
 #include "ostraka/shapes/make_mesh.h"
 
 #include <gtest/gtest.h>
+#include <Eigen/SVD>
+
+#include <iostream>
+#include <set>
 
 using namespace ostraka;
 using namespace ostraka::example;
@@ -295,4 +299,54 @@ TEST(Deform, ASupportContinuesItsLegWhileTheArmIsMoved) {
     graph.relationships.push_back(constraint(0, "structural continuity", {3, 7}, R"({"angle": 5})"));
     EXPECT_NE(error_of(object.handles(), steps, graph).find("leaves it by more than"), std::string::npos)
         << error_of(object.handles(), steps, graph);
+}
+
+TEST(Deform, SurroundingsAreDistortedLessThanInTheThesis) {
+    // The teapot stretched by 1.4; the ring around each flower: faces within 1.6 of its radius. How far a face is stretched
+    // against the edited shape, which is what is wanted there: singular values of the map from the edited to the final face.
+    const Caged& object = teapot();
+    const std::string steps = R"({"select": {"all": true}, "stretch": {"direction": [0, 0, 1], "factor": 1.4}})";
+    const std::vector<int> flowers{7, 8, 9, 10, 11};
+    const auto distortion = [&](const std::string& details, double closeness) {
+        RelationGraph graph;
+        graph.relationships.push_back(constraint(0, "same level", flowers, R"({"hard": true})"));
+        DeformOptions options;
+        options.details = details;
+        options.closeness = closeness;
+        const DeformResult result = deform(object.handles(), graph, edit(steps), "e", options);
+        EXPECT_TRUE(result.acceptable);
+        double sum = 0, area = 0;
+        for (const int id : flowers) {
+            const Annotation& flower = *object.set.find(id);
+            const std::set<Index> inside(flower.faces.begin(), flower.faces.end());
+            Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+            double radius = 0;
+            const auto own = vertices_of(object.made.mesh, flower);
+            for (const Index v : own) middle += eigen(object.made.mesh.point(Vertex(v))) / static_cast<double>(own.size());
+            for (const Index v : own) radius = std::max(radius, (eigen(object.made.mesh.point(Vertex(v))) - middle).norm());
+            for (const Face f : object.made.mesh.faces()) {
+                if (inside.count(f.idx()) > 0 || (eigen(centroid(object.made.mesh, f)) - middle).norm() > 1.6 * radius) continue;
+                const auto [a, b, c] = corners(object.made.mesh, f);
+                const auto frame = [&](const std::vector<Point>& p) {
+                    const Eigen::Vector3d u = eigen(p[b] - p[a]), v = eigen(p[c] - p[a]), x = u.normalized();
+                    Eigen::Matrix2d m;
+                    m << u.norm(), x.dot(v), 0, (v - x * x.dot(v)).norm();
+                    return m;
+                };
+                const Eigen::Matrix2d map = frame(result.points) * frame(result.edited).inverse();
+                const Eigen::Vector2d s = Eigen::JacobiSVD<Eigen::Matrix2d>(map).singularValues();
+                const double weight = face_area(object.made.mesh, f);
+                sum += weight * (std::abs(s[0] - 1) + std::abs(s[1] - 1));
+                area += weight;
+            }
+        }
+        return sum / area;
+    };
+    // With a strong hold on each vertex the change is crowded into the rings; with a weak one it spreads.
+    const double ours = distortion("edited", DeformOptions().closeness), rest = distortion("rest", DeformOptions().closeness);
+    const double crowded = distortion("rest", 0.05);
+    std::cout << "mean stretch of the rings: " << ours << ", to the rest shape's displacements " << rest << ", held strongly "
+              << crowded << '\n';
+    EXPECT_LT(ours, rest);
+    EXPECT_LT(rest, crowded);
 }

@@ -11,9 +11,9 @@ namespace ostraka {
 struct DeformOptions {
     std::string space = "mesh";      ///< where constraints are solved: the mesh's points, or the cage's
     std::string details = "edited";  ///< what the surface tends to between constraints
-    double closeness = 0.05;         ///< weight of the edited positions, on every vertex
+    double closeness = 0.001;        ///< weight of the edited positions, on every vertex
     double laplacian = 2;            ///< weight of the Laplacian displacements, on every vertex (mesh space)
-    double handles = 100;            ///< weight of the handles that the edit moves
+    double handles = 100;            ///< weight of the handles that the edit moves, and of the joints that parts stretch from
     SolveOptions solve;
     int rounds = 100;  ///< of the loop that enforces hard constraints
 
@@ -29,7 +29,8 @@ struct DeformOptions {
               Choices{"edited", "rest"});
         visit("closeness", closeness, "weight of the edited position of each vertex", Range{0, 1e9});
         visit("laplacian", laplacian, "weight of the Laplacian displacement of each vertex", Range{0, 1e9});
-        visit("handles", handles, "weight of the positions of the handles that the edit moves", Range{0, 1e9});
+        visit("handles", handles,
+              "weight of the positions of the handles that the edit moves, and of joints that parts stretch from", Range{0, 1e9});
         solve.describe(visit);
         visit("rounds", rounds, "rounds in which hard constraints are enforced", Range{1, 1e6});
     }
