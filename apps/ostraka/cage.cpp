@@ -1,4 +1,5 @@
 // ostraka cage weights | influence
+#include "annotation_names.h"
 #include "command.h"
 
 #include "ostraka/annotation/annotation_file.h"
@@ -126,7 +127,7 @@ struct Influence {
             what = "weight of cage vertex " + std::to_string(*cage_vertex);
         } else if (!annotation.empty()) {
             const AnnotationSet set = read_annotations(annotations, subject);
-            const Annotation& chosen = find(set);
+            const Annotation& chosen = find_annotation(set, annotation, annotations);
             values = influence_on(coordinates, touched_vertices(subject, chosen), by);
             what = (by == "max" ? "largest weight on '" : "sum of the weights on '") + chosen.tag + "'";
         } else {
@@ -140,19 +141,6 @@ struct Influence {
     }
 
 private:
-    [[nodiscard]] const Annotation& find(const AnnotationSet& set) const {
-        const Annotation* found = nullptr;
-        for (const Annotation& one : set.annotations) {
-            if (std::to_string(one.id) == annotation) return one;
-            if (one.tag != annotation) continue;
-            if (found != nullptr) fail_usage("several annotations have the tag '" + annotation + "'", "give the id of one");
-            found = &one;
-        }
-        if (found == nullptr)
-            fail_input(annotations, "has no annotation '" + annotation + "'", "'ostraka annotation list' shows what there is");
-        return *found;
-    }
-
     void write(const Session& session, const Mesh& coloured, const std::vector<double>& values,
                const Provenance& provenance) const {
         const ColourScale scale = scale_of({&values}, "the weights");

@@ -43,6 +43,7 @@ struct Deform {
             }
         check_outputs(inputs, outputs);
         Provenance provenance{"deform", list_options(options), {}};
+        for (auto& option : list_options(tolerances)) provenance.options.push_back(std::move(option));
         for (const Path& input : inputs) provenance.add_input(input);
 
         const auto start = std::chrono::steady_clock::now();
@@ -133,6 +134,7 @@ private:
         }
         add_member(report, "acceptable", JsonValue(result.acceptable), allocator);
         add_member(report, "iterations", JsonValue(result.summary.iterations), allocator);
+        add_member(report, "rounds", JsonValue(result.rounds), allocator);
         add_member(report, "stopped", result.solved ? std::string(describe(result.summary.stop)) : "nothing to solve", allocator);
         add_member(report, "constraints", std::move(list), allocator);
         add_member(run, "seconds", JsonValue(seconds), allocator);
@@ -142,7 +144,10 @@ private:
         }
         if (!rows.empty()) std::cout << table({"id", "constraint", "weight", "verdict", "how well"}, rows);
         if (result.solved)
-            std::cout << result.summary.iterations << (result.summary.iterations == 1 ? " iteration: " : " iterations: ")
+            std::cout << (result.rounds > 0 ? std::to_string(result.rounds) + (result.rounds == 1 ? " round" : " rounds") +
+                                                  " for the hard constraints, the last with "
+                                            : "")
+                      << result.summary.iterations << (result.summary.iterations == 1 ? " iteration: " : " iterations: ")
                       << describe(result.summary.stop) << '\n';
         std::cout << (result.constraints.empty() ? "no constraints"
                       : result.acceptable        ? "acceptable: every constraint holds"

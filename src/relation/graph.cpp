@@ -43,6 +43,8 @@ const std::vector<RelationType>& relation_types() {
                                  "laplacian displacement",
                                  "angle",
                                  "length",
+                                 "keep shape",
+                                 "keep measure",
                                  "structural continuity",
                                  "proportion"})
             list.push_back({name, 1, 0, false, false});

@@ -144,8 +144,11 @@ private:
             for (std::size_t i = 0; i < owner_.size(); ++i) hard[first_ + i] = result.constraints[owner_[i]].hard;
             HardSolver solver(std::move(all), hard, rest_);
             HardOptions options;
+            options.inner = options_.solve;
             options.rounds = options_.rounds;
-            result.summary = solver.solve(points, options).last;
+            const HardSummary summary = solver.solve(points, options);
+            result.summary = summary.last;
+            result.rounds = summary.rounds;
             residuals(result, points, [&](std::size_t i) -> const Constraint& { return solver.constraint(i); });
         } else {
             MeshSpaceSolver solver(std::move(all), rest_);
@@ -224,8 +227,8 @@ private:
                 result.acceptable = result.acceptable && report.weight == 0;
                 continue;
             }
-            const auto then = semantic::measure(shape, before, *relationships_[i], tolerances_, where_);
-            auto now = semantic::measure(shape, after, *relationships_[i], tolerances_, where_);
+            auto states = semantic::measure(shape, {&before, &after}, *relationships_[i], tolerances_, where_);
+            semantic::Measured &then = states[0], &now = states[1];
             report.before = then.verdict;
             report.verdict = now.verdict;
             for (const Deviation& deviation : then.deviations) report.before_values.push_back(deviation.value.value_or(0));

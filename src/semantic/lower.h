@@ -22,19 +22,14 @@ struct Lowered {
 /// Low-level constraints of one relationship that is a constraint. Throws Error (input) naming it where it makes no sense.
 Lowered lower(const Shape& shape, const Relationship& relationship, const std::string& where);
 
-/// The measured state of a constraint on a mesh of the same connectivity, with its tolerances.
+/// The measured state of a constraint on each of some meshes of the same connectivity, with its tolerances.
 struct Measured {
     Verdict verdict = Verdict::unknown;
     std::vector<Deviation> deviations;
     std::string text;
 };
-Measured measure(const Shape& shape, const Mesh& deformed, const Relationship& relationship, const RelationOptions& tolerances,
-                 const std::string& where);
-
-/// Measures of a proportion or of a measure that is kept.
-struct Range {
-    double min = 0, max = 0;
-};
+std::vector<Measured> measure(const Shape& shape, const std::vector<const Mesh*>& deformed, const Relationship& relationship,
+                              const RelationOptions& tolerances, const std::string& where);
 
 Points columns_of(const Mesh& mesh);
 

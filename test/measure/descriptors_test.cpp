@@ -1,5 +1,6 @@
 #include "ostraka/measure/descriptors.h"
 
+#include "measure/solids.h"
 #include "meshes.h"
 #include "ostraka/annotation/outline.h"
 #include "ostraka/core/error.h"
@@ -13,7 +14,6 @@
 #include <Eigen/Geometry>
 
 #include <limits>
-#include <map>
 #include <numbers>
 #include <numeric>
 #include <random>
@@ -21,187 +21,7 @@
 namespace ostraka {
 namespace {
 
-using Eigen::Vector3d;
-
-/// Vertices moved by a rotation and a shift.
-TriangleSoup moved(TriangleSoup soup, const Eigen::Matrix3d& turn, const Vector3d& shift) {
-    for (auto& p : soup.points) {
-        const Vector3d q = turn * Vector3d(p[0], p[1], p[2]) + shift;
-        p = {q[0], q[1], q[2]};
-    }
-    return soup;
-}
-
-Eigen::Matrix3d some_turn(int seed) {
-    std::mt19937 random(static_cast<unsigned>(seed));
-    std::normal_distribution<double> normal;
-    return Eigen::Quaterniond(normal(random), normal(random), normal(random), normal(random)).normalized().toRotationMatrix();
-}
-
-TriangleSoup box(int n, double a, double b, double c) {
-    TriangleSoup soup = test::box(n);
-    for (auto& p : soup.points) p = {a * p[0], b * p[1], c * p[2]};
-    return soup;
-}
-
-Annotation whole(const Mesh& mesh) {
-    AnnotationSet set;
-    return ensure_root(set, mesh);
-}
-
-Measure pins(const std::string& tool, std::vector<Index> points) {
-    Measure measure;
-    measure.tool = tool;
-    measure.points = std::move(points);
-    return measure;
-}
-
-TEST(Exactness, OfPolyhedraUnderRigidMotionToRounding) {
-    // A box of 60,000 triangles: area, volume, centroid, box, ruler, tape along its edges, bounding: known, wherever it stands.
-    const double a = 1, b = 2, c = 5, diagonal = std::sqrt(a * a + b * b + c * c);
-    const TriangleSoup soup = box(70, a, b, c);
-    const auto corner = [&](double x, double y, double z) {
-        for (Index i = 0; i < soup.points.size(); ++i)
-            if (soup.points[i] == std::array<double, 3>{x, y, z}) return i;
-        return no_index;
-    };
-    const Index o = corner(0, 0, 0), far = corner(a, b, c), up = corner(0, 0, c);
-    for (const double offset : {0.0, 10.0, 1e3, 1e6}) {
-        const Vector3d shift = offset * Vector3d(1, -2, 3).normalized();
-        const Eigen::Matrix3d turn = offset == 0 ? Eigen::Matrix3d::Identity() : some_turn(static_cast<int>(offset));
-        const Mesh mesh = build_mesh(moved(soup, turn, shift));
-        const Annotation root = whole(mesh);
-        const double tolerance = 1e-12 * (1 + offset / diagonal);
-        DescriptorSearch search(mesh);
-        const auto value = [&](const std::string& name) { return search.find(root, name)->values.front(); };
-        const auto near = [&](double x, double exact, const char* what) {
-            EXPECT_LE(std::abs(x - exact), tolerance * std::abs(exact)) << what << " at " << offset;
-        };
-        near(value("area"), 2 * (a * b + b * c + c * a), "area");
-        near(value("volume"), a * b * c, "volume");
-        EXPECT_EQ(value("volume bound"), 0);
-        near(value("mean curvature integral"), std::numbers::pi * (a + b + c), "mean curvature");
-        const Vector3d middle = turn * Vector3d(a / 2, b / 2, c / 2) + shift;
-        for (const char* name : {"centroid", "solid centroid", "box centre"}) {
-            const auto at = search.find(root, name)->values;
-            const double allowed = (std::string(name) == "box centre" ? 1e-6 : tolerance) * (diagonal + offset);
-            EXPECT_LE((Vector3d(at[0], at[1], at[2]) - middle).norm(), allowed) << name << " at " << offset;
-        }
-        near(evaluate(mesh, root, pins("ruler", {o, far})), diagonal, "ruler");
-        near(evaluate(mesh, root, pins("tape", {o, up})), c, "tape");
-        Measure bounding = pins("bounding", {o, far});
-        const Vector3d z = turn * Vector3d::UnitZ();
-        bounding.direction = std::array<double, 3>{z[0], z[1], z[2]};
-        near(evaluate(mesh, root, bounding), c, "bounding");
-        Annotation side;  // the faces on x = 0
-        for (const Face f : mesh.faces())
-            if (std::abs((turn.transpose() *
-                          (Vector3d(centroid(mesh, f).x(), centroid(mesh, f).y(), centroid(mesh, f).z()) - shift))[0]) < 1e-6)
-                side.faces.push_back(f);
-        near(search.find(side, "area")->values.front(), b * c, "area of a side");
-        near(search.find(side, "perimeter")->values.front(), 2 * (b + c), "perimeter of a side");
-        near(search.find(side, "circularity")->values.front(), 4 * (b + c) * (b + c) / (b * c), "circularity");
-    }
-}
-
-/// Each triangle in four, flat.
-TriangleSoup in_four(const TriangleSoup& soup) {
-    TriangleSoup result{soup.points, {}};
-    std::map<std::pair<Index, Index>, Index> middles;
-    const auto middle = [&](Index p, Index q) {
-        const auto [entry, fresh] = middles.try_emplace(std::minmax(p, q), static_cast<Index>(result.points.size()));
-        if (fresh) {
-            const auto a = result.points[p], b = result.points[q];
-            result.points.push_back({(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2});
-        }
-        return entry->second;
-    };
-    for (const auto& [p, q, r] : soup.triangles) {
-        const Index u = middle(p, q), v = middle(q, r), w = middle(r, p);
-        for (const auto& t : {std::array{p, u, w}, {u, q, v}, {w, v, r}, {u, v, w}}) result.triangles.push_back(t);
-    }
-    return result;
-}
-
-TEST(Exactness, OfRegularPolyhedra) {
-    const double s3 = std::sqrt(3.0), golden = (1 + std::sqrt(5.0)) / 2;
-    struct Solid {
-        TriangleSoup soup;
-        double area, volume, width;  ///< width: extent along x
-    };
-    std::vector<Solid> solids;
-    // Edge length 2 sqrt(2), sqrt(2), 2.
-    solids.push_back(
-        {{{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}}, {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}}}, 8 * s3, 8.0 / 3, 2});
-    solids.push_back({{{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}},
-                       {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}}},
-                      4 * s3,
-                      4.0 / 3,
-                      2});
-    Solid ball{{}, 20 * s3, 10.0 / 3 * (3 + std::sqrt(5.0)), 2 * golden};
-    for (const double a : {-1.0, 1.0})
-        for (const double b : {-golden, golden}) {
-            ball.soup.points.push_back({0, a, b});
-            ball.soup.points.push_back({a, b, 0});
-            ball.soup.points.push_back({b, 0, a});
-        }
-    const auto apart = [&](Index i, Index j) {
-        double sum = 0;
-        for (std::size_t k = 0; k < 3; ++k) sum += std::pow(ball.soup.points[i][k] - ball.soup.points[j][k], 2);
-        return sum;
-    };
-    for (Index i = 0; i < 12; ++i)
-        for (Index j = i + 1; j < 12; ++j)
-            for (Index k = j + 1; k < 12; ++k) {
-                if (apart(i, j) > 4.1 || apart(j, k) > 4.1 || apart(k, i) > 4.1) continue;
-                const Vector3d p(ball.soup.points[i].data()), q(ball.soup.points[j].data()), r(ball.soup.points[k].data());
-                const bool outward = (q - p).cross(r - p).dot(p) > 0;
-                ball.soup.triangles.push_back(outward ? std::array{i, j, k} : std::array{i, k, j});
-            }
-    ASSERT_EQ(ball.soup.triangles.size(), 20U);
-    solids.push_back(ball);
-    for (Solid& solid : solids) {
-        for (int k = 0; k < 4; ++k) solid.soup = in_four(solid.soup);
-        for (const double offset : {0.0, 1e3, 1e6}) {
-            const Vector3d shift = offset * Vector3d(2, 1, -2) / 3;
-            const Eigen::Matrix3d turn = some_turn(static_cast<int>(offset) + 5);
-            const Mesh mesh = build_mesh(moved(solid.soup, turn, shift));
-            const Annotation root = whole(mesh);
-            const double diagonal = box_diagonal(mesh), tolerance = 1e-12 * (1 + offset / diagonal);
-            DescriptorSearch search(mesh);
-            EXPECT_LE(std::abs(search.find(root, "area")->values[0] - solid.area), tolerance * solid.area) << offset;
-            EXPECT_LE(std::abs(search.find(root, "volume")->values[0] - solid.volume), tolerance * solid.volume) << offset;
-            for (const char* name : {"centroid", "solid centroid"}) {
-                const auto at = search.find(root, name)->values;
-                EXPECT_LE((Vector3d(at[0], at[1], at[2]) - shift).norm(), tolerance * (diagonal + offset)) << name << offset;
-            }
-            Measure bounding = pins("bounding", {0, 1});
-            const Vector3d x = turn * Vector3d::UnitX();
-            bounding.direction = std::array<double, 3>{x[0], x[1], x[2]};
-            const auto ends = extremes(mesh, root, *bounding.direction);
-            bounding.points.assign(ends.begin(), ends.end());
-            EXPECT_LE(std::abs(evaluate(mesh, root, bounding) - solid.width), tolerance * solid.width) << offset;
-        }
-    }
-}
-
-TEST(Exactness, OfTheExactTape) {
-    const double a = 1, b = 2, c = 5, diagonal = std::sqrt(a * a + b * b + c * c);
-    const TriangleSoup soup = box(8, a, b, c);
-    Index first = 0, last = 0;
-    for (Index i = 0; i < soup.points.size(); ++i) {
-        if (soup.points[i] == std::array<double, 3>{0, 0, 0}) first = i;
-        if (soup.points[i] == std::array<double, 3>{a, b, c}) last = i;
-    }
-    for (const double offset : {0.0, 10.0, 1e3, 1e6}) {
-        const Mesh mesh =
-            build_mesh(moved(soup, some_turn(static_cast<int>(offset) + 1), offset * Vector3d(1, -2, 3).normalized()));
-        Measure exact = pins("tape", {first, last});
-        exact.exact = true;
-        EXPECT_NEAR(evaluate(mesh, whole(mesh), exact), std::hypot(a + b, c),
-                    1e-12 * (1 + offset / diagonal) * std::hypot(a + b, c));
-    }
-}
+using namespace test;
 
 TEST(OrientedBox, IsExactOnBoxes) {
     for (int seed = 0; seed < 12; ++seed) {

@@ -105,6 +105,18 @@ TEST(DeformCommand, KeepsWhatIsAsked) {
     EXPECT_EQ(run_command(base + folder.at("d.ply")).code, 0);
 }
 
+TEST(DeformCommand, EveryDocumentedConstraintCanBeStated) {
+    const Scratch scratch;
+    for (const char* type : {"keep shape", "same level", "co-planarity", "co-linearity", "co-axiality", "structural continuity",
+                             "proportion", "keep measure"}) {
+        const std::string graph = (scratch / (std::string(type) + ".graph.json")).string();
+        const bool one = std::string(type) == "keep measure";
+        const auto added = run_command("relation add " + pot + parts + "'" + graph + "' --type '" + type + "' --annotation 5" +
+                                       (one ? "" : " --annotation 1") + " --constraint");
+        EXPECT_EQ(added.code, 0) << type << added.err;
+    }
+}
+
 TEST(DeformCommand, StatesAndEditedCages) {
     const Caged folder;
     static_cast<void>(folder.file("two.edit.json", R"({"format": "ostraka-edit", "version": 1, "steps": [

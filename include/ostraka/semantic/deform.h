@@ -56,7 +56,8 @@ struct DeformResult {
     std::vector<Point> edited;  ///< as the edit alone leaves them
     std::vector<Point> cage;    ///< handles after solving, if there is a cage
     std::vector<ConstraintReport> constraints;
-    SolveSummary summary;
+    SolveSummary summary;    ///< with hard constraints in mesh space: of the last round
+    int rounds = 0;          ///< in which hard constraints were enforced
     bool solved = false;     ///< there were constraints to solve
     bool acceptable = true;  ///< every constraint holds
 };
@@ -67,8 +68,5 @@ struct DeformResult {
 /// upside down, an empty region, a part without an axis; (usage) for cage space without a cage.
 DeformResult deform(const HandleSpace& space, const RelationGraph& graph, const JsonValue& edit, const std::string& edit_name,
                     const DeformOptions& options = {}, const RelationOptions& tolerances = {});
-
-/// The types that constrain a deformation.
-const std::vector<std::string>& semantic_constraint_types();
 
 }  // namespace ostraka
