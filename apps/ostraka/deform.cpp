@@ -2,6 +2,7 @@
 #include "command.h"
 
 #include "ostraka/annotation/annotation_file.h"
+#include "ostraka/bundle/template.h"
 #include "ostraka/coords/coordinate_file.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/measure/measure.h"
@@ -15,8 +16,20 @@ namespace ostraka::app {
 
 namespace {
 
+/// What is deformed, from files of its own or from a template.
+struct Subject {
+    MeshFile object, around;
+    AnnotationSet set;
+    RelationGraph relations;
+    std::optional<Coordinates> coordinates;
+    [[nodiscard]] HandleSpace space() const {
+        return {object.mesh, set, coordinates ? &around.mesh : nullptr, coordinates ? &*coordinates : nullptr};
+    }
+};
+
 struct Deform {
-    std::string mesh, annotations, edit, output, cage, weights, graph, annotations_out, cage_out;
+    std::vector<std::string> files;
+    std::string cage, weights, graph, annotations_out, cage_out;
     DeformOptions options;
     RelationOptions tolerances;
     bool states = false;
@@ -25,8 +38,12 @@ struct Deform {
         check_options(options, "deform");
         check_options(tolerances, "deform");
         if (cage.empty() != weights.empty()) fail_usage("--cage and --weights belong together", "give both: see 'cage weights'");
-        if (cage.empty() && !cage_out.empty()) fail_usage("--cage-out without --cage", "add --cage and --weights");
-        std::vector<Path> inputs{mesh, annotations, edit}, outputs{output};
+        const Path output = files.back(), edit = files[files.size() - 2];
+        std::optional<TemplateFile> bundle;
+        if (files.size() == 3) bundle = read_template(files[0]);
+        std::vector<Path> inputs(files.begin(), files.end() - 1), outputs{output};
+        if (bundle)
+            for (const TemplatePart& part : bundle->parts) inputs.push_back(part.file);
         for (const std::string& file : {cage, weights, graph})
             if (!file.empty()) inputs.emplace_back(file);
         for (const std::string& file : {annotations_out, cage_out})
@@ -36,9 +53,8 @@ struct Deform {
         std::vector<Path> state_files;
         if (states)
             for (rapidjson::SizeType i = 0; i < steps["steps"].Size(); ++i) {
-                const Path path(output);
-                state_files.push_back(path.parent_path() /
-                                      (path.stem().string() + "-step" + std::to_string(i + 1) + path.extension().string()));
+                state_files.push_back(output.parent_path() /
+                                      (output.stem().string() + "-step" + std::to_string(i + 1) + output.extension().string()));
                 outputs.push_back(state_files.back());
             }
         check_outputs(inputs, outputs);
@@ -47,48 +63,110 @@ struct Deform {
         for (const Path& input : inputs) provenance.add_input(input);
 
         const auto start = std::chrono::steady_clock::now();
-        const MeshFile object = read_mesh(mesh);
-        AnnotationSet set = read_annotations(annotations, object.mesh);
-        MeshFile around;
-        Coordinates coordinates;
-        HandleSpace space{object.mesh, set};
-        if (!cage.empty()) {
-            around = read_mesh(cage);
-            coordinates = read_coordinates(weights, object.mesh, around.mesh);
-            space.cage = &around.mesh;
-            space.coordinates = &coordinates;
-        }
-        RelationGraph relations;
-        if (!graph.empty()) relations = read_graph(graph, set);
-        const DeformResult result = deform(space, relations, steps, edit, options, tolerances);
+        Subject subject = bundle ? from_template(*bundle) : from_files();
+        if (!cage_out.empty() && !subject.coordinates)
+            fail_usage("--cage-out without a cage", "add --cage and --weights, or a cage and its coordinates to the template");
+        const DeformResult result = deform(subject.space(), subject.relations, steps, edit.string(), options, tolerances);
         const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
-        Mesh shaped = object.mesh;
-        for (const Vertex v : shaped.vertices()) shaped.point(v) = result.points[v];
-        write_mesh(output, shaped, object.extras);
+        const auto with = [](const MeshFile& file, const std::vector<Point>& points) {
+            Mesh mesh = file.mesh;
+            for (const Vertex v : mesh.vertices()) mesh.point(v) = points[v];
+            return mesh;
+        };
+        const Mesh shaped = with(subject.object, result.points);
+        write_mesh(output, shaped, subject.object.extras);
         if (states) {
-            const auto followed = follow_edit(steps, space, edit);
-            for (std::size_t i = 0; i < followed.size(); ++i) {
-                const auto points = cage.empty() ? followed[i].handles : deformed(coordinates, around.mesh, followed[i].handles);
-                Mesh state = object.mesh;
-                for (const Vertex v : state.vertices()) state.point(v) = points[v];
-                write_mesh(state_files[i], state, object.extras);
-            }
+            const auto followed = follow_edit(steps, subject.space(), edit.string());
+            for (std::size_t i = 0; i < followed.size(); ++i)
+                write_mesh(state_files[i],
+                           with(subject.object, subject.coordinates
+                                                    ? deformed(*subject.coordinates, subject.around.mesh, followed[i].handles)
+                                                    : followed[i].handles),
+                           subject.object.extras);
         }
-        if (!cage_out.empty()) {
-            for (const Vertex v : around.mesh.vertices()) around.mesh.point(v) = result.cage[v];
-            write_mesh(cage_out, around.mesh, around.extras);
-        }
+        if (!cage_out.empty()) write_mesh(cage_out, with(subject.around, result.cage), subject.around.extras);
         if (!annotations_out.empty()) {
-            const auto refreshed = refresh_measures(shaped, set);
+            const auto refreshed = refresh_measures(shaped, subject.set);
             for (const auto& note : refreshed.notes) session.note("note: " + note);
-            write_annotations(annotations_out, set, shaped, Path(output).filename().string(), provenance);
+            write_annotations(annotations_out, subject.set, shaped, output.filename().string(), provenance);
         }
         print(session, provenance, result, seconds);
         return result.acceptable ? done : answer_is_no;
     }
 
 private:
+    Subject from_files() const {
+        Subject subject;
+        subject.object = read_mesh(files[0]);
+        subject.set = read_annotations(files[1], subject.object.mesh);
+        take_flags(subject);
+        return subject;
+    }
+
+    Subject from_template(const TemplateFile& bundle) const {
+        Template loaded = load_template(bundle);
+        for (const Finding& finding : loaded.findings)
+            if (finding.defect) fail_input(files[0] + ", " + finding.where, finding.text, "mend it: 'template check' tells all");
+        if (!loaded.mesh) fail_input(files[0], "has no mesh", "pack one");
+        if (!loaded.annotations) fail_input(files[0], "has no annotations", "pack them, or give a mesh and its annotations");
+        Subject subject;
+        subject.object = std::move(*loaded.mesh);
+        subject.set = std::move(*loaded.annotations);
+        if (loaded.graph) subject.relations = std::move(*loaded.graph);
+        // The first cage that has coordinates.
+        const auto cages = bundle.of("cage");
+        for (std::size_t i = 0; i < cages.size() && cage.empty() && !subject.coordinates; ++i)
+            for (const TemplatePart* part : bundle.of("coordinates")) {
+                if (subject.coordinates || !loaded.cages[i]) continue;
+                try {
+                    subject.coordinates = read_coordinates(part->file, subject.object.mesh, *loaded.cages[i]);
+                    subject.around.mesh = *loaded.cages[i];
+                } catch (const Error&) {
+                    continue;  // those of another cage
+                }
+            }
+        take_flags(subject);
+        return subject;
+    }
+
+    void take_flags(Subject& subject) const {
+        if (!cage.empty()) {
+            subject.around = read_mesh(cage);
+            subject.coordinates = read_coordinates(weights, subject.object.mesh, subject.around.mesh);
+        }
+        if (!graph.empty()) subject.relations = read_graph(graph, subject.set);
+    }
+
+    static JsonValue to_json(const Deviation& d, std::optional<double> before, JsonAllocator& allocator) {
+        JsonValue deviation(rapidjson::kObjectType);
+        add_member(deviation, "quantity", d.quantity, allocator);
+        if (before) add_member(deviation, "before", JsonValue(*before), allocator);
+        add_member(deviation, "value", JsonValue(*d.value), allocator);
+        add_member(deviation, "tolerance", JsonValue(*d.tolerance), allocator);
+        add_member(deviation, "unit", d.unit, allocator);
+        return deviation;
+    }
+
+    /// What fights with what, in a sentence each.
+    static std::vector<std::string> words_of(const DeformResult& result) {
+        std::vector<std::string> lines;
+        for (const Conflict& conflict : result.conflicts) {
+            std::string freed, gives;
+            for (const int id : conflict.freed) freed += (freed.empty() ? "" : ", ") + std::to_string(id);
+            for (const Deviation& d : conflict.deviations)
+                if (*d.value > *d.tolerance)
+                    gives += (gives.empty() ? "" : "; ") + d.quantity + " " + number(*d.value, 4) + " instead of at most " +
+                             number(*d.tolerance, 4) + (d.unit.empty() ? "" : " " + d.unit);
+            lines.push_back("constraint " + std::to_string(conflict.id) + " fights with " + freed + ": without it " +
+                            (conflict.freed.size() == 1 ? "that holds" : "those hold") +
+                            (gives.empty() ? ", and it is met as well" : ", and it would have to give: " + gives));
+        }
+        if (result.untried > 0)
+            lines.push_back(std::to_string(result.untried) + " constraints were not tried: there are so many");
+        return lines;
+    }
+
     static void print(const Session& session, const Provenance& provenance, const DeformResult& result, double seconds) {
         Json document(rapidjson::kObjectType);
         auto& allocator = document.GetAllocator();
@@ -107,14 +185,8 @@ private:
             std::string words;
             for (std::size_t i = 0; i < constraint.deviations.size(); ++i) {
                 const Deviation& d = constraint.deviations[i];
-                JsonValue deviation(rapidjson::kObjectType);
                 const double before = i < constraint.before_values.size() ? constraint.before_values[i] : 0;
-                add_member(deviation, "quantity", d.quantity, allocator);
-                add_member(deviation, "before", JsonValue(before), allocator);
-                add_member(deviation, "value", JsonValue(*d.value), allocator);
-                add_member(deviation, "tolerance", JsonValue(*d.tolerance), allocator);
-                add_member(deviation, "unit", d.unit, allocator);
-                deviations.PushBack(deviation, allocator);
+                deviations.PushBack(to_json(d, before, allocator), allocator);
                 words += (words.empty() ? "" : "; ") + d.quantity + " " + number(*d.value, 4) + " (was " + number(before, 4) +
                          ", at most " + number(*d.tolerance, 4) + ")" + (d.unit.empty() ? "" : " " + d.unit);
             }
@@ -123,7 +195,8 @@ private:
             for (const auto& [name, value] : {std::pair{"mean", constraint.mean},
                                               {"median", constraint.median},
                                               {"min", constraint.least},
-                                              {"max", constraint.most}})
+                                              {"max", constraint.most},
+                                              {"greatest distance", constraint.distance}})
                 add_member(residual, name, JsonValue(value), allocator);
             add_member(residual, "constraints", JsonValue(static_cast<std::uint64_t>(constraint.low_level)), allocator);
             add_member(entry, "residual", std::move(residual), allocator);
@@ -135,20 +208,35 @@ private:
         add_member(report, "acceptable", JsonValue(result.acceptable), allocator);
         add_member(report, "iterations", JsonValue(result.summary.iterations), allocator);
         add_member(report, "rounds", JsonValue(result.rounds), allocator);
-        add_member(report, "stopped", result.solved ? std::string(describe(result.summary.stop)) : "nothing to solve", allocator);
+        add_member(report, "stopped", result.passes > 0 ? std::string(describe(result.summary.stop)) : "nothing to solve",
+                   allocator);
+        add_member(report, "passes", JsonValue(result.passes), allocator);
         add_member(report, "constraints", std::move(list), allocator);
+        JsonValue conflicts(rapidjson::kArrayType);
+        for (const Conflict& conflict : result.conflicts) {
+            JsonValue entry(rapidjson::kObjectType), freed(rapidjson::kArrayType), deviations(rapidjson::kArrayType);
+            for (const int id : conflict.freed) freed.PushBack(id, allocator);
+            for (const Deviation& d : conflict.deviations) deviations.PushBack(to_json(d, {}, allocator), allocator);
+            add_member(entry, "id", JsonValue(conflict.id), allocator);
+            add_member(entry, "freed", std::move(freed), allocator);
+            add_member(entry, "deviations", std::move(deviations), allocator);
+            conflicts.PushBack(entry, allocator);
+        }
+        add_member(report, "conflicts", std::move(conflicts), allocator);
         add_member(run, "seconds", JsonValue(seconds), allocator);
         if (session.json) {
             session.print_report(provenance, document, report, &run);
             return;
         }
         if (!rows.empty()) std::cout << table({"id", "constraint", "weight", "verdict", "how well"}, rows);
-        if (result.solved)
+        if (result.passes > 0)
             std::cout << (result.rounds > 0 ? std::to_string(result.rounds) + (result.rounds == 1 ? " round" : " rounds") +
                                                   " for the hard constraints, the last with "
                                             : "")
                       << result.summary.iterations << (result.summary.iterations == 1 ? " iteration: " : " iterations: ")
-                      << describe(result.summary.stop) << '\n';
+                      << describe(result.summary.stop)
+                      << (result.passes > 1 ? "; " + std::to_string(result.passes) + " passes" : "") << '\n';
+        for (const std::string& line : words_of(result)) std::cout << line << '\n';
         std::cout << (result.constraints.empty() ? "no constraints"
                       : result.acceptable        ? "acceptable: every constraint holds"
                                                  : "not acceptable: a constraint does not hold")
@@ -163,11 +251,16 @@ void add_deform(CLI::App& tool, Session& session) {
     CLI::App* command =
         session.add(tool, "deform", "edit a shape so that its meaning survives (exit code 3: a constraint does not hold)",
                     [&session, deform] { return deform->run(session); });
-    command->add_option("mesh", deform->mesh, "mesh file")->required();
-    command->add_option("annotations", deform->annotations, "its annotations (.ant.json)")->required();
-    command->add_option("edit", deform->edit, "what is done to the handles (.edit.json)")->required();
-    command->add_option("output", deform->output, "deformed mesh to write")->required();
-    command->add_option("--graph", deform->graph, "relationships (.graph.json): those that are constraints are kept");
+    command
+        ->add_option(
+            "files", deform->files,
+            "MESH ANNOTATIONS EDIT OUTPUT, or TEMPLATE EDIT OUTPUT: a mesh file and its annotations (.ant.json), or a "
+            "template (.template.json) with its graph, cage and coordinates; the edit (.edit.json); the deformed mesh to "
+            "write")
+        ->required()
+        ->expected(3, 4);
+    command->add_option("--graph", deform->graph,
+                        "relationships (.graph.json): those that are constraints are kept; instead of the template's");
     command->add_option("--cage", deform->cage, "cage whose vertices are the handles; without it, the mesh's own are");
     command->add_option("--weights", deform->weights, "weights of 'cage weights' (.npy)");
     command->add_option("--annotations-out", deform->annotations_out, "annotations of the deformed mesh, measures taken anew");

@@ -58,29 +58,57 @@ AxisSegment continuing_segment(const Mesh& mesh, const Annotation& part, const A
                         std::to_string(angle) + " degrees at once";
         return result;
     }
-    // A vertex belongs to the step of the skeleton that it is nearest to.
-    std::vector<int> step_of_station(static_cast<std::size_t>(steps), -1);
+    // A vertex lies between the two ends of the step of the skeleton that it is nearest to.
     for (const Index v : vertices_of(mesh, part)) {
         const Vector3d p = eigen(mesh.point(Vertex(v)));
-        double best = std::numeric_limits<double>::infinity();
+        double best = std::numeric_limits<double>::infinity(), along = 0;
         int at = 0;
         for (int k = 0; k < steps; ++k) {
             const Vector3d a = line[static_cast<std::size_t>(k)], d = line[static_cast<std::size_t>(k) + 1] - a;
             const double share = d.squaredNorm() > 0 ? std::clamp((p - a).dot(d) / d.squaredNorm(), 0.0, 1.0) : 0;
             const double off = (p - a - share * d).squaredNorm();
-            if (off < best) best = off, at = k;
+            if (off < best) best = off, at = k, along = share;
         }
         if (at >= last) continue;
         result.vertices.push_back(static_cast<int>(v));
         result.stations.push_back(at);
+        result.shares.push_back(along);
     }
-    // Stations without gaps.
-    for (const int station : result.stations) step_of_station[static_cast<std::size_t>(station)] = 0;
-    for (int& number : step_of_station)
-        if (number == 0) number = result.count++;
-    for (int& station : result.stations) station = step_of_station[static_cast<std::size_t>(station)];
+    // Stations without gaps: one that no vertex is near to is left out.
+    std::vector<double> weight(static_cast<std::size_t>(last) + 1, 0);
+    for (std::size_t i = 0; i < result.stations.size(); ++i) {
+        const auto s = static_cast<std::size_t>(result.stations[i]);
+        weight[s] += 1 - result.shares[i];
+        weight[s + 1] += result.shares[i];
+    }
+    std::vector<int> number(weight.size(), -1);
+    for (std::size_t s = 0; s < weight.size(); ++s)
+        if (weight[s] > 0.1) number[s] = result.count++;
+    for (std::size_t i = 0; i < result.stations.size(); ++i) {
+        const auto s = static_cast<std::size_t>(result.stations[i]);
+        // Beside a station that is left out a vertex counts for the other one alone.
+        if (number[s] < 0) result.stations[i] = number[s + 1], result.shares[i] = 0;
+        else result.stations[i] = number[s], result.shares[i] = number[s + 1] < 0 ? 0 : result.shares[i];
+    }
     if (result.count < 2) result.reason = "has too few vertices beside its skeleton";
     return result;
+}
+
+std::vector<Vector3d> stations_of(const AxisSegment& segment, const Eigen::Matrix3Xd& points) {
+    std::vector<Vector3d> sums(static_cast<std::size_t>(segment.count), Vector3d::Zero());
+    std::vector<double> weights(sums.size(), 0);
+    const auto add = [&](int station, double weight, const Vector3d& p) {
+        if (weight == 0) return;
+        sums[static_cast<std::size_t>(station)] += weight * p;
+        weights[static_cast<std::size_t>(station)] += weight;
+    };
+    for (std::size_t i = 0; i < segment.vertices.size(); ++i) {
+        const Vector3d p = points.col(segment.vertices[i]);
+        add(segment.stations[i], 1 - segment.shares[i], p);
+        add(segment.stations[i] + 1, segment.shares[i], p);
+    }
+    for (std::size_t s = 0; s < sums.size(); ++s) sums[s] /= weights[s];
+    return sums;
 }
 
 }  // namespace ostraka::semantic

@@ -4,14 +4,20 @@
 #include "ostraka/annotation/annotation.h"
 #include "ostraka/axis/axis.h"
 
+#include <Eigen/Dense>
+
 namespace ostraka::semantic {
 
 struct AxisSegment {
-    std::vector<int> vertices;  ///< of the part, ascending
-    std::vector<int> stations;  ///< for each, the station along the axis it belongs to, from 0 at the reference on
-    int count = 0;              ///< stations
-    std::string reason;         ///< why there is none, if there is none
+    std::vector<int> vertices;   ///< of the part, ascending
+    std::vector<int> stations;   ///< for each, the last station before it along the axis, from 0 at the reference on
+    std::vector<double> shares;  ///< for each, how far it is from that station to the next, 0 to 1
+    int count = 0;               ///< stations
+    std::string reason;          ///< why there is none, if there is none
 };
+
+/// Where the stations are on deformed points: means of the vertices around each, weighted by hat functions along the axis.
+std::vector<Eigen::Vector3d> stations_of(const AxisSegment& segment, const Eigen::Matrix3Xd& points);
 
 /// Walks the mean curvature skeleton of the capped part from the end that is nearer to the reference, as long as its direction
 /// (over a twentieth of its length) differs from `axis` by at most `angle` degrees (the thesis, section 5.2.2), and takes the

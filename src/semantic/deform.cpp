@@ -1,11 +1,12 @@
 #include "ostraka/semantic/deform.h"
 
-#include "lower.h"
+#include "statement.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/geom/eigen.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 namespace ostraka {
@@ -32,12 +33,20 @@ std::vector<Point> list_of(const Points& points) {
     return list;
 }
 
-bool is_hard(const Relationship& relationship) {
-    if (relationship.constraint.empty()) return false;
-    const Json parameters = parse_json(relationship.constraint, "constraint " + std::to_string(relationship.id));
-    const JsonValue* hard = find_member(parameters, "hard");
-    return hard != nullptr && hard->IsBool() && hard->GetBool();
-}
+/// What solving for some of the constraints gives.
+struct Outcome {
+    Points points, cage;
+    SolveSummary summary;
+    int rounds = 0, passes = 0;
+    bool solved = false;
+    struct Residuals {
+        std::vector<double> of_low_level;
+        double distance = 0;
+    };
+    std::vector<Residuals> residuals;  ///< of each constraint
+    std::vector<std::string> texts;    ///< what is to be said of each
+    std::vector<semantic::Measured> measured;
+};
 
 class Deformer {
 public:
@@ -52,31 +61,27 @@ public:
 
     DeformResult run(const JsonValue& edit) {
         DeformResult result;
-        EditState last;
-        last.handles = points_of(space_.cage != nullptr ? *space_.cage : space_.mesh);
-        last.touched.assign(last.handles.size(), false);
-        for (auto& state : follow_edit(edit, space_, where_)) last = std::move(state);
-        result.edited = space_.cage != nullptr ? deformed(*space_.coordinates, *space_.cage, last.handles) : last.handles;
-        result.points = result.edited;
-        if (space_.cage != nullptr) result.cage = last.handles;
-        lower_all(result);
-        if (!lowered_.empty()) {
-            if (space_.coordinates != nullptr && space_.coordinates->has_normals())
-                throw Error(
-                    ErrorKind::usage, "coordinates",
-                    "are Green coordinates, which serve unconstrained deformation only: constraints are solved without their "
-                    "normal term",
-                    "use mean value coordinates, or a graph without constraints");
-            if (options_.space == "mesh") solve_mesh(result, last);
-            else solve_cage(result, last);
-            result.solved = true;
-        }
-        report(result);
+        last_.handles = points_of(space_.cage != nullptr ? *space_.cage : space_.mesh);
+        last_.touched.assign(last_.handles.size(), false);
+        for (auto& state : follow_edit(edit, space_, where_)) last_ = std::move(state);
+        result.edited = space_.cage != nullptr ? deformed(*space_.coordinates, *space_.cage, last_.handles) : last_.handles;
+        edited_ = columns_of(result.edited);
+        understand(result);
+        const std::vector<bool> all = used(result);
+        const Outcome outcome = solve(all);
+        result.points = list_of(outcome.points);
+        result.cage = list_of(outcome.cage);
+        result.summary = outcome.summary;
+        result.rounds = outcome.rounds;
+        result.passes = outcome.passes;
+        result.solved = outcome.solved;
+        report(result, outcome);
+        if (!result.acceptable && options_.conflicts) find_conflicts(result, all);
         return result;
     }
 
 private:
-    void lower_all(DeformResult& result) {
+    void understand(DeformResult& result) {
         const semantic::Shape shape{space_.mesh, space_.set, rest_};
         for (const Relationship& relationship : graph_.relationships) {
             if (!relationship.is_constraint) continue;
@@ -84,48 +89,111 @@ private:
             report.id = relationship.id;
             report.type = relationship.type;
             report.weight = relationship.weight;
-            report.hard = is_hard(relationship);
-            auto lowered = semantic::lower(shape, relationship, where_);
-            report.used = !lowered.constraints.empty() && relationship.weight > 0;
-            if (lowered.constraints.empty()) report.text = "left out: deformation does not know this type";
+            statements_.push_back(semantic::understand(shape, relationship, tolerances_, where_));
+            const semantic::Statement& statement = statements_.back();
+            report.hard = statement.hard;
+            report.used = statement.unknown.empty() && relationship.weight > 0;
+            if (!statement.unknown.empty()) report.text = "left out: " + statement.unknown;
             else if (!report.used) report.text = "left out: its weight is zero";
-            if (report.used) anchors_.insert(lowered.anchors.begin(), lowered.anchors.end());
-            if (report.used)
-                for (auto& constraint : lowered.constraints) {
-                    lowered_.push_back(std::move(constraint));
-                    owner_.push_back(result.constraints.size());
-                }
-            relationships_.push_back(&relationship);
             result.constraints.push_back(std::move(report));
         }
     }
 
-    /// The low-level constraints move into the list; `first` is where they begin.
+    static std::vector<bool> used(const DeformResult& result) {
+        std::vector<bool> flags;
+        for (const ConstraintReport& report : result.constraints) flags.push_back(report.used);
+        return flags;
+    }
+
+    /// For the active constraints; all others are only measured.
+    Outcome solve(const std::vector<bool>& active) {
+        Outcome outcome;
+        outcome.points = edited_;
+        if (space_.cage != nullptr) outcome.cage = columns_of(last_.handles);
+        outcome.texts.resize(statements_.size());
+        bool follows = false;
+        for (std::size_t i = 0; i < statements_.size(); ++i) follows = follows || (active[i] && statements_[i].follows);
+        const double still = 1e-5 * box_diagonal(space_.mesh);
+        while (outcome.passes < (follows ? options_.passes : 1)) {
+            const Points before = outcome.points;
+            if (!solve_once(active, outcome)) break;
+            outcome.solved = true;
+            ++outcome.passes;
+            if (outcome.passes > 1 && (outcome.points - before).colwise().norm().maxCoeff() <= still) break;
+        }
+        std::vector<semantic::Seating> seatings;
+        for (std::size_t i = 0; i < statements_.size(); ++i)
+            if (active[i] && statements_[i].seat) seatings.push_back(*statements_[i].seat);
+        if (!seatings.empty()) {
+            const auto seated = semantic::seat(space_.mesh, rest_, seatings, outcome.points);
+            outcome.solved = true;
+            for (std::size_t i = 0; i < statements_.size(); ++i)
+                if (active[i] && statements_[i].seat && seated.folded > 0)
+                    outcome.texts[i] = std::to_string(seated.folded) + " faces around the features fold over";
+        }
+        const Mesh deformed = with_points(space_.mesh, list_of(outcome.points));
+        const semantic::State state(deformed);
+        for (const semantic::Statement& statement : statements_)
+            outcome.measured.push_back(statement.unknown.empty() ? statement.measure(state) : semantic::Measured());
+        return outcome;
+    }
+
+    /// Starts from the edited shape; parts that others refer to are as the outcome has them. False if there is nothing to solve.
+    bool solve_once(const std::vector<bool>& active, Outcome& outcome) {
+        lowered_.clear();
+        owner_.clear();
+        anchors_.clear();
+        const Mesh mesh = with_points(space_.mesh, list_of(outcome.points));
+        const semantic::State now(mesh);
+        for (std::size_t i = 0; i < statements_.size(); ++i) {
+            if (!active[i]) continue;
+            anchors_.insert(statements_[i].anchors.begin(), statements_[i].anchors.end());
+            for (auto& constraint : statements_[i].lower(now)) {
+                lowered_.push_back(std::move(constraint));
+                owner_.push_back(i);
+            }
+        }
+        if (lowered_.empty()) return false;
+        if (space_.coordinates != nullptr && space_.coordinates->has_normals())
+            throw Error(ErrorKind::usage, "coordinates",
+                        "are Green coordinates, which serve unconstrained deformation only: constraints are solved without their "
+                        "normal term",
+                        "use mean value coordinates, or a graph without constraints");
+        if (options_.space == "mesh") solve_mesh(outcome);
+        else solve_cage(outcome);
+        if (!outcome.summary.usable)
+            throw Error(ErrorKind::failure, where_, "the constraints have no usable solution: " + outcome.summary.text(),
+                        "look for constraints that contradict each other");
+        return true;
+    }
+
+    /// The low-level constraints move into the list; first_ is where they begin.
     std::vector<std::unique_ptr<Constraint>> take(std::vector<std::unique_ptr<Constraint>> others) {
         first_ = others.size();
         for (auto& constraint : lowered_) others.push_back(std::move(constraint));
         return others;
     }
 
-    void solve_mesh(DeformResult& result, const EditState& last) {
-        const Points edited = columns_of(result.edited);
+    static void add_closeness(const std::vector<int>& ids, double weight, const Points& targets, int offset, const Points& rest,
+                              std::vector<std::unique_ptr<Constraint>>& list) {
+        if (ids.empty() || weight == 0) return;
+        ConstraintParameters parameters;
+        parameters.target.emplace(3, static_cast<Eigen::Index>(ids.size()));
+        for (std::size_t i = 0; i < ids.size(); ++i)
+            parameters.target->col(static_cast<Eigen::Index>(i)) = targets.col(ids[i] - offset);
+        list.push_back(make_constraint("Closeness", ids, weight, parameters, rest));
+    }
+
+    void solve_mesh(Outcome& outcome) {
         std::vector<std::unique_ptr<Constraint>> list;
         std::vector<int> used, moved;
         for (const Vertex v : space_.mesh.vertices()) {
             if (space_.mesh.is_isolated(v)) continue;
-            const bool handle = (space_.cage == nullptr && last.touched[v]) || anchors_.count(v.idx()) > 0;
+            const bool handle = (space_.cage == nullptr && last_.touched[v]) || anchors_.count(v.idx()) > 0;
             (handle ? moved : used).push_back(static_cast<int>(v.idx()));
         }
-        const auto closeness = [&](const std::vector<int>& ids, double weight) {
-            if (ids.empty() || weight == 0) return;
-            ConstraintParameters parameters;
-            parameters.target.emplace(3, static_cast<Eigen::Index>(ids.size()));
-            for (std::size_t i = 0; i < ids.size(); ++i)
-                parameters.target->col(static_cast<Eigen::Index>(i)) = edited.col(ids[i]);
-            list.push_back(make_constraint("Closeness", ids, weight, parameters, rest_));
-        };
-        closeness(used, options_.closeness);
-        closeness(moved, options_.handles);
+        add_closeness(used, options_.closeness, edited_, 0, rest_, list);
+        add_closeness(moved, options_.handles, edited_, 0, rest_, list);
         if (options_.laplacian > 0)
             for (const Vertex v : space_.mesh.vertices()) {
                 if (space_.mesh.is_isolated(v)) continue;
@@ -133,82 +201,90 @@ private:
                 for (const Vertex n : space_.mesh.vertices_around_target(space_.mesh.halfedge(v)))
                     ids.push_back(static_cast<int>(n.idx()));
                 list.push_back(make_constraint("LaplacianDisplacement", ids, options_.laplacian, {},
-                                               options_.details == "rest" ? rest_ : edited));
+                                               options_.details == "rest" ? rest_ : edited_));
             }
-        const bool any_hard = std::any_of(result.constraints.begin(), result.constraints.end(),
-                                          [](const ConstraintReport& r) { return r.used && r.hard; });
+        const bool any_hard = std::any_of(owner_.begin(), owner_.end(), [&](std::size_t i) { return statements_[i].hard; });
         auto all = take(std::move(list));
-        Points points = edited;
+        outcome.points = edited_;
         if (any_hard) {
             std::vector<bool> hard(all.size(), false);
-            for (std::size_t i = 0; i < owner_.size(); ++i) hard[first_ + i] = result.constraints[owner_[i]].hard;
+            for (std::size_t i = 0; i < owner_.size(); ++i) hard[first_ + i] = statements_[owner_[i]].hard;
             HardSolver solver(std::move(all), hard, rest_);
             HardOptions options;
             options.inner = options_.solve;
             options.rounds = options_.rounds;
-            const HardSummary summary = solver.solve(points, options);
-            result.summary = summary.last;
-            result.rounds = summary.rounds;
-            residuals(result, points, [&](std::size_t i) -> const Constraint& { return solver.constraint(i); });
+            const HardSummary summary = solver.solve(outcome.points, options);
+            outcome.summary = summary.last;
+            outcome.rounds += summary.rounds;
+            keep_residuals(outcome, outcome.points, [&](std::size_t i) -> const Constraint& { return solver.constraint(i); });
         } else {
             MeshSpaceSolver solver(std::move(all), rest_);
-            result.summary = solver.solve(points, options_.solve);
-            residuals(result, points, [&](std::size_t i) -> const Constraint& { return solver.constraint(i); });
+            outcome.summary = solver.solve(outcome.points, options_.solve);
+            keep_residuals(outcome, outcome.points, [&](std::size_t i) -> const Constraint& { return solver.constraint(i); });
         }
-        if (!result.summary.usable)
-            throw Error(ErrorKind::failure, where_, "the constraints have no usable solution: " + result.summary.text(),
-                        "look for constraints that contradict each other");
-        result.points = list_of(points);
     }
 
-    void solve_cage(DeformResult& result, const EditState& last) {
+    void solve_cage(Outcome& outcome) {
         // Rows for the cage's own points below those of the mesh, so that handles are constrained like any point.
         const WeightMatrix& weights = space_.coordinates->vertex;
         const Eigen::Index n = weights.rows(), c = weights.cols();
         CageWeights extended(n + c, c);
         extended.topRows(n) = weights;
         extended.bottomRows(c).setIdentity();
-        const Points rest_cage = columns_of(*space_.cage), edited_cage = columns_of(last.handles);
+        const Points rest_cage = columns_of(*space_.cage), edited_cage = columns_of(last_.handles);
         Points rest(3, n + c);
         rest << rest_, rest_cage;
         std::vector<std::unique_ptr<Constraint>> list;
         for (const bool touched : {true, false}) {
             std::vector<int> ids;
             for (Eigen::Index j = 0; j < c; ++j)
-                if (last.touched[static_cast<std::size_t>(j)] == touched) ids.push_back(static_cast<int>(n + j));
-            const double weight = touched ? options_.handles : options_.closeness;
-            if (ids.empty() || weight == 0) continue;
-            ConstraintParameters parameters;
-            parameters.target.emplace(3, static_cast<Eigen::Index>(ids.size()));
-            for (std::size_t i = 0; i < ids.size(); ++i)
-                parameters.target->col(static_cast<Eigen::Index>(i)) = edited_cage.col(ids[i] - n);
-            list.push_back(make_constraint("Closeness", ids, weight, parameters, rest));
+                if (last_.touched[static_cast<std::size_t>(j)] == touched) ids.push_back(static_cast<int>(n + j));
+            add_closeness(ids, touched ? options_.handles : options_.closeness, edited_cage, static_cast<int>(n), rest, list);
         }
         CageSpaceSolver solver(take(std::move(list)), extended, rest_cage);
         // What must hold counts a thousandfold: a cage may not be able to do it.
         for (std::size_t i = 0; i < owner_.size(); ++i)
-            if (result.constraints[owner_[i]].hard) solver.set_weight(first_ + i, 1e3 * solver.constraint(first_ + i).weight());
-        Points cage = edited_cage;
-        result.summary = solver.solve(cage, options_.solve);
-        if (!result.summary.usable)
-            throw Error(ErrorKind::failure, where_, "the constraints have no usable solution: " + result.summary.text(),
-                        "look for constraints that contradict each other");
-        const Points all = points_of(extended, cage);
-        residuals(result, all, [&](std::size_t i) -> const Constraint& { return solver.constraint(i); });
-        result.points = list_of(all.leftCols(n));
-        result.cage = list_of(cage);
+            if (statements_[owner_[i]].hard) solver.set_weight(first_ + i, 1e3 * solver.constraint(first_ + i).weight());
+        outcome.cage = edited_cage;
+        outcome.summary = solver.solve(outcome.cage, options_.solve);
+        const Points all = points_of(extended, outcome.cage);
+        keep_residuals(outcome, all, [&](std::size_t i) -> const Constraint& { return solver.constraint(i); });
+        outcome.points = all.leftCols(n);
     }
 
     /// Of the low-level constraints of each, divided by their points (section 4.2.3).
     template <class Get>
-    void residuals(DeformResult& result, const Points& points, Get&& get) const {
-        std::vector<std::vector<double>> values(result.constraints.size());
-        for (std::size_t i = 0; i < owner_.size(); ++i) values[owner_[i]].push_back(get(first_ + i).normalised_residual(points));
-        for (std::size_t i = 0; i < values.size(); ++i) {
-            auto& list = values[i];
-            if (list.empty()) continue;
-            std::sort(list.begin(), list.end());
+    void keep_residuals(Outcome& outcome, const Points& points, Get&& get) const {
+        outcome.residuals.assign(statements_.size(), {});
+        for (std::size_t i = 0; i < owner_.size(); ++i) {
+            const Constraint& constraint = get(first_ + i);
+            auto& residuals = outcome.residuals[owner_[i]];
+            residuals.of_low_level.push_back(constraint.normalised_residual(points));
+            residuals.distance = std::max(residuals.distance, constraint.greatest_distance(points));
+        }
+    }
+
+    void report(DeformResult& result, const Outcome& outcome) const {
+        const Mesh edited = with_points(space_.mesh, result.edited);
+        const semantic::State before(edited);
+        for (std::size_t i = 0; i < result.constraints.size(); ++i) {
             ConstraintReport& report = result.constraints[i];
+            if (!report.used) {
+                result.acceptable = result.acceptable && report.weight == 0;
+                continue;
+            }
+            const semantic::Measured then = statements_[i].measure(before), &now = outcome.measured[i];
+            report.before = then.verdict;
+            report.verdict = now.verdict;
+            for (const Deviation& deviation : then.deviations) report.before_values.push_back(deviation.value.value_or(0));
+            report.deviations = now.deviations;
+            report.text = now.text;
+            if (!outcome.texts[i].empty()) report.text += (report.text.empty() ? "" : "; ") + outcome.texts[i];
+            result.acceptable = result.acceptable && now.verdict == Verdict::holds;
+            if (i >= outcome.residuals.size() || outcome.residuals[i].of_low_level.empty()) continue;
+            auto list = outcome.residuals[i].of_low_level;
+            std::sort(list.begin(), list.end());
+            report.distance = outcome.residuals[i].distance;
             report.low_level = list.size();
             report.least = list.front();
             report.most = list.back();
@@ -217,24 +293,27 @@ private:
         }
     }
 
-    void report(DeformResult& result) const {
-        const semantic::Shape shape{space_.mesh, space_.set, rest_};
-        if (result.constraints.empty()) return;
-        const Mesh before = with_points(space_.mesh, result.edited), after = with_points(space_.mesh, result.points);
-        for (std::size_t i = 0; i < result.constraints.size(); ++i) {
-            ConstraintReport& report = result.constraints[i];
-            if (!report.used) {
-                result.acceptable = result.acceptable && report.weight == 0;
-                continue;
-            }
-            auto states = semantic::measure(shape, {&before, &after}, *relationships_[i], tolerances_, where_);
-            semantic::Measured &then = states[0], &now = states[1];
-            report.before = then.verdict;
-            report.verdict = now.verdict;
-            for (const Deviation& deviation : then.deviations) report.before_values.push_back(deviation.value.value_or(0));
-            report.deviations = std::move(now.deviations);
-            report.text = now.text;
-            result.acceptable = result.acceptable && now.verdict == Verdict::holds;
+    /// Leaves out one constraint after another. Those that fail are tried first.
+    void find_conflicts(DeformResult& result, const std::vector<bool>& all) {
+        constexpr std::size_t most = 8;
+        std::vector<std::size_t> order;
+        for (const bool failing : {true, false})
+            for (std::size_t i = 0; i < all.size(); ++i)
+                if (all[i] && (result.constraints[i].verdict != Verdict::holds) == failing) order.push_back(i);
+        if (order.size() < 2) return;
+        if (order.size() > most) result.untried = order.size() - most;
+        order.resize(std::min(order.size(), most));
+        for (const std::size_t left_out : order) {
+            std::vector<bool> active = all;
+            active[left_out] = false;
+            const Outcome outcome = solve(active);
+            Conflict conflict;
+            conflict.id = result.constraints[left_out].id;
+            for (std::size_t i = 0; i < all.size(); ++i)
+                if (active[i] && result.constraints[i].verdict == Verdict::fails && outcome.measured[i].verdict == Verdict::holds)
+                    conflict.freed.push_back(result.constraints[i].id);
+            conflict.deviations = outcome.measured[left_out].deviations;
+            if (!conflict.freed.empty()) result.conflicts.push_back(std::move(conflict));
         }
     }
 
@@ -244,10 +323,12 @@ private:
     const RelationOptions& tolerances_;
     std::string where_;
     Points rest_;
+    EditState last_;
+    Points edited_;
+    std::vector<semantic::Statement> statements_;  ///< of the constraints in the report
     std::vector<std::unique_ptr<Constraint>> lowered_;
     std::vector<std::size_t> owner_;  ///< of each lowered constraint, in the report
     std::size_t first_ = 0;           ///< its place in the solver's list
-    std::vector<const Relationship*> relationships_;
     std::set<Index> anchors_;
 };
 

@@ -1,8 +1,7 @@
 // What a relationship that is a constraint says, read and checked.
 #pragma once
 
-#include "continuity.h"
-#include "lower.h"
+#include "statement.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/json.h"
@@ -10,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace ostraka::semantic {
 
@@ -23,7 +23,7 @@ struct Range {
 /// Throws Error (input) that names the file and the constraint.
 class Reader {
 public:
-    Reader(const Shape& shape, const Relationship& relationship, const std::string& where)
+    Reader(Shape shape, const Relationship& relationship, const std::string& where)
         : shape_(shape),
           relationship_(relationship),
           where_(where + ", constraint " + std::to_string(relationship.id) + " (" + relationship.type + ")") {
@@ -33,6 +33,7 @@ public:
 
     [[noreturn]] void fail(const std::string& what, const std::string& remedy) const { fail_input(where_, what, remedy); }
 
+    [[nodiscard]] std::size_t members() const { return relationship_.annotations.size(); }
     [[nodiscard]] const Annotation& member(std::size_t i) const {
         const Annotation* annotation = shape_.set.find(relationship_.annotations.at(i));
         if (annotation == nullptr)
@@ -51,9 +52,29 @@ public:
             fail("annotation " + std::to_string(member(i).id) + " selects nothing", "select a part, or leave it out");
         return list;
     }
+    /// Of all members together.
+    [[nodiscard]] std::vector<int> all_vertices() const {
+        std::set<int> all;
+        for (std::size_t i = 0; i < members(); ++i)
+            for (const Index v : vertices(i)) all.insert(static_cast<int>(v));
+        return {all.begin(), all.end()};
+    }
+    void need_region(std::size_t i) const {
+        if (member(i).faces.empty()) fail("annotation " + std::to_string(member(i).id) + " is no region", "use regions");
+    }
+    [[nodiscard]] const std::vector<Index>& faces(std::size_t i) const {
+        need_region(i);
+        return member(i).faces;
+    }
+    [[nodiscard]] bool flag(const char* name) const {
+        const JsonValue* value = given(name);
+        if (value != nullptr && !value->IsBool()) fail(std::string(name) + " is neither true nor false", "mend it");
+        return value != nullptr && value->GetBool();
+    }
+    [[nodiscard]] bool has(const char* name) const { return given(name) != nullptr; }
     [[nodiscard]] std::string word(const char* name, const std::string& otherwise,
                                    std::initializer_list<const char*> known) const {
-        const JsonValue* value = find_member(parameters_, name);
+        const JsonValue* value = given(name);
         const std::string text = value == nullptr ? otherwise : value->IsString() ? value->GetString() : "?";
         if (std::none_of(known.begin(), known.end(), [&](const char* k) { return text == k; })) {
             std::string list;
@@ -62,19 +83,25 @@ public:
         }
         return text;
     }
-    [[nodiscard]] std::optional<Vector3d> direction(const char* name) const {
-        const JsonValue* value = find_member(parameters_, name);
+    [[nodiscard]] std::optional<Vector3d> vector(const char* name) const {
+        const JsonValue* value = given(name);
         if (value == nullptr) return {};
         if (!value->IsArray() || value->Size() != 3) fail(std::string(name) + " is not three numbers", "give x, y, z");
-        Vector3d d;
+        Vector3d v;
         for (int k = 0; k < 3; ++k) {
             const JsonValue& x = (*value)[static_cast<rapidjson::SizeType>(k)];
-            if (!x.IsNumber() || !std::isfinite(x.GetDouble())) fail(std::string(name) + " is not three numbers", "give x, y, z");
-            d[k] = x.GetDouble();
+            if (!x.IsNumber() || !(std::abs(x.GetDouble()) < 1e60))
+                fail(std::string(name) + " is not three numbers below 1e60", "give x, y, z");
+            v[k] = x.GetDouble();
         }
-        const double largest = d.cwiseAbs().maxCoeff();
+        return v;
+    }
+    [[nodiscard]] std::optional<Vector3d> direction(const char* name) const {
+        const auto v = vector(name);
+        if (!v) return {};
+        const double largest = v->cwiseAbs().maxCoeff();
         if (!(largest > 0)) fail(std::string(name) + " is zero", "give a direction");
-        return Vector3d((d / largest).normalized());
+        return Vector3d((*v / largest).normalized());
     }
     [[nodiscard]] Vector3d up() const {
         if (const auto d = direction("direction")) return *d;
@@ -82,7 +109,7 @@ public:
         return Vector3d((*shape_.set.up)[0], (*shape_.set.up)[1], (*shape_.set.up)[2]).normalized();
     }
     [[nodiscard]] double number(const char* name, double otherwise, double least, double most) const {
-        const JsonValue* value = find_member(parameters_, name);
+        const JsonValue* value = given(name);
         if (value == nullptr) return otherwise;
         if (!value->IsNumber() || !(value->GetDouble() >= least && value->GetDouble() <= most))
             fail(std::string(name) + " is not a number from " + std::to_string(least) + " to " + std::to_string(most), "mend it");
@@ -91,7 +118,7 @@ public:
     /// minValue and maxValue (Appendix B.2), positive.
     [[nodiscard]] Range range() const {
         const auto number = [&](const char* name) {
-            const JsonValue* value = find_member(parameters_, name);
+            const JsonValue* value = given(name);
             if (value == nullptr || !value->IsNumber() || !(value->GetDouble() > 0 && value->GetDouble() < 1e60))
                 fail(std::string(name) + (value == nullptr ? " is missing" : " is not a positive number"),
                      "give minValue and maxValue");
@@ -101,9 +128,19 @@ public:
         if (r.min > r.max) fail("minValue is greater than maxValue", "exchange them");
         return r;
     }
+    /// To be called when everything was read: a name that nobody asked for is a slip of the pen.
+    void refuse_others() const {
+        for (const auto& member : parameters_.GetObject()) {
+            const std::string name = member.name.GetString();
+            if (asked_.count(name) > 0) continue;
+            std::string list;
+            for (const std::string& known : asked_) list += (list.empty() ? "" : ", ") + known;
+            fail("has a parameter '" + name + "', which it does not know", "use: " + list);
+        }
+    }
     /// The measure that `name` names by id or name in the annotation; the only one if it is left out.
     [[nodiscard]] const Measure& measure(const char* name, const Annotation& annotation) const {
-        const JsonValue* value = find_member(parameters_, name);
+        const JsonValue* value = given(name);
         const Measure* found = nullptr;
         for (const Attribute& attribute : annotation.attributes) {
             if (attribute.type != AttributeType::measure) continue;
@@ -133,25 +170,42 @@ public:
     }
 
 private:
-    const Shape& shape_;
+    const JsonValue* given(const char* name) const {
+        asked_.insert(name);
+        return find_member(parameters_, name);
+    }
+
+    Shape shape_;
     const Relationship& relationship_;
     std::string where_;
     Json parameters_;
+    mutable std::set<std::string> asked_;
 };
+using ReaderPtr = std::shared_ptr<const Reader>;  ///< what statements keep
 
-/// The two pins between which a ruler or bounding measure is taken, and the direction of the latter.
-struct Pins {
-    Index from, to;
-    std::optional<Vector3d> direction;
-};
-Pins pins_of(const Reader& read, const Measure& measure);
-double length_of(const Pins& pins, const Points& points);
+/// Verdict of deviations against their tolerances.
+Measured verdict_of(std::vector<Deviation> deviations);
 
-/// The segment of the first member that continues the second, and the axis of the second, at rest.
-struct Continuity {
-    AxisSegment segment;
-    Axis reference;
-};
-Continuity continuity_of(const Reader& read);
+// One function a type: shapes.cpp, axes.cpp, measures.cpp, places.cpp, low_level.cpp.
+Statement keep_shape(const ReaderPtr&, const RelationOptions&);
+Statement same_level(const ReaderPtr&, const RelationOptions&);
+Statement co_axiality(const ReaderPtr&, const RelationOptions&);
+Statement axis_angle(const ReaderPtr&, const RelationOptions&);
+Statement structural_continuity(const ReaderPtr&, const RelationOptions&);
+Statement proportion(const ReaderPtr&, const RelationOptions&);
+Statement keep_measure(const ReaderPtr&, const RelationOptions&);
+Statement same_measure(const ReaderPtr&, const RelationOptions&);
+Statement co_planarity(const ReaderPtr&, const RelationOptions&);
+Statement co_linearity(const ReaderPtr&, const RelationOptions&);
+Statement mirror_symmetry(const ReaderPtr&, const RelationOptions&);
+Statement adjacency(const ReaderPtr&, const RelationOptions&);
+/// The kind of the solver whose name the type is ("edge strain"); nullptr if there is none.
+const ConstraintKind* low_level_kind(const std::string& type);
+Statement low_level(const ReaderPtr&, const RelationOptions&);
+
+/// What relations measure for the type of this name.
+std::function<Measured(const State&)> as_related(const ReaderPtr& read, Relationship stated, const RelationOptions& tolerances);
+/// Tolerance of distances, in the mesh's unit.
+double length_tolerance(const Reader& read, const RelationOptions& tolerances);
 
 }  // namespace ostraka::semantic

@@ -74,6 +74,15 @@ double Constraint::squared_distance(const Points& points) const {
     return (rows - projected).leftCols(map_.rows - map_.observed).squaredNorm();
 }
 
+double Constraint::greatest_distance(const Points& points) const {
+    const Eigen::Index weighing = map_.rows - map_.observed;
+    if (weighing == 0) return 0;
+    Points rows, projected(3, map_.rows);
+    rows_of(points, rows);
+    project(rows, projected);
+    return (rows - projected).leftCols(weighing).colwise().norm().maxCoeff();
+}
+
 namespace solver {
 
 Eigen::Matrix3d outer_sum(const RowsIn& a, const RowsIn& b) {

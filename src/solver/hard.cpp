@@ -26,14 +26,12 @@ public:
 
     /// Greatest distance of a row from what is admissible; the multipliers grow by how far the shifted rows are off.
     double update(const Points& points) {
-        Points rows, own(3, map_.rows), shifted(3, map_.rows);
+        Points rows, shifted(3, map_.rows);
         rows_of(points, rows);
-        inner_->project(rows, own);
         project(rows, shifted);
         u += rows - shifted;
         u.rightCols(map_.observed).setZero();
-        const Eigen::Index weighing = map_.rows - map_.observed;
-        return weighing > 0 ? (rows - own).leftCols(weighing).colwise().norm().maxCoeff() : 0;
+        return inner_->greatest_distance(points);
     }
     Points u;
 

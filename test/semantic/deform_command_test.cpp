@@ -107,14 +107,61 @@ TEST(DeformCommand, KeepsWhatIsAsked) {
 
 TEST(DeformCommand, EveryDocumentedConstraintCanBeStated) {
     const Scratch scratch;
-    for (const char* type : {"keep shape", "same level", "co-planarity", "co-linearity", "co-axiality", "structural continuity",
-                             "proportion", "keep measure"}) {
-        const std::string graph = (scratch / (std::string(type) + ".graph.json")).string();
-        const bool one = std::string(type) == "keep measure";
+    // What the first column of the table in the page says.
+    const std::string page = read_file(Path(OSTRAKA_SOURCE_DIR) / "doc/deformation.md");
+    const std::size_t begin = page.find("| type | members | parameters"), end = page.find("\n\n", begin);
+    ASSERT_NE(begin, std::string::npos);
+    std::vector<std::string> types;
+    std::istringstream table(page.substr(begin, end - begin));
+    for (std::string line; std::getline(table, line);) {
+        std::string cell = line.substr(1, line.find('|', 1) - 1);
+        if (const auto colon = cell.find(':'); colon != std::string::npos) cell = cell.substr(colon + 1);
+        std::istringstream names(cell);
+        for (std::string name; std::getline(names, name, ',');) {
+            const auto first = name.find_first_not_of(" -"), last = name.find_last_not_of(" -");
+            if (first != std::string::npos) types.push_back(name.substr(first, last - first + 1));
+        }
+    }
+    types.erase(types.begin());  // the head
+    EXPECT_GT(types.size(), 30U);
+    for (const std::string& type : types) {
+        const std::string graph = (scratch / (type + ".graph.json")).string();
+        const bool one = type == "keep measure";
         const auto added = run_command("relation add " + pot + parts + "'" + graph + "' --type '" + type + "' --annotation 5" +
                                        (one ? "" : " --annotation 1") + " --constraint");
         EXPECT_EQ(added.code, 0) << type << added.err;
     }
+}
+
+TEST(DeformCommand, ATemplateIsAllItNeeds) {
+    const Caged folder;
+    const std::string bundle = folder.at("pot.template.json");
+    const auto packed = run_command("template pack " + bundle + " --mesh " + pot + " --annotations " + parts + " --graph " +
+                                    folder.at("k.graph.json") + " --cage " + folder.at("cage.ply") + " --coordinates " +
+                                    folder.at("w.npy") + " --copy");
+    ASSERT_EQ(packed.code, 0) << packed.err;
+    const auto whole = run_command("deform " + bundle + " " + folder.at("lift.edit.json") + " " + folder.at("whole.ply") +
+                                   " --cage-out " + folder.at("whole-cage.ply"));
+    EXPECT_EQ(whole.code, 0) << whole.err;
+    ASSERT_EQ(run_command("deform " + pot + parts + folder.at("lift.edit.json") + " " + folder.at("pieces.ply") +
+                          folder.handles() + " --graph " + folder.at("k.graph.json"))
+                  .code,
+              0);
+    EXPECT_EQ(read_file(folder / "whole.ply"), read_file(folder / "pieces.ply"));
+    // A template without a cage is deformed by its own vertices.
+    ASSERT_EQ(
+        run_command("template pack " + folder.at("bare.template.json") + " --mesh " + pot + " --annotations " + parts + " --copy")
+            .code,
+        0);
+    const auto bare = run_command("deform " + folder.at("bare.template.json") + " " + folder.at("lift.edit.json") + " " +
+                                  folder.at("bare.ply"));
+    EXPECT_EQ(bare.code, 0) << bare.err;
+    EXPECT_EQ(run_command("deform " + folder.at("bare.template.json") + " " + folder.at("lift.edit.json") + " " +
+                          folder.at("b.ply") + " --cage-out " + folder.at("c.ply"))
+                  .code,
+              2);
+    EXPECT_EQ(run_command("deform " + pot + folder.at("lift.edit.json") + " " + folder.at("b.ply")).code, 1);
+    EXPECT_EQ(run_command("deform " + folder.at("lift.edit.json") + " " + folder.at("b.ply")).code, 2);
 }
 
 TEST(DeformCommand, StatesAndEditedCages) {
@@ -161,8 +208,13 @@ TEST(DeformCommand, BadInput) {
     refused(all + stated("proportion", "[5, 1]", R"({"minValue": 2, "maxValue": 1})"), 1, "minValue is greater");
     refused(all + stated("proportion", "[5, 1]", R"({"minValue": 1})"), 1, "maxValue is missing");
     refused(all + stated("proportion", "[7, 8]", R"({"minValue": 1, "maxValue": 2})"), 1, "no measure");
-    refused(all + stated("keep shape", "[7]", R"({"mode": "soft"})"), 1, "rigid, similar");
+    refused(all + stated("keep shape", "[7]", R"({"mode": "soft"})"), 1, "rigid, similar, seat");
     refused(all + stated("keep shape", "[99]", "{}"), 1, "99");
     refused(all + stated("same level", "[7, 8]", R"({"direction": [0, 0, 0]})"), 1, "direction is zero");
+    refused(all + stated("same level", "[7, 8]", R"({"shape": "seat"})"), 1, "'shape', which it does not know");
+    refused(all + stated("same level", "[7, 8]", R"({"shapes": "seat", "bend": 2})"), 1, "bend");
+    refused(all + stated("mirror symmetry", "[7]", R"({"direction": [0, 0, 1]})"), 1, "alone");
+    refused(all + stated("parallel axes", "[7, 8]", "{}"), 1, "has no axis");
+    refused(all + stated("plane", "[7]", R"({"minValue": -1})"), 1, "minValue");
     EXPECT_EQ(count_files(folder.path()), before + 1);  // bad.graph.json
 }

@@ -15,7 +15,9 @@ struct DeformOptions {
     double laplacian = 2;            ///< weight of the Laplacian displacements, on every vertex (mesh space)
     double handles = 100;            ///< weight of the handles that the edit moves, and of the joints that parts stretch from
     SolveOptions solve;
-    int rounds = 100;  ///< of the loop that enforces hard constraints
+    int rounds = 100;       ///< of the loop that enforces hard constraints
+    int passes = 5;         ///< in which constraints on the axes and measures of other parts follow those
+    bool conflicts = true;  ///< where a constraint fails, look for those it fights with
 
     template <class Visitor>
     void describe(Visitor& visit) {
@@ -33,6 +35,9 @@ struct DeformOptions {
               "weight of the positions of the handles that the edit moves, and of joints that parts stretch from", Range{0, 1e9});
         solve.describe(visit);
         visit("rounds", rounds, "rounds in which hard constraints are enforced", Range{1, 1e6});
+        visit("passes", passes, "solutions in which constraints on axes and measures of other parts follow those", Range{1, 100});
+        visit("conflicts", conflicts,
+              "where a constraint does not hold, solve again without each other one and tell which fight (1 or 0)", Anything{});
     }
 };
 
@@ -49,6 +54,14 @@ struct ConstraintReport {
     /// Normalised residuals of its low-level constraints, in the mesh's unit (section 4.2.3 with its erratum).
     double mean = 0, median = 0, least = 0, most = 0;
     std::size_t low_level = 0;
+    double distance = 0;  ///< greatest distance of one of their rows from what it admits, in the mesh's unit
+};
+
+/// Without one constraint, others hold that do not hold with it.
+struct Conflict {
+    int id = 0;                         ///< of the constraint that was left out
+    std::vector<int> freed;             ///< ids of those that hold without it
+    std::vector<Deviation> deviations;  ///< how far off it is then: what it would have to give
 };
 
 struct DeformResult {
@@ -60,6 +73,9 @@ struct DeformResult {
     int rounds = 0;          ///< in which hard constraints were enforced
     bool solved = false;     ///< there were constraints to solve
     bool acceptable = true;  ///< every constraint holds
+    int passes = 0;          ///< solutions until the parts that constraints refer to stood still
+    std::vector<Conflict> conflicts;
+    std::size_t untried = 0;  ///< constraints that were not left out, since there are so many
 };
 
 /// Follows the edit and solves for the constraints of the graph (relationships that are constraints). With a cage the edit moves

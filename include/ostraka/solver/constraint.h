@@ -93,6 +93,8 @@ public:
     [[nodiscard]] double normalised_residual(const Points& points) const;
     /// |B x - P(B x)|^2: what the solver multiplies by the weight.
     [[nodiscard]] double squared_distance(const Points& points) const;
+    /// Greatest distance of a weighing row from its projection.
+    [[nodiscard]] double greatest_distance(const Points& points) const;
 
 protected:
     Constraint(std::string_view kind, std::vector<int> ids, double weight);

@@ -1,0 +1,196 @@
+// Constraints on where points and parts are: on a plane, on a line, mirrored, next to each other.
+#include "reader.h"
+
+#include "ostraka/geom/surface_search.h"
+#include "ostraka/relation/geometric.h"
+
+namespace ostraka::semantic {
+
+namespace {
+
+Statement all_on(const char* kind, const ReaderPtr& read, const RelationOptions& tolerances) {
+    read->need(1, 0);
+    Statement statement;
+    statement.lower = [read, kind](const State&) {
+        Statement::Constraints list;
+        list.push_back(read->make(kind, read->all_vertices(), {}));
+        return list;
+    };
+    statement.measure = as_related(read, read->relationship(), tolerances);
+    return statement;
+}
+
+/// The faces of an annotation as a mesh of their own, with the vertices it has in the whole.
+struct Piece {
+    Mesh mesh;
+    std::vector<Index> vertex;
+    Piece(const Mesh& whole, const std::vector<Index>& faces) {
+        std::map<Index, Vertex> own;
+        for (const Index f : faces) {
+            std::array<Vertex, 3> corner;
+            for (int k = 0; const Index v : corners(whole, Face(f))) {
+                const auto [entry, fresh] = own.try_emplace(v);
+                if (fresh) {
+                    entry->second = mesh.add_vertex(whole.point(Vertex(v)));
+                    vertex.push_back(v);
+                }
+                corner[static_cast<std::size_t>(k++)] = entry->second;
+            }
+            mesh.add_face(corner[0], corner[1], corner[2]);
+        }
+    }
+};
+
+/// Pairs of a point and the corners of the face that its mirror image falls on.
+struct Partners {
+    std::vector<int> ids;
+    std::vector<double> coefficients;
+    std::vector<Vector3d> gaps;  ///< image less partner, at rest
+};
+
+Partners partners_of(const Reader& read, const Vector3d& point, const Vector3d& normal, double reach) {
+    const std::size_t last = read.members() - 1;
+    const Piece piece(read.shape().mesh, read.faces(last));
+    const SurfaceSearch search(piece.mesh);
+    Partners partners;
+    for (const Index v : read.vertices(0)) {
+        const Vector3d p = read.shape().rest.col(v), image = p - 2 * normal.dot(p - point) * normal;
+        const SurfaceHit hit = search.closest(point_of(image));
+        if (hit.distance > reach) continue;
+        const auto corner = corners(piece.mesh, Face(hit.face));
+        partners.ids.push_back(static_cast<int>(v));
+        for (std::size_t k = 0; k < 3; ++k) {
+            partners.ids.push_back(static_cast<int>(piece.vertex[corner[k]]));
+            partners.coefficients.push_back(hit.barycentric[k]);
+        }
+        partners.gaps.push_back(image - eigen(hit.point));
+    }
+    return partners;
+}
+
+/// Pairs, lower index first, of each vertex with the nearest other one within reach, found in bins of that size.
+void add_nearest(const Points& points, const std::vector<Index>& from, const std::vector<Index>& to, double reach,
+                 std::vector<std::array<int, 2>>& pairs) {
+    using Bin = std::array<std::int64_t, 3>;
+    const auto bin = [&](const Vector3d& p) -> Bin {
+        const auto at = [&](double x) { return static_cast<std::int64_t>(std::floor(x / reach)); };
+        return {at(p.x()), at(p.y()), at(p.z())};
+    };
+    const Vector3d low = points.rowwise().minCoeff();
+    std::map<Bin, std::vector<Index>> bins;
+    for (const Index v : to) bins[bin(points.col(v) - low)].push_back(v);
+    for (const Index v : from) {
+        const Vector3d p = points.col(v);
+        const Bin at = bin(p - low);
+        double best = reach;
+        std::optional<Index> partner;
+        for (int i = 0; i < 27; ++i) {
+            const auto found = bins.find({at[0] + i % 3 - 1, at[1] + i / 3 % 3 - 1, at[2] + i / 9 - 1});
+            if (found == bins.end()) continue;
+            for (const Index w : found->second) {
+                const double d = (points.col(w) - p).norm();
+                if (d > 0 && d <= best) best = d, partner = w;
+            }
+        }
+        if (!partner) continue;
+        pairs.push_back({static_cast<int>(std::min(v, *partner)), static_cast<int>(std::max(v, *partner))});
+    }
+}
+
+}  // namespace
+
+Statement co_planarity(const ReaderPtr& read, const RelationOptions& tolerances) { return all_on("Plane", read, tolerances); }
+
+Statement co_linearity(const ReaderPtr& read, const RelationOptions& tolerances) { return all_on("Line", read, tolerances); }
+
+Statement mirror_symmetry(const ReaderPtr& read, const RelationOptions& tolerances) {
+    read->need(1, 2);
+    for (std::size_t i = 0; i < read->members(); ++i) read->need_region(i);
+    ConstraintParameters parameters;
+    parameters.direction = read->direction("direction");
+    parameters.point = read->vector("point");
+    if (parameters.direction.has_value() != parameters.point.has_value())
+        read->fail("has direction or point of the plane alone", "give both, or neither: the plane is then that at rest");
+    if (!parameters.direction) {
+        Relationship stated = read->relationship();
+        stated.is_constraint = false;
+        const RelationCheck check = RelationMeter(read->shape().mesh, read->shape().set, tolerances).measure(stated);
+        if (!check.parameters.plane) read->fail("has no plane of symmetry: " + check.text, "give direction and point");
+        const auto& plane = *check.parameters.plane;
+        parameters.point = Vector3d(plane.point[0], plane.point[1], plane.point[2]);
+        parameters.direction = Vector3d(plane.direction[0], plane.direction[1], plane.direction[2]);
+    }
+    const double tolerance = length_tolerance(*read, tolerances), reach = 3 * tolerance;
+    const Partners partners = partners_of(*read, *parameters.point, *parameters.direction, reach);
+    if (2 * partners.gaps.size() < read->vertices(0).size())
+        read->fail("has a mirror image for less than half of annotation " + std::to_string(read->member(0).id),
+                   "give the plane, or a greater --distance");
+    parameters.coefficients = partners.coefficients;
+    Statement statement;
+    statement.lower = [=](const State&) {
+        ConstraintParameters given = parameters;
+        given.target.emplace(3, static_cast<Eigen::Index>(partners.gaps.size()));
+        for (std::size_t i = 0; i < partners.gaps.size(); ++i) given.target->col(static_cast<Eigen::Index>(i)) = partners.gaps[i];
+        Statement::Constraints list;
+        list.push_back(read->make("MirrorSymmetry", partners.ids, given));
+        return list;
+    };
+    const Deviation distance{"distance", 0.0, tolerance, read->shape().set.unit};
+    statement.measure = [=](const State& deformed) {
+        Deviation rms = distance;
+        double sum = 0;
+        for (std::size_t i = 0; i < partners.gaps.size(); ++i) {
+            const Vector3d p = deformed.points.col(partners.ids[4 * i]);
+            Vector3d off = p - 2 * parameters.direction->dot(p - *parameters.point) * *parameters.direction - partners.gaps[i];
+            for (std::size_t k = 0; k < 3; ++k)
+                off -= partners.coefficients[3 * i + k] * deformed.points.col(partners.ids[4 * i + 1 + k]);
+            sum += off.squaredNorm();
+        }
+        rms.value = std::sqrt(sum / static_cast<double>(partners.gaps.size()));
+        return verdict_of({rms});
+    };
+    return statement;
+}
+
+Statement adjacency(const ReaderPtr& read, const RelationOptions& tolerances) {
+    read->need(2, 2);
+    const double reach = length_tolerance(*read, tolerances);
+    const auto first = read->vertices(0), second = read->vertices(1);
+    std::vector<Index> shared;
+    std::set_intersection(first.begin(), first.end(), second.begin(), second.end(), std::back_inserter(shared));
+    // Parts with common vertices cannot come apart; others keep the gap that they have where they are near each other.
+    std::vector<std::array<int, 2>> pairs;
+    if (shared.empty()) {
+        if (!(reach > 0)) read->fail("needs a tolerance of distances", "give --distance");
+        add_nearest(read->shape().rest, first, second, reach, pairs);
+        add_nearest(read->shape().rest, second, first, reach, pairs);
+        std::sort(pairs.begin(), pairs.end());
+        pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+        if (pairs.empty())
+            read->fail("has parts that are nowhere within " + std::to_string(reach) + " of each other", "raise --distance");
+    }
+    Statement statement;
+    statement.lower = [=](const State&) {
+        Statement::Constraints list;
+        for (const auto& pair : pairs) {
+            ConstraintParameters parameters;
+            parameters.min = parameters.max = 1;
+            list.push_back(read->make("EdgeStrain", {pair[0], pair[1]}, parameters, 1.0 / static_cast<double>(pairs.size())));
+        }
+        return list;
+    };
+    const Deviation opened{"change of the gap", 0.0, reach, read->shape().set.unit};
+    const Points rest = read->shape().rest;
+    statement.measure = [=](const State& deformed) {
+        Deviation worst = opened;
+        for (const auto& [a, b] : pairs)
+            worst.value = std::max(*worst.value, std::abs((deformed.points.col(a) - deformed.points.col(b)).norm() -
+                                                          (rest.col(a) - rest.col(b)).norm()));
+        Measured result = verdict_of({worst});
+        if (pairs.empty()) result.text = "the parts have common vertices and cannot come apart";
+        return result;
+    };
+    return statement;
+}
+
+}  // namespace ostraka::semantic

@@ -1,0 +1,324 @@
+#include "seat.h"
+
+#include "ostraka/geom/eigen.h"
+#include "ostraka/geom/surface_search.h"
+#include "ostraka/semantic/edit.h"
+
+#include <Eigen/Sparse>
+#include <Eigen/SparseCholesky>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace ostraka::semantic {
+
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+Mesh with_points(const Mesh& mesh, const Points& points) {
+    Mesh result = mesh;
+    for (const Vertex v : result.vertices()) result.point(v) = point_of(points.col(v.idx()));
+    return result;
+}
+
+/// Values at free vertices that minimise the sum of the squared uniform Laplacians over those vertices and, with `to_others`,
+/// over their neighbours; columns of `values` are vertices, those of others are given.
+void smooth(const Mesh& mesh, const std::vector<Index>& free, bool to_others, Points& values) {
+    if (free.empty()) return;
+    std::vector<int> unknown(mesh.number_of_vertices(), -1);
+    for (std::size_t i = 0; i < free.size(); ++i) unknown[free[i]] = static_cast<int>(i);
+    std::vector<bool> is_row(mesh.number_of_vertices(), false);
+    for (const Index v : free) {
+        is_row[v] = true;
+        if (!to_others) continue;
+        for (const Vertex n : mesh.vertices_around_target(mesh.halfedge(Vertex(v)))) is_row[n] = true;
+    }
+    std::vector<Eigen::Triplet<double>> entries;
+    std::vector<Vector3d> right;
+    for (const Vertex v : mesh.vertices()) {
+        if (!is_row[v]) continue;
+        const int row = static_cast<int>(right.size());
+        right.emplace_back(Vector3d::Zero());
+        const auto add = [&](Index u, double weight) {
+            if (unknown[u] >= 0) entries.emplace_back(row, unknown[u], weight);
+            else right.back() -= weight * values.col(u);
+        };
+        const double share = 1.0 / static_cast<double>(mesh.degree(v));
+        add(v, 1);
+        for (const Vertex n : mesh.vertices_around_target(mesh.halfedge(v))) add(n.idx(), -share);
+    }
+    Eigen::SparseMatrix<double> rows(static_cast<Eigen::Index>(right.size()), static_cast<Eigen::Index>(free.size()));
+    rows.setFromTriplets(entries.begin(), entries.end());
+    Eigen::MatrixX3d wanted(rows.rows(), 3);
+    for (std::size_t i = 0; i < right.size(); ++i) wanted.row(static_cast<Eigen::Index>(i)) = right[i];
+    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(Eigen::SparseMatrix<double>(rows.transpose() * rows));
+    const Eigen::MatrixX3d found = solver.solve(rows.transpose() * wanted);
+    if (!found.allFinite()) return;  // a free piece without anything around it: it stays
+    for (std::size_t i = 0; i < free.size(); ++i) values.col(free[i]) = found.row(static_cast<Eigen::Index>(i)).transpose();
+}
+
+/// Of an area by its corners' thirds: the centroid follows a rigid motion.
+Vector3d centroid_of(const Mesh& mesh, const std::vector<Index>& faces, const Points& points) {
+    Vector3d sum = Vector3d::Zero();
+    double area = 0;
+    for (const Index f : faces) {
+        const auto [a, b, c] = corners(mesh, Face(f));
+        const Vector3d p = points.col(a), q = points.col(b), r = points.col(c);
+        const double size = (q - p).cross(r - p).norm();
+        sum += size * (p + q + r) / 3;
+        area += size;
+    }
+    return area > 0 ? Vector3d(sum / area) : Vector3d(points.col(corners(mesh, Face(faces.front()))[0]));
+}
+
+struct Placement {
+    Matrix3d turn = Matrix3d::Identity();
+    Vector3d shift = Vector3d::Zero();
+    [[nodiscard]] Vector3d operator()(const Vector3d& p) const { return turn * p + shift; }
+};
+
+/// The rigid motion that brings columns of `from` closest to those of `to`.
+Placement fit(const Points& from, const Points& to) {
+    const Vector3d a = from.rowwise().mean(), b = to.rowwise().mean();
+    const Matrix3d m = (to.colwise() - b) * (from.colwise() - a).transpose();
+    const Eigen::JacobiSVD<Matrix3d> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Matrix3d sign = Matrix3d::Identity();
+    sign(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
+    Placement result;
+    result.turn = svd.matrixU() * sign * svd.matrixV().transpose();
+    result.shift = b - result.turn * a;
+    return result;
+}
+
+struct Feature {
+    const Annotation* annotation;
+    std::vector<Index> vertices, inside, outline;
+    Vector3d centroid;  ///< at rest
+    double radius = 0;  ///< greatest distance from it, at rest
+    Points rest_outline;
+    Placement placement;
+};
+
+Feature feature_of(const Mesh& mesh, const Points& rest, const Annotation& annotation) {
+    Feature feature{&annotation, vertices_of(mesh, annotation), {}, {}, {}, 0, {}, {}};
+    const std::vector<bool> inside = face_flags(mesh, annotation.faces);
+    for (const Index v : feature.vertices) {
+        bool border = false;
+        for (const Face f : mesh.faces_around_target(mesh.halfedge(Vertex(v))))
+            border = border || f == Mesh::null_face() || !inside[f];
+        (border ? feature.outline : feature.inside).push_back(v);
+    }
+    feature.centroid = centroid_of(mesh, annotation.faces, rest);
+    for (const Index v : feature.vertices) feature.radius = std::max(feature.radius, (rest.col(v) - feature.centroid).norm());
+    feature.rest_outline.resize(3, static_cast<Eigen::Index>(feature.outline.size()));
+    for (std::size_t i = 0; i < feature.outline.size(); ++i)
+        feature.rest_outline.col(static_cast<Eigen::Index>(i)) = rest.col(feature.outline[i]);
+    return feature;
+}
+
+class Seater {
+public:
+    Seater(const Mesh& mesh, const Points& rest, const std::vector<Seating>& seatings, Points& points)
+        : mesh_(mesh),
+          rest_(rest),
+          points_(points),
+          owner_(mesh.number_of_vertices(), -1),
+          seated_(points),
+          change_(Points::Zero(3, points.cols())) {
+        for (const Seating& seating : seatings) {
+            groups_.push_back({features_.size(), features_.size() + seating.features.size(), seating.up, seating.bend});
+            for (const Annotation* annotation : seating.features) {
+                for (const Index v : vertices_of(mesh, *annotation)) owner_[v] = static_cast<int>(features_.size());
+                features_.push_back(feature_of(mesh, rest, *annotation));
+            }
+        }
+    }
+
+    SeatReport run() {
+        Points base_points = points_;
+        std::vector<Index> insides;
+        for (const Feature& feature : features_) insides.insert(insides.end(), feature.inside.begin(), feature.inside.end());
+        std::sort(insides.begin(), insides.end());
+        smooth(mesh_, insides, true, base_points);
+        const Mesh base = with_points(mesh_, base_points);
+        const SurfaceSearch search(base);
+        for (Feature& feature : features_) {
+            Points to(3, feature.rest_outline.cols());
+            for (std::size_t i = 0; i < feature.outline.size(); ++i)
+                to.col(static_cast<Eigen::Index>(i)) = points_.col(feature.outline[i]);
+            feature.placement = fit(feature.rest_outline, to);
+            settle(feature, search, {});
+        }
+        for (const Group& group : groups_) place(group, search);
+        SeatReport report;
+        constexpr double widest = 3;
+        for (const double reach : {2.0, widest}) {
+            report = {};
+            const Points tried = surroundings(search, reach, report);
+            report.folded = folded(tried);
+            if (report.folded == 0 || reach == widest) points_ = tried;
+            if (report.folded == 0) break;
+        }
+        return report;
+    }
+
+private:
+    struct Group {
+        std::size_t begin, end;
+        std::optional<Vector3d> up;
+        double bend;
+    };
+
+    /// Moves a placed feature so that its outline lies on the base; with a target height its centroid comes there.
+    void settle(Feature& feature, const SurfaceSearch& search, const std::optional<std::pair<Vector3d, double>>& height) const {
+        const double enough = 1e-9 * search.diagonal();
+        for (int round = 0; round < 50; ++round) {
+            const Placement before = feature.placement;
+            Points to(3, feature.rest_outline.cols());
+            Vector3d normal = Vector3d::Zero();
+            for (Eigen::Index i = 0; i < to.cols(); ++i) {
+                const SurfaceHit hit = search.closest(point_of(before(feature.rest_outline.col(i))));
+                to.col(i) = eigen(hit.point);
+                normal += eigen(search.normal(hit.face));
+            }
+            feature.placement = fit(feature.rest_outline, to);
+            if (height) {
+                // Along the base, in the steepest direction of the height; straight where the base is level itself.
+                const auto& [up, wanted] = *height;
+                normal = normal.norm() > 0 ? Vector3d(normal.normalized()) : up;
+                const Vector3d slope = up - normal * normal.dot(up);
+                const double off = wanted - up.dot(feature.placement(feature.centroid));
+                feature.placement.shift += slope.norm() > 0.2 ? Vector3d(off / slope.squaredNorm() * slope) : Vector3d(off * up);
+            }
+            const double moved = (feature.placement(feature.centroid) - before(feature.centroid)).norm() +
+                                 feature.radius * (feature.placement.turn - before.turn).norm();
+            if (moved < enough) break;
+        }
+        if (height) {
+            const auto& [up, wanted] = *height;
+            feature.placement.shift += (wanted - up.dot(feature.placement(feature.centroid))) * up;
+        }
+    }
+
+    /// The feature where it is placed, bent so that its outline lies on the base as far as it may.
+    void bend(const Feature& feature, const SurfaceSearch& search, double most) {
+        for (const Index v : feature.outline) {
+            const Vector3d p = feature.placement(rest_.col(v));
+            change_.col(v) = eigen(search.closest(point_of(p)).point) - p;
+        }
+        smooth(mesh_, feature.inside, false, change_);
+        double sum = 0;
+        for (const Index v : feature.vertices) sum += change_.col(v).squaredNorm();
+        const double rms = std::sqrt(sum / static_cast<double>(feature.vertices.size()));
+        const double share = rms > most ? most / rms : 1;
+        for (const Index v : feature.vertices) seated_.col(v) = feature.placement(rest_.col(v)) + share * change_.col(v);
+    }
+
+    void place(const Group& group, const SurfaceSearch& search) {
+        const double most = group.bend * (rest_.rowwise().maxCoeff() - rest_.rowwise().minCoeff()).norm();
+        for (std::size_t i = group.begin; i < group.end; ++i) bend(features_[i], search, most);
+        if (!group.up) return;
+        const Vector3d& up = *group.up;
+        const auto height = [&](const Feature& f) { return up.dot(centroid_of(mesh_, f.annotation->faces, seated_)); };
+        double mean = 0;
+        for (std::size_t i = group.begin; i < group.end; ++i)
+            mean += height(features_[i]) / static_cast<double>(group.end - group.begin);
+        for (std::size_t i = group.begin; i < group.end; ++i) {
+            Feature& feature = features_[i];
+            for (int round = 0; round < 5; ++round) {
+                const double wanted = mean - height(feature) + up.dot(feature.placement(feature.centroid));
+                settle(feature, search, std::pair{up, wanted});
+                bend(feature, search, most);
+            }
+            const Vector3d rest = (mean - height(feature)) * up;
+            for (const Index v : feature.vertices) seated_.col(v) += rest;
+        }
+    }
+
+    /// All points with the features in place and what is around them drawn along on the base.
+    Points surroundings(const SurfaceSearch& search, double reach, SeatReport& report) const {
+        // Displacements along the base, and what outlines stand off it, both carried smoothly to nothing.
+        Points moved = Points::Zero(3, points_.cols()), off = moved, result = points_;
+        for (const Feature& feature : features_)
+            for (const Index v : feature.vertices) {
+                result.col(v) = seated_.col(v);
+                moved.col(v) = result.col(v) - points_.col(v);
+            }
+        std::vector<bool> ring(points_.cols(), false);
+        for (const Feature& feature : features_) {
+            for (const Index v : feature.outline) {
+                off.col(v) = result.col(v) - eigen(search.closest(point_of(result.col(v))).point);
+                report.lifted = std::max(report.lifted, off.col(v).norm());
+            }
+            grow(feature, reach * feature.radius, ring);
+        }
+        std::vector<Index> free;
+        for (Index v = 0; v < ring.size(); ++v)
+            if (ring[v] && owner_[v] < 0) free.push_back(v);
+        smooth(mesh_, free, true, moved);
+        smooth(mesh_, free, true, off);
+        for (const Index v : free) {
+            const Vector3d slid = points_.col(v) + moved.col(v);
+            result.col(v) = eigen(search.closest(point_of(slid)).point) + off.col(v);
+        }
+        return result;
+    }
+
+    /// Flags vertices that edges lead to from the outline within a length of the rest shape, by rising distance.
+    void grow(const Feature& feature, double length, std::vector<bool>& ring) const {
+        std::set<std::pair<double, Index>> open;
+        std::map<Index, double> known;
+        for (const Index v : feature.outline) open.insert({0, v}), known[v] = 0;
+        while (!open.empty()) {
+            const auto [way, v] = *open.begin();
+            open.erase(open.begin());
+            ring[v] = true;
+            for (const Vertex n : mesh_.vertices_around_target(mesh_.halfedge(Vertex(v)))) {
+                const double next = way + (rest_.col(n.idx()) - rest_.col(v)).norm();
+                if (owner_[n] >= 0 || next > length) continue;
+                const auto [entry, fresh] = known.try_emplace(n.idx(), next);
+                if (!fresh && entry->second <= next) continue;
+                if (!fresh) open.erase({entry->second, n.idx()});
+                entry->second = next;
+                open.insert({next, n.idx()});
+            }
+        }
+    }
+
+    /// Faces outside the features that turned over against the surface as it was.
+    [[nodiscard]] std::size_t folded(const Points& result) const {
+        std::size_t count = 0;
+        for (const Face f : mesh_.faces()) {
+            const auto corner = corners(mesh_, f);
+            if (std::all_of(corner.begin(), corner.end(), [&](Index v) { return result.col(v) == points_.col(v); })) continue;
+            if (std::all_of(corner.begin(), corner.end(), [&](Index v) { return owner_[v] >= 0; })) continue;
+            const auto normal = [&](const Points& p) -> Vector3d {
+                return (p.col(corner[1]) - p.col(corner[0])).cross(p.col(corner[2]) - p.col(corner[0]));
+            };
+            const Vector3d then = normal(points_), now = normal(result);
+            count += then.norm() > 0 && !(then.dot(now) > 0);
+        }
+        return count;
+    }
+
+    const Mesh& mesh_;
+    const Points& rest_;
+    Points& points_;
+    std::vector<int> owner_;  ///< feature of each vertex, or -1
+    std::vector<Feature> features_;
+    Points seated_, change_;  ///< of the features' vertices
+    std::vector<Group> groups_;
+};
+
+}  // namespace
+
+SeatReport seat(const Mesh& mesh, const Points& rest, const std::vector<Seating>& seatings, Points& points) {
+    if (seatings.empty()) return {};
+    return Seater(mesh, rest, seatings, points).run();
+}
+
+}  // namespace ostraka::semantic

@@ -1,0 +1,28 @@
+// Features of a surface that are put back as rigid details after their base was deformed.
+#pragma once
+
+#include "ostraka/annotation/annotation.h"
+#include "ostraka/solver/constraint.h"
+
+namespace ostraka::semantic {
+
+/// Features that are seated together.
+struct Seating {
+    std::vector<const Annotation*> features;  ///< regions
+    std::optional<Eigen::Vector3d> up;        ///< their centroids come to one level along it
+    double bend = 0;  ///< root mean square by which one may bend to lie on the base, as a share of the diagonal
+};
+
+struct SeatReport {
+    std::size_t folded = 0;  ///< faces around features that had to turn over
+    double lifted = 0;       ///< greatest distance of an outline from the base, in the mesh's unit
+};
+
+/// The base is `points` with the features' insides replaced by the smoothest surface over their outlines. Each feature comes back
+/// as a rigid copy of itself at `rest`, its outline as near to the base as a rigid one can be, then bent to lie on it; where `up`
+/// is given it slides along the base until its centroid stands at the mean level of all. Around a feature, up to about twice its
+/// radius, vertices slide on the base to make room, so that the surface keeps its shape there (thesis, sections 5.4 and 6.1.2).
+/// Other points stay.
+SeatReport seat(const Mesh& mesh, const Points& rest, const std::vector<Seating>& seatings, Points& points);
+
+}  // namespace ostraka::semantic

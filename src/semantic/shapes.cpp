@@ -1,0 +1,118 @@
+// Parts that keep their shape, and features that stand on one level.
+#include "reader.h"
+
+namespace ostraka::semantic {
+
+namespace {
+
+std::vector<int> ids_of(const std::vector<Index>& vertices) { return {vertices.begin(), vertices.end()}; }
+
+/// The vertex of an annotation that stands for its place: nearest to the mean of its vertices on its plane (section 5.2.1).
+Index reference_vertex(const Points& rest, const std::vector<Index>& vertices) {
+    Vector3d mean = Vector3d::Zero();
+    for (const Index v : vertices) mean += rest.col(v);
+    mean /= static_cast<double>(vertices.size());
+    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+    for (const Index v : vertices) spread += (rest.col(v) - mean) * (rest.col(v) - mean).transpose();
+    const Vector3d normal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0);
+    Index best = vertices.front();
+    double least = std::numeric_limits<double>::infinity();
+    for (const Index v : vertices) {
+        const Vector3d d = rest.col(v) - mean;
+        const double off = (d - normal * normal.dot(d)).squaredNorm();
+        if (off < least) least = off, best = v;
+    }
+    return best;
+}
+
+/// All members, with the kind that keeps their shape.
+Statement::Constraints kept(const Reader& read, const char* kind) {
+    Statement::Constraints list;
+    for (std::size_t i = 0; i < read.members(); ++i) list.push_back(read.make(kind, ids_of(read.vertices(i)), {}));
+    return list;
+}
+
+Seating seating_of(const Reader& read, std::optional<Vector3d> up) {
+    Seating seating;
+    std::vector<bool> taken(read.shape().mesh.number_of_vertices(), false);
+    for (std::size_t i = 0; i < read.members(); ++i) {
+        const Annotation& feature = read.member(i);
+        if (read.faces(i).size() == read.shape().mesh.number_of_faces())
+            read.fail("annotation " + std::to_string(feature.id) + " is the whole object", "seat parts of it");
+        for (const Index v : read.vertices(i)) {
+            if (taken[v])
+                read.fail("annotation " + std::to_string(feature.id) + " touches another feature, so that neither can move alone",
+                          "make one annotation of both, or keep their shapes without seating");
+            taken[v] = true;
+        }
+        seating.features.push_back(&feature);
+    }
+    seating.up = up;
+    seating.bend = read.number("bend", 7.5e-4, 0, 1);
+    return seating;
+}
+
+}  // namespace
+
+Statement keep_shape(const ReaderPtr& read, const RelationOptions& tolerances) {
+    read->need(1, 0);
+    const std::string mode = read->word("mode", "rigid", {"rigid", "similar", "seat"});
+    const char* const kind = mode == "similar" ? "Similarity" : "Rigid";
+    Statement statement;
+    if (mode == "seat") statement.seat = seating_of(*read, {});
+    const auto parts = std::make_shared<const Statement::Constraints>(kept(*read, kind));
+    statement.lower = [read, kind, seated = mode == "seat"](const State&) {
+        return seated ? Statement::Constraints() : kept(*read, kind);
+    };
+    const Deviation tolerance{"rms distance from its shape", 0.0, length_tolerance(*read, tolerances), read->shape().set.unit};
+    statement.measure = [parts, tolerance](const State& deformed) {
+        Deviation worst = tolerance;
+        for (const auto& part : *parts)
+            worst.value = std::max(*worst.value,
+                                   std::sqrt(part->squared_distance(deformed.points) / static_cast<double>(part->ids().size())));
+        return verdict_of({worst});
+    };
+    return statement;
+}
+
+Statement same_level(const ReaderPtr& read, const RelationOptions& tolerances) {
+    read->need(2, 0);
+    ConstraintParameters level;
+    level.direction = read->up();
+    const std::string shapes = read->word("shapes", "keep", {"keep", "free", "seat"});
+    // The thesis takes a reference vertex of each part, whose place on the part is as fine as the mesh: at rest such vertices are
+    // not on one level themselves. Means of parts are.
+    const bool means = read->word("reference", "mean", {"mean", "vertex"}) == "mean";
+    std::vector<int> references;
+    for (std::size_t i = 0; i < read->members(); ++i) {
+        const auto vertices = read->vertices(i);
+        if (means) {
+            for (const Index v : vertices) {
+                references.push_back(static_cast<int>(v));
+                level.stations.push_back(static_cast<int>(i));
+            }
+        } else {
+            references.push_back(static_cast<int>(reference_vertex(read->shape().rest, vertices)));
+        }
+    }
+    Statement statement;
+    if (shapes == "seat") {
+        statement.seat = seating_of(*read, level.direction);
+        statement.lower = [](const State&) { return Statement::Constraints(); };
+    } else {
+        statement.lower = [=](const State&) {
+            Statement::Constraints list;
+            if (shapes == "keep")
+                for (std::size_t i = 0; i < read->members(); ++i)
+                    if (const auto ids = ids_of(read->vertices(i)); ids.size() > 1) list.push_back(read->make("Rigid", ids, {}));
+            list.push_back(read->make(means ? "MeansOnLevel" : "Orientation", references, level));
+            return list;
+        };
+    }
+    Relationship stated = read->relationship();
+    stated.parameters.up = {(*level.direction)[0], (*level.direction)[1], (*level.direction)[2]};
+    statement.measure = as_related(read, stated, tolerances);
+    return statement;
+}
+
+}  // namespace ostraka::semantic

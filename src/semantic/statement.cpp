@@ -1,0 +1,73 @@
+#include "statement.h"
+
+#include "reader.h"
+
+#include "ostraka/relation/geometric.h"
+
+#include <map>
+
+namespace ostraka::semantic {
+
+namespace {
+
+using Understanding = Statement (*)(const ReaderPtr&, const RelationOptions&);
+const std::map<std::string, Understanding>& table() {
+    static const std::map<std::string, Understanding> rows{
+        {"keep shape", keep_shape},     {"same level", same_level},         {"co-axiality", co_axiality},
+        {"parallel axes", axis_angle},  {"perpendicular axes", axis_angle}, {"structural continuity", structural_continuity},
+        {"proportion", proportion},     {"keep measure", keep_measure},     {"same measure", same_measure},
+        {"co-planarity", co_planarity}, {"co-linearity", co_linearity},     {"mirror symmetry", mirror_symmetry},
+        {"adjacency", adjacency},
+    };
+    return rows;
+}
+
+}  // namespace
+
+Points columns_of(const Mesh& mesh) {
+    Points points(3, static_cast<Eigen::Index>(mesh.number_of_vertices()));
+    for (const Vertex v : mesh.vertices()) points.col(v.idx()) = eigen(mesh.point(v));
+    return points;
+}
+
+Measured verdict_of(std::vector<Deviation> deviations) {
+    Measured result;
+    result.verdict =
+        std::all_of(deviations.begin(), deviations.end(), [](const Deviation& d) { return *d.value <= *d.tolerance; })
+            ? Verdict::holds
+            : Verdict::fails;
+    result.deviations = std::move(deviations);
+    return result;
+}
+
+std::function<Measured(const State&)> as_related(const ReaderPtr& read, Relationship stated, const RelationOptions& tolerances) {
+    stated.is_constraint = false;
+    return [read, stated, tolerances](const State& deformed) -> Measured {
+        const RelationCheck check = RelationMeter(deformed.mesh, read->shape().set, tolerances).measure(stated);
+        return {check.verdict, check.parameters.deviations, check.text};
+    };
+}
+
+double length_tolerance(const Reader& read, const RelationOptions& tolerances) {
+    return tolerances.distance * box_diagonal(read.shape().mesh);
+}
+
+Statement understand(const Shape& shape, const Relationship& relationship, const RelationOptions& tolerances,
+                     const std::string& where) {
+    const auto row = table().find(relationship.type);
+    const auto read = std::make_shared<const Reader>(shape, relationship, where);
+    Statement statement;
+    if (row != table().end()) {
+        statement = row->second(read, tolerances);
+    } else if (low_level_kind(relationship.type) != nullptr) {
+        statement = low_level(read, tolerances);
+    } else {
+        statement.unknown = "deformation does not know this type";
+        return statement;
+    }
+    statement.hard = read->flag("hard");
+    read->refuse_others();
+    return statement;
+}
+
+}  // namespace ostraka::semantic

@@ -1,0 +1,50 @@
+// A relationship that is a constraint, understood: constraints on points, and how well it holds in its own unit.
+#pragma once
+
+#include "seat.h"
+
+#include "ostraka/relation/check.h"
+#include "ostraka/semantic/edit.h"
+#include "ostraka/solver/constraint.h"
+
+namespace ostraka::semantic {
+
+Points columns_of(const Mesh& mesh);
+
+/// What constraints are stated on. `rest` are the mesh's points before the edit, a column each.
+struct Shape {
+    const Mesh& mesh;
+    const AnnotationSet& set;
+    const Points& rest;
+};
+
+/// The shape with other points.
+struct State {
+    explicit State(const Mesh& deformed) : mesh(deformed), points(columns_of(deformed)) {}
+    const Mesh& mesh;
+    Points points;
+};
+
+struct Measured {
+    Verdict verdict = Verdict::unknown;
+    std::vector<Deviation> deviations;
+    std::string text;
+};
+
+struct Statement {
+    using Constraints = std::vector<std::unique_ptr<Constraint>>;
+    /// Low-level constraints; parts that others refer to are as they are `now`. Empty where there is nothing to solve.
+    std::function<Constraints(const State& now)> lower;
+    std::function<Measured(const State& deformed)> measure;
+    std::vector<Index> anchors;   ///< vertices that are to stay where the edit leaves them
+    std::optional<Seating> seat;  ///< features that are put back on the deformed base
+    bool follows = false;         ///< lower gives others when the shape has moved
+    bool hard = false;
+    std::string unknown;  ///< why it is left out, if it is
+};
+
+/// Reads a relationship and checks it on the shape at rest. Throws Error (input) naming it where it makes no sense.
+Statement understand(const Shape& shape, const Relationship& relationship, const RelationOptions& tolerances,
+                     const std::string& where);
+
+}  // namespace ostraka::semantic
