@@ -1,11 +1,17 @@
 // The local/global solver: set-up and iterations over the points of a mesh, and through a cage.
 #include "benchmarks.h"
 
+#include "ostraka/cage/cage.h"
+#include "ostraka/coords/coordinates.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/shapes/make_mesh.h"
 #include "ostraka/solver/solve.h"
 
+#include <malloc.h>
+
+#include <chrono>
 #include <cmath>
+#include <fstream>
 #include <numbers>
 #include <numeric>
 #include <random>
@@ -59,6 +65,20 @@ SolveOptions plain(int count) {
     return options;
 }
 
+/// Resident memory of this process in bytes: now ("VmRSS") or the most since forget_peak() ("VmHWM"); 0 where it cannot be known.
+double resident(const std::string& which) {
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);)
+        if (line.rfind(which + ":", 0) == 0) return 1024 * std::stod(line.substr(which.size() + 1));
+    return 0;
+}
+
+/// What is free goes back to the system first, so that growth from here on is seen.
+void forget_peak() {
+    ::malloc_trim(0);
+    std::ofstream("/proc/self/clear_refs") << 5;
+}
+
 void report(benchmark::State& state, const SolveSummary& summary) {
     if (!summary.usable) state.SkipWithError("not solved");
     state.counters["iterations"] = summary.iterations;  // fewer where nothing moves any more, to the bit
@@ -74,15 +94,22 @@ void laplacian_and_plane(benchmark::State& state, std::size_t vertices) {
     const Mesh& mesh = target(vertices);
     const Points rest = points_of_mesh(mesh);
     SolveSummary summary;
+    double before = 0, constraints = 0, peak = 0;
     for ([[maybe_unused]] const auto lap : state) {
+        forget_peak();
+        before = resident("VmRSS");
         List list;
         add_laplacians(list, mesh, rest, 1);
         add_plane(list, rest);
+        constraints = resident("VmRSS");
         MeshSpaceSolver solver(std::move(list), rest);
         Points x = rest;
         summary = solver.solve(x, plain(iterations));
+        peak = resident("VmHWM");
     }
     report(state, summary);
+    state.counters["constraints_MB"] = (constraints - before) / 1e6;
+    state.counters["peak_MB"] = (peak - before) / 1e6;  // growth, constraints and factor included
 }
 
 /// Closeness of every vertex to rest and the plane: a diagonal matrix but for rank one.
@@ -100,6 +127,22 @@ void closeness_and_plane(benchmark::State& state, std::size_t vertices) {
     report(state, summary);
 }
 
+/// The vertices of each flower of the made teapot.
+std::vector<std::vector<int>> flowers_of(const MadeMesh& made) {
+    std::vector<std::vector<int>> flowers;
+    const auto& parts = made_object("teapot").parts;
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+        if (parts[part].find("flower") == std::string::npos) continue;
+        std::set<int> members;
+        for (const Face f : made.mesh.faces())
+            if (made.face_labels[f.idx()] == static_cast<int>(part))
+                for (const Vertex v : CGAL::vertices_around_face(made.mesh.halfedge(f), made.mesh))
+                    members.insert(static_cast<int>(v.idx()));
+        if (members.size() >= 10) flowers.emplace_back(members.begin(), members.end());
+    }
+    return flowers;
+}
+
 /// The stretched teapot whose flowers stay as they were, their centres on one level (the thesis, figure 5.3): iterations until
 /// phi - best has fallen to a thousandth of what it was at the start, and of what it was after the first step.
 void same_level(benchmark::State& state, int window) {
@@ -114,16 +157,7 @@ void same_level(benchmark::State& state, int window) {
         List list;
         add_laplacians(list, mesh, stretched, 2);
         std::vector<int> centres;
-        const auto& parts = made_object("teapot").parts;
-        for (std::size_t part = 0; part < parts.size(); ++part) {
-            if (parts[part].find("flower") == std::string::npos) continue;
-            std::set<int> members;
-            for (const Face f : mesh.faces())
-                if (made.face_labels[f.idx()] == static_cast<int>(part))
-                    for (const Vertex v : CGAL::vertices_around_face(mesh.halfedge(f), mesh))
-                        members.insert(static_cast<int>(v.idx()));
-            const std::vector<int> ids(members.begin(), members.end());
-            if (ids.size() < 10) continue;
+        for (const std::vector<int>& ids : flowers_of(made)) {
             Eigen::Vector3d mean = Eigen::Vector3d::Zero();
             for (const int i : ids) mean += rest.col(i) / static_cast<double>(ids.size());
             const auto off = [&](int i) { return (rest.col(i) - mean).squaredNorm(); };
@@ -219,6 +253,70 @@ void through_cage(benchmark::State& state, Kind kind) {
     state.SetBytesProcessed(static_cast<std::int64_t>(count * static_cast<double>(rows * cage_size * sizeof(double))));
 }
 
+/// An edit as one makes it by hand: a teapot of 60,000 vertices in a cage of 200, its flowers rigid and on one level. All handles
+/// get new targets, 20 iterations follow, and all points of the mesh are moved along. What does not change from one edit to the
+/// next (cage, weights, factorisation) is made before.
+void interactive_edit(benchmark::State& state) {
+    MakeOptions making;
+    making.vertices = 60'000;
+    const MadeMesh made = make_mesh(made_object("teapot"), making);
+    const Mesh cage_mesh = make_cage(made.mesh).cage;
+    const Points mesh_points = points_of_mesh(made.mesh), cage = points_of_mesh(cage_mesh);
+    // Rows for the handles themselves below those of the mesh, so that they have targets.
+    const Eigen::Index n = mesh_points.cols(), handles = cage.cols();
+    CageWeights weights(n + handles, handles);
+    weights.topRows(n) = compute_coordinates("mean-value", cage_mesh, made.mesh).vertex;
+    weights.bottomRows(handles).setIdentity();
+    Points rest(3, n + handles);
+    rest << mesh_points, cage;
+    std::vector<int> ids(static_cast<std::size_t>(handles));
+    std::iota(ids.begin(), ids.end(), static_cast<int>(n));
+    List list;
+    list.push_back(make_constraint("Closeness", ids, 1, {}, rest));
+    std::vector<int> members;
+    ConstraintParameters level;
+    level.direction = Eigen::Vector3d::UnitZ();
+    int count = 0;
+    for (const std::vector<int>& flower : flowers_of(made)) {
+        list.push_back(make_constraint("Rigid", flower, 50, {}, rest));
+        members.insert(members.end(), flower.begin(), flower.end());
+        level.stations.insert(level.stations.end(), flower.size(), count++);
+    }
+    list.push_back(make_constraint("MeansOnLevel", members, 50, level, rest));
+    CageSpaceSolver solver(std::move(list), weights, cage);
+    solver.initialize();
+    SolveOptions options;
+    options.iterations = 20;
+    options.tolerance = 0;
+    double targets = 0, update = 0, laps = 0, done = 0;
+    SolveTimes times;
+    for ([[maybe_unused]] const auto lap : state) {
+        const auto now = std::chrono::steady_clock::now;
+        const auto begin = now();
+        Points edited = cage;  // stretched, and each time a little more
+        edited.row(2) *= 1.4 + 0.01 * laps;
+        solver.set_target(0, edited);
+        const auto set = now();
+        const SolveSummary summary = solver.solve(edited, options);
+        const auto solved = now();
+        benchmark::DoNotOptimize(points_of(weights, edited).data());
+        update += std::chrono::duration<double>(now() - solved).count();
+        targets += std::chrono::duration<double>(set - begin).count();
+        times.project += summary.times.project;
+        times.solve += summary.times.solve;
+        times.accelerate += summary.times.accelerate;
+        done += summary.iterations;
+        laps += 1;
+        if (!summary.usable) state.SkipWithError("not solved");
+    }
+    state.counters["iterations"] = done / laps;
+    state.counters["targets_ms"] = 1e3 * targets / laps;  // and their part of the right-hand side
+    state.counters["project_ms"] = 1e3 * times.project / laps;
+    state.counters["solve_ms"] = 1e3 * times.solve / laps;
+    state.counters["accelerate_ms"] = 1e3 * times.accelerate / laps;
+    state.counters["mesh_ms"] = 1e3 * update / laps;
+}
+
 }  // namespace
 
 void register_solver_benchmarks() {
@@ -233,6 +331,7 @@ void register_solver_benchmarks() {
     for (const int window : {0, 2, 5, 10})
         add("solver/same_level/window:" + std::to_string(window),
             [window](benchmark::State& state) { same_level(state, window); });
+    add("solver/cage/interactive_edit", interactive_edit);
     add("solver/cage/edges", [](benchmark::State& state) { through_cage(state, Kind::edges); });
     add("solver/cage/planes", [](benchmark::State& state) { through_cage(state, Kind::planes); });
     add("solver/cage/rigid_groups", [](benchmark::State& state) { through_cage(state, Kind::rigid_groups); });

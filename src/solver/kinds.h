@@ -58,9 +58,11 @@ std::unique_ptr<Constraint> make_equilateral(Making&&);
 std::unique_ptr<Constraint> make_non_uniform_scaling(Making&&);
 std::unique_ptr<Constraint> make_parallelogram(Making&&);
 std::unique_ptr<Constraint> make_rectangle(Making&&);
-// placement.cpp
+// axes.cpp
 std::unique_ptr<Constraint> make_fitted_plane_orientation(Making&&);
 std::unique_ptr<Constraint> make_co_axiality(Making&&);
+std::unique_ptr<Constraint> make_axis_direction(Making&&);
+// placement.cpp
 std::unique_ptr<Constraint> make_axis_on_line(Making&&);
 std::unique_ptr<Constraint> make_means_on_level(Making&&);
 std::unique_ptr<Constraint> make_mirror_symmetry(Making&&);

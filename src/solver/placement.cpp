@@ -1,4 +1,4 @@
-// Groups that turn, stretch or mirror as they are: towards a normal, an axis, a proportion, a plane of symmetry.
+// Stations of an axis, levels, mirrored pairs, proportions.
 #include "kinds.h"
 
 #include <cmath>
@@ -11,108 +11,40 @@ using Eigen::Index;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-Matrix3d cross_matrix(const Vector3d& n) {
-    Matrix3d m;
-    m << 0, -n.z(), n.y(), n.z(), 0, -n.x(), -n.y(), n.x(), 0;
-    return m;
-}
-
-/// The rotation R with R a = d or R a = -d that maximises tr(R m): the turn from a to +-d, then a spin about d, whose angle has a
-/// closed form.
-Matrix3d turn_to(const Vector3d& a, const Vector3d& d, const Matrix3d& m) {
-    Matrix3d best = Matrix3d::Identity();
-    double most = -std::numeric_limits<double>::infinity();
-    for (const double side : {1.0, -1.0}) {
-        const Matrix3d turn = Eigen::Quaterniond::FromTwoVectors(a, side * d).toRotationMatrix();
-        const Matrix3d turned = turn * m;
-        const double along = d.dot(turned * d), c = turned.trace() - along, s = (cross_matrix(d) * turned).trace();
-        const double value = along + std::hypot(c, s);
-        if (value > most) {
-            most = value;
-            best = Eigen::AngleAxisd(c == 0 && s == 0 ? 0.0 : std::atan2(s, c), d).toRotationMatrix() * turn;
-        }
-    }
-    return best;
-}
-
-/// The points as they are, turned about their mean so that their fitted plane has the given normal, either way round.
-class FittedPlaneOrientation final : public MomentConstraint {
-public:
-    FittedPlaneOrientation(Making&& m, const Vector3d& normal)
-        : MomentConstraint(m.kind, std::move(m.ids), m.weight), normal_(normal) {
-        map_.direct = map_.rows = static_cast<Index>(ids().size());
-        map_.centred = true;
-    }
-    [[nodiscard]] LinearProjection project_moments(const Moments& moments) const override {
-        const Vector3d fitted = principal(moments.rows).eigenvectors().col(0);
-        return {turn_to(fitted, normal_, moments.rows), Matrix3d::Zero()};
-    }
-
-private:
-    Vector3d normal_;
-};
-
-/// The points as they are, moved rigidly so that their axis lies on a line (the thesis, section 5.2.2). The axis is given in the
-/// rest state and carried along by the best rigid motion from there. Rows: the points.
-class CoAxiality final : public Constraint {
-public:
-    CoAxiality(Making&& m, const Vector3d& direction, const Vector3d& point)
-        : Constraint(m.kind, m.ids, m.weight), direction_(direction), point_(point) {
-        map_.direct = map_.rows = static_cast<Index>(ids().size());
-        const Vector3d mean = m.rest.col(0) + (m.rest.colwise() - m.rest.col(0).eval()).rowwise().mean();
-        shape_ = m.rest.colwise() - mean;
-        if (m.parameters.rest_direction) {
-            rest_axis_ = *m.parameters.rest_direction;
-            if (!rest_axis_.allFinite() || !(rest_axis_.cwiseAbs().maxCoeff() > 0)) m.fail("the rest axis has no direction");
-            rest_axis_ = (rest_axis_ / rest_axis_.cwiseAbs().maxCoeff()).normalized();
-        } else {
-            rest_axis_ = principal(outer_sum(shape_, shape_)).eigenvectors().col(2);
-        }
-        if (m.parameters.rest_point) {
-            if (!m.parameters.rest_point->allFinite()) m.fail("the rest axis's point is not finite");
-            to_mean_ = mean - *m.parameters.rest_point;
-        }
-    }
-    void project(const RowsIn& rows, RowsOut projected) const override {
-        const Vector3d first = rows.col(0);
-        Points z = rows.colwise() - first;
-        const Vector3d offset = z.rowwise().mean();
-        z.colwise() -= offset;
-        const Vector3d mean = first + offset;
-        const Matrix3d carried = best_rotation(outer_sum(z, shape_));
-        const Vector3d axis = carried * rest_axis_, b = carried * to_mean_;
-        const Matrix3d across = Matrix3d::Identity() - direction_ * direction_.transpose();
-        const Vector3d gap = across * (point_ - mean);
-        const auto count = static_cast<double>(rows.cols());
-        const Matrix3d turn = turn_to(axis, direction_, outer_sum(z, z) - count * b * gap.transpose());
-        const Vector3d to = mean + across * (turn * b) + gap;
-        for (Index i = 0; i < rows.cols(); ++i) projected.col(i) = turn * z.col(i) + to;
-    }
-
-private:
-    Vector3d direction_, point_, rest_axis_, to_mean_ = Vector3d::Zero();
-    Points shape_;
-};
-
-/// Rows are the means of groups of points.
+/// Rows are the means of groups of points. With shares, a point counts for the next station by its share and for its own by the
+/// rest: hat functions, so that no wave as long as a group is left where the stations move.
 class StationMeans : public Constraint {
 protected:
-    explicit StationMeans(const Making& m) : Constraint(m.kind, m.ids, m.weight) {
+    StationMeans(const Making& m, const std::vector<double>& shares) : Constraint(m.kind, m.ids, m.weight) {
         std::vector<int> stations = m.parameters.stations;
         if (stations.empty())
             for (std::size_t i = 0; i < ids().size(); ++i) stations.push_back(static_cast<int>(i));
         if (stations.size() != ids().size()) m.fail("there must be a station for each point");
+        if (!shares.empty() && shares.size() != ids().size())
+            m.fail("there are " + std::to_string(shares.size()) + " coefficients for " + std::to_string(ids().size()) +
+                   " points");
         int count = 0;
         for (const int station : stations) {
             if (station < 0 || station >= static_cast<int>(stations.size()))
                 m.fail("station " + std::to_string(station) + " is out of range");
             count = std::max(count, station + 1);
         }
-        std::vector<std::vector<std::int32_t>> members(static_cast<std::size_t>(count));
-        for (std::size_t i = 0; i < stations.size(); ++i) members[stations[i]].push_back(static_cast<std::int32_t>(i));
+        std::vector<std::vector<std::pair<std::int32_t, double>>> members(static_cast<std::size_t>(count));
+        for (std::size_t i = 0; i < stations.size(); ++i) {
+            const double share = shares.empty() ? 0.0 : shares[i];
+            if (!(share >= 0 && share <= 1))
+                m.fail("coefficient " + std::to_string(i) + " is " + std::to_string(share), "shares are from 0 to 1");
+            if (share > 0 && stations[i] + 1 == count)
+                m.fail("point " + std::to_string(ids()[i]) + " of the last station has a share of the next, which does not exist",
+                       "its coefficient must be 0");
+            if (share < 1) members[stations[i]].emplace_back(static_cast<std::int32_t>(i), 1 - share);
+            if (share > 0) members[stations[i] + 1].emplace_back(static_cast<std::int32_t>(i), share);
+        }
         for (int s = 0; s < count; ++s) {
-            if (members[s].empty()) m.fail("station " + std::to_string(s) + " has no point");
-            for (const std::int32_t i : members[s]) map_.entries.push_back({s, i, 1.0 / static_cast<double>(members[s].size())});
+            double sum = 0;
+            for (const auto& [i, weight] : members[s]) sum += weight;
+            if (!(sum > 0)) m.fail("station " + std::to_string(s) + " has no point");
+            for (const auto& [i, weight] : members[s]) map_.entries.push_back({s, i, weight / sum});
         }
         map_.rows = count;
     }
@@ -122,7 +54,7 @@ protected:
 class AxisOnLine final : public StationMeans {
 public:
     AxisOnLine(const Making& m, const Vector3d& direction, const Vector3d& point)
-        : StationMeans(m), direction_(direction), point_(point) {}
+        : StationMeans(m, m.parameters.coefficients), direction_(direction), point_(point) {}
     void project(const RowsIn& rows, RowsOut projected) const override {
         for (Index i = 0; i < rows.cols(); ++i) projected.col(i) = point_ + direction_ * direction_.dot(rows.col(i) - point_);
     }
@@ -134,7 +66,7 @@ private:
 /// The closest common height of the means is the mean of theirs.
 class MeansOnLevel final : public StationMeans {
 public:
-    MeansOnLevel(const Making& m, const Vector3d& up) : StationMeans(m), up_(up) {}
+    MeansOnLevel(const Making& m, const Vector3d& up) : StationMeans(m, {}), up_(up) {}
     void project(const RowsIn& rows, RowsOut projected) const override {
         const double level = up_.dot(rows.rowwise().mean());
         for (Index i = 0; i < rows.cols(); ++i) projected.col(i) = rows.col(i) + up_ * (level - up_.dot(rows.col(i)));
@@ -176,17 +108,72 @@ private:
     Vector3d normal_ = Vector3d::UnitZ(), point_ = Vector3d::Zero();
 };
 
-/// The first part, as it is, stretched along its measure so that first / second measure is within a range (the thesis, section
-/// 5.3.2): about its mean (rows: the centred points of the part), or about the mean of its anchors (rows: the points). One more
-/// row, which is only observed, is the second measure.
+/// A point and the combination of three others, its partner, mirror each other in a given plane, but for a discrepancy of each
+/// that stays. Rows: the point and the combination.
+class MirroredInTriangles final : public Constraint {
+public:
+    MirroredInTriangles(const Making& m, const Vector3d& normal, const Vector3d& point)
+        : Constraint(m.kind, m.ids, m.weight), normal_(normal), point_(point) {
+        if (ids().size() % 4 != 0)
+            m.fail("there are " + std::to_string(ids().size()) + " points",
+                   "with coefficients, give groups of four: a point and the corners that its partner lies between");
+        const std::size_t groups = ids().size() / 4;
+        const std::vector<double>& shares = m.parameters.coefficients;
+        if (shares.size() != 3 * groups)
+            m.fail("there are " + std::to_string(shares.size()) + " coefficients for " + std::to_string(groups) + " groups",
+                   "give three a group");
+        for (std::size_t g = 0; g < groups; ++g) {
+            const double sum = shares[3 * g] + shares[3 * g + 1] + shares[3 * g + 2];
+            if (!(std::abs(sum - 1) <= 1e-6))
+                m.fail("the coefficients of group " + std::to_string(g) + " add up to " + std::to_string(sum),
+                       "barycentric coordinates add up to 1");
+            const auto row = static_cast<std::int32_t>(2 * g), first = static_cast<std::int32_t>(4 * g);
+            map_.entries.push_back({row, first, 1.0});
+            for (int k = 0; k < 3; ++k) map_.entries.push_back({row + 1, first + 1 + k, shares[3 * g + k]});
+        }
+        map_.rows = static_cast<Index>(2 * groups);
+        discrepancy_.setZero(3, static_cast<Index>(groups));
+        if (m.parameters.target) MirroredInTriangles::set_target(*m.parameters.target);
+    }
+    void set_target(const Points& target) override {
+        if (target.cols() != discrepancy_.cols())
+            fail_usage("the target of MirrorSymmetry must have a discrepancy for each of " + std::to_string(discrepancy_.cols()) +
+                       " groups");
+        check_points(target, "target of MirrorSymmetry");
+        discrepancy_ = target;
+    }
+    void project(const RowsIn& rows, RowsOut projected) const override {
+        for (Index g = 0; g < discrepancy_.cols(); ++g) {
+            const Vector3d p = rows.col(2 * g) - point_, q = rows.col(2 * g + 1) + discrepancy_.col(g) - point_;
+            const Vector3d mean = (p + q - 2 * normal_.dot(q) * normal_) / 2;
+            projected.col(2 * g) = mean + point_;
+            projected.col(2 * g + 1) = mean - 2 * normal_.dot(mean) * normal_ + point_ - discrepancy_.col(g);
+        }
+    }
+
+private:
+    Vector3d normal_, point_;
+    Points discrepancy_;
+};
+
+/// The first part, as it is, stretched along its measure so that this, or its share of a second measure, is within a range (the
+/// thesis, section 5.3.2): about its mean (rows: the centred points of the part), or about the mean of its anchors (rows: the
+/// points). One more row, which is only observed, is the second measure where there is one.
 class Proportion final : public Constraint {
 public:
     Proportion(Making&& m, Making::Interval range)
-        : Constraint(m.kind, m.ids, m.weight), range_(range), pins_(m.parameters.pins), anchors_(m.parameters.anchors) {
+        : Constraint(m.kind, m.ids, m.weight),
+          range_(range),
+          single_(m.parameters.absolute),
+          pins_(m.parameters.pins),
+          anchors_(m.parameters.anchors) {
         const int count = static_cast<int>(ids().size()), part = m.parameters.split > 0 ? m.parameters.split : count;
         if (part < 2 || part > count) m.fail("split is " + std::to_string(part), "the first part needs two points at least");
-        if (pins_.size() != 4) m.fail("there are " + std::to_string(pins_.size()) + " pins", "give two of each measure");
-        for (std::size_t i = 0; i < 4; ++i)
+        if (single_ && part != count) m.fail("there are points beyond the part", "an absolute range has no second measure");
+        if (pins_.size() != (single_ ? 2 : 4))
+            m.fail("there are " + std::to_string(pins_.size()) + " pins",
+                   single_ ? "give two: an absolute range has one measure" : "give two of each measure");
+        for (std::size_t i = 0; i < pins_.size(); ++i)
             if (pins_[i] < 0 || pins_[i] >= (i < 2 ? part : count))
                 m.fail("pin " + std::to_string(pins_[i]) + " is out of range");
         for (const int anchor : anchors_)
@@ -197,26 +184,24 @@ public:
             if (!along_second_->allFinite() || !(along_second_->norm() > 0)) m.fail("the second direction has no length");
             along_second_->normalize();
         }
-        const auto measure = [&](int a, int b, const std::optional<Vector3d>& along) {
-            const Vector3d edge = m.rest.col(b) - m.rest.col(a);
-            return along ? std::abs(along->dot(edge)) : edge.norm();
-        };
-        if (!(measure(pins_[0], pins_[1], along_first_) > 0)) m.fail("the first measure has no length", "move its pins apart");
-        if (!(measure(pins_[2], pins_[3], along_second_) > 0)) m.fail("the second measure has no length", "move its pins apart");
-        map_.direct = part;
+        if (!(length(m.rest.col(pins_[1]) - m.rest.col(pins_[0]), along_first_) > 0))
+            m.fail("the first measure has no length", "move its pins apart");
+        map_.direct = map_.rows = part;
         map_.centred = anchors_.empty();
+        if (single_) return;
+        if (!(length(m.rest.col(pins_[3]) - m.rest.col(pins_[2]), along_second_) > 0))
+            m.fail("the second measure has no length", "move its pins apart");
         map_.entries = {{0, pins_[2], -1.0}, {0, pins_[3], 1.0}};
         map_.rows = part + 1;
         map_.observed = 1;
     }
     void project(const RowsIn& rows, RowsOut projected) const override {
         projected = rows;
-        const Vector3d first = rows.col(pins_[1]) - rows.col(pins_[0]), second = rows.col(rows.cols() - 1);
-        const double l1 = along_first_ ? std::abs(along_first_->dot(first)) : first.norm();
-        const double l2 = along_second_ ? std::abs(along_second_->dot(second)) : second.norm();
+        const Vector3d first = rows.col(pins_[1]) - rows.col(pins_[0]);
+        const double l1 = length(first, along_first_), unit = single_ ? 1.0 : length(rows.col(rows.cols() - 1), along_second_);
         if (!(l1 > 0)) return;  // there is nothing to stretch
-        const double wanted =
-            std::isinf(range_.max) ? std::max(l1, l2 * range_.min) : Making::Interval{l2 * range_.min, l2 * range_.max}.clamp(l1);
+        const double wanted = std::isinf(range_.max) ? std::max(l1, unit * range_.min)
+                                                     : Making::Interval{unit * range_.min, unit * range_.max}.clamp(l1);
         if (wanted == l1) return;
         const Vector3d axis = along_first_ ? *along_first_ : Vector3d(first / l1);
         Vector3d fixed = Vector3d::Zero();
@@ -227,22 +212,16 @@ public:
     }
 
 private:
+    static double length(const Vector3d& edge, const std::optional<Vector3d>& along) {
+        return along ? std::abs(along->dot(edge)) : edge.norm();
+    }
     Making::Interval range_;
+    bool single_;  ///< the range is that of the first measure
     std::vector<int> pins_, anchors_;
     std::optional<Vector3d> along_first_, along_second_;
 };
 
 }  // namespace
-
-std::unique_ptr<Constraint> make_fitted_plane_orientation(Making&& m) {
-    const Vector3d normal = m.direction();
-    return std::make_unique<FittedPlaneOrientation>(std::move(m), normal);
-}
-
-std::unique_ptr<Constraint> make_co_axiality(Making&& m) {
-    const Vector3d direction = m.direction(), point = m.point();
-    return std::make_unique<CoAxiality>(std::move(m), direction, point);
-}
 
 std::unique_ptr<Constraint> make_axis_on_line(Making&& m) {
     const Vector3d direction = m.direction(), point = m.point();
@@ -255,6 +234,10 @@ std::unique_ptr<Constraint> make_means_on_level(Making&& m) {
 }
 
 std::unique_ptr<Constraint> make_mirror_symmetry(Making&& m) {
+    if (!m.parameters.coefficients.empty()) {
+        const Vector3d normal = m.direction(), point = m.point();
+        return std::make_unique<MirroredInTriangles>(m, normal, point);
+    }
     if (m.ids.size() % 2 != 0) m.fail("there is an odd number of points", "give pairs; a point of the plane is its own partner");
     if (!m.parameters.direction) return std::make_unique<MirrorSymmetry>(std::move(m));
     const Vector3d normal = m.direction(), point = m.point();

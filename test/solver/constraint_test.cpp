@@ -182,6 +182,16 @@ double area(const Points& p) { return (p.col(1) - p.col(0)).cross(p.col(2) - p.c
 double volume(const Points& p) { return (p.col(1) - p.col(0)).cross(p.col(2) - p.col(0)).dot(p.col(3) - p.col(0)) / 6; }
 double angle(const Vector3d& a, const Vector3d& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
+/// Angle between a direction and the axis that the best rotation from rest carries along.
+double angle_of_axis(const Example& e, const Points& now) {
+    const Points shape = e.rest.colwise() - e.rest.rowwise().mean();
+    Vector3d axis = Eigen::JacobiSVD<Eigen::MatrixXd>(shape, Eigen::ComputeFullU).matrixU().col(0);
+    if (e.parameters.rest_direction) axis = *e.parameters.rest_direction;
+    const Matrix3d carried = Eigen::umeyama(shape, now, false).topLeftCorner<3, 3>();
+    const double found = angle(carried * axis, *e.parameters.direction);
+    return std::min(found, std::numbers::pi - found);
+}
+
 TEST(Constraint, AdmitsWhatItsNameSays) {
     int checked = 0;
     for (const Example& e : examples()) {
@@ -257,6 +267,20 @@ TEST(Constraint, AdmitsWhatItsNameSays) {
         } else if (e.kind == "CoAxiality") {
             for (Eigen::Index i = 0; i < x.cols(); ++i)
                 for (Eigen::Index j = 0; j < i; ++j) EXPECT_NEAR(length(m.rows, i, j), length(e.points, i, j), 1e-10) << e.name;
+        } else if (e.kind == "AxisDirection") {
+            for (Eigen::Index i = 0; i < x.cols(); ++i)
+                for (Eigen::Index j = 0; j < i; ++j) EXPECT_NEAR(length(m.rows, i, j), length(e.points, i, j), 1e-10) << e.name;
+            EXPECT_NEAR(angle_of_axis(e, m.rows),
+                        std::clamp(angle_of_axis(e, e.points), e.parameters.min.value_or(0), e.parameters.max.value_or(0)), 1e-10)
+                << e.name;
+        } else if (e.kind == "MirrorSymmetry" && e.parameters.direction) {
+            const Vector3d n = e.parameters.direction->normalized();
+            for (Eigen::Index i = 0; i < m.rows.cols(); i += 2) {
+                const Vector3d p = m.rows.col(i) - *e.parameters.point;
+                Vector3d off = p - 2 * n.dot(p) * n + *e.parameters.point - m.rows.col(i + 1);
+                if (e.parameters.target) off -= e.parameters.target->col(i / 2);
+                EXPECT_LT(off.norm(), 1e-12) << e.name;
+            }
         } else if (e.kind == "AxisOnLine") {
             for (Eigen::Index i = 0; i < m.rows.cols(); ++i)
                 EXPECT_LT((m.rows.col(i) - *e.parameters.point).cross(e.parameters.direction->normalized()).norm(), 1e-12);
@@ -264,7 +288,8 @@ TEST(Constraint, AdmitsWhatItsNameSays) {
             for (Eigen::Index i = 1; i < m.rows.cols(); ++i)
                 EXPECT_NEAR((m.rows.col(i) - m.rows.col(0)).dot(*e.parameters.direction), 0, 1e-12);
         } else if (e.kind == "Proportion") {
-            const Vector3d first = m.rows.col(1) - m.rows.col(0), second = m.rows.rightCols<1>();
+            const Vector3d first = m.rows.col(1) - m.rows.col(0);
+            const Vector3d second = e.parameters.absolute ? Vector3d::UnitX() : Vector3d(m.rows.rightCols<1>());
             const double l1 = e.parameters.direction ? std::abs(first.dot(e.parameters.direction->normalized())) : first.norm();
             const double l2 =
                 e.parameters.second_direction ? std::abs(second.dot(e.parameters.second_direction->normalized())) : second.norm();
@@ -364,6 +389,157 @@ TEST(Constraint, SolidsOfRevolutionHaveTheAxisThatIsCarried) {
     for (int i = 0; i < 40; ++i) EXPECT_NEAR((p.col(i) - *parameters.point).cross(d).norm(), 1, 1e-10);
 }
 
+TEST(Constraint, StationsShareTheirPoints) {
+    const Points rest = random_points(4, 9);
+    ConstraintParameters parameters;
+    parameters.direction = Vector3d(0, 0, 1);
+    parameters.point = Vector3d(1, 2, 3);
+    parameters.stations = {0, 0, 1, 1};
+    parameters.coefficients = {0, 0.25, 0, 0};
+    const auto c = make_constraint("AxisOnLine", first_ids(4), 1, parameters, rest);
+    const Outcome o = outcome(*c, rest);
+    EXPECT_LT((o.rows.col(0) - (rest.col(0) + 0.75 * rest.col(1)) / 1.75).norm(), 1e-15);
+    EXPECT_LT((o.rows.col(1) - (0.25 * rest.col(1) + rest.col(2) + rest.col(3)) / 2.25).norm(), 1e-15);
+    for (Eigen::Index s = 0; s < 2; ++s) EXPECT_LT((o.projected.col(s) - Vector3d(1, 2, o.rows(2, s))).norm(), 1e-15);
+    // Without shares, as each for itself.
+    parameters.coefficients.assign(4, 0.0);
+    const Outcome none = outcome(*make_constraint("AxisOnLine", first_ids(4), 1, parameters, rest), rest);
+    parameters.coefficients.clear();
+    EXPECT_EQ(none.rows, outcome(*make_constraint("AxisOnLine", first_ids(4), 1, parameters, rest), rest).rows);
+    // A station may live on shares alone.
+    parameters.stations = {0, 0, 2, 2};
+    parameters.coefficients = {1, 0, 0, 0};
+    EXPECT_EQ(outcome(*make_constraint("AxisOnLine", first_ids(4), 1, parameters, rest), rest).rows.col(1), rest.col(0));
+}
+
+TEST(Constraint, OneMeasureIsStretchedFromItsAnchors) {
+    // A rod from 0 to 4 that stands on its first point, to be 5 to 6 long; its measure is the height.
+    Points rest(3, 5), points(3, 5);
+    for (int i = 0; i < 5; ++i) rest.col(i) << 0.1 * i * i, 0, i;
+    ConstraintParameters parameters;
+    parameters.absolute = true;
+    parameters.min = 5;
+    parameters.max = 6;
+    parameters.pins = {0, 4};
+    parameters.anchors = {0};
+    parameters.direction = Vector3d(0, 0, 2);
+    const auto c = make_constraint("Proportion", first_ids(5), 1, parameters, rest);
+    EXPECT_EQ(c->map().observed, 0);
+    for (const double height : {2.0, 5.5, 9.0}) {
+        points = rest;
+        points.row(2) *= height / 4;
+        Points expected = rest;
+        expected.row(2) *= std::clamp(height, 5.0, 6.0) / 4;
+        EXPECT_LT((outcome(*c, points).projected - expected).norm(), 1e-14) << height;
+    }
+    parameters.anchors.clear();  // about the mean
+    points = rest;
+    const Points p = outcome(*make_constraint("Proportion", first_ids(5), 1, parameters, rest), points).projected;
+    EXPECT_NEAR(p(2, 4), 2.5, 1e-14);
+    EXPECT_NEAR(p(2, 0), -2.5, 1e-14);
+}
+
+/// The least squared distance of turned rows with the axis at an angle to a direction, by trying all turns.
+double least_by_trying(const Points& rows, const Vector3d& axis, const Vector3d& direction, double wanted) {
+    double least = std::numeric_limits<double>::infinity();
+    constexpr int steps = 120;
+    const Vector3d e1 = direction.unitOrthogonal();
+    const auto turn = [](int i, const Vector3d& about) {
+        return Eigen::AngleAxisd(2 * std::numbers::pi * i / steps, about).toRotationMatrix();
+    };
+    for (const double side : {1.0, -1.0})
+        for (int i = 0; i < steps; ++i) {
+            const Vector3d to = std::cos(wanted) * side * direction + std::sin(wanted) * (turn(i, direction) * e1);
+            const Matrix3d first = Eigen::Quaterniond::FromTwoVectors(axis, to).toRotationMatrix();
+            for (int j = 0; j < steps; ++j) least = std::min(least, (turn(j, to) * first * rows - rows).squaredNorm());
+        }
+    return least;
+}
+
+TEST(Constraint, AxesTurnNoFartherThanTheyMust) {
+    // Rods, plates and blocks whose axis is known, turned anyhow and exactly along and across the direction.
+    const Vector3d d = Vector3d(1, -2, 3).normalized();
+    for (const Vector3d& size :
+         {Vector3d(1, 1, 4), Vector3d(1, 2, 4), Vector3d(1, 0, 3), Vector3d(3, 3, 0.5), Vector3d(2, 2, 2)}) {
+        Points rest = random_points(30, 6);
+        rest.colwise() -= rest.rowwise().mean().eval();
+        rest = size.asDiagonal() * rest;
+        for (const Vector3d& own : {Vector3d(0, 0, 1), Vector3d(0.6, 0, 0.8)})
+            for (int place = 0; place < 4; ++place) {
+                Matrix3d turn = some_turn();
+                if (place == 1) turn = Eigen::Quaterniond::FromTwoVectors(own, d).toRotationMatrix();
+                if (place == 2) turn = Eigen::Quaterniond::FromTwoVectors(own, d.unitOrthogonal()).toRotationMatrix();
+                if (place == 3) turn = Eigen::Quaterniond::FromTwoVectors(own, -d + 1e-7 * d.unitOrthogonal()).toRotationMatrix();
+                const Points rows = turn * rest;
+                for (const double wanted : {0.0, 1e-4, 0.3, 1.2, std::numbers::pi / 2}) {
+                    ConstraintParameters parameters;
+                    parameters.direction = d;
+                    parameters.rest_direction = own;
+                    parameters.min = parameters.max = wanted;
+                    const auto c = make_constraint("AxisDirection", first_ids(30), 1, parameters, rest);
+                    const Outcome o = outcome(*c, rows);
+                    const std::string what = testing::PrintToString(size.transpose().eval()) + " place " + std::to_string(place) +
+                                             " angle " + std::to_string(wanted);
+                    const Matrix3d found = Eigen::umeyama(rows, o.projected, false).topLeftCorner<3, 3>();
+                    ASSERT_LT((found * rows - o.projected).norm(), 1e-10) << what;
+                    const double angle_there = angle(found * turn * own, d);
+                    ASSERT_NEAR(std::min(angle_there, std::numbers::pi - angle_there), wanted, 2e-8) << what;
+                    const double least = least_by_trying(rows, turn * own, d, wanted),
+                                 reached = (o.rows - o.projected).squaredNorm();
+                    ASSERT_LE(reached, least + 1e-9 * rows.squaredNorm()) << what;
+                    ASSERT_LT((again(*c, o.projected) - o.projected).norm(), 1e-7) << what;
+                }
+            }
+    }
+}
+
+TEST(Constraint, AxesThatAreInRangeStay) {
+    const Points rest = random_points(9, 12);
+    ConstraintParameters parameters;
+    parameters.direction = Vector3d(0, 0, 1);
+    parameters.rest_direction = Vector3d(1, 0, 1);  // at pi / 4
+    parameters.min = 0.7;
+    parameters.max = 0.8;
+    EXPECT_EQ(make_constraint("AxisDirection", first_ids(9), 1, parameters, rest)->residual(rest), 0);
+    parameters.min.reset();
+    EXPECT_EQ(make_constraint("AxisDirection", first_ids(9), 1, parameters, rest)->residual(rest), 0);
+    parameters.min = 0.7;
+    parameters.max.reset();  // up to a right angle
+    EXPECT_EQ(make_constraint("AxisDirection", first_ids(9), 1, parameters, rest)->residual(rest), 0);
+    parameters.min.reset();  // parallel
+    EXPECT_GT(make_constraint("AxisDirection", first_ids(9), 1, parameters, rest)->residual(rest), 0.1);
+}
+
+TEST(Constraint, PartnersInTrianglesMirror) {
+    // A point and a triangle on the other side of x = 1, whose mirror image of the point is at (3, 0.25, 0.25) but for a bump.
+    Points rest(3, 4);
+    rest.col(0) << -1, 0.25, 0.25;
+    rest.col(1) << 3, 0, 0;
+    rest.col(2) << 3, 1, 0;
+    rest.col(3) << 3, 0, 1;
+    ConstraintParameters parameters;
+    parameters.direction = Vector3d(2, 0, 0);
+    parameters.point = Vector3d(1, 7, 7);
+    parameters.coefficients = {0.5, 0.25, 0.25};
+    const auto exact = make_constraint("MirrorSymmetry", first_ids(4), 1, parameters, rest);
+    EXPECT_LT(exact->residual(rest), 1e-15);
+    Points bumped = rest;
+    bumped.col(0) += Vector3d(-0.4, 0.2, 0.6);
+    // Each side takes half of it.
+    const Outcome o = outcome(*exact, bumped);
+    EXPECT_LT((o.projected.col(0) - Vector3d(-1.2, 0.35, 0.55)).norm(), 1e-15);
+    EXPECT_LT((o.projected.col(1) - Vector3d(3.2, 0.35, 0.55)).norm(), 1e-15);
+    // What is off at rest stays so.
+    const Points off = Vector3d(0.4, 0.2, 0.6);
+    parameters.target = off;
+    const auto nearly = make_constraint("MirrorSymmetry", first_ids(4), 1, parameters, bumped);
+    EXPECT_LT(nearly->residual(bumped), 1e-15);
+    EXPECT_NEAR(nearly->residual(rest), off.norm(), 1e-15);
+    exact->set_target(off);
+    EXPECT_LT(exact->residual(bumped), 1e-15);
+    EXPECT_THROW(exact->set_target(bumped), Error);
+}
+
 TEST(Constraint, RefusesWhatMakesNoSense) {
     const Points rest = random_points(8, 5);
     const auto refused = [&](const std::string& kind, const std::vector<int>& ids, const ConstraintParameters& p,
@@ -406,6 +582,70 @@ TEST(Constraint, RefusesWhatMakesNoSense) {
     EXPECT_TRUE(refused("Area", {0, 1, 1}, none));
     EXPECT_TRUE(refused("Volume", {0, 1, 2, 2}, none));
     EXPECT_FALSE(refused("Plane", {0, 1, 2}, none));
+
+    ConstraintParameters line;
+    line.direction = line.point = Vector3d(1, 0, 0);
+    line.stations = {0, 0, 1, 1};
+    line.coefficients = {0, 1, 0, 0};
+    EXPECT_FALSE(refused("AxisOnLine", {0, 1, 2, 3}, line));
+    for (const std::vector<double>& shares :
+         {std::vector<double>{0, 1, 0}, {0, -0.1, 0, 0}, {0, 1.1, 0, 0}, {0, std::nan(""), 0, 0}, {0, 0, 0, 0.5}, {1, 1, 0, 0}}) {
+        line.coefficients = shares;
+        EXPECT_TRUE(refused("AxisOnLine", {0, 1, 2, 3}, line)) << testing::PrintToString(shares);
+    }
+
+    ConstraintParameters length;
+    length.min = length.max = 1;
+    length.absolute = true;
+    length.pins = {0, 1};
+    EXPECT_FALSE(refused("Proportion", {0, 1}, length));
+    length.split = 2;
+    EXPECT_TRUE(refused("Proportion", {0, 1, 2}, length));
+    length.split = 0;
+    length.pins = {0, 2};
+    EXPECT_TRUE(refused("Proportion", {0, 1}, length));
+    length.pins = {0, 0};
+    EXPECT_TRUE(refused("Proportion", {0, 1}, length));
+    length.pins = {0, 1, 0, 1};
+    EXPECT_TRUE(refused("Proportion", {0, 1}, length));
+    length.absolute = false;
+    EXPECT_FALSE(refused("Proportion", {0, 1}, length));
+    length.pins = {0, 1};
+    EXPECT_TRUE(refused("Proportion", {0, 1}, length));
+
+    ConstraintParameters axis;
+    EXPECT_TRUE(refused("AxisDirection", {0, 1, 2}, axis));
+    axis.direction = Vector3d(1, 0, 0);
+    EXPECT_FALSE(refused("AxisDirection", {0, 1, 2}, axis));
+    EXPECT_TRUE(refused("AxisDirection", {2, 2, 2}, axis));
+    EXPECT_TRUE(refused("AxisDirection", {2}, axis));
+    axis.rest_direction = Vector3d::Zero();
+    EXPECT_TRUE(refused("AxisDirection", {0, 1, 2}, axis));
+    axis.rest_direction.reset();
+    axis.max = 1.6;
+    EXPECT_TRUE(refused("AxisDirection", {0, 1, 2}, axis));
+    axis.max = 0.1;
+    axis.min = 0.2;
+    EXPECT_TRUE(refused("AxisDirection", {0, 1, 2}, axis));
+    axis.min = -0.1;
+    EXPECT_TRUE(refused("AxisDirection", {0, 1, 2}, axis));
+
+    ConstraintParameters mirror;
+    mirror.direction = mirror.point = Vector3d(1, 0, 0);
+    mirror.coefficients = {0.5, 0.25, 0.25};
+    EXPECT_FALSE(refused("MirrorSymmetry", {0, 1, 2, 3}, mirror));
+    EXPECT_TRUE(refused("MirrorSymmetry", {0, 1, 2}, mirror));
+    EXPECT_TRUE(refused("MirrorSymmetry", {0, 1, 2, 3, 4, 5, 6, 7}, mirror));
+    mirror.target = random_points(2, 3);
+    EXPECT_TRUE(refused("MirrorSymmetry", {0, 1, 2, 3}, mirror));
+    mirror.target.reset();
+    mirror.coefficients = {0.5, 0.5, 0.25};
+    EXPECT_TRUE(refused("MirrorSymmetry", {0, 1, 2, 3}, mirror));
+    mirror.coefficients = {0.5, 0.5, std::nan("")};
+    EXPECT_TRUE(refused("MirrorSymmetry", {0, 1, 2, 3}, mirror));
+    mirror.coefficients = {0.5, 0.25, 0.25};
+    mirror.direction.reset();
+    EXPECT_TRUE(refused("MirrorSymmetry", {0, 1, 2, 3}, mirror));
     Points broken = rest;
     broken(1, 2) = std::numeric_limits<double>::infinity();
     EXPECT_THROW(make_constraint("Plane", {0, 1, 2}, 1, {}, broken), Error);

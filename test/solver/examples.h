@@ -214,6 +214,63 @@ inline std::vector<Example> examples() {
     range(add("PolylineLength, shorter", "PolylineLength", 6), 0.1, 0.2);
     add("EqualLengths", "EqualLengths", 8);
     add("EqualLength", "EqualLength", 7).parameters.split = 3;
+    // New examples come last, since the points of each depend on how many come before.
+    {
+        Example& e = add("AxisOnLine, shares of the next station", "AxisOnLine", 6);
+        e.parameters.direction = tilted;
+        e.parameters.point = place;
+        e.parameters.stations = {0, 0, 1, 1, 1, 2};
+        e.parameters.coefficients = {0, 0.75, 0.125, 0.5, 1, 0};
+    }
+    const auto single = [&](Example& e, double min, double max) {
+        range(e, min, max);
+        e.parameters.absolute = true;
+        e.parameters.pins = {0, 1};
+        e.closest = false;
+    };
+    single(add("Proportion, one measure", "Proportion", 5), 4, 5);
+    {
+        Example& e = add("Proportion, one measure, indirect, anchored", "Proportion", 5);
+        single(e, 0.1, 0.2);
+        e.parameters.direction = tilted;
+        e.parameters.anchors = {2, 3};
+    }
+    const auto axis = [&](Example& e) {
+        e.rest.row(2) *= 3;
+        e.points = e.rest + random_points(7, 80, 0.3);
+        e.parameters.direction = tilted;
+        e.closest = false;
+    };
+    axis(add("AxisDirection, parallel", "AxisDirection", 7));
+    {
+        Example& e = add("AxisDirection, perpendicular", "AxisDirection", 7);
+        axis(e);
+        range(e, std::numbers::pi / 2, std::numbers::pi / 2);
+    }
+    {
+        Example& e = add("AxisDirection, given axis, wider", "AxisDirection", 7);
+        axis(e);
+        e.parameters.rest_direction = Eigen::Vector3d(2, -3, 1);
+        range(e, 0.9, 1.1);
+    }
+    {
+        Example& e = add("AxisDirection, given axis, narrower", "AxisDirection", 7);
+        axis(e);
+        e.parameters.rest_direction = Eigen::Vector3d(2, 3, 1);
+        range(e, 0.2, 0.4);
+    }
+    const auto triangles = [&](Example& e) {
+        e.ids = {0, 1, 2, 3, 4, 4, 5, 6};
+        e.parameters.direction = tilted;
+        e.parameters.point = place;
+        e.parameters.coefficients = {0.25, 0.5, 0.25, 0.125, 0.75, 0.125};
+    };
+    triangles(add("MirrorSymmetry, partners in triangles", "MirrorSymmetry", 7));
+    {
+        Example& e = add("MirrorSymmetry, partners in triangles, nearly", "MirrorSymmetry", 7);
+        triangles(e);
+        e.parameters.target = random_points(2, 81, 0.2);
+    }
     return list;
 }
 
@@ -226,7 +283,10 @@ inline Example moved(Example e, const Eigen::Matrix3d& turn, const Eigen::Vector
     const auto move = [&](Points& p) { p = (turn * p).colwise() + by; };
     move(e.rest);
     move(e.points);
-    if (e.parameters.target) move(*e.parameters.target);
+    if (e.parameters.target) {
+        if (e.kind == "MirrorSymmetry") *e.parameters.target = turn * *e.parameters.target;  // differences of points
+        else move(*e.parameters.target);
+    }
     for (auto* direction : {&e.parameters.direction, &e.parameters.second_direction, &e.parameters.rest_direction})
         if (*direction) *direction = turn * **direction;
     for (auto* point : {&e.parameters.point, &e.parameters.rest_point})

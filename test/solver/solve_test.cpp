@@ -303,6 +303,52 @@ TEST(MeshSpace, SingularSystemsAreDrawnToRest) {
     EXPECT_LT((x - rest).cwiseAbs().maxCoeff(), 3);
 }
 
+TEST(MeshSpace, StationsThatShareTheirPointsLeaveNoWaves) {
+    // A tube of 41 rings whose points want to stay, its axis on a line that leaves it: what holds it there must grow along the
+    // tube.
+    constexpr int rings = 41, sides = 8, step = 10;
+    Points rest(3, rings * sides);
+    for (int k = 0; k < rings; ++k)
+        for (int i = 0; i < sides; ++i) {
+            const double a = 2 * 3.14159265358979 * i / sides;
+            rest.col(k * sides + i) << std::cos(a), std::sin(a), 0.25 * k;
+        }
+    ConstraintParameters line;
+    line.direction = Eigen::Vector3d(0.3, 0, 1);
+    line.point = Eigen::Vector3d::Zero();
+    const auto farthest = [&](bool shares) {
+        List list;
+        std::vector<int> all;
+        for (int k = 0; k < rings; ++k)
+            for (int i = 0; i < sides; ++i) {
+                std::vector<int> ids{k * sides + i, k * sides + (i + 1) % sides, k * sides + (i + sides - 1) % sides};
+                if (k > 0) ids.push_back((k - 1) * sides + i);
+                if (k + 1 < rings) ids.push_back((k + 1) * sides + i);
+                all.push_back(ids.front());
+                list.push_back(make_constraint("Closeness", {ids.front()}, 0.1, {}, rest));
+                if (k > 0 && k + 1 < rings) list.push_back(make_constraint("LaplacianDisplacement", ids, 1, {}, rest));
+            }
+        ConstraintParameters parameters = line;
+        for (const int id : all) {
+            const int k = id / sides;
+            parameters.stations.push_back(shares ? k / step : std::min(k / step, rings / step - 1));
+            if (shares) parameters.coefficients.push_back(static_cast<double>(k % step) / step);
+        }
+        list.push_back(make_constraint("AxisOnLine", all, 1e6, parameters, rest));
+        MeshSpaceSolver solver(std::move(list), rest);
+        Points x = rest;
+        EXPECT_TRUE(solver.solve(x).usable);
+        double most = 0;
+        for (int k = 0; k < rings; ++k) {
+            const Eigen::Vector3d mean = x.middleCols(k * sides, sides).rowwise().mean();
+            most = std::max(most, mean.cross(line.direction->normalized()).norm());
+        }
+        return most;
+    };
+    EXPECT_GT(farthest(false), 0.02);
+    EXPECT_LT(farthest(true), 1e-4);
+}
+
 TEST(MeshSpace, ContradictoryPositionsMeetInTheMiddle) {
     const Points rest = grid(3);
     List list;

@@ -109,22 +109,27 @@ private:
 /// What a kind may need besides ids, weight and rest points; doc/solver.md tells which reads what.
 struct ConstraintParameters {
     /// Range. Of EdgeStrain, TriangleStrain, TetrahedronStrain, Area, Volume, Bending, PolylineLength: as a share of the rest
-    /// state's, or in the measure's own unit with `absolute`. Of Similarity and NonUniformScaling: the factor. Of Angle: radians.
-    /// Of Proportion: first measure / second.
+    /// state's, or in the measure's own unit with `absolute`. Of Similarity and NonUniformScaling: the factor. Of Angle and
+    /// AxisDirection: radians. Of Proportion: first measure / second, or with `absolute` the first measure.
     std::optional<double> min, max;
     bool absolute = false;
-    /// Positions or displacements aimed at, reference shape; without it, the rest points'.
+    /// Positions or displacements aimed at, reference shape; without it, the rest points'. Of MirrorSymmetry with coefficients:
+    /// for each group the mirrored point less its partner, zero without it.
     std::optional<Points> target;
     /// Normal of planes, direction of axes and measures; need not have unit length.
     std::optional<Eigen::Vector3d> direction;
     /// A point of an axis or plane.
     std::optional<Eigen::Vector3d> point;
-    /// Axis in the rest state, of CoAxiality; without it, the rest points' longest principal axis.
+    /// Axis in the rest state, of CoAxiality and (direction only) AxisDirection; without it, the rest points' longest principal
+    /// axis.
     std::optional<Eigen::Vector3d> rest_direction, rest_point;
-    /// Weights of the neighbours in cotangent Laplacians. Without them, the neighbours must be the closed ring in order.
+    /// Weights of the neighbours in cotangent Laplacians; without them, the neighbours must be the closed ring in order. Shares
+    /// of each point that count for the next station (AxisOnLine). Three barycentric coordinates of each partner
+    /// (MirrorSymmetry).
     std::vector<double> coefficients;
     /// Positions in ids: where the second part begins (EqualLength, Proportion); the ends of the first and of the second measure
-    /// (Proportion: the first two lie in the first part); points whose mean stays (Proportion).
+    /// (Proportion: the first two lie in the first part; with `absolute` there are no others); points whose mean stays
+    /// (Proportion).
     int split = 0;
     std::vector<int> pins, anchors;
     /// Direction along which the second measure is taken (Proportion); without it, the distance of its ends.

@@ -1,0 +1,199 @@
+// Groups that turn as they are: towards a normal, onto an axis, to an angle with an axis.
+#include "kinds.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace ostraka::solver {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::Matrix3d;
+using Eigen::Matrix4d;
+using Eigen::Vector3d;
+using Eigen::Vector4d;
+
+Matrix3d cross_matrix(const Vector3d& n) {
+    Matrix3d m;
+    m << 0, -n.z(), n.y(), n.z(), 0, -n.x(), -n.y(), n.x(), 0;
+    return m;
+}
+
+/// The rotation R with R a = d or R a = -d that maximises tr(R m): the turn from a to +-d, then a spin about d, whose angle has a
+/// closed form.
+Matrix3d turn_to(const Vector3d& a, const Vector3d& d, const Matrix3d& m) {
+    Matrix3d best = Matrix3d::Identity();
+    double most = -std::numeric_limits<double>::infinity();
+    for (const double side : {1.0, -1.0}) {
+        const Matrix3d turn = Eigen::Quaterniond::FromTwoVectors(a, side * d).toRotationMatrix();
+        const Matrix3d turned = turn * m;
+        const double along = d.dot(turned * d), c = turned.trace() - along, s = (cross_matrix(d) * turned).trace();
+        const double value = along + std::hypot(c, s);
+        if (value > most) {
+            most = value;
+            best = Eigen::AngleAxisd(c == 0 && s == 0 ? 0.0 : std::atan2(s, c), d).toRotationMatrix() * turn;
+        }
+    }
+    return best;
+}
+
+/// The rotation R with d . R a = cos(angle), 0 < angle < pi, that maximises tr(R m) for a symmetric m. In unit quaternions q
+/// these are q^T C q = cos(angle) and q^T N q. What the pair of forms takes on the sphere is convex (Brickman 1961), so the best
+/// q is a top eigenvector of N + l C for some l: found by halves, since q^T C q grows with l.
+Matrix3d turn_to_angle(const Vector3d& a, const Vector3d& d, double angle, const Matrix3d& m) {
+    const double size = m.norm();
+    if (!(size > 0)) return Matrix3d::Identity();  // all points are at one place
+    Matrix4d n = Matrix4d::Zero(), c;
+    n(0, 0) = m.trace() / size;
+    n.bottomRightCorner<3, 3>() = 2 * m / size - n(0, 0) * Matrix3d::Identity();
+    c(0, 0) = a.dot(d);
+    c.bottomLeftCorner<3, 1>() = a.cross(d);
+    c.topRightCorner<1, 3>() = a.cross(d).transpose();
+    c.bottomRightCorner<3, 3>() = a * d.transpose() + d * a.transpose() - c(0, 0) * Matrix3d::Identity();
+    // C has the eigenvalues 1, 1, -1, -1: the part of q in each half says the angle.
+    const Matrix4d near = (Matrix4d::Identity() + c) / 2, far = (Matrix4d::Identity() - c) / 2;
+    const double wanted = std::pow(std::sin(angle / 2), 2);
+    const auto too_far = [&](const Vector4d& q) { return (far * q).squaredNorm() > wanted * q.squaredNorm(); };
+    const auto top = [&](double l) -> Vector4d {
+        return Eigen::SelfAdjointEigenSolver<Matrix4d>(n + l * c).eigenvectors().col(3);
+    };
+    constexpr double most = 1e12;
+    double low = -1, high = 1;
+    while (low > -most && !too_far(top(low))) low *= 2;
+    while (high < most && too_far(top(high))) high *= 2;
+    while (high - low > 1e-16 * std::max(1.0, std::abs(low))) {
+        const double middle = low + (high - low) / 2;
+        if (!(middle > low && middle < high)) break;
+        (too_far(top(middle)) ? low : high) = middle;
+    }
+    // Both sides are the same but where the top eigenvalue is double; there the answer is a mixture.
+    const Vector4d before = top(low);
+    Vector4d after = top(high);
+    if (before.dot(after) < 0) after = -after;
+    double from = 0, to = 1;
+    for (int i = 0; i < 60; ++i) {
+        const double share = (from + to) / 2;
+        (too_far((1 - share) * before + share * after) ? from : to) = share;
+    }
+    const Vector4d mixed = (1 - to) * before + to * after;
+    const Vector4d q = std::cos(angle / 2) * (near * mixed).normalized() + std::sin(angle / 2) * (far * mixed).normalized();
+    return Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
+}
+
+/// Direction of the axis in the rest state; without one, the longest principal axis of the centred shape.
+Vector3d rest_axis_of(const Making& m, const Points& shape) {
+    if (!m.parameters.rest_direction) return principal(outer_sum(shape, shape)).eigenvectors().col(2);
+    const Vector3d& given = *m.parameters.rest_direction;
+    const double size = given.cwiseAbs().maxCoeff();
+    if (!given.allFinite() || !(size > 0)) m.fail("the rest axis has no direction");
+    return (given / size).normalized();
+}
+
+/// The mean, taken from the first point on, so that far from the origin no digit is lost in the sum.
+Vector3d mean_of(const Points& points) { return points.col(0) + (points.colwise() - points.col(0).eval()).rowwise().mean(); }
+
+/// The points as they are, turned about their mean so that their fitted plane has the given normal, either way round.
+class FittedPlaneOrientation final : public MomentConstraint {
+public:
+    FittedPlaneOrientation(Making&& m, const Vector3d& normal)
+        : MomentConstraint(m.kind, std::move(m.ids), m.weight), normal_(normal) {
+        map_.direct = map_.rows = static_cast<Index>(ids().size());
+        map_.centred = true;
+    }
+    [[nodiscard]] LinearProjection project_moments(const Moments& moments) const override {
+        const Vector3d fitted = principal(moments.rows).eigenvectors().col(0);
+        return {turn_to(fitted, normal_, moments.rows), Matrix3d::Zero()};
+    }
+
+private:
+    Vector3d normal_;
+};
+
+/// The points as they are, moved rigidly so that their axis lies on a line (the thesis, section 5.2.2). The axis is given in the
+/// rest state and carried along by the best rigid motion from there. Rows: the points.
+class CoAxiality final : public Constraint {
+public:
+    CoAxiality(Making&& m, const Vector3d& direction, const Vector3d& point)
+        : Constraint(m.kind, m.ids, m.weight), direction_(direction), point_(point) {
+        map_.direct = map_.rows = static_cast<Index>(ids().size());
+        const Vector3d mean = mean_of(m.rest);
+        shape_ = m.rest.colwise() - mean;
+        rest_axis_ = rest_axis_of(m, shape_);
+        if (m.parameters.rest_point) {
+            if (!m.parameters.rest_point->allFinite()) m.fail("the rest axis's point is not finite");
+            to_mean_ = mean - *m.parameters.rest_point;
+        }
+    }
+    void project(const RowsIn& rows, RowsOut projected) const override {
+        const Vector3d first = rows.col(0);
+        Points z = rows.colwise() - first;
+        const Vector3d offset = z.rowwise().mean();
+        z.colwise() -= offset;
+        const Vector3d mean = first + offset;
+        const Matrix3d carried = best_rotation(outer_sum(z, shape_));
+        const Vector3d axis = carried * rest_axis_, b = carried * to_mean_;
+        const Matrix3d across = Matrix3d::Identity() - direction_ * direction_.transpose();
+        const Vector3d gap = across * (point_ - mean);
+        const auto count = static_cast<double>(rows.cols());
+        const Matrix3d turn = turn_to(axis, direction_, outer_sum(z, z) - count * b * gap.transpose());
+        const Vector3d to = mean + across * (turn * b) + gap;
+        for (Index i = 0; i < rows.cols(); ++i) projected.col(i) = turn * z.col(i) + to;
+    }
+
+private:
+    Vector3d direction_, point_, rest_axis_, to_mean_ = Vector3d::Zero();
+    Points shape_;
+};
+
+/// The points as they are, turned about their mean so that the angle between their axis and a direction is within a range. The
+/// axis is that of the rest state, carried along by the best rotation from there. Rows: the centred points.
+class AxisDirection final : public MomentConstraint {
+public:
+    AxisDirection(const Making& m, const Vector3d& direction, Making::Interval range)
+        : MomentConstraint(m.kind, m.ids, m.weight), direction_(direction), range_(range) {
+        map_.direct = map_.rows = static_cast<Index>(ids().size());
+        map_.centred = true;
+        shape_ = m.rest.colwise() - mean_of(m.rest);
+        if (!(shape_.cwiseAbs().maxCoeff() > 0)) m.fail("the rest points are all at one place");
+        rest_axis_ = rest_axis_of(m, shape_);
+    }
+    [[nodiscard]] const Points& reference() const override { return shape_; }
+    [[nodiscard]] LinearProjection project_moments(const Moments& moments) const override {
+        const Vector3d axis = best_rotation(moments.reference) * rest_axis_;
+        const double now = std::atan2(axis.cross(direction_).norm(), std::abs(axis.dot(direction_))), wanted = range_.clamp(now);
+        if (wanted == now) return {Matrix3d::Identity(), Matrix3d::Zero()};
+        if (!(wanted > 0)) return {turn_to(axis, direction_, moments.rows), Matrix3d::Zero()};
+        const Matrix3d one = turn_to_angle(axis, direction_, wanted, moments.rows);
+        const Matrix3d other = turn_to_angle(axis, -direction_, wanted, moments.rows);
+        const auto value = [&](const Matrix3d& turn) { return turn.cwiseProduct(moments.rows).sum(); };
+        return {value(one) >= value(other) ? one : other, Matrix3d::Zero()};
+    }
+
+private:
+    Vector3d direction_, rest_axis_;
+    Making::Interval range_;
+    Points shape_;
+};
+
+}  // namespace
+
+std::unique_ptr<Constraint> make_fitted_plane_orientation(Making&& m) {
+    const Vector3d normal = m.direction();
+    return std::make_unique<FittedPlaneOrientation>(std::move(m), normal);
+}
+
+std::unique_ptr<Constraint> make_co_axiality(Making&& m) {
+    const Vector3d direction = m.direction(), point = m.point();
+    return std::make_unique<CoAxiality>(std::move(m), direction, point);
+}
+
+std::unique_ptr<Constraint> make_axis_direction(Making&& m) {
+    constexpr double right_angle = std::numbers::pi / 2;
+    const auto range = m.range(0, m.parameters.min ? right_angle : 0.0);
+    if (range.max > right_angle) m.fail("an angle between axes is at most pi / 2", "angles are in radians");
+    const Vector3d direction = m.direction();
+    return std::make_unique<AxisDirection>(m, direction, range);
+}
+
+}  // namespace ostraka::solver
