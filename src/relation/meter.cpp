@@ -82,6 +82,18 @@ double shape_difference(Part& a, Part& b) {
 
 }  // namespace
 
+Axis axis_of_part(const Mesh& mesh, const Annotation& annotation) {
+    Part part(mesh, annotation);
+    const PartAxis& found = part.axis();
+    Axis axis;
+    axis.found = found.found;
+    axis.reason = found.reason;
+    if (!found.found) return axis;
+    axis.point = point_of(found.point);
+    axis.direction = vector_of(found.direction);
+    return axis;
+}
+
 std::vector<std::string> measured_quantities(const std::string& type) {
     static const std::map<std::string, std::vector<std::string>> quantities{
         {"mirror symmetry", {"distance"}},    {"co-axiality", {"angle", "distance"}},

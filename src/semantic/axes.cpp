@@ -2,12 +2,15 @@
 #include "continuity.h"
 #include "reader.h"
 
+#include "ostraka/relation/geometric.h"
+
 namespace ostraka::semantic {
 
 namespace {
 
 Axis axis_of(const Reader& read, std::size_t i) {
-    Axis found = find_axis(read.shape().mesh, read.faces(i));
+    read.need_region(i);
+    Axis found = axis_of_part(read.shape().mesh, read.member(i));
     if (!found.found)
         read.fail("annotation " + std::to_string(read.member(i).id) + " has no axis: " + found.reason, "use another relation");
     return found;
@@ -15,7 +18,7 @@ Axis axis_of(const Reader& read, std::size_t i) {
 
 /// The reference's axis on the shape as it is, or at rest where a deformed reference has none any more.
 Axis reference_now(const Reader& read, const Axis& rest, const State& now) {
-    Axis found = find_axis(now.mesh, read.faces(read.members() - 1));
+    Axis found = axis_of_part(now.mesh, read.member(read.members() - 1));
     return found.found ? found : rest;
 }
 
@@ -93,7 +96,7 @@ Statement structural_continuity(const ReaderPtr& read, const RelationOptions& to
     const Deviation angle{"angle", 0.0, tolerances.angle, "degree"};
     const Deviation distance{"distance", 0.0, length_tolerance(*read, tolerances), read->shape().set.unit};
     statement.measure = [=](const State& deformed) -> Measured {
-        const Axis reference = find_axis(deformed.mesh, read->faces(1));
+        const Axis reference = axis_of_part(deformed.mesh, read->member(1));
         if (!reference.found) return {Verdict::unknown, {}, "the reference has no axis any more: " + reference.reason};
         const std::vector<Vector3d> places = stations_of(*segment, deformed.points);
         const Vector3d direction = eigen(reference.direction), along = places.back() - places.front();

@@ -285,6 +285,10 @@ private:
             auto list = outcome.residuals[i].of_low_level;
             std::sort(list.begin(), list.end());
             report.distance = outcome.residuals[i].distance;
+            if (report.hard && options_.space == "cage" && report.verdict != Verdict::holds)
+                report.text += (report.text.empty() ? "" : "; ") + std::string("this cage brings it no nearer than ") +
+                               std::to_string(report.distance) + (space_.set.unit.empty() ? "" : " ") + space_.set.unit +
+                               " at its worst point";
             report.low_level = list.size();
             report.least = list.front();
             report.most = list.back();

@@ -20,21 +20,17 @@ Statement all_on(const char* kind, const ReaderPtr& read, const RelationOptions&
     return statement;
 }
 
-/// The faces of an annotation as a mesh of their own, with the vertices it has in the whole.
+/// The faces of an annotation as a mesh of their own, with the vertices it has in the whole. Each face stands alone, since a
+/// patch that touches itself at a vertex is no manifold.
 struct Piece {
     Mesh mesh;
     std::vector<Index> vertex;
     Piece(const Mesh& whole, const std::vector<Index>& faces) {
-        std::map<Index, Vertex> own;
         for (const Index f : faces) {
             std::array<Vertex, 3> corner;
-            for (int k = 0; const Index v : corners(whole, Face(f))) {
-                const auto [entry, fresh] = own.try_emplace(v);
-                if (fresh) {
-                    entry->second = mesh.add_vertex(whole.point(Vertex(v)));
-                    vertex.push_back(v);
-                }
-                corner[static_cast<std::size_t>(k++)] = entry->second;
+            for (std::size_t k = 0; const Index v : corners(whole, Face(f))) {
+                corner.at(k++) = mesh.add_vertex(whole.point(Vertex(v)));
+                vertex.push_back(v);
             }
             mesh.add_face(corner[0], corner[1], corner[2]);
         }

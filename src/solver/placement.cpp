@@ -27,16 +27,14 @@ protected:
         for (const int station : stations) {
             if (station < 0 || station >= static_cast<int>(stations.size()))
                 m.fail("station " + std::to_string(station) + " is out of range");
-            count = std::max(count, station + 1);
         }
+        for (std::size_t i = 0; i < stations.size(); ++i)
+            count = std::max(count, stations[i] + (!shares.empty() && shares[i] > 0 ? 2 : 1));
         std::vector<std::vector<std::pair<std::int32_t, double>>> members(static_cast<std::size_t>(count));
         for (std::size_t i = 0; i < stations.size(); ++i) {
             const double share = shares.empty() ? 0.0 : shares[i];
             if (!(share >= 0 && share <= 1))
                 m.fail("coefficient " + std::to_string(i) + " is " + std::to_string(share), "shares are from 0 to 1");
-            if (share > 0 && stations[i] + 1 == count)
-                m.fail("point " + std::to_string(ids()[i]) + " of the last station has a share of the next, which does not exist",
-                       "its coefficient must be 0");
             if (share < 1) members[stations[i]].emplace_back(static_cast<std::int32_t>(i), 1 - share);
             if (share > 0) members[stations[i] + 1].emplace_back(static_cast<std::int32_t>(i), share);
         }

@@ -406,7 +406,11 @@ TEST(Constraint, StationsShareTheirPoints) {
     const Outcome none = outcome(*make_constraint("AxisOnLine", first_ids(4), 1, parameters, rest), rest);
     parameters.coefficients.clear();
     EXPECT_EQ(none.rows, outcome(*make_constraint("AxisOnLine", first_ids(4), 1, parameters, rest), rest).rows);
-    // A station may live on shares alone.
+    // A station may live on shares alone, the last one too.
+    parameters.coefficients = {0, 0, 0.5, 0};
+    const Outcome last = outcome(*make_constraint("AxisOnLine", first_ids(4), 1, parameters, rest), rest);
+    ASSERT_EQ(last.rows.cols(), 3);
+    EXPECT_EQ(last.rows.col(2), rest.col(2));
     parameters.stations = {0, 0, 2, 2};
     parameters.coefficients = {1, 0, 0, 0};
     EXPECT_EQ(outcome(*make_constraint("AxisOnLine", first_ids(4), 1, parameters, rest), rest).rows.col(1), rest.col(0));
@@ -589,7 +593,7 @@ TEST(Constraint, RefusesWhatMakesNoSense) {
     line.coefficients = {0, 1, 0, 0};
     EXPECT_FALSE(refused("AxisOnLine", {0, 1, 2, 3}, line));
     for (const std::vector<double>& shares :
-         {std::vector<double>{0, 1, 0}, {0, -0.1, 0, 0}, {0, 1.1, 0, 0}, {0, std::nan(""), 0, 0}, {0, 0, 0, 0.5}, {1, 1, 0, 0}}) {
+         {std::vector<double>{0, 1, 0}, {0, -0.1, 0, 0}, {0, 1.1, 0, 0}, {0, std::nan(""), 0, 0}, {1, 1, 0, 0}}) {
         line.coefficients = shares;
         EXPECT_TRUE(refused("AxisOnLine", {0, 1, 2, 3}, line)) << testing::PrintToString(shares);
     }

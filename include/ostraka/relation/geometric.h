@@ -1,6 +1,7 @@
 // Relationships that the geometry of the parts tells, each with a tolerance and its measured deviation.
 #pragma once
 
+#include "ostraka/axis/axis.h"
 #include "ostraka/core/options.h"
 #include "ostraka/relation/check.h"
 
@@ -27,6 +28,10 @@ private:
     struct State;
     std::unique_ptr<State> state_;
 };
+
+/// The axis of a part that relationships about axes measure: of its slices where it is longer than wide and not bent, else of
+/// rotation, or the shortest principal axis of what is flat and round.
+Axis axis_of_part(const Mesh& mesh, const Annotation& annotation);
 
 /// The quantities that a type measures, e.g. {"angle", "distance"}; none for types that are not measured here.
 std::vector<std::string> measured_quantities(const std::string& type);
