@@ -37,6 +37,9 @@ struct Deform {
     int run(const Session& session) {
         check_options(options, "deform");
         check_options(tolerances, "deform");
+        if (files.size() != 3 && files.size() != 4)
+            fail_usage(std::to_string(files.size()) + " files are given",
+                       "give MESH ANNOTATIONS EDIT OUTPUT, or TEMPLATE EDIT OUTPUT");
         if (cage.empty() != weights.empty()) fail_usage("--cage and --weights belong together", "give both: see 'cage weights'");
         const Path output = files.back(), edit = files[files.size() - 2];
         std::optional<TemplateFile> bundle;
@@ -151,7 +154,7 @@ private:
     /// What fights with what, in a sentence each.
     static std::vector<std::string> words_of(const DeformResult& result) {
         std::vector<std::string> lines;
-        for (const Conflict& conflict : result.conflicts) {
+        for (const ConstraintConflict& conflict : result.conflicts) {
             std::string freed, gives;
             for (const int id : conflict.freed) freed += (freed.empty() ? "" : ", ") + std::to_string(id);
             for (const Deviation& d : conflict.deviations)
@@ -163,7 +166,8 @@ private:
                             (gives.empty() ? ", and it is met as well" : ", and it would have to give: " + gives));
         }
         if (result.untried > 0)
-            lines.push_back(std::to_string(result.untried) + " constraints were not tried: there are so many");
+            lines.push_back(std::to_string(result.untried) +
+                            " constraints were not left out to see: raise --conflicts to try them");
         return lines;
     }
 
@@ -213,7 +217,7 @@ private:
         add_member(report, "passes", JsonValue(result.passes), allocator);
         add_member(report, "constraints", std::move(list), allocator);
         JsonValue conflicts(rapidjson::kArrayType);
-        for (const Conflict& conflict : result.conflicts) {
+        for (const ConstraintConflict& conflict : result.conflicts) {
             JsonValue entry(rapidjson::kObjectType), freed(rapidjson::kArrayType), deviations(rapidjson::kArrayType);
             for (const int id : conflict.freed) freed.PushBack(id, allocator);
             for (const Deviation& d : conflict.deviations) deviations.PushBack(to_json(d, {}, allocator), allocator);
@@ -258,7 +262,7 @@ void add_deform(CLI::App& tool, Session& session) {
             "template (.template.json) with its graph, cage and coordinates; the edit (.edit.json); the deformed mesh to "
             "write")
         ->required()
-        ->expected(3, 4);
+        ->expected(-1);
     command->add_option("--graph", deform->graph,
                         "relationships (.graph.json): those that are constraints are kept; instead of the template's");
     command->add_option("--cage", deform->cage, "cage whose vertices are the handles; without it, the mesh's own are");

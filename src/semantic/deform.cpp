@@ -76,7 +76,7 @@ public:
         result.passes = outcome.passes;
         result.solved = outcome.solved;
         report(result, outcome);
-        if (!result.acceptable && options_.conflicts) find_conflicts(result, all);
+        if (!result.acceptable && options_.conflicts > 0) find_conflicts(result, all);
         return result;
     }
 
@@ -299,7 +299,7 @@ private:
 
     /// Leaves out one constraint after another. Those that fail are tried first.
     void find_conflicts(DeformResult& result, const std::vector<bool>& all) {
-        constexpr std::size_t most = 8;
+        const auto most = static_cast<std::size_t>(options_.conflicts);
         std::vector<std::size_t> order;
         for (const bool failing : {true, false})
             for (std::size_t i = 0; i < all.size(); ++i)
@@ -311,7 +311,7 @@ private:
             std::vector<bool> active = all;
             active[left_out] = false;
             const Outcome outcome = solve(active);
-            Conflict conflict;
+            ConstraintConflict conflict;
             conflict.id = result.constraints[left_out].id;
             for (std::size_t i = 0; i < all.size(); ++i)
                 if (active[i] && result.constraints[i].verdict == Verdict::fails && outcome.measured[i].verdict == Verdict::holds)

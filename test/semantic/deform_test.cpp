@@ -465,20 +465,20 @@ TEST(Deform, TellsWhichConstraintsFight) {
     const DeformResult result = deform(hand.space(), graph, edit(""), "e", options);
     EXPECT_FALSE(result.acceptable);
     std::set<std::pair<int, int>> fights;
-    for (const Conflict& conflict : result.conflicts)
+    for (const ConstraintConflict& conflict : result.conflicts)
         for (const int freed : conflict.freed) fights.insert({conflict.id, freed});
     for (const auto& [a, b] : fights) {
         EXPECT_NE(a, 5);
         EXPECT_NE(b, 5);
     }
     EXPECT_TRUE(fights.count({3, 4}) == 1 || fights.count({4, 3}) == 1);
-    for (const Conflict& conflict : result.conflicts) {
+    for (const ConstraintConflict& conflict : result.conflicts) {
         ASSERT_EQ(conflict.deviations.size(), 1U);
         // The ring finger is some 1.3 times as long: either would have to give by tens of per cent.
         EXPECT_GT(*conflict.deviations[0].value, 10) << conflict.id;
         EXPECT_EQ(conflict.deviations[0].unit, "%");
     }
-    options.conflicts = false;
+    options.conflicts = 0;
     EXPECT_TRUE(deform(hand.space(), graph, edit(""), "e", options).conflicts.empty());
 }
 
@@ -508,7 +508,7 @@ TEST(Deform, AxesBecomeParallelAndPerpendicular) {
             constraint(0, parallel ? "parallel axes" : "perpendicular axes", {moved, 7}, R"({"hard": true})", 10));
         DeformOptions options;
         options.handles = 0.01;
-        options.conflicts = false;
+        options.conflicts = 0;
         const DeformResult result = deform(chair.bare(), graph, edit(bent), "e", options);
         ASSERT_EQ(result.constraints[0].deviations.size(), 1U) << result.constraints[0].text;
         std::cout << result.constraints[0].type << ": " << result.constraints[0].before_values[0] << " -> "
@@ -630,7 +630,7 @@ TEST(Deform, PartsThatAreNearStayNear) {
     graph.relationships = {constraint(0, "keep shape", {1}, R"({"hard": true})"),
                            constraint(1, "adjacency", {0, 1}, R"({"hard": true})")};
     DeformOptions options;
-    options.conflicts = false;
+    options.conflicts = 0;
     options.closeness = 1e-6;
     RelationOptions tolerances;
     tolerances.distance = 0.02;

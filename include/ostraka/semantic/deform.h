@@ -15,9 +15,9 @@ struct DeformOptions {
     double laplacian = 2;            ///< weight of the Laplacian displacements, on every vertex (mesh space)
     double handles = 100;            ///< weight of the handles that the edit moves, and of the joints that parts stretch from
     SolveOptions solve;
-    int rounds = 100;       ///< of the loop that enforces hard constraints
-    int passes = 5;         ///< in which constraints on the axes and measures of other parts follow those
-    bool conflicts = true;  ///< where a constraint fails, look for those it fights with
+    int rounds = 100;   ///< of the loop that enforces hard constraints
+    int passes = 5;     ///< in which constraints on the axes and measures of other parts follow those
+    int conflicts = 8;  ///< where a constraint fails, at most so many are left out in turn to see which fight; 0: none
 
     template <class Visitor>
     void describe(Visitor& visit) {
@@ -37,7 +37,8 @@ struct DeformOptions {
         visit("rounds", rounds, "rounds in which hard constraints are enforced", Range{1, 1e6});
         visit("passes", passes, "solutions in which constraints on axes and measures of other parts follow those", Range{1, 100});
         visit("conflicts", conflicts,
-              "where a constraint does not hold, solve again without each other one and tell which fight (1 or 0)", Anything{});
+              "where a constraint does not hold, at most so many are left out in turn, to tell which fight; 0 for none",
+              Range{0, 1000});
     }
 };
 
@@ -58,7 +59,7 @@ struct ConstraintReport {
 };
 
 /// Without one constraint, others hold that do not hold with it.
-struct Conflict {
+struct ConstraintConflict {
     int id = 0;                         ///< of the constraint that was left out
     std::vector<int> freed;             ///< ids of those that hold without it
     std::vector<Deviation> deviations;  ///< how far off it is then: what it would have to give
@@ -74,7 +75,7 @@ struct DeformResult {
     bool solved = false;     ///< there were constraints to solve
     bool acceptable = true;  ///< every constraint holds
     int passes = 0;          ///< solutions until the parts that constraints refer to stood still
-    std::vector<Conflict> conflicts;
+    std::vector<ConstraintConflict> conflicts;
     std::size_t untried = 0;  ///< constraints that were not left out, since there are so many
 };
 
