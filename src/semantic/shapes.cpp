@@ -64,12 +64,20 @@ Statement keep_shape(const ReaderPtr& read, const RelationOptions& tolerances) {
     statement.lower = [read, kind, seated = mode == "seat"](const State&) {
         return seated ? Statement::Constraints() : kept(*read, kind);
     };
-    const Deviation tolerance{"rms distance from its shape", 0.0, length_tolerance(*read, tolerances), read->shape().set.unit};
-    statement.measure = [parts, tolerance](const State& deformed) {
-        Deviation worst = tolerance;
-        for (const auto& part : *parts)
-            worst.value = std::max(*worst.value,
-                                   std::sqrt(part->squared_distance(deformed.points) / static_cast<double>(part->ids().size())));
+    // A part is small against the object: its own size tells what matters.
+    std::vector<double> tolerance;
+    for (const auto& part : *parts) {
+        Eigen::AlignedBox3d box;
+        for (const int v : part->ids()) box.extend(Vector3d(read->shape().rest.col(v)));
+        tolerance.push_back(tolerances.distance * box.diagonal().norm());
+    }
+    statement.measure = [=, unit = read->shape().set.unit](const State& deformed) {
+        Deviation worst{"rms distance from its shape", 0.0, tolerance.front(), unit};
+        for (std::size_t i = 0; i < parts->size(); ++i) {
+            const Constraint& part = *(*parts)[i];
+            const double off = std::sqrt(part.squared_distance(deformed.points) / static_cast<double>(part.ids().size()));
+            if (off * *worst.tolerance > *worst.value * tolerance[i]) worst.value = off, worst.tolerance = tolerance[i];
+        }
         return verdict_of({worst});
     };
     return statement;
