@@ -113,7 +113,7 @@ private:
         outcome.texts.resize(statements_.size());
         bool follows = false;
         for (std::size_t i = 0; i < statements_.size(); ++i) follows = follows || (active[i] && statements_[i].follows);
-        const double still = 1e-5 * box_diagonal(space_.mesh);
+        const double still = 1e-4 * box_diagonal(space_.mesh);
         while (outcome.passes < (follows ? options_.passes : 1)) {
             const Points before = outcome.points;
             if (!solve_once(active, outcome)) break;
@@ -138,7 +138,7 @@ private:
         return outcome;
     }
 
-    /// Starts from the edited shape; parts that others refer to are as the outcome has them. False if there is nothing to solve.
+    /// Starts from the outcome; parts that others refer to are as it has them. False if there is nothing to solve.
     bool solve_once(const std::vector<bool>& active, Outcome& outcome) {
         lowered_.clear();
         owner_.clear();
@@ -205,7 +205,6 @@ private:
             }
         const bool any_hard = std::any_of(owner_.begin(), owner_.end(), [&](std::size_t i) { return statements_[i].hard; });
         auto all = take(std::move(list));
-        outcome.points = edited_;
         if (any_hard) {
             std::vector<bool> hard(all.size(), false);
             for (std::size_t i = 0; i < owner_.size(); ++i) hard[first_ + i] = statements_[owner_[i]].hard;
