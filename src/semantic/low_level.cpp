@@ -141,7 +141,10 @@ std::vector<std::vector<int>> groups_of(const Reader& read, const Form& form) {
                 add_hinges(mesh, annotation, groups);
                 break;
             case Groups::stars:
-                for (const Index v : vertices_of(mesh, annotation)) groups.push_back(ring(mesh, v));
+                // Cotangents need all of the faces around.
+                for (const Index v : vertices_of(mesh, annotation))
+                    if (std::string_view(form.kind).find("Cotangent") == std::string_view::npos || !mesh.is_border(Vertex(v)))
+                        groups.push_back(ring(mesh, v));
                 break;
         }
     }

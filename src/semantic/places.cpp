@@ -8,15 +8,23 @@ namespace ostraka::semantic {
 
 namespace {
 
+/// All vertices together as one kind would have them.
 Statement all_on(const char* kind, const ReaderPtr& read, const RelationOptions& tolerances) {
     read->need(1, 0);
-    Statement statement;
-    statement.lower = [read, kind](const State&) {
+    const auto lower = [read, kind](const State&) {
         Statement::Constraints list;
         list.push_back(read->make(kind, read->all_vertices(), {}));
         return list;
     };
-    statement.measure = as_related(read, read->relationship(), tolerances);
+    Statement statement;
+    statement.lower = lower;
+    const std::shared_ptr<const Constraint> together = read->make(kind, read->all_vertices(), {});
+    const Deviation distance{"rms distance", 0.0, length_tolerance(*read, tolerances), read->shape().set.unit};
+    statement.measure = [together, distance](const State& deformed) {
+        Deviation rms = distance;
+        rms.value = std::sqrt(together->squared_distance(deformed.points) / static_cast<double>(together->ids().size()));
+        return verdict_of({rms});
+    };
     return statement;
 }
 

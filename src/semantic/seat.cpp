@@ -316,6 +316,17 @@ private:
 
 }  // namespace
 
+bool has_outline(const Mesh& mesh, const Annotation& region) {
+    const std::vector<bool> inside = face_flags(mesh, region.faces);
+    return std::any_of(region.faces.begin(), region.faces.end(), [&](Index f) {
+        for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(Face(f)))) {
+            const Face other = mesh.face(mesh.opposite(h));
+            if (other != Mesh::null_face() && !inside[other]) return true;
+        }
+        return false;
+    });
+}
+
 SeatReport seat(const Mesh& mesh, const Points& rest, const std::vector<Seating>& seatings, Points& points) {
     if (seatings.empty()) return {};
     return Seater(mesh, rest, seatings, points).run();

@@ -13,6 +13,9 @@ struct Seating {
     double bend = 0;  ///< root mean square by which one may bend to lie on the base, as a share of the diagonal
 };
 
+/// Whether other faces adjoin those of a region: the whole of a piece has no place to be seated at.
+bool has_outline(const Mesh& mesh, const Annotation& region);
+
 struct SeatReport {
     std::size_t folded = 0;  ///< faces around features that had to turn over
     double lifted = 0;       ///< greatest distance of an outline from the base, in the mesh's unit

@@ -37,8 +37,10 @@ Seating seating_of(const Reader& read, std::optional<Vector3d> up) {
     std::vector<bool> taken(read.shape().mesh.number_of_vertices(), false);
     for (std::size_t i = 0; i < read.members(); ++i) {
         const Annotation& feature = read.member(i);
-        if (read.faces(i).size() == read.shape().mesh.number_of_faces())
-            read.fail("annotation " + std::to_string(feature.id) + " is the whole object", "seat parts of it");
+        read.need_region(i);
+        if (!has_outline(read.shape().mesh, feature))
+            read.fail("annotation " + std::to_string(feature.id) + " is a whole piece of the object and sits on nothing",
+                      "seat parts of it");
         for (const Index v : read.vertices(i)) {
             if (taken[v])
                 read.fail("annotation " + std::to_string(feature.id) + " touches another feature, so that neither can move alone",

@@ -278,6 +278,7 @@ TEST(Deform, ContradictionsAreToldAndLeaveNoHoles) {
     graph.relationships.push_back(constraint(2, "part similarity", {5, 6}, "{}"));
     DeformOptions options;
     options.rounds = 5;
+    options.conflicts = 0;
     const DeformResult result = deform(object.handles(), graph, edit(""), "e", options);
     EXPECT_FALSE(result.acceptable);
     for (const Point& p : result.points) ASSERT_TRUE(std::isfinite(p.x()) && std::isfinite(p.y()) && std::isfinite(p.z()));
@@ -444,7 +445,15 @@ TEST(Deform, SeatedFeaturesAreRigidAndLevelThroughTheCageToo) {
         EXPECT_EQ(result.points[object.made.mesh.number_of_vertices() - 1],
                   result.edited[object.made.mesh.number_of_vertices() - 1]);
     }
+    // The whole object sits on nothing.
+    graph.relationships[0] = constraint(0, "keep shape", {0}, R"({"mode": "seat"})");
+    EXPECT_NE(error_of(object.handles(), steps, graph).find("sits on nothing"), std::string::npos);
+    // A feature by itself keeps its place.
+    graph.relationships[0] = constraint(0, "keep shape", {7}, R"({"mode": "seat", "bend": 0})");
+    const DeformResult alone = deform(object.handles(), graph, edit(steps), "e");
+    EXPECT_LT(*alone.constraints[0].deviations[0].value, 1e-9 * diagonal);
     // Features that touch cannot be moved one by one.
+    graph.relationships[0] = constraint(0, "same level", flowers, R"({"shapes": "seat"})");
     graph.relationships[0].annotations = {1, 5};
     EXPECT_NE(error_of(object.handles(), steps, graph).find("touches another feature"), std::string::npos)
         << error_of(object.handles(), steps, graph);
