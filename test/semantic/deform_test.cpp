@@ -5,6 +5,7 @@
 #include "ostraka/cage/cage.h"
 #include "ostraka/core/error.h"
 #include "ostraka/geom/eigen.h"
+#include "ostraka/io/mesh_file.h"
 #include "ostraka/measure/measure.h"
 #include "ostraka/select/recipe.h"
 #include "ostraka/shapes/make_mesh.h"
@@ -12,6 +13,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/SVD>
 
+#include <filesystem>
 #include <iostream>
 #include <set>
 
@@ -654,4 +656,44 @@ TEST(Deform, PartsThatAreNearStayNear) {
     const DeformResult joined = deform(teapot().bare(), graph, edit(""), "e");
     EXPECT_NE(joined.constraints[0].text.find("common vertices"), std::string::npos);
     EXPECT_TRUE(joined.acceptable);
+}
+
+TEST(Deform, AScannedBustKeepsWhatSitsOnIt) {
+    const Path file = Path(OSTRAKA_SHARED_DATA) / "heritage-scans" / "Laurana50k.ply";
+    if (!std::filesystem::exists(file)) GTEST_SKIP() << "there is no " << file;
+    const Mesh mesh = read_mesh(file).mesh;
+    // Two patches, as large as the diagonal over 15, stand for details on it.
+    AnnotationSet set;
+    const double diagonal = box_diagonal(mesh);
+    Eigen::AlignedBox3d box;
+    for (const Vertex v : mesh.vertices()) box.extend(eigen(mesh.point(v)));
+    for (int k = 0; k < 2; ++k) {
+        const Eigen::Vector3d goal = box.min() + (box.max() - box.min()).cwiseProduct(Eigen::Vector3d(k, 1, 0.45 + 0.1 * k));
+        Index seed = 0;
+        for (const Vertex v : mesh.vertices())
+            if ((eigen(mesh.point(v)) - goal).norm() < (eigen(mesh.point(Vertex(seed))) - goal).norm()) seed = v.idx();
+        Annotation patch;
+        patch.id = k + 1;
+        patch.tag = "patch " + std::to_string(k + 1);
+        for (const Face f : mesh.faces())
+            if ((eigen(centroid(mesh, f)) - eigen(mesh.point(Vertex(seed)))).norm() < diagonal / 15)
+                patch.faces.push_back(f.idx());
+        set.annotations.push_back(patch);
+    }
+    const std::string stretch = R"({"select": {"all": true}, "stretch": {"direction": [0, 0, 1], "factor": 1.3}},
+        {"select": {"annotation": 1}, "translate": [0, 0, 15]})";
+    for (const std::string parameters : {R"({"shapes": "seat", "direction": [0, 0, 1]})", R"({"direction": [0, 0, 1]})"}) {
+        RelationGraph graph;
+        graph.relationships.push_back(constraint(0, "same level", {1, 2}, parameters, 1e4));
+        const DeformResult result = deform({mesh, set}, graph, edit(stretch), "e");
+        EXPECT_TRUE(result.acceptable) << result.constraints[0].text;
+        EXPECT_GT(result.constraints[0].before_values[0], 0.01 * diagonal);
+        const Points rest = points_matrix(points_of(mesh)), now = points_matrix(result.points);
+        ASSERT_TRUE(now.allFinite());
+        for (const Annotation& patch : set.annotations) {
+            const auto vertices = vertices_of(mesh, patch);
+            const auto rigid = make_constraint("Rigid", {vertices.begin(), vertices.end()}, 1, {}, rest);
+            EXPECT_LT(std::sqrt(rigid->squared_distance(now) / static_cast<double>(vertices.size())), 1e-3 * diagonal);
+        }
+    }
 }
