@@ -9,10 +9,14 @@ namespace ostraka::experiments {
 
 namespace {
 
+/// Below this share of the start, what is left of the objective is rounding.
+constexpr double rounding = 1e-12;
+
+/// Where what is left is a share of what it was at `from`, or no more than rounding.
 std::optional<Reached> reached(const SolveSummary& summary, std::size_t from, double best, double share) {
+    const double enough = std::max(share * (summary.objective[from] - best), rounding * (summary.objective.front() - best));
     for (std::size_t i = from; i < summary.objective.size(); ++i)
-        if (summary.objective[i] - best <= share * (summary.objective[from] - best))
-            return Reached{static_cast<int>(i), summary.seconds[i]};
+        if (summary.objective[i] - best <= enough) return Reached{static_cast<int>(i), summary.seconds[i]};
     return {};
 }
 
@@ -89,8 +93,10 @@ Plot convergence_plot(const std::string& title, const std::vector<SolveRun>& run
     Plot plot{title, {"iterations", false, 0.0, {}}, {"(objective - best) / (start - best)", true, {}, {}}, {}};
     for (const SolveRun& run : runs) {
         PlotSeries series{run.name, {}, run.summary.objective.size() <= 60, false};
-        for (std::size_t i = 0; i < run.summary.objective.size(); ++i)
-            series.points.push_back({static_cast<double>(i), left_of(run.summary, i, best)});
+        for (std::size_t i = 0; i < run.summary.objective.size(); ++i) {
+            const double left = left_of(run.summary, i, best);
+            if (left > rounding) series.points.push_back({static_cast<double>(i), left});
+        }
         plot.series.push_back(std::move(series));
     }
     return plot;

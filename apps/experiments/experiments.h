@@ -3,6 +3,7 @@
 #include "ostraka/annotation/annotation.h"
 #include "ostraka/core/mesh.h"
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,45 @@ struct TableOptions {
     bool no_independent = false, truth_only = false;
 };
 void transfer_table(const TableOptions& options);
+
+/// Table 4.1: time and memory of a region made plane, over the mesh and through a cage.
+struct Table41Options {
+    std::string made = "teapot", scan, output = "experiments-output/table-4-1";
+    std::vector<std::uint64_t> sizes{20000, 50000, 70000, 100000, 150000, 200000, 280000, 500000};
+    std::vector<double> direction{0, -1, 0};  ///< the region is around the vertex that is farthest along it
+    double share = 0.025;                     ///< of the surface
+    std::uint64_t cage_vertices = 200;
+    int iterations = 50;
+};
+void table_4_1(const Table41Options& options);
+
+/// Figure 4.6: a region made plane, and what else moves.
+struct Figure46Options {
+    std::string mesh, annotations, cage, region, output = "experiments-output/figure-4-6";
+};
+void figure_4_6(const Figure46Options& options);
+
+/// Figure 5.11: control points of annotations, level by level.
+struct ControlPointOptions {
+    std::string mesh, annotations, cage, weights, output = "experiments-output/figures-5-11-5-12";
+    double threshold = 0.4;
+};
+void control_points(const ControlPointOptions& options);
+
+/// How far each annotation moves from one shape to others.
+struct MovedOptions {
+    std::string mesh, annotations, output;
+    std::vector<std::string> shapes;
+};
+void moved(const MovedOptions& options);
+
+/// Figures 6.1 and 6.2: edits and constraints through cages.
+struct CageReachOptions {
+    std::string mesh, annotations, graph, output = "experiments-output/figures-6-1-6-2";
+    std::vector<std::string> edits, cages;  ///< NAME=FILE
+    int iterations = 100;
+};
+void cage_reach(const CageReachOptions& options);
 
 struct LabelOptions {
     std::string models, labels, csv;

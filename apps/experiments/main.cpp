@@ -30,6 +30,57 @@ int main(int argc, char** argv) {
     table_command->add_flag("--truth-only", table.truth_only, "only the overlap with the parts of the made objects");
     table_command->add_flag("--no-independent", table.no_independent, "leave out independently meshed resolutions");
 
+    experiments::Table41Options table_4_1;
+    CLI::App* table_4_1_command =
+        tool.add_subcommand("table-4-1", "a region made plane, over the mesh and through a cage: time and memory");
+    table_4_1_command->add_option("--made", table_4_1.made, "made object")->capture_default_str();
+    table_4_1_command->add_option("--scan", table_4_1.scan,
+                                  "mesh file instead; refined and simplified to each number of vertices");
+    table_4_1_command->add_option("--sizes", table_4_1.sizes, "numbers of vertices")->delimiter(',');
+    table_4_1_command->add_option("--direction", table_4_1.direction, "the region is around the vertex farthest along it")
+        ->delimiter(',');
+    table_4_1_command->add_option("--share", table_4_1.share, "of the surface, of the region")->capture_default_str();
+    table_4_1_command->add_option("--cage-vertices", table_4_1.cage_vertices, "of the cage")->capture_default_str();
+    table_4_1_command->add_option("--iterations", table_4_1.iterations, "plain iterations that are timed")->capture_default_str();
+    table_4_1_command->add_option("--output", table_4_1.output, "folder to write to")->capture_default_str();
+
+    experiments::Figure46Options figure_4_6;
+    CLI::App* figure_4_6_command =
+        tool.add_subcommand("figure-4-6", "a region made plane, over the mesh and through a cage: what else moves");
+    figure_4_6_command->add_option("mesh", figure_4_6.mesh, "mesh file")->required();
+    figure_4_6_command->add_option("annotations", figure_4_6.annotations, "its annotations")->required();
+    figure_4_6_command->add_option("cage", figure_4_6.cage, "its cage")->required();
+    figure_4_6_command->add_option("region", figure_4_6.region, "tag of the region that is to become plane")->required();
+    figure_4_6_command->add_option("--output", figure_4_6.output, "folder to write to")->capture_default_str();
+
+    experiments::ControlPointOptions control;
+    CLI::App* control_command =
+        tool.add_subcommand("control-points", "control points of annotations, level by level (figure 5.11)");
+    control_command->add_option("mesh", control.mesh, "mesh file")->required();
+    control_command->add_option("annotations", control.annotations, "its annotations")->required();
+    control_command->add_option("cage", control.cage, "its cage")->required();
+    control_command->add_option("weights", control.weights, "weights of 'ostraka cage weights'")->required();
+    control_command->add_option("--threshold", control.threshold, "of influence")->capture_default_str();
+    control_command->add_option("--output", control.output, "folder to write to")->capture_default_str();
+
+    experiments::MovedOptions moved;
+    CLI::App* moved_command = tool.add_subcommand("moved", "how far each annotation moves from one shape of a mesh to others");
+    moved_command->add_option("mesh", moved.mesh, "the shape at rest")->required();
+    moved_command->add_option("annotations", moved.annotations, "its annotations")->required();
+    moved_command->add_option("shapes", moved.shapes, "mesh files with the same vertices")->required();
+    moved_command->add_option("--output", moved.output, "folder to write to")->required();
+
+    experiments::CageReachOptions reach;
+    CLI::App* reach_command =
+        tool.add_subcommand("cage-reach", "how near cages come to what constraints ask for (figures 6.1, 6.2)");
+    reach_command->add_option("mesh", reach.mesh, "mesh file")->required();
+    reach_command->add_option("annotations", reach.annotations, "its annotations")->required();
+    reach_command->add_option("graph", reach.graph, "relationships, some of them constraints")->required();
+    reach_command->add_option("--edit", reach.edits, "NAME=FILE of an edit")->required();
+    reach_command->add_option("--cage", reach.cages, "NAME=FILE of a cage")->required();
+    reach_command->add_option("--iterations", reach.iterations, "at most")->capture_default_str();
+    reach_command->add_option("--output", reach.output, "folder to write to")->capture_default_str();
+
     experiments::LabelOptions labels;
     CLI::App* label_command = tool.add_subcommand("labels", "part labels carried to a remeshed version and back");
     label_command->add_option("models", labels.models, "folder with <class>/<number>.off")->required();
@@ -47,6 +98,11 @@ int main(int argc, char** argv) {
         tool.parse(argc, argv);
         set_threads(threads);
         if (table_command->parsed()) experiments::transfer_table(table);
+        if (table_4_1_command->parsed()) experiments::table_4_1(table_4_1);
+        if (figure_4_6_command->parsed()) experiments::figure_4_6(figure_4_6);
+        if (control_command->parsed()) experiments::control_points(control);
+        if (moved_command->parsed()) experiments::moved(moved);
+        if (reach_command->parsed()) experiments::cage_reach(reach);
         if (cage_command->parsed()) experiments::cages(cages);
         if (label_command->parsed()) experiments::label_transfer(labels);
         return 0;

@@ -27,14 +27,19 @@ struct Tick {
     std::string text;
 };
 
+bool has_place(const PlotAxis& axis, double value) { return std::isfinite(value) && (!axis.logarithmic || value > 0); }
+
 /// One axis with its range, in the picture's pixels from `low` to `high`.
 class Ruler {
 public:
-    Ruler(const PlotAxis& axis, const std::vector<PlotSeries>& series, std::size_t coordinate)
-        : logarithmic_(axis.logarithmic), least_(std::numeric_limits<double>::infinity()), most_(-least_) {
-        for (const PlotSeries& one : series)
-            for (const auto& point : one.points)
-                if (fits(point[0]) && fits(point[coordinate])) include(point[coordinate]);
+    Ruler(const Plot& plot, std::size_t coordinate)
+        : logarithmic_((coordinate == 0 ? plot.x : plot.y).logarithmic),
+          least_(std::numeric_limits<double>::infinity()),
+          most_(-least_) {
+        const PlotAxis& axis = coordinate == 0 ? plot.x : plot.y;
+        for (const PlotSeries& series : plot.series)
+            for (const auto& point : series.points)
+                if (has_place(plot.x, point[0]) && has_place(plot.y, point[1])) include(point[coordinate]);
         if (least_ > most_) fail_input("plot", "no point has a place on the axis '" + axis.label + "'");
         if (axis.minimum) least_ = place(*axis.minimum);
         if (axis.maximum) most_ = place(*axis.maximum);
@@ -50,7 +55,6 @@ public:
     }
 
     void stretch_over(double low, double high) { low_ = low, high_ = high; }
-    [[nodiscard]] bool fits(double value) const { return std::isfinite(value) && (!logarithmic_ || value > 0); }
     [[nodiscard]] double pixel(double value) const { return low_ + (place(value) - least_) / (most_ - least_) * (high_ - low_); }
 
     [[nodiscard]] std::vector<Tick> ticks() const {
@@ -174,7 +178,7 @@ private:
     std::unique_ptr<cairo_t, decltype(&cairo_destroy)> context_;
 };
 
-void draw(Sheet& sheet, const PlotSeries& series, const Rgb& colour, const Ruler& x, const Ruler& y) {
+void draw(Sheet& sheet, const Plot& plot, const PlotSeries& series, const Rgb& colour, const Ruler& x, const Ruler& y) {
     std::vector<std::array<double, 2>> run;
     const auto end_run = [&] {
         sheet.polyline(run, colour, series.dashed);
@@ -183,7 +187,7 @@ void draw(Sheet& sheet, const PlotSeries& series, const Rgb& colour, const Ruler
         run.clear();
     };
     for (const auto& point : series.points) {
-        if (x.fits(point[0]) && y.fits(point[1])) run.push_back({x.pixel(point[0]), y.pixel(point[1])});
+        if (has_place(plot.x, point[0]) && has_place(plot.y, point[1])) run.push_back({x.pixel(point[0]), y.pixel(point[1])});
         else end_run();
     }
     end_run();
@@ -192,7 +196,7 @@ void draw(Sheet& sheet, const PlotSeries& series, const Rgb& colour, const Ruler
 }  // namespace
 
 std::string svg_bytes(const Plot& plot) {
-    Ruler x(plot.x, plot.series, 0), y(plot.y, plot.series, 1);
+    Ruler x(plot, 0), y(plot, 1);
     Sheet sheet(plot.width, plot.height);
     double widest_tick = 0, widest_name = 0;
     for (const Tick& tick : y.ticks()) widest_tick = std::max(widest_tick, sheet.width_of(tick.text));
@@ -222,7 +226,7 @@ std::string svg_bytes(const Plot& plot) {
         sheet.text(plot.series[i].name, right + margin + 34, row + 0.35 * text_size, 0);
     }
     sheet.clip(left, top, right, bottom);
-    for (std::size_t i = 0; i < plot.series.size(); ++i) draw(sheet, plot.series[i], colours[i % colours.size()], x, y);
+    for (std::size_t i = 0; i < plot.series.size(); ++i) draw(sheet, plot, plot.series[i], colours[i % colours.size()], x, y);
     sheet.unclip();
     return sheet.finish();
 }

@@ -1,0 +1,134 @@
+// Figure 4.6 of the thesis: a region made plane over the points of the mesh and through a cage, and what else moves.
+#include "experiments.h"
+
+#include "coloured_mesh.h"
+#include "plane_problem.h"
+#include "report.h"
+
+#include "ostraka/annotation/annotation_file.h"
+#include "ostraka/coords/coordinates.h"
+#include "ostraka/core/error.h"
+#include "ostraka/io/mesh_file.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+
+namespace ostraka::experiments {
+
+namespace {
+
+struct Case {
+    std::string name, about;
+    PlaneProblem problem;
+    bool cage;
+    int iterations;  ///< 0: until nothing moves
+};
+
+const std::vector<Case> cases{{"mesh-2", "mesh, 2 iterations", {"closeness"}, false, 2},
+                              {"cage-2", "cage, 2 iterations", {"closeness"}, true, 2},
+                              {"mesh-converged", "mesh, converged", {"closeness"}, false, 0},
+                              {"cage-converged", "cage, converged", {"closeness"}, true, 0},
+                              {"mesh-strong-2", "plane of weight 100, mesh, 2 iterations", {"closeness", 1, 100}, false, 2},
+                              {"cage-strong-2", "plane of weight 100, cage, 2 iterations", {"closeness", 1, 100}, true, 2},
+                              {"mesh-strong-converged", "plane of weight 100, mesh, converged", {"closeness", 1, 100}, false, 0},
+                              {"cage-strong-converged", "plane of weight 100, cage, converged", {"closeness", 1, 100}, true, 0},
+                              {"mesh-alone-2", "plane alone, mesh, 2 iterations", {"nothing"}, false, 2},
+                              {"cage-alone-2", "plane alone, cage, 2 iterations", {"nothing"}, true, 2}};
+
+struct Solved {
+    std::vector<double> moved;  ///< each vertex's way
+    Points points;
+    SolveSummary summary;
+};
+
+SolveOptions solving(const Case& one) {
+    SolveOptions options;
+    options.iterations = one.iterations > 0 ? one.iterations : 5000;
+    options.tolerance = one.iterations > 0 ? 0 : 1e-9;
+    options.window = one.iterations > 0 ? 0 : 5;
+    return options;
+}
+
+const Annotation& region_of(const AnnotationSet& set, const std::string& tag, const std::string& file) {
+    for (const Annotation& annotation : set.annotations)
+        if (annotation.tag == tag && !annotation.faces.empty()) return annotation;
+    fail_input(file, "has no region '" + tag + "'");
+}
+
+}  // namespace
+
+void figure_4_6(const Figure46Options& options) {
+    const Path folder(options.output);
+    std::filesystem::create_directories(folder);
+    const Mesh mesh = read_mesh(options.mesh).mesh, cage = read_mesh(options.cage).mesh;
+    const AnnotationSet set = read_annotations(options.annotations, mesh);
+    const std::vector<Index> region = touched_vertices(mesh, region_of(set, options.region, options.annotations));
+    const Points rest = solver_points(mesh), cage_rest = solver_points(cage);
+    const CageWeights weights = compute_coordinates("mean-value", cage, mesh).vertex;
+    const double diagonal = box_diagonal(mesh), flat = flatness(rest, region);
+
+    std::vector<Solved> solved;
+    for (const Case& one : cases) {
+        Solved result;
+        auto constraints = plane_constraints(mesh, rest, region, one.problem);
+        Points x = one.cage ? cage_rest : rest;
+        if (one.cage) result.summary = CageSpaceSolver(std::move(constraints), weights, cage_rest).solve(x, solving(one));
+        else result.summary = MeshSpaceSolver(std::move(constraints), rest).solve(x, solving(one));
+        result.points = one.cage ? ostraka::points_of(weights, x) : x;
+        result.moved = displacements(mesh_points(rest), mesh_points(result.points));
+        if (one.cage) write_mesh(folder / (one.name + "-cage.ply"), with_points(cage, mesh_points(x)));
+        solved.push_back(std::move(result));
+    }
+    // One scale for all pictures.
+    double farthest = 0;
+    for (std::size_t i = 0; i < cases.size(); ++i)
+        if (cases[i].problem.rest_kind != "nothing")
+            farthest = std::max(farthest, *std::max_element(solved[i].moved.begin(), solved[i].moved.end()));
+    std::string text = "| case | iterations | not flat, rms, % of the diagonal | % of rest | ", rule = "|---|---|---|---|---|",
+                rows = "case,iterations,regularised,flatness,flatness_of_rest,part,mean_moved,max_moved\n", body;
+    text += "part itself |";
+    std::vector<std::pair<const Annotation*, std::vector<Index>>> others;
+    std::vector<bool> inside(mesh.number_of_vertices(), false);
+    for (const Index v : region) inside[v] = true;
+    for (const Annotation& annotation : set.annotations) {
+        if (annotation.faces.empty() || annotation.all || annotation.tag == options.region) continue;
+        std::vector<Index> vertices = touched_vertices(mesh, annotation);
+        std::erase_if(vertices, [&](Index v) { return inside[v]; });
+        if (vertices.empty()) continue;
+        text += ' ' + annotation.tag + " |";
+        rule += "---|";
+        others.emplace_back(&annotation, std::move(vertices));
+    }
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        const Solved& one = solved[i];
+        const double after = flatness(one.points, region);
+        body += "| " + cases[i].about +
+                format(" | %d | %.4f | %.2f |", one.summary.iterations, 100 * after / diagonal, 100 * after / flat);
+        const auto column = [&](const std::string& tag, const std::vector<Index>& vertices) {
+            double sum = 0, most = 0;
+            for (const Index v : vertices) sum += one.moved[v], most = std::max(most, one.moved[v]);
+            const double mean = sum / static_cast<double>(vertices.size());
+            body += format(" %.3f (%.3f) |", 100 * mean / diagonal, 100 * most / diagonal);
+            rows += cases[i].name +
+                    format(",%d,%d,%.6g,%.6g,\"", one.summary.iterations, int(one.summary.regularised), after, after / flat) +
+                    tag + format("\",%.6g,%.6g\n", mean, most);
+        };
+        column(options.region, region);
+        for (const auto& [annotation, vertices] : others) column(annotation->tag, vertices);
+        body += '\n';
+        write_coloured(folder / (cases[i].name + ".ply"), with_points(mesh, mesh_points(one.points)), one.moved, farthest);
+    }
+    text =
+        "Figure 4.6, '" + options.region + "' (" + std::to_string(region.size()) + " of " +
+        std::to_string(mesh.number_of_vertices()) + " vertices) made plane, cage of " +
+        std::to_string(cage.number_of_vertices()) +
+        ". Parts: how far their vertices move, mean (most), % of the diagonal. Unless said, with closeness of weight 1 on every "
+        "vertex. Colours of the meshes: displacement from 0 to " +
+        format("%.4g", farthest) + ".\n\n" + text + '\n' + rule + '\n' + body;
+    write_file(folder / "table.md", text);
+    write_file(folder / "table.csv", rows);
+    std::cout << text;
+}
+
+}  // namespace ostraka::experiments

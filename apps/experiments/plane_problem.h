@@ -1,0 +1,29 @@
+// The optimisation problem of figure 4.6 and Table 4.1 of the thesis: a region is to become plane, the rest is to stay.
+#pragma once
+
+#include "ostraka/core/mesh.h"
+#include "ostraka/solver/solve.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace ostraka::experiments {
+
+/// What else there is besides the plane: "nothing", "closeness" of every vertex or "laplacian" displacement of every vertex.
+struct PlaneProblem {
+    std::string rest_kind = "closeness";
+    double rest_weight = 1, plane_weight = 1;
+};
+
+Points solver_points(const Mesh& mesh);
+Points solver_points(const std::vector<Point>& points);
+std::vector<Point> mesh_points(const Points& points);
+
+std::vector<std::unique_ptr<Constraint>> plane_constraints(const Mesh& mesh, const Points& rest, const std::vector<Index>& region,
+                                                           const PlaneProblem& problem);
+
+/// Root mean square distance of some points from the plane that is nearest to them.
+double flatness(const Points& points, const std::vector<Index>& region);
+
+}  // namespace ostraka::experiments
