@@ -72,6 +72,18 @@ struct CageTableOptions {
 };
 void cages(const CageTableOptions& options);
 
+/// Of the experiments on semantic constraints.
+struct SemanticOptions {
+    std::string output;          ///< folder
+    std::string mesh, recipe;    ///< of the face
+    std::uint64_t vertices = 0;  ///< 0: as in the thesis
+    int iterations = 150;        ///< of the comparison of plain and accelerated iterations
+};
+void same_level(const SemanticOptions& options);
+void structural_continuity(const SemanticOptions& options);
+void face_proportions(const SemanticOptions& options);
+void before_and_after(const SemanticOptions& options);
+
 /// The faces nearest to a seed vertex (by edge paths), up to a share of the mesh's area.
 std::vector<Index> disc(const Mesh& mesh, Vertex seed, double share);
 

@@ -94,6 +94,29 @@ int main(int argc, char** argv) {
     cage_command->add_option("--vertices", cages.vertices, "wanted numbers of vertices")->delimiter(',');
     cage_command->add_option("--csv", cages.csv, "raw rows");
 
+    experiments::SemanticOptions semantic;
+    std::vector<std::pair<CLI::App*, void (*)(const experiments::SemanticOptions&)>> semantic_commands;
+    const struct {
+        const char *name, *text;
+        void (*run)(const experiments::SemanticOptions&);
+    } semantic_list[] = {
+        {"same-level", "flowers of a stretched teapot (thesis, figures 5.3 and 5.4)", experiments::same_level},
+        {"structural-continuity", "a chair's longer arm and its support (figure 5.7)", experiments::structural_continuity},
+        {"face-proportions", "nose and eyes of a face (figure 5.17)", experiments::face_proportions},
+        {"before-and-after", "a patch's axis, a finger's stretch (figures 5.18 and 5.19)", experiments::before_and_after}};
+    for (const auto& [name, text, run] : semantic_list) {
+        CLI::App* command = tool.add_subcommand(name, text);
+        command->add_option("output", semantic.output, "folder for tables, plots and meshes")->required();
+        command->add_option("--vertices", semantic.vertices, "of made objects; 0: as in the thesis");
+        command->add_option("--iterations", semantic.iterations, "of the comparison of plain and accelerated iterations")
+            ->check(CLI::Range(1, 100000));
+        if (run == experiments::face_proportions) {
+            command->add_option("--mesh", semantic.mesh, "the face")->required();
+            command->add_option("--recipe", semantic.recipe, "with its eyes and nose")->required();
+        }
+        semantic_commands.emplace_back(command, run);
+    }
+
     try {
         tool.parse(argc, argv);
         set_threads(threads);
@@ -105,6 +128,8 @@ int main(int argc, char** argv) {
         if (reach_command->parsed()) experiments::cage_reach(reach);
         if (cage_command->parsed()) experiments::cages(cages);
         if (label_command->parsed()) experiments::label_transfer(labels);
+        for (const auto& [command, run] : semantic_commands)
+            if (command->parsed()) run(semantic);
         return 0;
     } catch (const CLI::ParseError& error) {
         return tool.exit(error) == 0 ? 0 : 2;

@@ -1,0 +1,90 @@
+#include "proportion.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/geom/eigen.h"
+
+#include <algorithm>
+#include <set>
+
+namespace ostraka::experiments {
+
+namespace {
+using Eigen::Vector3d;
+constexpr double held = 0.01;  ///< weight of closeness in the thesis's way: it does not tell what holds the rest
+}  // namespace
+
+const Measure& measure_of(const Annotation& part) {
+    for (const Attribute& attribute : part.attributes)
+        if (attribute.type == AttributeType::measure && attribute.name == "length") return attribute.measure;
+    fail_input(part.tag, "has no measure called length", "see the recipe that the experiment names");
+}
+
+double length(const Measure& measure, const std::vector<Point>& points) {
+    const Vector3d edge = eigen(points[measure.points[1]] - points[measure.points[0]]);
+    if (!measure.direction) return edge.norm();
+    const Vector3d direction((*measure.direction)[0], (*measure.direction)[1], (*measure.direction)[2]);
+    return std::abs(direction.normalized().dot(edge));
+}
+
+double value_of(const Subject& subject, const Ratio& ratio, const std::vector<Point>& points) {
+    return length(measure_of(subject.part(ratio.part)), points) / length(measure_of(subject.part(ratio.reference)), points);
+}
+
+Constraints thesis_proportions(const Subject& subject, const std::vector<Point>& edited, const std::vector<Ratio>& ratios,
+                               bool anchored) {
+    const Points rest = columns(points_of(subject.mesh));
+    Constraints list;
+    add_closeness(list, subject, edited, held);
+    for (const Ratio& ratio : ratios) {
+        const Annotation& part = subject.part(ratio.part);
+        const Measure &first = measure_of(part), &second = measure_of(subject.part(ratio.reference));
+        const std::vector<Index> joint = joint_of(subject.mesh, part);
+        std::set<Index> around(joint.begin(), joint.end());
+        for (const Index v : joint)
+            for (const Vertex w : subject.mesh.vertices_around_target(subject.mesh.halfedge(Vertex(v)))) around.insert(w.idx());
+        add_laplacians(list, subject, {around.begin(), around.end()}, "Laplacian", 1);
+        std::vector<int> ids;
+        for (const Index v : vertices_of(subject.mesh, part)) ids.push_back(static_cast<int>(v));
+        const auto place = [&](Index v) {
+            const auto found = std::find(ids.begin(), ids.end(), static_cast<int>(v));
+            if (found != ids.end()) return static_cast<int>(found - ids.begin());
+            ids.push_back(static_cast<int>(v));
+            return static_cast<int>(ids.size() - 1);
+        };
+        ConstraintParameters parameters;
+        parameters.pins = {place(first.points[0]), place(first.points[1])};
+        parameters.split = static_cast<int>(ids.size());
+        if (anchored)
+            for (const Index v : joint) parameters.anchors.push_back(place(v));
+        parameters.pins.push_back(place(second.points[0]));
+        parameters.pins.push_back(place(second.points[1]));
+        parameters.min = ratio.min;
+        parameters.max = ratio.max;
+        const auto vector = [](const std::optional<std::array<double, 3>>& d) {
+            return d ? std::optional(Vector3d((*d)[0], (*d)[1], (*d)[2])) : std::nullopt;
+        };
+        parameters.direction = vector(first.direction);
+        parameters.second_direction = vector(second.direction);
+        list.push_back(make_constraint("Proportion", ids, 1, parameters, rest));
+    }
+    return list;
+}
+
+RelationGraph proportion_graph(const Subject& subject, const std::vector<Ratio>& ratios, bool hard) {
+    RelationGraph graph;
+    for (const Ratio& ratio : ratios)
+        graph.relationships.push_back(constraint(
+            static_cast<int>(graph.relationships.size()), "proportion", {subject.id(ratio.part), subject.id(ratio.reference)},
+            R"({"measure1": "length", "measure2": "length", "minValue": )" + std::to_string(ratio.min) + R"(, "maxValue": )" +
+                std::to_string(ratio.max) + (hard ? R"(, "hard": true})" : "}"),
+            1));
+    return graph;
+}
+
+DeformOptions solving(const SolveOptions& solve) {
+    DeformOptions options;
+    options.solve = solve;
+    return options;
+}
+
+}  // namespace ostraka::experiments

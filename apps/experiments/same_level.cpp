@@ -1,0 +1,225 @@
+// Figures 5.3 and 5.4 of the thesis: the flowered teapot is stretched upwards, its flowers keep their shape and level.
+#include "experiments.h"
+#include "semantics.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/geom/eigen.h"
+#include "ostraka/geom/surface_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+
+namespace ostraka::experiments {
+
+namespace {
+
+constexpr double factor = 1.4;
+constexpr double ring_radius = 1.6;  ///< of a flower's radius
+constexpr double tilt = 20 * M_PI / 180;
+
+/// One row of the table. Where the details are the edited shape's, so are all other settings the defaults.
+struct Variant {
+    std::string name, file, parameters;
+    double weight = 1, laplacian = 2;
+    std::string details = "rest";
+    int iterations = 3;
+    bool accelerated = false;
+    bool tilted = false;
+};
+
+std::vector<Variant> variants() {
+    std::vector<Variant> list;
+    const std::string thesis = R"("reference": "vertex")";
+    const std::string direction =
+        R"(, "direction": [)" + std::to_string(std::sin(tilt)) + ", 0, " + std::to_string(std::cos(tilt)) + "]";
+    // Figure 5.3b; 5.4a, b, c, d.
+    for (const auto& [name, file, parameters, laplacian] : {std::tuple{"thesis, 4 against 4", "thesis", thesis, 4.0},
+                                                            {"without Laplacian displacement", "no-laplacian", thesis, 0.0},
+                                                            {"Laplacian displacement 2 against 4", "2-against-4", thesis, 2.0},
+                                                            {"Laplacian displacement 10 against 4", "10-against-4", thesis, 10.0},
+                                                            {"plane tilted by 20 degrees", "tilted", thesis + direction, 4.0}})
+        for (const bool converged : {false, true})
+            list.push_back({name + std::string(converged ? ", converged" : ", 3 iterations"),
+                            file + std::string(converged ? "-converged" : "-3"), "{" + parameters + "}", 4, laplacian, "rest",
+                            converged ? 2000 : 3, converged, std::string(file) == "tilted"});
+    const int usual = DeformOptions().solve.iterations;
+    list.push_back({"defaults, soft", "soft", "{}", 1, 2, "edited", usual, true});
+    list.push_back({"defaults, hard", "hard", R"({"hard": true})", 1, 2, "edited", usual, true});
+    return list;
+}
+
+/// Faces around the flowers: outside all of them, within some radii of the middle of one.
+struct Ring {
+    std::vector<Index> faces, vertices;
+};
+
+Ring ring_of(const Subject& pot, const std::vector<int>& flowers) {
+    std::vector<bool> inside(pot.mesh.number_of_faces(), false), ring(inside.size(), false);
+    for (const int id : flowers)
+        for (const Index f : pot.set.find(id)->faces) inside[f] = true;
+    const std::vector<Point> points = points_of(pot.mesh);
+    for (const int id : flowers) {
+        const std::vector<Index> own = vertices_of(pot.mesh, *pot.set.find(id));
+        const Eigen::Vector3d middle = mean_of(points, own);
+        double radius = 0;
+        for (const Index v : own) radius = std::max(radius, (eigen(points[v]) - middle).norm());
+        for (const Face f : pot.mesh.faces())
+            if (!inside[f] && (eigen(centroid(pot.mesh, f)) - middle).norm() <= ring_radius * radius) ring[f] = true;
+    }
+    Annotation region;
+    region.faces = flagged(ring);
+    return {region.faces, touched_vertices(pot.mesh, region)};
+}
+
+/// The vertex nearest to the mean of a flower's vertices on their plane (section 5.2.1).
+Index reference_vertex(const std::vector<Point>& points, const std::vector<Index>& vertices) {
+    const Eigen::Vector3d mean = mean_of(points, vertices);
+    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+    for (const Index v : vertices) spread += (eigen(points[v]) - mean) * (eigen(points[v]) - mean).transpose();
+    const Eigen::Vector3d normal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0);
+    const auto off = [&](Index v) { return normal.cross(eigen(points[v]) - mean).squaredNorm(); };
+    return *std::min_element(vertices.begin(), vertices.end(), [&](Index v, Index w) { return off(v) < off(w); });
+}
+
+struct Measures {
+    double heights = 0;     ///< difference of the heights of the flowers' means along the direction asked for, mm
+    double references = 0;  ///< the same of their reference vertices (thesis, section 5.2.1)
+    double rigid = 0;       ///< rms distance from a rigid copy, of the worst flower, mm
+    double stretch = 0;     ///< (a), mean over the ring
+    double off = 0;         ///< (b), rms distance of the ring's vertices from the edited surface, % of the diagonal
+    double turned = 0;      ///< (b), mean angle between the ring's normals and those of the edited surface, degrees
+};
+
+class Teapot {
+public:
+    explicit Teapot(const SemanticOptions& options)
+        : options_(options), pot_(made_subject("teapot", options.vertices == 0 ? 60000 : options.vertices)) {
+        for (const Annotation& annotation : pot_.set.annotations)
+            if (annotation.tag.rfind("flower ", 0) == 0) flowers_.push_back(annotation.id);
+        if (flowers_.size() != 5) fail_input("data/teapot.recipe.json", "has not five flowers", "use the project's own");
+        edited_ = points_of(pot_.mesh);
+        for (const int id : flowers_) references_[id] = reference_vertex(edited_, vertices_of(pot_.mesh, *pot_.set.find(id)));
+        for (Point& p : edited_) p = {p.x(), p.y(), factor * p.z()};
+        ring_ = ring_of(pot_, flowers_);
+        edited_mesh_ = pot_.mesh;
+        for (const Vertex v : edited_mesh_.vertices()) edited_mesh_.point(v) = edited_[v];
+    }
+
+    void run() {
+        const Path folder(options_.output);
+        TextTable table({"run", "details", "iterations", "s", "difference of heights mm", "of reference vertices mm",
+                         "from a rigid copy mm", "ring: stretch", "ring: off the surface %", "ring: normals degrees"});
+        const SurfaceSearch surface(edited_mesh_);
+        Plot trade{"Flowers kept against their surroundings",
+                   {"rms distance of a flower from a rigid copy, mm", true, {}, {}},
+                   {"mean stretch of the ring", false, 0.0, {}},
+                   {}};
+        std::vector<Outcome> outcomes;
+        outcomes.push_back({"rest", "rest", points_of(pot_.mesh), {}, 0, 0, {}});
+        outcomes.push_back({"stretched, unconstrained", "unconstrained", edited_, {}, 0, 0, {}});
+        std::vector<Variant> list = variants();
+        for (const Variant& variant : list) {
+            std::cerr << "  " << variant.name << '\n';
+            outcomes.push_back(deformed_from(pot_, edited_, graph(variant), settings(variant), variant.name, variant.file));
+        }
+        for (std::size_t i = 0; i < outcomes.size(); ++i) {
+            const Outcome& outcome = outcomes[i];
+            std::vector<double> map(pot_.mesh.number_of_faces(), std::numeric_limits<double>::quiet_NaN());
+            const bool solved = i >= 2;
+            const Measures m = measure(outcome.points, surface, solved && list[i - 2].tilted, map);
+            write_outcome(folder, pot_, outcome, i == 0 ? std::vector<double>() : map);
+            if (i == 0) continue;
+            const std::string iterations = !solved              ? ""
+                                           : outcome.rounds > 0 ? std::to_string(outcome.rounds) + " rounds"
+                                                                : std::to_string(outcome.summary.iterations);
+            table.add({outcome.name, solved ? list[i - 2].details : "", iterations, digits(outcome.seconds, 1),
+                       digits(m.heights, 4), digits(m.references, 4), digits(m.rigid, 4), digits(m.stretch, 4), digits(m.off, 4),
+                       digits(m.turned, 2)});
+            trade.series.push_back({outcome.name, {{m.rigid, m.stretch}}});
+        }
+        table.write(folder, "table");
+        write_plot(folder / "trade-off.svg", trade);
+        std::cout << table.markdown();
+        const auto problem = [&](const std::string& name, const std::string& title, const Variant& variant) {
+            return Problem{name, title, [this, variant](const SolveOptions& solve) {
+                               DeformOptions settings = this->settings(variant);
+                               settings.solve = solve;
+                               return deformed_from(pot_, edited_, graph(variant), settings, "", "").summary;
+                           }};
+        };
+        compare_convergence(folder,
+                            {problem("thesis", "Same level on the teapot, thesis mode, 4 against 4", list.front()),
+                             problem("defaults", "Same level on the teapot, defaults, soft", list[list.size() - 2])},
+                            options_.iterations);
+    }
+
+private:
+    [[nodiscard]] RelationGraph graph(const Variant& variant) const {
+        RelationGraph graph;
+        graph.relationships.push_back(constraint(0, "same level", flowers_, variant.parameters, variant.weight));
+        return graph;
+    }
+    static DeformOptions settings(const Variant& variant) {
+        DeformOptions options;
+        options.details = variant.details;
+        options.laplacian = variant.laplacian;
+        options.handles = options.closeness;  // all vertices are moved by the edit
+        options.solve.iterations = variant.iterations;
+        if (!variant.accelerated) options.solve.window = 0;
+        return options;
+    }
+
+    /// Also fills `map`: the stretch of the ring's faces.
+    [[nodiscard]] Measures measure(const std::vector<Point>& points, const SurfaceSearch& surface, bool tilted,
+                                   std::vector<double>& map) const {
+        Measures result;
+        const Eigen::Vector3d up = tilted ? Eigen::Vector3d(std::sin(tilt), 0, std::cos(tilt)) : Eigen::Vector3d(0, 0, 1);
+        double low = std::numeric_limits<double>::infinity(), high = -low, low_reference = low, high_reference = high;
+        for (const int id : flowers_) {
+            const auto own = vertices_of(pot_.mesh, *pot_.set.find(id));
+            const double height = up.dot(mean_of(points, own));
+            low = std::min(low, height);
+            high = std::max(high, height);
+            const double reference = up.dot(eigen(points[references_.at(id)]));
+            low_reference = std::min(low_reference, reference);
+            high_reference = std::max(high_reference, reference);
+            result.rigid = std::max(result.rigid, rigid_distance(pot_, own, points));
+        }
+        result.heights = high - low;
+        result.references = high_reference - low_reference;
+        const std::vector<double> stretch = distortions(pot_.mesh, edited_, points);
+        Mesh mesh = pot_.mesh;
+        for (const Vertex v : mesh.vertices()) mesh.point(v) = points[v];
+        double area = 0, squares = 0;
+        for (const Index f : ring_.faces) {
+            map[f] = stretch[f];
+            const double weight = face_area(pot_.mesh, Face(f));
+            const Vector normal = area_vector(mesh, Face(f));
+            const Eigen::Vector3d n = eigen(normal), m = eigen(surface.normal(surface.closest(centroid(mesh, Face(f))).face));
+            area += weight;
+            result.stretch += weight * stretch[f];
+            result.turned += weight * std::atan2(n.cross(m).norm(), n.dot(m)) * 180 / M_PI;
+        }
+        for (const Index v : ring_.vertices) squares += std::pow(surface.closest(points[v]).distance, 2);
+        result.stretch /= area;
+        result.turned /= area;
+        result.off = 100 * std::sqrt(squares / static_cast<double>(ring_.vertices.size())) / pot_.diagonal();
+        return result;
+    }
+
+    const SemanticOptions& options_;
+    Subject pot_;
+    std::vector<int> flowers_;
+    std::map<int, Index> references_;
+    std::vector<Point> edited_;
+    Mesh edited_mesh_;
+    Ring ring_;
+};
+
+}  // namespace
+
+void same_level(const SemanticOptions& options) { Teapot(options).run(); }
+
+}  // namespace ostraka::experiments
