@@ -102,6 +102,8 @@ std::vector<Problem> patch(const Path& folder, std::uint64_t vertices) {
                                    "co-axiality of the whole segment", "chair-segment"));
     outcomes.push_back(deformed_from(subject, chair->edited, continuity_graph(*chair, false), continuity_options(many),
                                      "structural continuity", "chair-continuity"));
+    outcomes.push_back(deformed_from(subject, chair->edited, continuity_graph(*chair, false, true), continuity_options(many),
+                                     "structural continuity, and the foot keeps its shape", "chair-shape"));
     TextTable table({"run", "iterations", "s", "angle degrees", "distance mm", "segment from a rigid copy mm",
                      "stretch of the segment", "faces of it turned over"});
     const std::vector<bool> inside = [&] {

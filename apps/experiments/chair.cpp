@@ -144,11 +144,12 @@ Constraints thesis_constraints(const Chair& chair, const std::vector<Index>& con
     return list;
 }
 
-RelationGraph continuity_graph(const Chair& chair, bool hard) {
+RelationGraph continuity_graph(const Chair& chair, bool hard, bool shape) {
     RelationGraph graph;
     graph.relationships.push_back(constraint(0, "structural continuity",
                                              {chair.subject.id("left support"), chair.subject.id("front left leg")},
                                              hard ? R"({"hard": true})" : "{}", our_weight));
+    if (shape) graph.relationships.push_back(constraint(1, "keep shape", {chair.subject.id("foot of the support")}, "{}", 10));
     return graph;
 }
 

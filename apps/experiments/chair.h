@@ -25,8 +25,8 @@ AxisDeviation deviation(const Chair& chair, const std::vector<Point>& points);
 
 /// As in the thesis: co-axiality of surface points with the leg and Laplacians on the arm, of equal weight.
 Constraints thesis_constraints(const Chair& chair, const std::vector<Index>& constrained);
-/// As here: structural continuity of the support and the leg.
-RelationGraph continuity_graph(const Chair& chair, bool hard);
+/// As here: structural continuity of the support and the leg; with `shape` its foot also keeps its shape.
+RelationGraph continuity_graph(const Chair& chair, bool hard, bool shape = false);
 DeformOptions continuity_options(const SolveOptions& solve);
 
 }  // namespace ostraka::experiments

@@ -32,9 +32,7 @@ void structural_continuity(const SemanticOptions& options) {
                                                   {"structural continuity, hard", "hard", true, DeformOptions().solve}})
         outcomes.push_back(
             deformed_from(subject, chair.edited, continuity_graph(chair, hard), continuity_options(solve), name, file));
-    RelationGraph with_shape = continuity_graph(chair, false);
-    with_shape.relationships.push_back(constraint(1, "keep shape", {subject.id("foot of the support")}, "{}", 10));
-    outcomes.push_back(deformed_from(subject, chair.edited, with_shape, continuity_options(many),
+    outcomes.push_back(deformed_from(subject, chair.edited, continuity_graph(chair, false, true), continuity_options(many),
                                      "structural continuity, and the foot keeps its shape", "soft-shape"));
 
     const std::vector<Index> arm_vertices = vertices_of(subject.mesh, subject.part("left arm"));

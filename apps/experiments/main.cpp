@@ -1,5 +1,5 @@
-// Experiments that show how faithful transfer is and how sound cages are. Each prints Markdown tables and writes the raw rows as
-// CSV.
+// Experiments: how faithful transfer is, how sound cages are, what semantic constraints keep. Each prints Markdown tables and
+// writes the raw rows as CSV.
 #include "experiments.h"
 
 #include "ostraka/core/error.h"
@@ -11,7 +11,7 @@
 
 int main(int argc, char** argv) {
     using namespace ostraka;
-    CLI::App tool("Experiments on annotation transfer and cages", "ostraka_experiments");
+    CLI::App tool("Experiments on annotation transfer, cages and semantic constraints", "ostraka_experiments");
     tool.require_subcommand(1);
     int threads = 0;
     tool.add_option("--threads", threads, "number of threads, 0 for all cores")->check(CLI::Range(0, 1024));
