@@ -78,8 +78,10 @@ Relationship constraint(int id, const std::string& type, std::vector<int> member
     return r;
 }
 
-Outcome deformed_from(const Subject& subject, const std::vector<Point>& edited, const RelationGraph& graph,
-                      const DeformOptions& options, const std::string& name, const std::string& file) {
+Outcome deformed_from(const Subject& subject, const std::vector<Point>& edited, const RelationGraph& graph, DeformOptions options,
+                      const std::string& name, const std::string& file) {
+    options.conflicts = false;
+    if (options.solve.tolerance < 1e-9) options.passes = 1;  // a given number of iterations is asked for
     const Json edit = moved_to(points_of(subject.mesh), edited);
     const auto start = std::chrono::steady_clock::now();
     DeformResult result = deform({subject.mesh, subject.set}, graph, edit, name, options);

@@ -39,8 +39,8 @@ struct Outcome {
 Relationship constraint(int id, const std::string& type, std::vector<int> members, const std::string& parameters, double weight);
 
 /// `deform` without a cage from a shape given point by point: what it moves are the handles.
-Outcome deformed_from(const Subject& subject, const std::vector<Point>& edited, const RelationGraph& graph,
-                      const DeformOptions& options, const std::string& name, const std::string& file);
+Outcome deformed_from(const Subject& subject, const std::vector<Point>& edited, const RelationGraph& graph, DeformOptions options,
+                      const std::string& name, const std::string& file);
 
 using Constraints = std::vector<std::unique_ptr<Constraint>>;
 /// Constraints as the thesis's prototype hands them to its solver, from the edited shape on.
