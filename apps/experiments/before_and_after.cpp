@@ -59,8 +59,10 @@ std::vector<Problem> hand(const Path& folder, std::uint64_t vertices) {
         const bool solved = outcome.summary.iterations > 0;
         const Index tip = measure_of(little).points[1];
         table.add({outcome.name, iterations_of(outcome), solved ? digits(outcome.seconds, 2) : "",
-                   digits(value_of(*subject, ratios[0], outcome.points), 4), both(moved(joint, edited, outcome.points), 3),
-                   both(moved(palm, edited, outcome.points), 3), digits(outcome.points[tip].z() - rest[tip].z(), 3)});
+                   digits(value_of(*subject, ratios[0], outcome.points), 4),
+                   solved ? both(moved(joint, edited, outcome.points), 3) : "",
+                   solved ? both(moved(palm, edited, outcome.points), 3) : "",
+                   digits(outcome.points[tip].z() - rest[tip].z(), 3)});
     }
     table.write(folder, "figure-5-19");
     std::cout << "Figure 5.19:\n\n" << table.markdown() << '\n';

@@ -80,7 +80,7 @@ Relationship constraint(int id, const std::string& type, std::vector<int> member
 
 Outcome deformed_from(const Subject& subject, const std::vector<Point>& edited, const RelationGraph& graph, DeformOptions options,
                       const std::string& name, const std::string& file) {
-    options.conflicts = false;
+    options.conflicts = 0;
     if (options.solve.tolerance < 1e-9) options.passes = 1;  // a given number of iterations is asked for
     const Json edit = moved_to(points_of(subject.mesh), edited);
     const auto start = std::chrono::steady_clock::now();
