@@ -2,6 +2,7 @@
 #include "experiments.h"
 #include "semantics.h"
 
+#include "ostraka/axis/axis.h"
 #include "ostraka/core/error.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/surface_search.h"
@@ -86,6 +87,7 @@ Index reference_vertex(const std::vector<Point>& points, const std::vector<Index
 
 struct Measures {
     double heights = 0;     ///< difference of the heights of the flowers' means along the direction asked for, mm
+    double centroids = 0;   ///< the same of the centroids of their areas
     double references = 0;  ///< the same of their reference vertices (thesis, section 5.2.1)
     double rigid = 0;       ///< rms distance from a rigid copy, of the worst flower, mm
     double stretch = 0;     ///< (a), mean over the ring
@@ -110,8 +112,9 @@ public:
 
     void run() {
         const Path folder(options_.output);
-        TextTable table({"run", "details", "iterations", "s", "difference of heights mm", "of reference vertices mm",
-                         "from a rigid copy mm", "ring: stretch", "ring: off the surface %", "ring: normals degrees"});
+        TextTable table({"run", "details", "iterations", "s", "difference of heights mm", "of centroids mm",
+                         "of reference vertices mm", "from a rigid copy mm", "ring: stretch", "ring: off the surface %",
+                         "ring: normals degrees"});
         const SurfaceSearch surface(edited_mesh_);
         Plot trade{"Flowers kept against their surroundings",
                    {"rms distance of a flower from a rigid copy, mm", true, {}, {}},
@@ -132,12 +135,9 @@ public:
             const Measures m = measure(outcome.points, surface, solved && list[i - 2].tilted, map);
             write_outcome(folder, pot_, outcome, i == 0 ? std::vector<double>() : map);
             if (i == 0) continue;
-            const std::string iterations = !solved              ? ""
-                                           : outcome.rounds > 0 ? std::to_string(outcome.rounds) + " rounds"
-                                                                : std::to_string(outcome.summary.iterations);
-            table.add({outcome.name, solved ? list[i - 2].details : "", iterations, digits(outcome.seconds, 1),
-                       digits(m.heights, 4), digits(m.references, 4), digits(m.rigid, 4), digits(m.stretch, 4), digits(m.off, 4),
-                       digits(m.turned, 2)});
+            table.add({outcome.name, solved ? list[i - 2].details : "", iterations_of(outcome), digits(outcome.seconds, 1),
+                       digits(m.heights, 4), digits(m.centroids, 4), digits(m.references, 4), digits(m.rigid, 4),
+                       digits(m.stretch, 4), digits(m.off, 4), digits(m.turned, 2)});
             trade.series.push_back({outcome.name, {{m.rigid, m.stretch}}});
         }
         table.write(folder, "table");
@@ -177,22 +177,24 @@ private:
                                    std::vector<double>& map) const {
         Measures result;
         const Eigen::Vector3d up = tilted ? Eigen::Vector3d(std::sin(tilt), 0, std::cos(tilt)) : Eigen::Vector3d(0, 0, 1);
-        double low = std::numeric_limits<double>::infinity(), high = -low, low_reference = low, high_reference = high;
-        for (const int id : flowers_) {
-            const auto own = vertices_of(pot_.mesh, *pot_.set.find(id));
-            const double height = up.dot(mean_of(points, own));
-            low = std::min(low, height);
-            high = std::max(high, height);
-            const double reference = up.dot(eigen(points[references_.at(id)]));
-            low_reference = std::min(low_reference, reference);
-            high_reference = std::max(high_reference, reference);
-            result.rigid = std::max(result.rigid, rigid_distance(pot_, own, points));
-        }
-        result.heights = high - low;
-        result.references = high_reference - low_reference;
-        const std::vector<double> stretch = distortions(pot_.mesh, edited_, points);
         Mesh mesh = pot_.mesh;
         for (const Vertex v : mesh.vertices()) mesh.point(v) = points[v];
+        std::vector<double> means, centroids, references;
+        for (const int id : flowers_) {
+            const auto own = vertices_of(pot_.mesh, *pot_.set.find(id));
+            means.push_back(up.dot(mean_of(points, own)));
+            centroids.push_back(up.dot(eigen(area_moments(mesh, pot_.set.find(id)->faces).centroid)));
+            references.push_back(up.dot(eigen(points[references_.at(id)])));
+            result.rigid = std::max(result.rigid, rigid_distance(pot_, own, points));
+        }
+        const auto spread = [](const std::vector<double>& heights) {
+            const auto [low, high] = std::minmax_element(heights.begin(), heights.end());
+            return *high - *low;
+        };
+        result.heights = spread(means);
+        result.centroids = spread(centroids);
+        result.references = spread(references);
+        const std::vector<double> stretch = distortions(pot_.mesh, edited_, points);
         double area = 0, squares = 0;
         for (const Index f : ring_.faces) {
             map[f] = stretch[f];
