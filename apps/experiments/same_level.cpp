@@ -117,7 +117,7 @@ public:
                          "ring: normals degrees"});
         const SurfaceSearch surface(edited_mesh_);
         Plot trade{"Flowers kept against their surroundings",
-                   {"rms distance of a flower from a rigid copy, mm", true, {}, {}},
+                   {"rms distance of the worst flower from a rigid copy, mm", true, {}, {}},
                    {"mean stretch of the ring", false, 0.0, {}},
                    {}};
         std::vector<Outcome> outcomes;
@@ -138,7 +138,10 @@ public:
             table.add({outcome.name, solved ? list[i - 2].details : "", iterations_of(outcome), digits(outcome.seconds, 1),
                        digits(m.heights, 4), digits(m.centroids, 4), digits(m.references, 4), digits(m.rigid, 4),
                        digits(m.stretch, 4), digits(m.off, 4), digits(m.turned, 2)});
-            trade.series.push_back({outcome.name, {{m.rigid, m.stretch}}});
+            // Iterations apart, soft and hard: one series.
+            const std::string name = outcome.name.substr(0, outcome.name.rfind(", "));
+            if (solved && (trade.series.empty() || trade.series.back().name != name)) trade.series.push_back({name, {}});
+            if (solved) trade.series.back().points.push_back({m.rigid, m.stretch});
         }
         table.write(folder, "table");
         write_plot(folder / "trade-off.svg", trade);
