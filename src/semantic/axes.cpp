@@ -22,6 +22,18 @@ Axis reference_now(const Reader& read, const Axis& rest, const State& now) {
     return found.found ? found : rest;
 }
 
+/// Volume between the faces and the mean of the points.
+double volume(const Mesh& mesh, const Points& points) {
+    const Vector3d middle = points.col(0) + (points.colwise() - points.col(0).eval()).rowwise().mean();
+    double sum = 0;
+    for (const Face f : mesh.faces()) {
+        const auto [a, b, c] = corners(mesh, f);
+        const Vector3d p = points.col(a) - middle, q = points.col(b) - middle, r = points.col(c) - middle;
+        sum += p.dot(q.cross(r)) / 6;
+    }
+    return sum;
+}
+
 std::vector<int> ids_of(const std::vector<Index>& vertices) { return {vertices.begin(), vertices.end()}; }
 
 }  // namespace
@@ -32,7 +44,7 @@ Statement co_axiality(const ReaderPtr& read, const RelationOptions& tolerances) 
     for (std::size_t i = 0; i < read->members(); ++i) axes.push_back(axis_of(*read, i));
     Statement statement;
     statement.follows = true;
-    statement.lower = [read, axes](const State& now) {
+    statement.lower = [read, axes](const State&, const State& now) {
         const Axis reference = reference_now(*read, axes.back(), now);
         Statement::Constraints list;
         for (std::size_t i = 0; i + 1 < axes.size(); ++i) {
@@ -56,7 +68,7 @@ Statement axis_angle(const ReaderPtr& read, const RelationOptions& tolerances) {
     const double angle = read->relationship().type == "perpendicular axes" ? M_PI / 2 : 0;
     Statement statement;
     statement.follows = true;
-    statement.lower = [read, axes, angle](const State& now) {
+    statement.lower = [read, axes, angle](const State&, const State& now) {
         ConstraintParameters parameters;
         parameters.direction = eigen(reference_now(*read, axes.back(), now).direction);
         parameters.min = parameters.max = angle;
@@ -82,7 +94,7 @@ Statement structural_continuity(const ReaderPtr& read, const RelationOptions& to
                    "raise angle, or state co-axiality");
     Statement statement;
     statement.follows = true;
-    statement.lower = [read, rest, segment](const State& now) {
+    statement.lower = [read, rest, segment](const State&, const State& now) {
         const Axis reference = reference_now(*read, rest, now);
         ConstraintParameters parameters;
         parameters.direction = eigen(reference.direction);
@@ -92,6 +104,51 @@ Statement structural_continuity(const ReaderPtr& read, const RelationOptions& to
         Statement::Constraints list;
         list.push_back(read->make("AxisOnLine", segment->vertices, parameters));
         return list;
+    };
+    // The axis is constrained, and the surface follows: it may turn, which displacements from neighbours could not.
+    statement.turning = read->vertices(0);
+    statement.support = [read, turning = statement.turning](const State& edited, const State&) {
+        const Mesh& mesh = read->shape().mesh;
+        // As it is at rest, but where the edit makes all of the object larger or smaller.
+        const double ratio = volume(mesh, edited.points) / volume(mesh, read->shape().rest);
+        const double grown = ratio > 0.01 && ratio < 100 ? std::cbrt(ratio) : 1;
+        constexpr double stiffness = 10;
+        Statement::Constraints list;
+        for (const Index v : turning) {
+            std::vector<int> star{static_cast<int>(v)};
+            for (const Vertex n : mesh.vertices_around_target(mesh.halfedge(Vertex(v))))
+                star.push_back(static_cast<int>(n.idx()));
+            ConstraintParameters parameters;
+            parameters.target.emplace(3, static_cast<Eigen::Index>(star.size()));
+            for (std::size_t i = 0; i < star.size(); ++i)
+                parameters.target->col(static_cast<Eigen::Index>(i)) = grown * read->shape().rest.col(star[i]);
+            list.push_back(read->make("Rigid", star, parameters, stiffness / read->relationship().weight));
+        }
+        return list;
+    };
+    statement.prepare = [read, rest, segment, part = statement.turning](const State& now, Points& start) {
+        const Axis reference = reference_now(*read, rest, now);
+        const Vector3d point = eigen(reference.point), direction = eigen(reference.direction);
+        const Points& shape = read->shape().rest;
+        const std::vector<Vector3d> then = stations_of(*segment, shape);
+        std::vector<Vector3d> there = stations_of(*segment, now.points);
+        for (Vector3d& station : there) station = point + direction * direction.dot(station - point);
+        const Vector3d was = then.back() - then.front(), is = there.back() - there.front();
+        if (!(was.norm() > 0 && is.norm() > 0)) return;
+        const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(was, is);
+        // Beyond the segment the part goes along with its end.
+        std::vector<int> station(static_cast<std::size_t>(shape.cols()), segment->count - 1);
+        std::vector<double> share(station.size(), 0);
+        for (std::size_t i = 0; i < segment->vertices.size(); ++i) {
+            station[static_cast<std::size_t>(segment->vertices[i])] = segment->stations[i];
+            share[static_cast<std::size_t>(segment->vertices[i])] = segment->shares[i];
+        }
+        for (const Index v : part) {
+            const auto s = static_cast<std::size_t>(station[v]), next = std::min(s + 1, then.size() - 1);
+            const Vector3d from = (1 - share[v]) * then[s] + share[v] * then[next],
+                           to = (1 - share[v]) * there[s] + share[v] * there[next];
+            start.col(v) = to + turn * (shape.col(v) - from);
+        }
     };
     const Deviation angle{"angle", 0.0, tolerances.angle, "degree"};
     const Deviation distance{"distance", 0.0, length_tolerance(*read, tolerances), read->shape().set.unit};

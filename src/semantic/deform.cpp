@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 namespace ostraka {
@@ -51,21 +52,29 @@ struct Outcome {
 class Deformer {
 public:
     Deformer(const HandleSpace& space, const RelationGraph& graph, const DeformOptions& options,
-             const RelationOptions& tolerances, const std::string& where)
+             const RelationOptions& tolerances, const std::string& where, const std::string& graph_where)
         : space_(space),
           graph_(graph),
           options_(options),
           tolerances_(tolerances),
           where_(where),
+          graph_where_(graph_where),
           rest_(columns_of(space.mesh)) {}
 
     DeformResult run(const JsonValue& edit) {
         DeformResult result;
         last_.handles = points_of(space_.cage != nullptr ? *space_.cage : space_.mesh);
         last_.touched.assign(last_.handles.size(), false);
-        for (auto& state : follow_edit(edit, space_, where_)) last_ = std::move(state);
+        for (auto& state : follow_edit(edit, space_, where_)) {
+            last_ = std::move(state);
+            result.selected.push_back(last_.selected.size());
+        }
         result.edited = space_.cage != nullptr ? deformed(*space_.coordinates, *space_.cage, last_.handles) : last_.handles;
         edited_ = columns_of(result.edited);
+        if (!edited_.allFinite() || edited_.cwiseAbs().maxCoeff() > 1e60)
+            throw Error(ErrorKind::input, where_, "leads to points beyond what can be computed with (1e60)",
+                        "look at the edit, and at the weights of the cage");
+        edited_mesh_ = with_points(space_.mesh, result.edited);
         understand(result);
         const std::vector<bool> all = used(result);
         const Outcome outcome = solve(all);
@@ -83,14 +92,25 @@ public:
 private:
     void understand(DeformResult& result) {
         const semantic::Shape shape{space_.mesh, space_.set, rest_};
+        std::map<Index, int> seated;  // by which feature
         for (const Relationship& relationship : graph_.relationships) {
             if (!relationship.is_constraint) continue;
             ConstraintReport report;
             report.id = relationship.id;
             report.type = relationship.type;
             report.weight = relationship.weight;
-            statements_.push_back(semantic::understand(shape, relationship, tolerances_, where_));
+            statements_.push_back(semantic::understand(shape, relationship, tolerances_, graph_where_));
             const semantic::Statement& statement = statements_.back();
+            if (statement.seat && relationship.weight > 0)
+                for (const Annotation* feature : statement.seat->features)
+                    for (const Index v : vertices_of(space_.mesh, *feature)) {
+                        const auto [other, fresh] = seated.try_emplace(v, feature->id);
+                        if (!fresh)
+                            throw Error(ErrorKind::input, graph_where_ + ", constraint " + std::to_string(relationship.id),
+                                        "seats annotation " + std::to_string(feature->id) + ", which touches annotation " +
+                                            std::to_string(other->second) + ", seated as well",
+                                        "seat one of them, or make one annotation of both");
+                    }
             report.hard = statement.hard;
             report.used = statement.unknown.empty() && relationship.weight > 0;
             if (!statement.unknown.empty()) report.text = "left out: " + statement.unknown;
@@ -141,17 +161,24 @@ private:
     /// Starts from the outcome; parts that others refer to are as it has them. False if there is nothing to solve.
     bool solve_once(const std::vector<bool>& active, Outcome& outcome) {
         lowered_.clear();
+        support_.clear();
         owner_.clear();
         anchors_.clear();
+        turning_.clear();
         const Mesh mesh = with_points(space_.mesh, list_of(outcome.points));
-        const semantic::State now(mesh);
+        const semantic::State now(mesh), edited(edited_mesh_);
         for (std::size_t i = 0; i < statements_.size(); ++i) {
             if (!active[i]) continue;
             anchors_.insert(statements_[i].anchors.begin(), statements_[i].anchors.end());
-            for (auto& constraint : statements_[i].lower(now)) {
+            turning_.insert(statements_[i].turning.begin(), statements_[i].turning.end());
+            for (auto& constraint : statements_[i].lower(edited, now)) {
                 lowered_.push_back(std::move(constraint));
                 owner_.push_back(i);
             }
+            if (statements_[i].prepare && outcome.passes == 0 && options_.space == "mesh")
+                statements_[i].prepare(now, outcome.points);
+            if (statements_[i].support && options_.space == "mesh")  // a cage is stiff by itself
+                for (auto& constraint : statements_[i].support(edited, now)) support_.push_back(std::move(constraint));
         }
         if (lowered_.empty()) return false;
         if (space_.coordinates != nullptr && space_.coordinates->has_normals())
@@ -169,6 +196,7 @@ private:
 
     /// The low-level constraints move into the list; first_ is where they begin.
     std::vector<std::unique_ptr<Constraint>> take(std::vector<std::unique_ptr<Constraint>> others) {
+        for (auto& constraint : support_) others.push_back(std::move(constraint));
         first_ = others.size();
         for (auto& constraint : lowered_) others.push_back(std::move(constraint));
         return others;
@@ -196,7 +224,7 @@ private:
         add_closeness(moved, options_.handles, edited_, 0, rest_, list);
         if (options_.laplacian > 0)
             for (const Vertex v : space_.mesh.vertices()) {
-                if (space_.mesh.is_isolated(v)) continue;
+                if (space_.mesh.is_isolated(v) || turning_.count(v.idx()) > 0) continue;
                 std::vector<int> ids{static_cast<int>(v.idx())};
                 for (const Vertex n : space_.mesh.vertices_around_target(space_.mesh.halfedge(v)))
                     ids.push_back(static_cast<int>(n.idx()));
@@ -234,16 +262,30 @@ private:
         Points rest(3, n + c);
         rest << rest_, rest_cage;
         std::vector<std::unique_ptr<Constraint>> list;
+        // A point of the cage stands for as many of the mesh.
+        const double share = static_cast<double>(n) / static_cast<double>(c);
         for (const bool touched : {true, false}) {
             std::vector<int> ids;
             for (Eigen::Index j = 0; j < c; ++j)
                 if (last_.touched[static_cast<std::size_t>(j)] == touched) ids.push_back(static_cast<int>(n + j));
-            add_closeness(ids, touched ? options_.handles : options_.closeness, edited_cage, static_cast<int>(n), rest, list);
+            add_closeness(ids, touched ? options_.handles : share * options_.closeness, edited_cage, static_cast<int>(n), rest,
+                          list);
         }
+        // What the cage tends to between constraints; else its points fly off for little.
+        Points shape = rest;
+        shape.rightCols(c) = options_.details == "rest" ? rest_cage : edited_cage;
+        if (options_.laplacian > 0)
+            for (const Vertex v : space_.cage->vertices()) {
+                if (space_.cage->is_isolated(v)) continue;
+                std::vector<int> ids{static_cast<int>(n) + static_cast<int>(v.idx())};
+                for (const Vertex u : space_.cage->vertices_around_target(space_.cage->halfedge(v)))
+                    ids.push_back(static_cast<int>(n) + static_cast<int>(u.idx()));
+                list.push_back(make_constraint("LaplacianDisplacement", ids, share * options_.laplacian, {}, shape));
+            }
         CageSpaceSolver solver(take(std::move(list)), extended, rest_cage);
-        // What must hold counts a thousandfold: a cage may not be able to do it.
+        // What must hold counts a hundredfold: a cage may not be able to do it.
         for (std::size_t i = 0; i < owner_.size(); ++i)
-            if (statements_[owner_[i]].hard) solver.set_weight(first_ + i, 1e3 * solver.constraint(first_ + i).weight());
+            if (statements_[owner_[i]].hard) solver.set_weight(first_ + i, 1e2 * solver.constraint(first_ + i).weight());
         outcome.cage = edited_cage;
         outcome.summary = solver.solve(outcome.cage, options_.solve);
         const Points all = points_of(extended, outcome.cage);
@@ -264,8 +306,7 @@ private:
     }
 
     void report(DeformResult& result, const Outcome& outcome) const {
-        const Mesh edited = with_points(space_.mesh, result.edited);
-        const semantic::State before(edited);
+        const semantic::State before(edited_mesh_);
         for (std::size_t i = 0; i < result.constraints.size(); ++i) {
             ConstraintReport& report = result.constraints[i];
             if (!report.used) {
@@ -324,27 +365,37 @@ private:
     const RelationGraph& graph_;
     const DeformOptions& options_;
     const RelationOptions& tolerances_;
-    std::string where_;
+    std::string where_, graph_where_;
     Points rest_;
     EditState last_;
+    Mesh edited_mesh_;
     Points edited_;
     std::vector<semantic::Statement> statements_;  ///< of the constraints in the report
     std::vector<std::unique_ptr<Constraint>> lowered_;
+    std::vector<std::unique_ptr<Constraint>> support_;
     std::vector<std::size_t> owner_;  ///< of each lowered constraint, in the report
     std::size_t first_ = 0;           ///< its place in the solver's list
-    std::set<Index> anchors_;
+    std::set<Index> anchors_, turning_;
 };
 
 }  // namespace
 
 DeformResult deform(const HandleSpace& space, const RelationGraph& graph, const JsonValue& edit, const std::string& edit_name,
-                    const DeformOptions& options, const RelationOptions& tolerances) {
+                    const DeformOptions& options, const RelationOptions& tolerances, const std::string& graph_name) {
     check_options(options, "deform");
     check_options(tolerances, "deform");
     if (options.space == "cage" && space.cage == nullptr)
         throw Error(ErrorKind::usage, "space", "is the cage's, and there is none",
                     "give --cage and --weights, or use --space mesh");
-    return Deformer(space, graph, options, tolerances, edit_name).run(edit);
+    return Deformer(space, graph, options, tolerances, edit_name, graph_name).run(edit);
+}
+
+void check_constraint(const Mesh& mesh, const AnnotationSet& set, const Relationship& relationship, const std::string& where) {
+    const Points rest = columns_of(mesh);
+    const Mesh same = mesh;
+    const semantic::State state(same);
+    const auto statement = semantic::understand({mesh, set, rest}, relationship, {}, where);
+    if (statement.unknown.empty()) static_cast<void>(statement.lower(state, state));
 }
 
 }  // namespace ostraka

@@ -177,13 +177,21 @@ Statement low_level(const ReaderPtr& read, const RelationOptions& tolerances) {
         return list;
     };
     Statement statement;
-    statement.lower = [lower](const State&) { return lower(); };
+    statement.lower = [lower](const State&, const State&) { return lower(); };
     const auto list = std::make_shared<const Statement::Constraints>(lower());
-    const Deviation residual{"residual of a vertex", 0.0, length_tolerance(*read, tolerances), read->shape().set.unit};
+    // Against the size of the group at rest: the finer the mesh, the smaller its edges and faces.
+    std::vector<double> sizes;
+    for (const auto& constraint : *list) {
+        Eigen::AlignedBox3d box;
+        for (const int v : constraint->ids()) box.extend(Vector3d(read->shape().rest.col(v)));
+        sizes.push_back(box.diagonal().norm());
+    }
+    const Deviation residual{"residual of a vertex", 0.0, 100 * tolerances.distance, "%"};
     statement.measure = [=](const State& deformed) {
         Deviation worst = residual;
-        for (const auto& constraint : *list)
-            worst.value = std::max(*worst.value, constraint->normalised_residual(deformed.points));
+        for (std::size_t i = 0; i < list->size(); ++i)
+            if (sizes[i] > 0)
+                worst.value = std::max(*worst.value, 100 * (*list)[i]->normalised_residual(deformed.points) / sizes[i]);
         return verdict_of({worst});
     };
     return statement;

@@ -11,7 +11,7 @@ namespace {
 /// All vertices together as one kind would have them.
 Statement all_on(const char* kind, const ReaderPtr& read, const RelationOptions& tolerances) {
     read->need(1, 0);
-    const auto lower = [read, kind](const State&) {
+    const auto lower = [read, kind](const State&, const State&) {
         Statement::Constraints list;
         list.push_back(read->make(kind, read->all_vertices(), {}));
         return list;
@@ -131,7 +131,7 @@ Statement mirror_symmetry(const ReaderPtr& read, const RelationOptions& toleranc
                    "give the plane, or a greater --distance");
     parameters.coefficients = partners.coefficients;
     Statement statement;
-    statement.lower = [=](const State&) {
+    statement.lower = [=](const State&, const State&) {
         ConstraintParameters given = parameters;
         given.target.emplace(3, static_cast<Eigen::Index>(partners.gaps.size()));
         for (std::size_t i = 0; i < partners.gaps.size(); ++i) given.target->col(static_cast<Eigen::Index>(i)) = partners.gaps[i];
@@ -174,7 +174,7 @@ Statement adjacency(const ReaderPtr& read, const RelationOptions& tolerances) {
             read->fail("has parts that are nowhere within " + std::to_string(reach) + " of each other", "raise --distance");
     }
     Statement statement;
-    statement.lower = [=](const State&) {
+    statement.lower = [=](const State&, const State&) {
         Statement::Constraints list;
         for (const auto& pair : pairs) {
             ConstraintParameters parameters;

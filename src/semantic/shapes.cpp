@@ -63,7 +63,7 @@ Statement keep_shape(const ReaderPtr& read, const RelationOptions& tolerances) {
     Statement statement;
     if (mode == "seat") statement.seat = seating_of(*read, {});
     const auto parts = std::make_shared<const Statement::Constraints>(kept(*read, kind));
-    statement.lower = [read, kind, seated = mode == "seat"](const State&) {
+    statement.lower = [read, kind, seated = mode == "seat"](const State&, const State&) {
         return seated ? Statement::Constraints() : kept(*read, kind);
     };
     // A part is small against the object: its own size tells what matters.
@@ -108,9 +108,9 @@ Statement same_level(const ReaderPtr& read, const RelationOptions& tolerances) {
     Statement statement;
     if (shapes == "seat") {
         statement.seat = seating_of(*read, level.direction);
-        statement.lower = [](const State&) { return Statement::Constraints(); };
+        statement.lower = [](const State&, const State&) { return Statement::Constraints(); };
     } else {
-        statement.lower = [=](const State&) {
+        statement.lower = [=](const State&, const State&) {
             Statement::Constraints list;
             if (shapes == "keep")
                 for (std::size_t i = 0; i < read->members(); ++i)

@@ -42,8 +42,13 @@ Measured verdict_of(std::vector<Deviation> deviations) {
 
 std::function<Measured(const State&)> as_related(const ReaderPtr& read, Relationship stated, const RelationOptions& tolerances) {
     stated.is_constraint = false;
-    return [read, stated, tolerances](const State& deformed) -> Measured {
-        const RelationCheck check = RelationMeter(deformed.mesh, read->shape().set, tolerances).measure(stated);
+    // Distances are shares of the diagonal at rest, however large the shape has become.
+    const double diagonal = box_diagonal(read->shape().mesh);
+    return [read, stated, given = tolerances, diagonal](const State& deformed) -> Measured {
+        RelationOptions at_rest = given;
+        if (const double now = box_diagonal(deformed.mesh); now > 0)
+            at_rest.distance = std::min(1.0, given.distance * diagonal / now);
+        const RelationCheck check = RelationMeter(deformed.mesh, read->shape().set, at_rest).measure(stated);
         return {check.verdict, check.parameters.deviations, check.text};
     };
 }

@@ -33,9 +33,15 @@ struct Measured {
 
 struct Statement {
     using Constraints = std::vector<std::unique_ptr<Constraint>>;
-    /// Low-level constraints; parts that others refer to are as they are `now`. Empty where there is nothing to solve.
-    std::function<Constraints(const State& now)> lower;
+    /// Low-level constraints; shapes are those of the edited state, parts that others refer to are as they are `now`. Empty where
+    /// there is nothing to solve.
+    using Lowering = std::function<Constraints(const State& edited, const State& now)>;
+    Lowering lower;
+    Lowering support;  ///< what helps the surface to follow; never hard; may be empty
     std::function<Measured(const State& deformed)> measure;
+    /// Where to start from: the part where it is to be, so that it need not be pulled there through itself. May be empty.
+    std::function<void(const State& now, Points& start)> prepare;
+    std::vector<Index> turning;   ///< vertices whose surface is kept by `support` alone, since it has to turn
     std::vector<Index> anchors;   ///< vertices that are to stay where the edit leaves them
     std::optional<Seating> seat;  ///< features that are put back on the deformed base
     bool follows = false;         ///< lower gives others when the shape has moved

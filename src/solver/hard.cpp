@@ -84,7 +84,13 @@ HardSummary HardSolver::solve(Points& points, const HardOptions& options) {
         }
     summary.of_constraint.assign(state_->hard.size(), 0.0);
     std::vector<double> before(state_->hard.size(), std::numeric_limits<double>::infinity());
-    while (summary.rounds < options.rounds && !summary.met) {
+    // Contradictory constraints pull ever harder: the state that came nearest is kept, and what does not come nearer is ended.
+    constexpr int patience = 12;
+    Points best = points;
+    double least = std::numeric_limits<double>::infinity();
+    int since = 0;
+    std::vector<double> of_best;
+    while (summary.rounds < options.rounds && !summary.met && since < patience) {
         summary.last = state_->solver->solve(points, options.inner);
         ++summary.rounds;
         double worst = 0;
@@ -104,6 +110,16 @@ HardSummary HardSolver::solve(Points& points, const HardOptions& options) {
         }
         summary.violation.push_back(worst);
         summary.met = worst <= summary.tolerance;
+        since = worst < 0.9 * least ? 0 : since + 1;
+        if (worst < least || summary.met) {
+            least = worst;
+            best = points;
+            of_best = summary.of_constraint;
+        }
+    }
+    if (!summary.met && summary.rounds > 0 && summary.last.usable && !of_best.empty()) {
+        points = best;
+        summary.of_constraint = of_best;
     }
     return summary;
 }

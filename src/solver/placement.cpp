@@ -156,7 +156,9 @@ private:
 
 /// The first part, as it is, stretched along its measure so that this, or its share of a second measure, is within a range (the
 /// thesis, section 5.3.2): about its mean (rows: the centred points of the part), or about the mean of its anchors (rows: the
-/// points). One more row, which is only observed, is the second measure where there is one.
+/// points). One more row, which is only observed, is the second measure where there is one. With a target it is a turned copy of
+/// that shape instead, stretched along the measure or scaled as a whole (rows: the centred points): the set of such copies does
+/// not move with the points, so that what others hold against it cannot wear it down.
 class Proportion final : public Constraint {
 public:
     Proportion(Making&& m, Making::Interval range)
@@ -185,7 +187,8 @@ public:
         if (!(length(m.rest.col(pins_[1]) - m.rest.col(pins_[0]), along_first_) > 0))
             m.fail("the first measure has no length", "move its pins apart");
         map_.direct = map_.rows = part;
-        map_.centred = anchors_.empty();
+        map_.centred = anchors_.empty() || m.parameters.target.has_value();
+        if (m.parameters.target) set_reference(m, *m.parameters.target);
         if (single_) return;
         if (!(length(m.rest.col(pins_[3]) - m.rest.col(pins_[2]), along_second_) > 0))
             m.fail("the second measure has no length", "move its pins apart");
@@ -195,6 +198,10 @@ public:
     }
     void project(const RowsIn& rows, RowsOut projected) const override {
         projected = rows;
+        if (reference_.cols() > 0) {
+            project_copy(rows, projected);
+            return;
+        }
         const Vector3d first = rows.col(pins_[1]) - rows.col(pins_[0]);
         const double l1 = length(first, along_first_), unit = single_ ? 1.0 : length(rows.col(rows.cols() - 1), along_second_);
         if (!(l1 > 0)) return;  // there is nothing to stretch
@@ -213,8 +220,61 @@ private:
     static double length(const Vector3d& edge, const std::optional<Vector3d>& along) {
         return along ? std::abs(along->dot(edge)) : edge.norm();
     }
+    void set_reference(const Making& m, const Points& target) {
+        if (target.cols() != map_.direct)
+            m.fail("the target has " + std::to_string(target.cols()) + " points instead of " + std::to_string(map_.direct));
+        if (!target.allFinite()) m.fail("the target is not finite");
+        const Vector3d mean = target.col(0) + (target.colwise() - target.col(0).eval()).rowwise().mean();
+        reference_ = target.colwise() - mean;
+        whole_ = m.parameters.uniform;
+        const Vector3d edge = reference_.col(pins_[1]) - reference_.col(pins_[0]);
+        if (!(length(edge, along_first_) > 0)) m.fail("the first measure of the target has no length", "move its pins apart");
+        axis_ = along_first_ ? *along_first_ : Vector3d(edge.normalized());
+    }
+
+    /// The copy R S q that is closest to the rows, S a stretch by s along the axis or a scaling by s, with its measure in range.
+    /// R and s by turns, from the copy that stands as the reference does.
+    void project_copy(const RowsIn& rows, RowsOut projected) const {
+        const double unit = single_ ? 1.0 : length(rows.col(rows.cols() - 1), along_second_);
+        const Points part = rows.leftCols(map_.direct);
+        const Vector3d edge = reference_.col(pins_[1]) - reference_.col(pins_[0]);
+        const Matrix3d along = whole_ ? Matrix3d(Matrix3d::Identity()) : Matrix3d(axis_ * axis_.transpose());
+        const Matrix3d rest = Matrix3d::Identity() - along;
+        const Matrix3d moment = outer_sum(part, reference_), own = outer_sum(reference_, reference_);
+        Matrix3d turn = Matrix3d::Identity();
+        double s = 1;
+        for (int round = 0; round < 30; ++round) {
+            // |R (rest + s along) q - r|^2 is least at s where its derivative vanishes; rest and along are at right angles.
+            const double size = (along * own).trace();
+            if (size > 0) s = ((turn.transpose() * moment * along).trace()) / size;
+            s = within(s, unit, turn * (rest * edge), turn * (along * edge));
+            const Matrix3d next = best_rotation(moment * (rest + s * along));
+            const double change = (next - turn).norm();
+            turn = next;
+            if (change < 1e-14) break;
+        }
+        s = within(s, unit, turn * (rest * edge), turn * (along * edge));
+        projected.leftCols(map_.direct) = turn * (rest + s * along) * reference_;
+    }
+
+    /// The factor nearest to s whose measure is in range: of constant + s growing, along the direction or in length.
+    [[nodiscard]] double within(double s, double unit, const Vector3d& constant, const Vector3d& growing) const {
+        const double low = range_.min * unit, high = std::isinf(range_.max) ? range_.max : range_.max * unit;
+        constexpr double least = 1e-3;  // a part does not vanish or turn inside out
+        s = std::max(s, least);
+        const double now = length(constant + s * growing, along_first_);
+        const double wanted = now < low ? low : now > high ? high : now;
+        if (wanted == now) return s;
+        double a = along_first_ ? along_first_->dot(growing) : growing.norm(), b = along_first_ ? along_first_->dot(constant) : 0;
+        if (a < 0) a = -a, b = -b;
+        return a > 0 ? std::max((wanted - b) / a, least) : s;
+    }
+
     Making::Interval range_;
     bool single_;  ///< the range is that of the first measure
+    bool whole_ = false;
+    Points reference_;  ///< centred; empty: the points as they are
+    Vector3d axis_ = Vector3d::UnitZ();
     std::vector<int> pins_, anchors_;
     std::optional<Vector3d> along_first_, along_second_;
 };

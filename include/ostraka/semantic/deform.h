@@ -76,7 +76,8 @@ struct DeformResult {
     bool acceptable = true;  ///< every constraint holds
     int passes = 0;          ///< solutions until the parts that constraints refer to stood still
     std::vector<ConstraintConflict> conflicts;
-    std::size_t untried = 0;  ///< constraints that were not left out, since there are so many
+    std::vector<std::size_t> selected;  ///< handles that each step selected
+    std::size_t untried = 0;            ///< constraints that were not left out, since there are so many
 };
 
 /// Follows the edit and solves for the constraints of the graph (relationships that are constraints). With a cage the edit moves
@@ -84,6 +85,10 @@ struct DeformResult {
 /// as follow_edit does, (input) for constraints that cannot be made sense of: a missing annotation, attribute or measure, a range
 /// upside down, an empty region, a part without an axis; (usage) for cage space without a cage.
 DeformResult deform(const HandleSpace& space, const RelationGraph& graph, const JsonValue& edit, const std::string& edit_name,
-                    const DeformOptions& options = {}, const RelationOptions& tolerances = {});
+                    const DeformOptions& options = {}, const RelationOptions& tolerances = {},
+                    const std::string& graph_name = "graph");
+
+/// Throws as deform does where it could not make sense of a relationship that is a constraint.
+void check_constraint(const Mesh& mesh, const AnnotationSet& set, const Relationship& relationship, const std::string& where);
 
 }  // namespace ostraka

@@ -134,6 +134,8 @@ struct ConstraintParameters {
     std::vector<int> pins, anchors;
     /// Direction along which the second measure is taken (Proportion); without it, the distance of its ends.
     std::optional<Eigen::Vector3d> second_direction;
+    /// Of Proportion with a target: its copies are scaled as a whole instead of stretched along the measure.
+    bool uniform = false;
     /// For each id, the station of the axis that it belongs to, from 0 on (AxisOnLine), or the group (MeansOnLevel); without
     /// them, each is its own.
     std::vector<int> stations;

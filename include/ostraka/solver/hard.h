@@ -19,7 +19,7 @@ struct HardOptions {
 };
 
 struct HardSummary {
-    bool met = false;  ///< all hard constraints hold to the tolerance
+    bool met = false;  ///< all hard constraints hold to the tolerance; if not, the points are those that came nearest
     int rounds = 0;
     std::vector<double>
         violation;  ///< greatest distance of a hard row from what is admissible, after each round, in the points' unit
