@@ -27,6 +27,18 @@ std::vector<Vector3d> resampled(const std::vector<Point>& line, int steps) {
     return points;
 }
 
+/// So many that each is three edges long: the mean of a few vertices of a ring, as they happen to lie, is not on the axis, and a
+/// constraint on it would draw the part together.
+int slices_of(const Mesh& mesh, const Annotation& part, const std::vector<Point>& skeleton) {
+    double length = 0, sum = 0;
+    for (std::size_t i = 1; i < skeleton.size(); ++i) length += (eigen(skeleton[i]) - eigen(skeleton[i - 1])).norm();
+    for (const Index f : part.faces)
+        for (const Halfedge h : CGAL::halfedges_around_face(mesh.halfedge(Face(f)), mesh))
+            sum += (eigen(mesh.point(mesh.target(h))) - eigen(mesh.point(mesh.source(h)))).norm();
+    const double edge = sum / (3 * static_cast<double>(part.faces.size()));
+    return edge > 0 ? static_cast<int>(std::clamp(length / (3 * edge), 4.0, 20.0)) : 20;
+}
+
 }  // namespace
 
 AxisSegment continuing_segment(const Mesh& mesh, const Annotation& part, const Annotation& reference, const Vector& axis,
@@ -37,7 +49,7 @@ AxisSegment continuing_segment(const Mesh& mesh, const Annotation& part, const A
         result.reason = "has no skeleton: " + skeleton.reason;
         return result;
     }
-    constexpr int steps = 20;
+    const int steps = slices_of(mesh, part, skeleton.lines[0]);
     std::vector<Vector3d> line = resampled(skeleton.lines[0], steps);
     double to_front = std::numeric_limits<double>::infinity(), to_back = to_front;
     for (const Index v : vertices_of(mesh, reference)) {

@@ -387,6 +387,21 @@ RingDistortion distortion_around(const Caged& object, const std::vector<int>& fl
 
 }  // namespace
 
+TEST(Deform, APartThatContinuesAnotherAlreadyKeepsItsThickness) {
+    const MadeMesh made = make_mesh(made_object("chair"), {.vertices = 8000});
+    const AnnotationSet set = apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data/chair.recipe.json", made.mesh, made.face_labels);
+    RelationGraph graph;
+    graph.relationships.push_back(constraint(0, "structural continuity", {6, 8}, R"({"hard": true})"));
+    const DeformResult result =
+        deform({made.mesh, set}, graph, edit(R"({"select": {"vertices": [0]}, "translate": [0, 0, 0]})"), "e.edit.json");
+    EXPECT_LT(result.constraints.at(0).before_values.at(1), 0.002 * box_diagonal(made.mesh));
+    Mesh after = made.mesh;
+    for (const Vertex v : after.vertices()) after.point(v) = result.points[v];
+    double area = 0, rest = 0;
+    for (const Index f : set.find(6)->faces) area += face_area(after, Face(f)), rest += face_area(made.mesh, Face(f));
+    EXPECT_NEAR(area, rest, 0.02 * rest);
+}
+
 TEST(Deform, SurroundingsAreDistortedLessThanInTheThesis) {
     // The teapot stretched by 1.4 with rigid flowers on one level, to the rest shape's displacements as in the thesis, to those
     // of the edited shape, and with the flowers put back on the stretched body.
