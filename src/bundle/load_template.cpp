@@ -131,6 +131,7 @@ private:
         if (result_.mesh) {
             const CageCheck found = check_cage(file.mesh, result_.mesh->mesh);
             if (!found.closed) defect(part.name, "the cage is not closed: it has a border");
+            else if (found.flat) defect(part.name, "the cage has no face with an area");
             else if (!found.outward) defect(part.name, "the cage is inside out");
             else if (!found.encloses()) {
                 const std::size_t beyond = found.outside.size() - found.touching;

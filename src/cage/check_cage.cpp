@@ -8,6 +8,7 @@
 #include <CGAL/AABB_tree.h>
 #include <CGAL/Side_of_triangle_mesh.h>
 
+#include <cmath>
 #include <cstdio>
 
 namespace ostraka {
@@ -44,9 +45,23 @@ std::string counted(std::size_t count, const std::string& one) {
     return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
 }
 
-}  // namespace
+double largest_coordinate_of(const Mesh& mesh) {
+    double largest = 0;
+    for (const Point& p : mesh.points()) largest = std::max({largest, std::abs(p.x()), std::abs(p.y()), std::abs(p.z())});
+    return largest;
+}
 
-CageCheck check_cage(const Mesh& cage, const Mesh& mesh) {
+/// All lengths times 2^exponent.
+Mesh scaled(const Mesh& mesh, int exponent) {
+    Mesh result = mesh;
+    for (const Vertex v : result.vertices()) {
+        const Point& p = mesh.point(v);
+        result.point(v) = Point(std::ldexp(p.x(), exponent), std::ldexp(p.y(), exponent), std::ldexp(p.z(), exponent));
+    }
+    return result;
+}
+
+CageCheck check_in_unit(const Mesh& cage, const Mesh& mesh) {
     CageCheck result;
     if (cage.number_of_faces() == 0) return result;
     result.components = count_components(cage);
@@ -57,6 +72,9 @@ CageCheck check_cage(const Mesh& cage, const Mesh& mesh) {
     result.intersections = self_intersections(to_soup(cage), most_listed).pairs;
     result.closed = std::none_of(cage.halfedges().begin(), cage.halfedges().end(), [&](Halfedge h) { return cage.is_border(h); });
     if (!result.closed) return result;
+    result.flat =
+        std::none_of(cage.faces().begin(), cage.faces().end(), [&](Face f) { return area_vector(cage, f).squared_length() > 0; });
+    if (result.flat) return result;
     std::size_t vertices = 0;
     for (const Vertex v : cage.vertices()) vertices += !cage.is_isolated(v);
     const auto euler =
@@ -66,7 +84,7 @@ CageCheck check_cage(const Mesh& cage, const Mesh& mesh) {
     const Point origin = *cage.points().begin();
     for (const Face face : cage.faces()) volume += (centroid(cage, face) - origin) * area_vector(cage, face);
     result.outward = volume > 0;
-    if (mesh.number_of_faces() == 0) return result;
+    if (mesh.number_of_vertices() == 0) return result;
 
     using Primitive = CGAL::AABB_face_graph_triangle_primitive<Mesh>;
     using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
@@ -79,13 +97,11 @@ CageCheck check_cage(const Mesh& cage, const Mesh& mesh) {
     std::vector<CGAL::Bounded_side> sides(count, CGAL::ON_BOUNDED_SIDE);
     static_cast<void>(side(mesh.point(*mesh.vertices().begin())));  // what it prepares at first use
     parallel_for(count, [&](std::size_t v) {
-        if (mesh.is_isolated(Vertex(static_cast<Index>(v)))) return;
         sides[v] = side(mesh.point(Vertex(static_cast<Index>(v))));
         nearest[v] = search.closest(mesh.point(Vertex(static_cast<Index>(v))));
     });
     result.clearance = std::numeric_limits<double>::infinity();
     for (Index v = 0; v < count; ++v) {
-        if (mesh.is_isolated(Vertex(v))) continue;
         result.clearance = std::min(result.clearance, nearest[v].distance);
         if (sides[v] == CGAL::ON_BOUNDED_SIDE) continue;
         const bool on = sides[v] == CGAL::ON_BOUNDARY;
@@ -108,11 +124,26 @@ CageCheck check_cage(const Mesh& cage, const Mesh& mesh) {
     return result;
 }
 
+}  // namespace
+
+CageCheck check_cage(const Mesh& cage, const Mesh& mesh) {
+    // In a unit, a power of two, in which no coordinate is beyond 1: nothing is rounded by that, and the rays of length one by
+    // which CGAL decides sides do not vanish against the places that they start from.
+    const double largest = std::max(largest_coordinate_of(cage), largest_coordinate_of(mesh));
+    int exponent = 0;
+    if (largest > 0 && std::isfinite(largest)) (void)std::frexp(largest, &exponent);
+    CageCheck result = check_in_unit(scaled(cage, -exponent), scaled(mesh, -exponent));
+    for (OutsideVertex& o : result.outside) o.distance = std::ldexp(o.distance, exponent);
+    result.clearance = std::ldexp(result.clearance, exponent);
+    return result;
+}
+
 std::vector<Finding> findings(const CageCheck& check, const std::string& unit) {
     std::vector<Finding> list;
     const std::string of_length = unit.empty() ? "" : " " + unit;
     if (check.components == 0) return {{true, "cage", "has no faces: make one with 'cage make'"}};
     if (!check.closed) list.push_back({true, "cage", "has a border: close it with 'mesh repair', or make one with 'cage make'"});
+    if (check.flat) return {{true, "cage", "has no face with an area: make one with 'cage make'"}};
     if (check.closed && !check.outward) list.push_back({true, "cage", "is inside out: turn its faces with 'mesh repair'"});
     if (check.degenerate > 0)
         list.push_back({true, "cage", counted(check.degenerate, "face") + " without area: move or merge its vertices"});

@@ -1,10 +1,14 @@
 #include "ostraka/cage/cage.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/limits.h"
 #include "ostraka/io/wrap.h"
 
 #include "shrink.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
 
 namespace ostraka {
 
@@ -27,17 +31,60 @@ TriangleSoup obstacle_of(const Mesh& mesh, const std::optional<MirrorPlane>& mir
     return soup;
 }
 
+std::string text(double value) {
+    char buffer[32];
+    std::snprintf(buffer, sizeof buffer, "%.3g", value);
+    return buffer;
+}
+
+Mesh without_loose_vertices(Mesh mesh) {
+    for (const Vertex v : mesh.vertices())
+        if (mesh.is_isolated(v)) mesh.remove_vertex(v);
+    mesh.collect_garbage();
+    return mesh;
+}
+
+/// What a wrap needs of the triangles: a surface, and coordinates fine enough for what is done within the offset.
+void check_soup(const TriangleSoup& soup, double offset) {
+    const auto at = [&](Index v) { return Point(soup.points[v][0], soup.points[v][1], soup.points[v][2]); };
+    const bool surface = std::any_of(soup.triangles.begin(), soup.triangles.end(),
+                                     [&](const auto& t) { return !CGAL::collinear(at(t[0]), at(t[1]), at(t[2])); });
+    if (!surface)
+        fail_input("mesh", "has no face with an area (the corners of each lie on a line)", "give a mesh with a surface");
+    double largest = 0;
+    for (const auto& p : soup.points)
+        for (const double x : p) largest = std::max(largest, std::abs(x));
+    // The clearance is a tenth of the offset, and shall span a hundred roundings.
+    const double rounding = largest * std::numeric_limits<double>::epsilon();
+    if (!(offset >= 1000 * rounding))
+        fail_input("mesh",
+                   "is too far from the origin for its size: coordinates are rounded to " + text(rounding) +
+                       " there, and the offset of the wrap is " + text(offset),
+                   "translate it to the origin, or raise the offset");
+}
+
+/// The plane with a normal of about length one. Throws Error (usage) unless it has a direction.
+MirrorPlane checked(const MirrorPlane& plane) {
+    const auto finite = [](const auto& p) { return std::isfinite(p.x()) && std::isfinite(p.y()) && std::isfinite(p.z()); };
+    if (!finite(plane.point) || !finite(plane.normal))
+        throw Error(ErrorKind::usage, "mirror plane", "a number of it is not finite", "give a point and a direction");
+    const Vector normal = scaled_vector(plane.normal);
+    if (normal == CGAL::NULL_VECTOR) throw Error(ErrorKind::usage, "mirror plane", "its normal is zero", "give a direction");
+    return {plane.point, normal};
+}
+
 }  // namespace
 
-CageResult make_cage(const Mesh& mesh, const CageOptions& options, const CageDensity& density,
-                     const std::optional<MirrorPlane>& mirror) {
+CageResult make_cage(const Mesh& object, const CageOptions& options, const CageDensity& density,
+                     const std::optional<MirrorPlane>& plane) {
     check_options(options, "cage");
+    const auto mirror = plane ? std::optional(checked(*plane)) : std::nullopt;
+    const Mesh mesh = without_loose_vertices(object);
     const double diagonal = box_diagonal(mesh);
     if (mesh.number_of_faces() == 0) fail_input("mesh", "has no faces", "give a mesh with faces");
     if (!(diagonal > 0)) fail_input("mesh", "has no extent", "give a mesh whose vertices are not all in one place");
-    if (mirror && !(mirror->normal.squared_length() > 0))
-        throw Error(ErrorKind::usage, "mirror plane", "its normal is zero", "give a direction");
     const TriangleSoup soup = obstacle_of(mesh, mirror);
+    check_soup(soup, options.offset * diagonal);
     const cage::Obstacle obstacle(soup);
 
     CageResult best;

@@ -116,10 +116,13 @@ MeshFile read_mesh(const Path& file) {
     if (defects.any())
         fail_input(file.string(), "is not an oriented manifold: " + io::defects_in_words(defects),
                    "run: ostraka mesh repair " + file.string());
+    const CGAL::Bbox_3 box = bounding_box(result.mesh);
+    if (!(box.x_span() > 0 || box.y_span() > 0 || box.z_span() > 0))
+        fail_input(file.string(), "has no size: all its faces are at one place", "use a file with a surface");
     double largest = 0;
     for (const auto& point : triangles.soup.points)
         for (const double x : point) largest = std::max(largest, std::abs(x));
-    if (largest > largest_coordinate || (largest > 0 && box_diagonal(result.mesh) < 1e-60))
+    if (largest > largest_coordinate || box_diagonal(result.mesh) < 1e-60)
         fail_input(file.string(), "has coordinates beyond what can be computed with (1e-60 to 1e60)", "choose another unit");
     result.extras = std::move(triangles.extras);
     result.triangle_polygon = std::move(triangles.triangle_polygon);

@@ -124,10 +124,90 @@ TEST(Cage, OpenFlatTinyHugeAndFarMeshes) {
     EXPECT_THROW(make_cage(one, {.vertices = 3}), Error);
 }
 
+TEST(Cage, WhatCannotBeWrappedIsRefused) {
+    const auto problem = [](const Mesh& mesh, const std::optional<MirrorPlane>& plane = {}) -> std::string {
+        try {
+            make_cage(mesh, {.vertices = 40}, {}, plane);
+        } catch (const Error& error) {
+            EXPECT_FALSE(error.remedy().empty());
+            return error.problem();
+        }
+        return "made";
+    };
+    const auto says = [](const std::string& text, const char* words) { return text.find(words) != std::string::npos; };
+    for (const std::array<double, 3> third : {std::array<double, 3>{2, 4, 6}, {0, 0, 0}, {1, 2, 3}})
+        EXPECT_TRUE(says(problem(build_mesh({{{0, 0, 0}, {1, 2, 3}, third}, {{0, 1, 2}}})), "no face with an area"));
+    const auto moved = [](double shift) {
+        TriangleSoup soup = to_soup(spheres(3));
+        for (auto& p : soup.points) p = {50 * p[0] + shift, 50 * p[1] - shift, 50 * p[2] + shift};
+        return build_mesh(soup);
+    };
+    TriangleSoup line = to_soup(spheres(3));
+    for (auto& p : line.points) p = {p[0], p[0], p[0]};
+    EXPECT_TRUE(says(problem(build_mesh(line)), "no face with an area"));
+    for (const double shift : {1e14, 1e15, 1e16})
+        EXPECT_TRUE(says(problem(moved(shift)), "too far from the origin for its size")) << shift;
+    const Mesh near = moved(1e12);
+    EXPECT_TRUE(check_cage(make_cage(near, {.vertices = 40}).cage, near).valid());
+    EXPECT_TRUE(says(problem(moved(0), MirrorPlane{{NAN, 0, 0}, {1, 0, 0}}), "not finite"));
+    EXPECT_TRUE(says(problem(moved(0), MirrorPlane{{0, 0, 0}, {0, INFINITY, 0}}), "not finite"));
+    EXPECT_TRUE(says(problem(moved(0), MirrorPlane{{0, 0, 0}, {0, 0, 0}}), "normal is zero"));
+    EXPECT_TRUE(says(problem(moved(0), MirrorPlane{{1e17, 0, 0}, {1, 0, 0}}), "too far"));
+}
+
+TEST(Cage, GoesAroundFacesOnly) {
+    TriangleSoup soup = to_soup(spheres(2));
+    soup.points.push_back({0, 0, 9});
+    const Mesh mesh = build_mesh(soup);
+    const CageResult result = make_cage(mesh, {.vertices = 40});
+    EXPECT_EQ(to_soup(result.cage).points, to_soup(make_cage(spheres(2), {.vertices = 40}).cage).points);
+    // And the check says which vertex that leaves outside, and how far.
+    const CageCheck check = check_cage(result.cage, mesh);
+    ASSERT_EQ(check.outside.size(), 1U);
+    EXPECT_EQ(check.outside[0].vertex, mesh.number_of_vertices() - 1);
+    EXPECT_NEAR(check.outside[0].distance, 8, 0.5);
+    EXPECT_FALSE(check.valid());
+    soup.points.back() = {0, 0, 0};
+    EXPECT_TRUE(check_cage(result.cage, build_mesh(soup)).valid());
+}
+
 TEST(Cage, OfSeveralComponentsLosesNone) {
     const Mesh mesh = spheres(2, {{0, 0, 0}, {40, 0, 0}, {0, 30, 0}}, 0.5);
     const CageResult result = make_cage(mesh, {.vertices = 40});
     EXPECT_TRUE(check_cage(result.cage, mesh).valid()) << words(check_cage(result.cage, mesh));
+}
+
+TEST(CheckCage, TheSameInEveryUnitAndFarAway) {
+    const auto in_unit = [](TriangleSoup soup, double unit, double shift = 0) {
+        for (auto& p : soup.points) p = {p[0] * unit + shift, p[1] * unit - shift, p[2] * unit + shift};
+        return build_mesh(soup);
+    };
+    const TriangleSoup ball = to_soup(spheres(2)), other = to_soup(spheres(1, {{1, 0, 0}}, 1.5));
+    const CageCheck one = check_cage(in_unit(other, 1), in_unit(ball, 1));
+    ASSERT_FALSE(one.outside.empty());
+    for (const int exponent : {-190, -60, 20, 53, 60, 66, 133, 190}) {
+        const double unit = std::ldexp(1.0, exponent);
+        EXPECT_EQ(check_cage(in_unit(ball, unit), in_unit(ball, unit)).touching, ball.points.size()) << exponent;
+        const CageCheck here = check_cage(in_unit(other, unit), in_unit(ball, unit));
+        ASSERT_EQ(here.outside.size(), one.outside.size()) << exponent;
+        for (std::size_t i = 0; i < one.outside.size(); ++i) {
+            EXPECT_EQ(here.outside[i].vertex, one.outside[i].vertex);
+            EXPECT_DOUBLE_EQ(here.outside[i].distance, one.outside[i].distance * unit) << exponent;
+        }
+    }
+    // As many units away as coordinates have digits.
+    const Mesh far = in_unit(ball, 64, std::ldexp(1.0, 53));
+    EXPECT_EQ(check_cage(far, far).touching, far.number_of_vertices());
+}
+
+TEST(CheckCage, ACageWithoutAreaIsAFinding) {
+    TriangleSoup flat = to_soup(spheres(1));
+    for (auto& p : flat.points) p = {p[0], p[0], p[0]};
+    const CageCheck check = check_cage(build_mesh(flat), spheres(1));
+    EXPECT_TRUE(check.flat);
+    EXPECT_FALSE(check.encloses());
+    EXPECT_FALSE(check.valid());
+    EXPECT_NE(words(check).find("no face with an area"), std::string::npos) << words(check);
 }
 
 TEST(CheckCage, SaysWhatIsWrongAndWhere) {

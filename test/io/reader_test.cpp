@@ -279,6 +279,24 @@ TEST(ReadPolygons, WhatIsNoMeshFileIsRefused) {
     }
 }
 
+TEST(ReadMesh, SizesBeyondNumbersAreRefused) {
+    const Scratch scratch;
+    const auto message = [&](const std::string& obj) {
+        try {
+            read_mesh(scratch.file("a.obj", obj));
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    for (const char* at : {"1 1 1", "0 0 0", "1e-80 0 0"})
+        EXPECT_TRUE(has(message(std::string("v ") + at + "\nv " + at + "\nv " + at + "\nf 1 2 3\n"), "has no size")) << at;
+    for (const char* unit : {"e-80", "e-200", "e70"})
+        EXPECT_TRUE(has(message(std::string("v 0 0 0\nv 1") + unit + " 0 0\nv 0 1" + unit + " 0\nf 1 2 3\n"), "1e-60 to 1e60"))
+            << unit;
+    EXPECT_EQ(message("v 0 0 0\nv 1e-50 0 0\nv 0 1e-50 0\nf 1 2 3\n"), "");
+}
+
 TEST(ReadMesh, OnlyOrientedManifoldsPass) {
     const Scratch scratch;
     const auto message = [&](const std::string& obj) {

@@ -50,7 +50,9 @@ struct CageResult {
 /// Garland and Heckbert 1997) as long as no triangle meets the mesh or another triangle and no part of the mesh is left outside:
 /// every collapse is checked exactly before it is made, so that the cage encloses the mesh at each moment. Where the wanted
 /// number is not reached a coarser wrap is tried. With a mirror plane one half is made, around the mesh and its image, and
-/// mirrored. The mesh need not be closed. Throws Error (input) for a mesh without extent, (usage) for bad options.
+/// mirrored. The mesh need not be closed; vertices that no face has are left out. Throws Error (input) for a mesh without extent
+/// or without a face with an area, and for one so far from the origin that its coordinates are too coarse for the offset; (usage)
+/// for bad options and a plane without a direction.
 CageResult make_cage(const Mesh& mesh, const CageOptions& options = {}, const CageDensity& density = {},
                      const std::optional<MirrorPlane>& mirror = {});
 
@@ -67,6 +69,7 @@ struct OutsideVertex {
 
 struct CageCheck {
     bool closed = false;   ///< no border; otherwise nothing below but the components is known
+    bool flat = false;     ///< no face has an area; nothing below but the components and those faces is known
     bool outward = false;  ///< faces are counter-clockwise seen from outside
     std::size_t components = 0;
     long genus = 0;                                      ///< of all components together
@@ -77,11 +80,11 @@ struct CageCheck {
     std::vector<Index> crossing;  ///< faces of the mesh that the cage crosses though their vertices are inside; the first few
     double clearance = 0;         ///< least distance from a vertex of the mesh to the cage, 0 unless it encloses
 
-    [[nodiscard]] bool encloses() const { return closed && outside.empty() && crossing.empty(); }
+    [[nodiscard]] bool encloses() const { return closed && !flat && outside.empty() && crossing.empty(); }
     [[nodiscard]] bool valid() const { return encloses() && outward && intersections.empty() && degenerate == 0; }
 };
 
-/// Every property that a cage needs, exact for the coordinates as given. Vertices of the mesh without a face are left out.
+/// Every property that a cage needs, exact for the coordinates as given. Vertices of the mesh that no face has count as well.
 CageCheck check_cage(const Mesh& cage, const Mesh& mesh);
 
 /// The check in words: what is wrong, where, and what to do about it; lengths in `unit` ("" if unknown).
