@@ -3,6 +3,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/npy.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace ostraka {
@@ -10,6 +11,7 @@ namespace ostraka {
 namespace {
 
 constexpr const char* schema = "coordinates";
+constexpr double most_off = 1e-6;  ///< of a sum of weights, and of a point at rest in diagonals of the cage
 constexpr const char* anew = "compute them anew with 'ostraka cage weights'";
 
 void check_name(const Path& weights) {
@@ -78,6 +80,42 @@ WeightMatrix read_array(const Path& folder, const CoordinateHeader::Array& array
     return matrix;
 }
 
+/// The weights of a point sum to one; a computed row is far closer to it than a part in a million of its weights.
+void check_sums(const Path& file, const WeightMatrix& W) {
+    for (Eigen::Index i = 0; i < W.rows(); ++i) {
+        double sum = 0, size = 0;
+        for (Eigen::Index j = 0; j < W.cols(); ++j) {
+            sum += W(i, j);
+            size += std::fabs(W(i, j));
+        }
+        if (!(std::isfinite(size) && std::fabs(sum - 1) <= most_off * size))
+            fail_input(file.string(), "the weights of row " + std::to_string(i) + " do not sum to 1", anew);
+    }
+}
+
+/// With normals the weights, too, bring each point where it is at rest: what holds an array of normal weights to account.
+void check_rest(const Path& file, const Coordinates& coordinates, const Mesh& mesh, const Mesh& cage) {
+    const std::vector<Point> rest = deformed(coordinates, cage, points_of(cage));
+    const double most = most_off * box_diagonal(cage);
+    for (const Vertex v : mesh.vertices()) {
+        const Vector off = rest[v] - mesh.point(v);
+        if (!(std::max({std::fabs(off.x()), std::fabs(off.y()), std::fabs(off.z())}) <= most))
+            fail_input(file.string(), "the weights of row " + std::to_string(v) + " move their point of the mesh at rest", anew);
+    }
+}
+
+/// Which kinds have normal weights is no matter of the header.
+void check_kind(const Path& file, const CoordinateHeader& header) {
+    const std::vector<std::string> known = coordinate_kinds();
+    if (std::find(known.begin(), known.end(), header.kind) == known.end())
+        fail_input(file.string(), "coordinates of the kind '" + header.kind + "' are not known", anew);
+    const bool normals = coordinate_kind(header.kind).with_normals;
+    if (normals && !header.normal)
+        fail_input(file.string(), header.kind + " coordinates need normal weights, and it names none (member 'normal')", anew);
+    if (!normals && header.normal)
+        fail_input(file.string(), header.kind + " coordinates have no normal weights, but it names some (member 'normal')", anew);
+}
+
 }  // namespace
 
 Path coordinate_header_file(const Path& weights) { return Path(weights).replace_extension(".coordinates.json"); }
@@ -121,6 +159,7 @@ CoordinateHeader read_coordinate_header(const Path& weights) {
     if (const JsonValue* normal = find_member(document, "normal")) header.normal = array_of(*normal);
     header.mesh = bound_of(document["mesh"]);
     header.cage = bound_of(document["cage"]);
+    check_kind(file, header);
     // Names lead nowhere else: a header speaks of the files beside it.
     const auto check = [&](const CoordinateHeader::Array& array, const Path& expected) {
         if (array.file != expected.filename().string())
@@ -142,6 +181,8 @@ Coordinates read_coordinates(const Path& weights, const Mesh& mesh, const Mesh& 
     result.vertex = read_array(weights.parent_path(), header.vertex, mesh.number_of_vertices(), cage.number_of_vertices());
     if (header.normal)
         result.normal = read_array(weights.parent_path(), *header.normal, mesh.number_of_vertices(), cage.number_of_faces());
+    check_sums(weights, result.vertex);
+    if (result.has_normals()) check_rest(weights, result, mesh, cage);
     return result;
 }
 

@@ -89,6 +89,65 @@ TEST(CoordinateFile, ArraysThatChangedAreRefused) {
     EXPECT_TRUE(holds(saved.problem(), "no header ball.coordinates.json"));
 }
 
+/// Writes an array anew, and its checksum into the header.
+void replace_array(const Saved& saved, const char* name, const std::vector<double>& values, std::size_t columns) {
+    const std::string old = sha256(read_file(saved / name));
+    write_npy(saved / name, values, {values.size() / columns, columns});
+    std::string text = read_file(saved.header);
+    text.replace(text.find(old), old.size(), sha256(read_file(saved / name)));
+    write_file(saved.header, text);
+}
+
+TEST(CoordinateFile, RowsThatDoNotSumToOneAreRefused) {
+    const Saved saved;
+    for (const char* kind : {"mean-value", "green"}) {
+        const Coordinates c = saved.save(kind);
+        const std::vector<double> good(c.vertex.data(), c.vertex.data() + c.vertex.size());
+        for (const double wrong : {good[5 * 8 + 3] + 1e-4, 1e300, -1e308, 0.0}) {
+            std::vector<double> values = good;
+            values[5 * 8 + 3] = wrong;
+            replace_array(saved, "ball.npy", values, 8);
+            EXPECT_TRUE(holds(saved.problem(), "row 5 do not sum to 1")) << kind << ' ' << wrong << saved.problem();
+        }
+        std::vector<double> huge = good;
+        for (std::size_t i = 0; i < 8; ++i) huge[i] = 1.7e308;
+        replace_array(saved, "ball.npy", huge, 8);
+        EXPECT_TRUE(holds(saved.problem(), "row 0 do not sum to 1")) << kind;
+        replace_array(saved, "ball.npy", good, 8);
+        EXPECT_EQ(saved.problem(), "accepted");
+    }
+}
+
+TEST(CoordinateFile, NormalWeightsThatMoveAPointAtRestAreRefused) {
+    const Saved saved;
+    const Coordinates c = saved.save("green");
+    std::vector<double> values(c.normal.data(), c.normal.data() + c.normal.size());
+    for (const double wrong : {values[4 * 12] + 1e-4, 1e300}) {
+        values[4 * 12] = wrong;
+        replace_array(saved, "ball.normal.npy", values, 12);
+        EXPECT_TRUE(holds(saved.problem(), "row 4 move their point")) << saved.problem();
+    }
+}
+
+TEST(CoordinateFile, TheKindSaysWhetherThereAreNormals) {
+    const Saved saved;
+    saved.save("green");
+    const std::string good = read_file(saved.header);
+    const auto kind_is = [&](const std::string& kind) {
+        std::string text = good;
+        text.replace(text.find("\"green\""), 7, '"' + kind + '"');
+        write_file(saved.header, text);
+        return saved.problem();
+    };
+    EXPECT_TRUE(holds(kind_is("mean-value"), "mean-value coordinates have no normal weights"));
+    EXPECT_TRUE(holds(kind_is("grean"), "kind 'grean' are not known"));
+    EXPECT_EQ(kind_is("green"), "accepted");
+    std::string text = good;
+    text.replace(text.find("\"normal\""), 8, "\"namrol\"");
+    write_file(saved.header, text);
+    EXPECT_TRUE(holds(saved.problem(), "green coordinates need normal weights")) << saved.problem();
+}
+
 TEST(CoordinateFile, HeadersLeadNowhereElse) {
     const Saved saved;
     saved.save("mean-value");

@@ -35,12 +35,13 @@ struct CoordinateHeader {
 void write_coordinates(const Path& weights, const Coordinates& coordinates, const Mesh& mesh, const Mesh& cage,
                        const CoordinateCertificate& certificate, const Provenance& provenance);
 
-/// Throws Error (input) with the file and the remedy if there is no header or it does not fit its schema.
+/// Throws Error (input) with the file and the remedy if there is no header, it does not fit its schema, its kind is not known, or
+/// it has normal weights where its kind has none, or none where it has.
 CoordinateHeader read_coordinate_header(const Path& weights);
 
 /// Reads coordinates of this mesh in this cage. Throws Error (input) that says what to do where the header was made for another
-/// mesh or cage (checksums of the indexed geometry), arrays were changed since, have another shape or hold numbers that are not
-/// finite.
+/// mesh or cage (checksums of the indexed geometry), arrays were changed since, have another shape, hold numbers that are not
+/// finite, or rows that do not sum to 1 within a millionth (with normals also: that do not reproduce their point at rest).
 Coordinates read_coordinates(const Path& weights, const Mesh& mesh, const Mesh& cage);
 
 }  // namespace ostraka
