@@ -107,6 +107,7 @@ struct Influence {
         if (!annotation.empty() && cage_vertex)
             fail_usage("--cage-vertex with --annotation", "ask for the influence of the one or on the other");
         if (annotation.empty() && threshold) fail_usage("--threshold without --annotation", "it chooses cage vertices for one");
+        if (threshold && !std::isfinite(*threshold)) fail_usage("--threshold is not finite", "give a number");
         std::vector<Path> inputs{mesh, cage, weights, coordinate_header_file(weights)};
         if (!annotations.empty()) inputs.emplace_back(annotations);
         check_outputs(inputs, {Path(output)});

@@ -10,6 +10,7 @@
 
 #include <iostream>
 #include <memory>
+#include <set>
 
 namespace ostraka::app {
 
@@ -50,6 +51,8 @@ struct Make {
         const auto plane = mirror_plane(session, file.mesh, set);
         const auto results = in_file(mesh, [&] { return make_nested_cages(file.mesh, sizes, options, density, plane); });
         bool reached = true;
+        std::size_t left_out = 0;
+        std::set<long> genera;
         std::vector<std::vector<std::string>> rows;
         Json document(rapidjson::kObjectType);
         auto& allocator = document.GetAllocator();
@@ -60,6 +63,9 @@ struct Make {
             const CageCheck check = check_cage(made.cage, *inner);
             write_mesh(files[i], made.cage);
             reached = reached && made.reached;
+            left_out += check.outside.size();
+            genera.insert(check.genus);
+            note_missing(session, files[i], made, sizes[i]);
             rows.push_back({files[i].filename().string(), std::to_string(made.cage.number_of_vertices()),
                             std::to_string(made.cage.number_of_faces()), std::to_string(check.genus), number(check.clearance),
                             number(made.alpha)});
@@ -78,10 +84,26 @@ struct Make {
         if (session.json) session.print_report(provenance, document, result);
         else std::cout << table({"cage", "vertices", "faces", "genus", "clearance", "alpha"}, rows);
         if (!reached) session.note("fewer vertices could not be had without leaving a part of the mesh outside");
-        return reached ? done : answer_is_no;
+        if (genera.size() > 1)
+            session.note("note: the levels differ in genus: the wrap of a coarser one closes holes that a finer one follows");
+        if (left_out > 0)
+            session.note(
+                (left_out == 1 ? "1 vertex that no face has is" : std::to_string(left_out) + " vertices that no face has are") +
+                std::string(" not inside the cage, which is made around faces: remove with 'mesh repair'"));
+        return reached && left_out == 0 ? done : answer_is_no;
     }
 
 private:
+    /// Why a cage has fewer vertices than wanted, if it has.
+    void note_missing(const Session& session, const Path& file, const CageResult& made, std::uint64_t wanted) const {
+        const std::size_t count = made.cage.number_of_vertices();
+        if (count >= wanted) return;
+        session.note("note: " + file.filename().string() + " has " + std::to_string(count) + " vertices instead of " +
+                     std::to_string(wanted) +
+                     (made.wrap_vertices < wanted ? ": its wrap has no more, a smaller --alpha gives more"
+                                                  : ": a mirrored cage has as many on both sides of the plane"));
+    }
+
     [[nodiscard]] Path level_file(std::uint64_t size) const {
         const Path path(output);
         return path.parent_path() / (path.stem().string() + "-" + std::to_string(size) + path.extension().string());
@@ -142,10 +164,12 @@ struct Move {
         provenance.add_input(cage);
         provenance.add_input(edit);
         MeshFile around = read_mesh(cage);
+        const Json steps = read_json(edit);
+        refuse_annotations(steps);
         const AnnotationSet none;
         Coordinates own{"own", WeightMatrix::Identity(around.mesh.number_of_vertices(), around.mesh.number_of_vertices()), {}};
         const Mesh rest = around.mesh;
-        const auto states = follow_edit(read_json(edit), {rest, none, &rest, &own}, edit);
+        const auto states = follow_edit(steps, {rest, none, &rest, &own}, edit);
         std::size_t touched = 0;
         if (!states.empty()) {
             for (const Vertex v : around.mesh.vertices()) around.mesh.point(v) = states.back().handles[v];
@@ -166,6 +190,19 @@ struct Move {
         if (!check.intersections.empty())
             session.note("note: the moved cage intersects itself, which deforms a mesh all the same, but may fold it");
         return done;
+    }
+
+private:
+    /// A step may select by annotation, but not here.
+    void refuse_annotations(const Json& document) const {
+        const JsonValue* steps = document.IsObject() ? find_member(document, "steps") : nullptr;
+        if (steps == nullptr || !steps->IsArray()) return;
+        for (rapidjson::SizeType i = 0; i < steps->Size(); ++i) {
+            const JsonValue* select = (*steps)[i].IsObject() ? find_member((*steps)[i], "select") : nullptr;
+            if (select != nullptr && select->IsObject() && find_member(*select, "annotation") != nullptr)
+                fail_input(edit + ", /steps/" + std::to_string(i), "selects by annotation, and 'cage edit' knows no annotations",
+                           "select cageVertices, box or all, or use 'ostraka deform'");
+        }
     }
 };
 
