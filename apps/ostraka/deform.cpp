@@ -4,6 +4,7 @@
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/bundle/template.h"
 #include "ostraka/coords/coordinate_file.h"
+#include "ostraka/io/diagnose.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/measure/measure.h"
 #include "ostraka/semantic/deform.h"
@@ -49,6 +50,14 @@ struct Deform {
             for (const TemplatePart& part : bundle->parts) inputs.push_back(part.file);
         for (const std::string& file : {cage, weights, graph})
             if (!file.empty()) inputs.emplace_back(file);
+        // Weights are several files.
+        std::vector<Path> sets;
+        if (!weights.empty()) sets.emplace_back(weights);
+        if (bundle)
+            for (const TemplatePart* part : bundle->of("coordinates")) sets.push_back(part->file);
+        for (const Path& file : sets)
+            for (const Path& companion : {coordinate_header_file(file), normal_weights_file(file)})
+                if (std::filesystem::exists(companion)) inputs.push_back(companion);
         for (const std::string& file : {annotations_out, cage_out})
             if (!file.empty()) outputs.emplace_back(file);
         const Json steps = read_json(edit);
@@ -69,7 +78,9 @@ struct Deform {
         Subject subject = bundle ? from_template(*bundle) : from_files();
         if (!cage_out.empty() && !subject.coordinates)
             fail_usage("--cage-out without a cage", "add --cage and --weights, or a cage and its coordinates to the template");
-        const DeformResult result = deform(subject.space(), subject.relations, steps, edit.string(), options, tolerances);
+        const std::string graph_name = !graph.empty() ? graph : "the template's graph";
+        const DeformResult result =
+            deform(subject.space(), subject.relations, steps, edit.string(), options, tolerances, graph_name);
         const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
         const auto with = [](const MeshFile& file, const std::vector<Point>& points) {
@@ -94,7 +105,18 @@ struct Deform {
             for (const auto& note : refreshed.notes) session.note("note: " + note);
             write_annotations(annotations_out, subject.set, shaped, output.filename().string(), provenance);
         }
-        print(session, provenance, result, seconds);
+        // Constraints say nothing of what else became of the surface.
+        const auto crossings = [](const Mesh& mesh) { return self_intersections(to_soup(mesh), 100'000).pairs.size(); };
+        const std::size_t crossing = crossings(shaped), before = crossing > 0 ? crossings(subject.object.mesh) : 0;
+        if (crossing > before)
+            session.note("note: the deformed surface crosses itself in " + std::to_string(crossing) + " pairs of faces (" +
+                         std::to_string(before) + " before): look at it; 'mesh info' tells where");
+        for (std::size_t i = 0; i < result.selected.size(); ++i)
+            session.note("step " + std::to_string(i + 1) + ": " + std::to_string(result.selected[i]) + " of " +
+                         std::to_string(subject.coordinates ? subject.around.mesh.number_of_vertices()
+                                                            : subject.object.mesh.number_of_vertices()) +
+                         (subject.coordinates ? " cage vertices" : " vertices"));
+        print(session, provenance, result, seconds, crossing);
         return result.acceptable ? done : answer_is_no;
     }
 
@@ -119,16 +141,20 @@ private:
         if (loaded.graph) subject.relations = std::move(*loaded.graph);
         // The first cage that has coordinates.
         const auto cages = bundle.of("cage");
+        std::string why_not;
         for (std::size_t i = 0; i < cages.size() && cage.empty() && !subject.coordinates; ++i)
             for (const TemplatePart* part : bundle.of("coordinates")) {
                 if (subject.coordinates || !loaded.cages[i]) continue;
                 try {
                     subject.coordinates = read_coordinates(part->file, subject.object.mesh, *loaded.cages[i]);
                     subject.around.mesh = *loaded.cages[i];
-                } catch (const Error&) {
-                    continue;  // those of another cage
+                } catch (const Error& error) {
+                    why_not = error.what();  // those of another cage, perhaps
                 }
             }
+        if (cage.empty() && !subject.coordinates && !why_not.empty())
+            fail_input(files[0], "has a cage and coordinates that do not go together: " + why_not,
+                       "make them anew with 'cage weights', or give --cage and --weights");
         take_flags(subject);
         return subject;
     }
@@ -154,16 +180,22 @@ private:
     /// What fights with what, in a sentence each.
     static std::vector<std::string> words_of(const DeformResult& result) {
         std::vector<std::string> lines;
+        const auto name = [&](int id) {
+            for (const ConstraintReport& report : result.constraints)
+                if (report.id == id) return std::to_string(id) + " (" + report.type + ")";
+            return std::to_string(id);
+        };
         for (const ConstraintConflict& conflict : result.conflicts) {
             std::string freed, gives;
-            for (const int id : conflict.freed) freed += (freed.empty() ? "" : ", ") + std::to_string(id);
+            for (const int id : conflict.freed) freed += (freed.empty() ? "" : ", ") + name(id);
             for (const Deviation& d : conflict.deviations)
                 if (*d.value > *d.tolerance)
                     gives += (gives.empty() ? "" : "; ") + d.quantity + " " + number(*d.value, 4) + " instead of at most " +
                              number(*d.tolerance, 4) + (d.unit.empty() ? "" : " " + d.unit);
-            lines.push_back("constraint " + std::to_string(conflict.id) + " fights with " + freed + ": without it " +
-                            (conflict.freed.size() == 1 ? "that holds" : "those hold") +
-                            (gives.empty() ? ", and it is met as well" : ", and it would have to give: " + gives));
+            lines.push_back(name(conflict.id) + " fights with " + freed + ": if " + std::to_string(conflict.id) +
+                            " is left out, " + (conflict.freed.size() == 1 ? "the other holds" : "the others hold") +
+                            (gives.empty() ? ", and so does " + std::to_string(conflict.id)
+                                           : "; " + std::to_string(conflict.id) + " would have to give: " + gives));
         }
         if (result.untried > 0)
             lines.push_back(std::to_string(result.untried) +
@@ -171,7 +203,8 @@ private:
         return lines;
     }
 
-    static void print(const Session& session, const Provenance& provenance, const DeformResult& result, double seconds) {
+    static void print(const Session& session, const Provenance& provenance, const DeformResult& result, double seconds,
+                      std::size_t crossing) {
         Json document(rapidjson::kObjectType);
         auto& allocator = document.GetAllocator();
         JsonValue report(rapidjson::kObjectType), list(rapidjson::kArrayType), run(rapidjson::kObjectType);
@@ -227,6 +260,7 @@ private:
             conflicts.PushBack(entry, allocator);
         }
         add_member(report, "conflicts", std::move(conflicts), allocator);
+        add_member(report, "selfIntersections", JsonValue(static_cast<std::uint64_t>(crossing)), allocator);
         add_member(run, "seconds", JsonValue(seconds), allocator);
         if (session.json) {
             session.print_report(provenance, document, report, &run);

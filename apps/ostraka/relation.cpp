@@ -7,6 +7,7 @@
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/relation/geometric.h"
 #include "ostraka/relation/topology.h"
+#include "ostraka/semantic/deform.h"
 
 #include <algorithm>
 #include <charconv>
@@ -202,6 +203,13 @@ struct Add {
             graph.relationships.push_back(relationship);
         }
         write_graph(output, graph, set, provenance);
+        if (relationship.is_constraint) {
+            try {
+                check_constraint(on, set, relationship, output);
+            } catch (const Error& error) {
+                session.note(std::string("note: 'deform' will refuse this as it is: ") + error.what());
+            }
+        }
         print_relationships(session, provenance, set, {relationship}, nullptr);
         return done;
     }

@@ -8,17 +8,26 @@ namespace ostraka::semantic {
 
 namespace {
 
-Axis axis_of(const Reader& read, std::size_t i) {
+/// How the axis of a part is found on a shape.
+using AxisFinder = Axis (*)(const Mesh& mesh, const Annotation& part);
+
+/// That of rotation is the same to a hair when the part's ends change a little; what is not round has that of its slices.
+Axis steadiest(const Mesh& mesh, const Annotation& part) {
+    Axis found = find_axis(mesh, part.faces);
+    return found.found ? found : axis_of_part(mesh, part);
+}
+
+Axis axis_of(const Reader& read, std::size_t i, AxisFinder find) {
     read.need_region(i);
-    Axis found = axis_of_part(read.shape().mesh, read.member(i));
+    Axis found = find(read.shape().mesh, read.member(i));
     if (!found.found)
         read.fail("annotation " + std::to_string(read.member(i).id) + " has no axis: " + found.reason, "use another relation");
     return found;
 }
 
 /// The reference's axis on the shape as it is, or at rest where a deformed reference has none any more.
-Axis reference_now(const Reader& read, const Axis& rest, const State& now) {
-    Axis found = axis_of_part(now.mesh, read.member(read.members() - 1));
+Axis reference_now(const Reader& read, const Axis& rest, const State& now, AxisFinder find) {
+    Axis found = find(now.mesh, read.member(read.members() - 1));
     return found.found ? found : rest;
 }
 
@@ -41,11 +50,11 @@ std::vector<int> ids_of(const std::vector<Index>& vertices) { return {vertices.b
 Statement co_axiality(const ReaderPtr& read, const RelationOptions& tolerances) {
     read->need(2, 0);
     std::vector<Axis> axes;
-    for (std::size_t i = 0; i < read->members(); ++i) axes.push_back(axis_of(*read, i));
+    for (std::size_t i = 0; i < read->members(); ++i) axes.push_back(axis_of(*read, i, axis_of_part));
     Statement statement;
     statement.follows = true;
     statement.lower = [read, axes](const State&, const State& now) {
-        const Axis reference = reference_now(*read, axes.back(), now);
+        const Axis reference = reference_now(*read, axes.back(), now, axis_of_part);
         Statement::Constraints list;
         for (std::size_t i = 0; i + 1 < axes.size(); ++i) {
             ConstraintParameters parameters;
@@ -64,13 +73,13 @@ Statement co_axiality(const ReaderPtr& read, const RelationOptions& tolerances) 
 Statement axis_angle(const ReaderPtr& read, const RelationOptions& tolerances) {
     read->need(2, 0);
     std::vector<Axis> axes;
-    for (std::size_t i = 0; i < read->members(); ++i) axes.push_back(axis_of(*read, i));
+    for (std::size_t i = 0; i < read->members(); ++i) axes.push_back(axis_of(*read, i, axis_of_part));
     const double angle = read->relationship().type == "perpendicular axes" ? M_PI / 2 : 0;
     Statement statement;
     statement.follows = true;
     statement.lower = [read, axes, angle](const State&, const State& now) {
         ConstraintParameters parameters;
-        parameters.direction = eigen(reference_now(*read, axes.back(), now).direction);
+        parameters.direction = eigen(reference_now(*read, axes.back(), now, axis_of_part).direction);
         parameters.min = parameters.max = angle;
         Statement::Constraints list;
         for (std::size_t i = 0; i + 1 < axes.size(); ++i) {
@@ -86,16 +95,16 @@ Statement axis_angle(const ReaderPtr& read, const RelationOptions& tolerances) {
 Statement structural_continuity(const ReaderPtr& read, const RelationOptions& tolerances) {
     read->need(2, 2);
     read->need_region(0);
-    const Axis rest = axis_of(*read, 1);
+    const Axis rest = axis_of(*read, 1, steadiest);
     const auto segment = std::make_shared<const AxisSegment>(continuing_segment(
         read->shape().mesh, read->member(0), read->member(1), rest.direction, read->number("angle", 10, 0.1, 90)));
     if (!segment->reason.empty())
         read->fail("annotation " + std::to_string(read->member(0).id) + " " + segment->reason,
-                   "raise angle, or state co-axiality");
+                   "raise angle, refine the mesh, or state co-axiality");
     Statement statement;
     statement.follows = true;
     statement.lower = [read, rest, segment](const State&, const State& now) {
-        const Axis reference = reference_now(*read, rest, now);
+        const Axis reference = reference_now(*read, rest, now, steadiest);
         ConstraintParameters parameters;
         parameters.direction = eigen(reference.direction);
         parameters.point = eigen(reference.point);
@@ -127,7 +136,7 @@ Statement structural_continuity(const ReaderPtr& read, const RelationOptions& to
         return list;
     };
     statement.prepare = [read, rest, segment, part = statement.turning](const State& now, Points& start) {
-        const Axis reference = reference_now(*read, rest, now);
+        const Axis reference = reference_now(*read, rest, now, steadiest);
         const Vector3d point = eigen(reference.point), direction = eigen(reference.direction);
         const Points& shape = read->shape().rest;
         const std::vector<Vector3d> then = stations_of(*segment, shape);
@@ -153,7 +162,7 @@ Statement structural_continuity(const ReaderPtr& read, const RelationOptions& to
     const Deviation angle{"angle", 0.0, tolerances.angle, "degree"};
     const Deviation distance{"distance", 0.0, length_tolerance(*read, tolerances), read->shape().set.unit};
     statement.measure = [=](const State& deformed) -> Measured {
-        const Axis reference = axis_of_part(deformed.mesh, read->member(1));
+        const Axis reference = steadiest(deformed.mesh, read->member(1));
         if (!reference.found) return {Verdict::unknown, {}, "the reference has no axis any more: " + reference.reason};
         const std::vector<Vector3d> places = stations_of(*segment, deformed.points);
         const Vector3d direction = eigen(reference.direction), along = places.back() - places.front();

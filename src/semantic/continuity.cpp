@@ -44,7 +44,10 @@ int slices_of(const Mesh& mesh, const Annotation& part, const std::vector<Point>
 AxisSegment continuing_segment(const Mesh& mesh, const Annotation& part, const Annotation& reference, const Vector& axis,
                                double angle) {
     AxisSegment result;
-    const Axis skeleton = skeleton_axis(mesh, part.faces);
+    Axis skeleton = skeleton_axis(mesh, part.faces);
+    // A part of few faces may shrink to a point; its slices still tell the way.
+    if (!skeleton.found || skeleton.lines.empty() || skeleton.lines[0].size() < 2)
+        if (Axis slices = slice_axis(mesh, part.faces); slices.found) skeleton = std::move(slices);
     if (!skeleton.found || skeleton.lines.empty() || skeleton.lines[0].size() < 2) {
         result.reason = "has no skeleton: " + skeleton.reason;
         return result;

@@ -283,9 +283,9 @@ private:
                 list.push_back(make_constraint("LaplacianDisplacement", ids, share * options_.laplacian, {}, shape));
             }
         CageSpaceSolver solver(take(std::move(list)), extended, rest_cage);
-        // What must hold counts a hundredfold: a cage may not be able to do it.
+        // What must hold counts a thousandfold: a cage may not be able to do it.
         for (std::size_t i = 0; i < owner_.size(); ++i)
-            if (statements_[owner_[i]].hard) solver.set_weight(first_ + i, 1e2 * solver.constraint(first_ + i).weight());
+            if (statements_[owner_[i]].hard) solver.set_weight(first_ + i, 1e3 * solver.constraint(first_ + i).weight());
         outcome.cage = edited_cage;
         outcome.summary = solver.solve(outcome.cage, options_.solve);
         const Points all = points_of(extended, outcome.cage);

@@ -57,8 +57,13 @@ Partners partners_of(const Reader& read, const Vector3d& point, const Vector3d& 
     const Piece piece(read.shape().mesh, read.faces(last));
     const SurfaceSearch search(piece.mesh);
     Partners partners;
+    Eigen::AlignedBox3d near;
+    for (const Vertex v : piece.mesh.vertices()) near.extend(eigen(piece.mesh.point(v)));
+    near.extend(near.min() - Vector3d::Constant(reach));
+    near.extend(near.max() + Vector3d::Constant(reach));
     for (const Index v : read.vertices(0)) {
         const Vector3d p = read.shape().rest.col(v), image = p - 2 * normal.dot(p - point) * normal;
+        if (!near.contains(image)) continue;
         const SurfaceHit hit = search.closest(point_of(image));
         if (hit.distance > reach) continue;
         const auto corner = corners(piece.mesh, Face(hit.face));
