@@ -498,6 +498,9 @@ TEST(Deform, TellsWhichConstraintsFight) {
         EXPECT_NE(b, 5);
     }
     EXPECT_TRUE(fights.count({3, 4}) == 1 || fights.count({4, 3}) == 1);
+    // What cannot hold leaves a compromise, not a wreck.
+    for (const Vertex v : hand.made.mesh.vertices())
+        ASSERT_LT(std::sqrt(CGAL::squared_distance(result.points[v], result.edited[v])), 0.5 * box_diagonal(hand.made.mesh));
     for (const ConstraintConflict& conflict : result.conflicts) {
         ASSERT_EQ(conflict.deviations.size(), 1U);
         // The ring finger is some 1.3 times as long: either would have to give by tens of per cent.
@@ -713,4 +716,50 @@ TEST(Deform, AScannedBustKeepsWhatSitsOnIt) {
             EXPECT_LT(std::sqrt(rigid->squared_distance(now) / static_cast<double>(vertices.size())), 1e-3 * diagonal);
         }
     }
+}
+
+TEST(Deform, APartBetweenOthersIsMovedOnAllSides) {
+    // The palm, with fingers, thumb and wrist around it, is made narrower: all of it, and they follow.
+    const Hand hand;
+    const double diagonal = box_diagonal(hand.made.mesh);
+    const auto area = [&](const std::vector<Point>& points) {
+        Mesh mesh = hand.made.mesh;
+        for (const Vertex v : mesh.vertices()) mesh.point(v) = points[v];
+        double sum = 0;
+        for (const Index f : hand.set.find(1)->faces) sum += face_area(mesh, Face(f));
+        return sum;
+    };
+    double width = 0;
+    for (const Attribute& attribute : hand.set.find(1)->attributes)
+        if (attribute.name == "width") width = evaluate(hand.made.mesh, *hand.set.find(1), attribute.measure);
+    ASSERT_GT(width, 0);
+    RelationGraph graph;
+    graph.relationships.push_back(constraint(0, "keep measure", {1},
+                                             R"({"measure": "width", "hard": true, "minValue": )" + std::to_string(0.9 * width) +
+                                                 R"(, "maxValue": )" + std::to_string(0.92 * width) + "}"));
+    const DeformResult result = deform(hand.space(), graph, edit(""), "e");
+    EXPECT_TRUE(result.acceptable) << result.constraints[0].text;
+    const double share = area(result.points) / area(points_of(hand.made.mesh));
+    EXPECT_GT(share, 0.92);
+    EXPECT_LT(share, 0.98);
+    for (const Vertex v : hand.made.mesh.vertices())
+        ASSERT_LT(std::sqrt(CGAL::squared_distance(result.points[v], hand.made.mesh.point(v))), 0.05 * diagonal);
+    // As a whole: its height changes like its width.
+    graph.relationships[0].constraint.insert(1, R"("mode": "scale", )");
+    const DeformResult whole = deform(hand.space(), graph, edit(""), "e");
+    EXPECT_TRUE(whole.acceptable);
+    EXPECT_NEAR(area(whole.points) / area(points_of(hand.made.mesh)), 0.92 * 0.92, 0.02);
+}
+
+TEST(Deform, ThroughACageNothingFliesApart) {
+    const Caged object("chair", 8000, 150);
+    RelationGraph graph;
+    graph.relationships.push_back(constraint(0, "structural continuity", {4, 7}, R"({"hard": true})"));
+    DeformOptions options;
+    options.space = "cage";
+    const DeformResult result = deform(
+        object.handles(), graph,
+        edit(R"({"select": {"annotation": "left arm"}, "stretch": {"direction": [1, 0, 0], "factor": 1.3}})"), "e", options);
+    for (const Vertex v : object.made.mesh.vertices())
+        ASSERT_LT(std::sqrt(CGAL::squared_distance(result.points[v], result.edited[v])), 0.5 * box_diagonal(object.made.mesh));
 }
