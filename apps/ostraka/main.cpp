@@ -31,6 +31,10 @@ int main(int argc, char** argv) {
     bundle->require_subcommand(1);
     CLI::App* cage = tool.add_subcommand("cage", "cages around meshes, and coordinates in them");
     cage->require_subcommand(1);
+    CLI::App* study = tool.add_subcommand("study", "questions to a whole collection of objects");
+    study->require_subcommand(1);
+    CLI::App* made = study->add_subcommand("make", "collections whose answers are known, to try a study on");
+    made->require_subcommand(1);
     app::add_mesh_info(*mesh, session);
     app::add_mesh_convert(*mesh, session);
     app::add_mesh_repair(*mesh, session);

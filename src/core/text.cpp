@@ -2,6 +2,10 @@
 
 #include "ostraka/core/json.h"
 
+#include <array>
+#include <charconv>
+#include <cmath>
+
 namespace ostraka {
 
 Character character_at(std::string_view text, std::size_t at) {
@@ -28,6 +32,35 @@ std::string without_controls(std::string_view text, std::string_view instead) {
         at += here.length;
     }
     return result;
+}
+
+std::string digits(double value) {
+    std::array<char, 32> buffer{};
+    const auto [end, code] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+    return {buffer.data(), end};
+}
+
+std::string_view trimmed(std::string_view text) {
+    const std::size_t begin = text.find_first_not_of(" \t\r\n");
+    if (begin == std::string_view::npos) return {};
+    return text.substr(begin, text.find_last_not_of(" \t\r\n") - begin + 1);
+}
+
+std::optional<double> number_of(std::string_view text) {
+    text = trimmed(text);
+    if (text.size() > 1 && text.front() == '+' && text[1] != '-') text.remove_prefix(1);
+    double value = 0;
+    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (text.empty() || code != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return {};
+    return value;
+}
+
+std::optional<int> whole_of(std::string_view text) {
+    text = trimmed(text);
+    int value = 0;
+    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (text.empty() || code != std::errc() || end != text.data() + text.size()) return {};
+    return value;
 }
 
 }  // namespace ostraka

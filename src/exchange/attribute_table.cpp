@@ -11,8 +11,6 @@ namespace ostraka {
 
 namespace {
 
-using exchange::CsvRow;
-using exchange::digits;
 using std::to_string;
 
 const std::vector<std::string>& column_names() {
@@ -50,11 +48,11 @@ std::string joined(const std::vector<std::vector<Index>>& pickings) {
 class TableReader {
 public:
     TableReader(const std::string& bytes, const std::string& where)
-        : where_(where), rows_(exchange::csv_rows(bytes, exchange::csv_separator(bytes), where)) {
+        : where_(where), rows_(csv_rows(bytes, csv_separator(bytes), where)) {
         if (rows_.empty()) fail_at(1, "the file is empty", "give a table that 'annotation export' wrote");
         const auto& header = rows_.front().cells;
         for (std::size_t i = 0; i < header.size(); ++i)
-            if (!columns_.emplace(exchange::lower(exchange::trimmed(header[i])), i).second)
+            if (!columns_.emplace(exchange::lower(trimmed(header[i])), i).second)
                 fail_at(rows_.front().line, "the column '" + exchange::one_line(header[i]) + "' stands twice", "remove one");
         for (const char* needed : {"annotation", "attribute", "name", "kind"})
             if (!columns_.contains(needed))
@@ -105,10 +103,10 @@ private:
     [[nodiscard]] std::string cell(const std::string& column) const {
         const auto found = columns_.find(column);
         if (found == columns_.end() || found->second >= row_->cells.size()) return {};
-        return exchange::as_utf8(exchange::unguarded(row_->cells[found->second]));
+        return exchange::as_utf8(unguarded(row_->cells[found->second]));
     }
     [[nodiscard]] int whole(const std::string& column) const {
-        const auto value = exchange::whole_of(cell(column));
+        const auto value = whole_of(cell(column));
         if (!value)
             fail(column, "'" + exchange::one_line(cell(column)).substr(0, 40) + "' is not a whole number", "mend the cell");
         return *value;
@@ -120,7 +118,7 @@ private:
             const std::size_t begin = text.find_first_not_of(" \t\r\n", from);
             if (begin == std::string::npos) break;
             from = std::min(text.find_first_of(" \t\r\n", begin), text.size());
-            const auto value = exchange::number_of(std::string_view(text).substr(begin, from - begin));
+            const auto value = number_of(std::string_view(text).substr(begin, from - begin));
             if (!value)
                 fail(column,
                      "'" + exchange::one_line(text.substr(begin, std::min<std::size_t>(from - begin, 40))) + "' is not a number",
@@ -234,7 +232,7 @@ private:
 }  // namespace
 
 std::string attribute_table(const AnnotationSet& set) {
-    std::string text = exchange::csv_row(column_names());
+    std::string text = csv_row(column_names());
     for (const Annotation& annotation : set.annotations) {
         const std::vector<std::string> head{to_string(annotation.id), annotation.tag, to_string(annotation.type),
                                             joined(annotation.colour)};
@@ -242,7 +240,7 @@ std::string attribute_table(const AnnotationSet& set) {
             std::vector<std::string> cells = head;
             cells.insert(cells.end(), rest.begin(), rest.end());
             cells.resize(column_names().size());
-            text += exchange::csv_row(cells);
+            text += csv_row(cells);
         };
         if (annotation.attributes.empty()) add({});
         for (const Attribute& attribute : annotation.attributes) {

@@ -59,9 +59,9 @@ bool fits_turned(const Placer& placer, const std::vector<Entry>& entries) {
               "--mesh-space"
             : "check that mesh and file have one unit and one position, raise --tolerance, or leave them out with --skip-far";
     fail_input(where,
-               counted(far.size(), "place") + " of " + to_string(entries.size()) + " farther than " + exchange::digits(limit) +
+               counted(far.size(), "place") + " of " + to_string(entries.size()) + " farther than " + digits(limit) +
                    " from the surface, the farthest " + worst->kind + " '" + exchange::one_line(worst->name).substr(0, 40) +
-                   "' at " + exchange::digits(worst->placed.to_surface),
+                   "' at " + digits(worst->placed.to_surface),
                remedy);
 }
 
@@ -101,7 +101,7 @@ public:
             add_curve(curve, places);
         }
         if (!far.empty())
-            result_.set.notes.push_back(counted(far.size(), "place") + " farther than " + exchange::digits(limit) +
+            result_.set.notes.push_back(counted(far.size(), "place") + " farther than " + digits(limit) +
                                         " from the surface left out, as asked: " + names_of(far));
         return std::move(result_);
     }

@@ -1,7 +1,8 @@
-// Characters of texts from outside.
+// Characters and numbers of texts from outside.
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -20,5 +21,13 @@ bool is_control(char32_t code);
 
 /// The text with `instead` for each control character.
 std::string without_controls(std::string_view text, std::string_view instead);
+
+/// The shortest digits that read back to the same double.
+std::string digits(double value);
+/// The whole of `text`, blanks around it apart, as a finite number.
+std::optional<double> number_of(std::string_view text);
+std::optional<int> whole_of(std::string_view text);
+/// Without blanks around it.
+std::string_view trimmed(std::string_view text);
 
 }  // namespace ostraka

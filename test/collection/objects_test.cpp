@@ -1,0 +1,179 @@
+#include "ostraka/collection/objects.h"
+
+#include "meshes.h"
+#include "scratch.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/io/mesh_file.h"
+
+#include <atomic>
+
+namespace ostraka {
+namespace {
+
+using test::Scratch;
+
+Path sphere_file(const Scratch& scratch, const std::string& name, int levels = 1) {
+    write_mesh(scratch / name, build_mesh(test::octahedron_sphere(levels)));
+    return scratch / name;
+}
+
+std::vector<std::string> names_of(const Collection& collection) {
+    std::vector<std::string> names;
+    for (const auto& object : collection.objects) names.push_back(object.name);
+    return names;
+}
+
+/// Faces of the object's mesh.
+Json faces_of(const CollectionObject& object) {
+    Json result;
+    result.SetUint64(read_mesh(object.mesh).mesh.number_of_faces());
+    return result;
+}
+
+TEST(Collection, AFolderGivesItsMeshesByName) {
+    const Scratch scratch;
+    sphere_file(scratch, "b.ply");
+    sphere_file(scratch, "a.off", 2);
+    sphere_file(scratch, "twin.obj");
+    sphere_file(scratch, "twin.off");
+    (void)scratch.file("a.ant.json", "{}");
+    (void)scratch.file("a.mrk.json", "{}");
+    (void)scratch.file("points.mrk.json", "{}");
+    (void)scratch.file("truth.csv", "name,label\n");
+    (void)scratch.file(".hidden.ply", "ply\n");
+    const Collection collection = read_collection(scratch.path());
+    EXPECT_EQ(names_of(collection), (std::vector<std::string>{"a", "b", "points", "twin.obj", "twin.off"}));
+    EXPECT_EQ(collection.objects[0].annotations, scratch / "a.ant.json");
+    EXPECT_EQ(collection.objects[0].landmarks, scratch / "a.mrk.json");
+    EXPECT_TRUE(collection.objects[2].mesh.empty());
+    for (const auto& object : collection.objects) EXPECT_EQ(object.checksum.size(), 64U) << object.name;
+}
+
+TEST(Collection, CopiesAreNoted) {
+    const Scratch scratch;
+    sphere_file(scratch, "a.ply");
+    sphere_file(scratch, "b.ply", 2);
+    std::filesystem::copy_file(scratch / "a.ply", scratch / "c.ply");
+    const Collection collection = read_collection(scratch.path());
+    ASSERT_EQ(collection.notes.size(), 1U);
+    EXPECT_NE(collection.notes[0].find("a, c"), std::string::npos);
+}
+
+TEST(Collection, AStudyFileListsItsObjects) {
+    const Scratch scratch;
+    sphere_file(scratch, "b.ply");
+    const Path study = scratch.file("s.study.json", R"({"format": "ostraka-study", "version": 1, "objects": [
+        {"name": "z", "mesh": "b.ply", "unit": "cm", "label": "wheel"}, {"mesh": "gone.ply"}]})");
+    const Collection collection = read_collection(study);
+    ASSERT_EQ(names_of(collection), (std::vector<std::string>{"gone", "z"}));
+    EXPECT_TRUE(collection.objects[0].checksum.empty());
+    EXPECT_EQ(collection.objects[1].unit, "cm");
+    EXPECT_EQ(collection.objects[1].label, "wheel");
+}
+
+TEST(Collection, WhatIsNoneIsRefused) {
+    const Scratch scratch;
+    EXPECT_THROW(read_collection(scratch / "nowhere"), Error);
+    EXPECT_THROW(read_collection(scratch.path()), Error);
+    EXPECT_THROW(read_collection(sphere_file(scratch, "a.ply")), Error);
+    const auto study = [&](const std::string& objects) {
+        return scratch.file("s.study.json", R"({"format": "ostraka-study", "version": 1, "objects": [)" + objects + "]}");
+    };
+    EXPECT_THROW(read_collection(study("")), Error);
+    EXPECT_THROW(read_collection(study(R"({"name": "x"})")), Error);
+    EXPECT_THROW(read_collection(study(R"({"name": "../x", "mesh": "a.ply"})")), Error);
+    EXPECT_THROW(read_collection(study(R"({"name": "x", "mesh": "a.ply"}, {"name": "x", "mesh": "a.ply"})")), Error);
+    EXPECT_NO_THROW(read_collection(study(R"({"name": "x", "mesh": "a.ply"})")));
+}
+
+TEST(Collection, LabelsComeFromATable) {
+    const Scratch scratch;
+    sphere_file(scratch, "a.ply");
+    sphere_file(scratch, "b.ply", 2);
+    const Path file = scratch.file("truth.csv", "label;name;level\nwheel;a;1\n\"by; hand\";c;2\n");
+    const auto labels = read_labels(file);
+    EXPECT_EQ(labels, (std::map<std::string, std::string>{{"a", "wheel"}, {"c", "by; hand"}}));
+    EXPECT_EQ(read_labels(file, "level").at("c"), "2");
+    EXPECT_THROW(read_labels(file, "wrong"), Error);
+    EXPECT_THROW(read_labels(scratch.file("twice.csv", "name,label\na,1\na,2\n")), Error);
+    EXPECT_THROW(read_labels(scratch.file("short.csv", "name,x,label\na,1\n")), Error);
+    EXPECT_THROW(read_labels(scratch.file("empty.csv", "")), Error);
+    Collection collection = read_collection(scratch.path());
+    set_labels(collection, labels);
+    EXPECT_EQ(collection.objects[0].label, "wheel");
+    EXPECT_EQ(collection.objects[1].label, "");
+    EXPECT_EQ(collection.notes.size(), 2U);
+}
+
+TEST(ForEachObject, OneThatFailsDoesNotStopTheOthers) {
+    const Scratch scratch;
+    sphere_file(scratch, "a.ply");
+    (void)scratch.file("b.ply", "no mesh");
+    sphere_file(scratch, "c.ply", 2);
+    const Collection collection = read_collection(scratch.path());
+    const auto results = for_each_object(collection, ResultStore(), {"faces"}, faces_of);
+    ASSERT_EQ(results.size(), 3U);
+    EXPECT_EQ(results[0].result.GetUint64(), 32U);
+    EXPECT_TRUE(results[1].result.IsNull());
+    EXPECT_NE(results[1].problem.find("b.ply"), std::string::npos);
+    EXPECT_EQ(results[2].result.GetUint64(), 128U);
+}
+
+TEST(ForEachObject, WhatIsDoneIsNotDoneAgain) {
+    const Scratch scratch;
+    std::filesystem::create_directory(scratch / "in");
+    for (const char* name : {"in/a.ply", "in/b.ply", "in/c.ply"}) sphere_file(scratch, name, 1);
+    const ResultStore store(scratch / "out" / "objects");
+    std::atomic<int> calls = 0;
+    const auto run = [&](const std::string& options) {
+        calls = 0;
+        return for_each_object(read_collection(scratch / "in"), store, {"faces", options}, [&](const CollectionObject& object) {
+            ++calls;
+            return faces_of(object);
+        });
+    };
+    run("x");
+    EXPECT_EQ(calls, 3);
+    EXPECT_TRUE(run("x")[1].resumed);
+    EXPECT_EQ(calls, 0);
+    write_file(scratch / "out" / "objects" / "b.json", "{ cut o");
+    sphere_file(scratch, "in/c.ply", 2);
+    const auto results = run("x");
+    EXPECT_EQ(calls, 2);
+    EXPECT_EQ(results[2].result.GetUint64(), 128U);
+    run("y");
+    EXPECT_EQ(calls, 3);
+}
+
+TEST(ForEachObject, FailuresAreTriedAgainAndUsageIsThrown) {
+    const Scratch scratch;
+    sphere_file(scratch, "a.ply");
+    const ResultStore store(scratch / "objects");
+    const Collection collection = read_collection(scratch.path());
+    const auto failing = [](const CollectionObject&) -> Json { fail_input("a", "no", "yes"); };
+    EXPECT_EQ(for_each_object(collection, store, {"w"}, failing)[0].problem, "a: no (yes)");
+    EXPECT_EQ(for_each_object(collection, store, {"w"}, faces_of)[0].result.GetUint64(), 32U);
+    EXPECT_THROW(
+        for_each_object(collection, ResultStore(), {"w"}, [](const CollectionObject&) -> Json { fail_usage("no", "yes"); }),
+        Error);
+}
+
+TEST(ForEachObject, TheNumberOfThreadsDoesNotMatter) {
+    const Scratch scratch;
+    for (int i = 0; i < 9; ++i) sphere_file(scratch, std::string(1, char('a' + i)) + ".ply", i % 3);
+    const Collection collection = read_collection(scratch.path());
+    std::vector<std::vector<std::uint64_t>> runs;
+    for (const int count : {1, 3}) {
+        set_threads(count);
+        runs.emplace_back();
+        for (const auto& r : for_each_object(collection, ResultStore(), {"faces"}, faces_of))
+            runs.back().push_back(r.result.GetUint64());
+    }
+    set_threads(0);
+    EXPECT_EQ(runs[0], runs[1]);
+}
+
+}  // namespace
+}  // namespace ostraka
