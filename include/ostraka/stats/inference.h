@@ -1,0 +1,81 @@
+// What chance alone may explain: permutation tests, bootstrap intervals, false discoveries, the stability of clusters.
+#pragma once
+
+#include "ostraka/core/options.h"
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+namespace ostraka {
+
+/// q-values of p-values: calling all with q <= a discoveries keeps the expected share of false ones below a, if the tests are
+/// independent or positively dependent (Benjamini and Hochberg 1995). Throws Error (input) unless each p is from 0 to 1.
+std::vector<double> benjamini_hochberg(const std::vector<double>& p);
+/// The same under any dependence, larger by 1 + 1/2 + ... + 1/m (Benjamini and Yekutieli 2001).
+std::vector<double> benjamini_yekutieli(const std::vector<double>& p);
+
+/// (1 + number of `chance` that are at least `observed`) / (1 + their number): never 0 (Phipson and Smyth 2010). For tests that
+/// look for small values give both negated.
+double permutation_p_value(double observed, const std::vector<double>& chance);
+
+/// Distribution function of the standard normal distribution, and its inverse. Throws Error (usage) unless 0 < p < 1.
+double normal_probability(double x);
+double normal_quantile(double p);
+
+struct Interval {
+    double low = 0, high = 0;
+};
+
+struct BootstrapOptions {
+    int resamples = 2000;
+    double confidence = 0.95;
+    std::uint64_t seed = 1;
+    template <class Visitor>
+    void describe(Visitor& visit) {
+        visit("resamples", resamples, "resamples of the bootstrap", Range{1, 10000000});
+        visit("confidence", confidence, "confidence of intervals", Range{0.01, 0.9999});
+        visit("seed", seed, "seed of the random numbers", Range{0, 1e18});
+    }
+};
+
+/// A statistic of the samples with these indices; none where it is not defined.
+using SampleStatistic = std::function<std::optional<double>(const std::vector<std::size_t>& samples)>;
+
+/// Bootstrap interval of a statistic of `count` samples, bias-corrected and accelerated (Efron 1987). None for fewer than two
+/// samples, or where the statistic is not defined for all of them, for one left out, or for half of the resamples. Resamples run
+/// in parallel: `statistic` must not change what it shares.
+std::optional<Interval> bootstrap_interval(std::size_t count, const SampleStatistic& statistic,
+                                           const BootstrapOptions& options = {});
+
+struct StabilityOptions {
+    int resamples = 100;
+    double share = 0.8;  ///< of the samples, drawn without replacement
+    std::uint64_t seed = 1;
+    template <class Visitor>
+    void describe(Visitor& visit) {
+        visit("stability-resamples", resamples, "times the clusters are found anew in a part of the samples", Range{1, 100000});
+        visit("stability-share", share, "share of the samples in each such part", Range{0.05, 1});
+        visit("seed", seed, "seed of the random numbers", Range{0, 1e18});
+    }
+};
+
+/// How a cluster fares when clusters are found in parts of the samples.
+struct ClusterStability {
+    int cluster = 0;
+    std::size_t size = 0;
+    double jaccard = 0;    ///< mean over the resamples of the best overlap with a cluster found there
+    double recovered = 0;  ///< share of resamples with an overlap above 0.75
+    double dissolved = 0;  ///< share with one of at most 0.5
+    int resamples = 0;     ///< in which it has a sample; 0: nothing is known
+};
+
+/// Stability of each cluster (labels from 0 up; below 0 is noise) by Hennig (2007): Jaccard overlaps of what is left of it with
+/// the cluster found anew that fits it best. `cluster` gives labels for the samples of the given indices, in their order.
+/// Resamples run in parallel: it must not change what it shares. Throws Error (usage) if it gives another number of labels than
+/// samples.
+std::vector<ClusterStability> cluster_stability(const std::vector<int>& labels,
+                                                const std::function<std::vector<int>(const std::vector<std::size_t>&)>& cluster,
+                                                const StabilityOptions& options = {});
+
+}  // namespace ostraka

@@ -1,0 +1,127 @@
+#include "check_samples.h"
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/stats/k_means.h"
+#include "ostraka/stats/random.h"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ostraka {
+
+namespace {
+
+template <class Distance>
+std::vector<double> silhouettes_by(std::size_t n, const std::vector<int>& labels, const Distance& distance) {
+    if (labels.size() != n)
+        fail_usage("there are " + std::to_string(labels.size()) + " labels for " + std::to_string(n) + " samples",
+                   "give one label a sample");
+    const int most = *std::max_element(labels.begin(), labels.end());
+    std::vector<std::size_t> sizes(static_cast<std::size_t>(std::max(0, most + 1)));
+    for (const int label : labels)
+        if (label >= 0) ++sizes[static_cast<std::size_t>(label)];
+    std::vector<double> result(n, 0.0);
+    parallel_for(
+        n,
+        [&](std::size_t i) {
+            if (labels[i] < 0 || sizes[static_cast<std::size_t>(labels[i])] < 2) return;
+            std::vector<double> sums(sizes.size());
+            for (std::size_t j = 0; j < n; ++j)
+                if (labels[j] >= 0 && j != i) sums[static_cast<std::size_t>(labels[j])] += distance(i, j);
+            const auto own = static_cast<std::size_t>(labels[i]);
+            const double a = sums[own] / static_cast<double>(sizes[own] - 1);
+            double b = std::numeric_limits<double>::infinity();
+            for (std::size_t k = 0; k < sizes.size(); ++k)
+                if (k != own && sizes[k] > 0) b = std::min(b, sums[k] / static_cast<double>(sizes[k]));
+            if (std::isfinite(b) && std::max(a, b) > 0) result[i] = (b - a) / std::max(a, b);
+        },
+        16);
+    return result;
+}
+
+/// Draws as many samples as there are, evenly from their box along the principal directions.
+Eigen::MatrixXd reference(const Eigen::MatrixXd& turned, Random random) {
+    Eigen::MatrixXd result(turned.rows(), turned.cols());
+    for (Eigen::Index j = 0; j < turned.cols(); ++j) {
+        const double low = turned.col(j).minCoeff(), high = turned.col(j).maxCoeff();
+        for (Eigen::Index i = 0; i < turned.rows(); ++i) result(i, j) = random.uniform(low, high);
+    }
+    return result;
+}
+
+}  // namespace
+
+std::vector<double> silhouettes(const Eigen::MatrixXd& samples, const std::vector<int>& labels) {
+    require_samples(samples, "silhouettes");
+    const Eigen::MatrixXd columns = samples.transpose();
+    return silhouettes_by(static_cast<std::size_t>(samples.rows()), labels, [&](std::size_t i, std::size_t j) {
+        return (columns.col(static_cast<Eigen::Index>(i)) - columns.col(static_cast<Eigen::Index>(j))).stableNorm();
+    });
+}
+
+std::vector<double> silhouettes_of_distances(const Eigen::MatrixXd& distances, const std::vector<int>& labels) {
+    require_symmetric(distances, true, "silhouettes");
+    return silhouettes_by(static_cast<std::size_t>(distances.rows()), labels, [&](std::size_t i, std::size_t j) {
+        return distances(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+    });
+}
+
+ClusterCount propose_cluster_count(const Eigen::MatrixXd& samples, const ClusterCountOptions& options) {
+    check_options(options, "number of clusters");
+    require_samples(samples, "number of clusters");
+    const std::size_t different = distinct_rows(samples);
+    const std::size_t possible =
+        2 * different <= static_cast<std::size_t>(samples.rows()) ? different : std::max<std::size_t>(1, different - 1);
+    const int most = static_cast<int>(std::min(static_cast<std::size_t>(options.most), possible));
+
+    // Version b of the paper: the box lies along the principal directions.
+    Eigen::MatrixXd centred = samples.rowwise() - samples.row(0);
+    centred.rowwise() -= centred.colwise().mean().eval();
+    const double largest = centred.cwiseAbs().maxCoeff();
+    if (!std::isfinite(largest)) fail_input("number of clusters", "the values lie too far apart", "use another unit");
+    if (largest > 0) centred /= largest;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> principal(centred.transpose() * centred);
+    const Eigen::MatrixXd turned = centred * principal.eigenvectors();
+    const double whole = centred.squaredNorm(), least = 1e-24 * (whole > 0 ? whole : 1);
+
+    ClusterCount result;
+    double best = -std::numeric_limits<double>::infinity();
+    for (int k = 1; k <= most; ++k) {
+        KMeansOptions of_k = options.k_means;
+        of_k.clusters = k;
+        const KMeansResult found = k_means(centred, of_k);
+        ClusterCount::Row row;
+        row.clusters = k;
+        row.cost = largest > 0 ? found.cost * largest * largest : 0;
+        if (k > 1) {
+            for (const double s : silhouettes(centred, found.labels)) row.silhouette += s / static_cast<double>(samples.rows());
+            if (row.silhouette > best) best = row.silhouette, result.by_silhouette = k;
+        }
+        std::vector<double> logs(static_cast<std::size_t>(options.references));
+        parallel_for(
+            logs.size(),
+            [&](std::size_t b) {
+                logs[b] = std::log(std::max(least, k_means(reference(turned, Random(options.k_means.seed, b + 1)), of_k).cost));
+            },
+            1);
+        double mean = 0, square = 0;
+        for (const double value : logs) mean += value / static_cast<double>(logs.size());
+        for (const double value : logs) square += (value - mean) * (value - mean) / static_cast<double>(logs.size());
+        row.gap = mean - std::log(std::max(least, found.cost));
+        row.gap_error = std::sqrt(square * (1 + 1 / static_cast<double>(logs.size())));
+        result.rows.push_back(row);
+    }
+    result.by_gap = most;
+    for (std::size_t k = 0; k + 1 < result.rows.size(); ++k)
+        if (result.rows[k].gap >= result.rows[k + 1].gap - result.rows[k + 1].gap_error) {
+            result.by_gap = result.rows[k].clusters;
+            break;
+        }
+    result.proposed = options.criterion == "gap" ? result.by_gap : result.by_silhouette;
+    return result;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,240 @@
+#include "ostraka/stats/clustering.h"
+
+#include "check_samples.h"
+#include "ostraka/core/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+namespace ostraka {
+
+namespace {
+
+void check_reach(double epsilon, int minimum) {
+    if (!(epsilon >= 0)) fail_usage("the reach of DBSCAN is " + std::to_string(epsilon), "use a distance, 0 or more");
+    if (minimum < 1) fail_usage("the least number of neighbours is " + std::to_string(minimum), "use 1 or more");
+}
+
+template <class Distance>
+std::vector<int> dbscan_by(std::size_t n, double epsilon, int minimum, const Distance& distance) {
+    constexpr int unseen = -2, noise = -1;
+    std::vector<int> labels(n, unseen);
+    const auto neighbours = [&](std::size_t i) {
+        std::vector<std::size_t> near;
+        for (std::size_t j = 0; j < n; ++j)
+            if (j == i || distance(i, j) <= epsilon) near.push_back(j);
+        return near;
+    };
+    const auto many = static_cast<std::size_t>(minimum);
+    int clusters = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        if (labels[i] != unseen) continue;
+        std::vector<std::size_t> reached = neighbours(i);
+        if (reached.size() < many) {
+            labels[i] = noise;
+            continue;
+        }
+        const int label = labels[i] = clusters++;
+        for (std::size_t next = 0; next < reached.size(); ++next) {
+            const std::size_t j = reached[next];
+            if (labels[j] == noise) labels[j] = label;
+            if (labels[j] != unseen) continue;
+            labels[j] = label;
+            const std::vector<std::size_t> further = neighbours(j);
+            if (further.size() < many) continue;
+            for (const std::size_t k : further)
+                if (labels[k] < 0) reached.push_back(k);
+        }
+    }
+    return labels;
+}
+
+/// The representative of each sample's cluster after some merges.
+std::vector<int> numbered(const Linkage& tree, std::size_t merges) {
+    const auto n = static_cast<std::size_t>(tree.samples);
+    std::vector<int> parent(n + merges, -1);
+    for (std::size_t m = 0; m < merges; ++m) {
+        parent[static_cast<std::size_t>(tree.merges[m].first)] = static_cast<int>(n + m);
+        parent[static_cast<std::size_t>(tree.merges[m].second)] = static_cast<int>(n + m);
+    }
+    // Parents have larger numbers than their children.
+    std::vector<int> top(parent.size());
+    for (std::size_t i = parent.size(); i-- > 0;)
+        top[i] = parent[i] < 0 ? static_cast<int>(i) : top[static_cast<std::size_t>(parent[i])];
+    std::vector<int> label(parent.size(), -1), result(n);
+    int count = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        int& name = label[static_cast<std::size_t>(top[i])];
+        if (name < 0) name = count++;
+        result[i] = name;
+    }
+    return result;
+}
+
+}  // namespace
+
+std::vector<int> dbscan(const Eigen::MatrixXd& samples, double epsilon, int minimum) {
+    check_reach(epsilon, minimum);
+    require_samples(samples, "DBSCAN");
+    const Eigen::MatrixXd columns = samples.transpose();
+    return dbscan_by(static_cast<std::size_t>(samples.rows()), epsilon, minimum, [&](std::size_t i, std::size_t j) {
+        return (columns.col(static_cast<Eigen::Index>(i)) - columns.col(static_cast<Eigen::Index>(j))).stableNorm();
+    });
+}
+
+std::vector<int> dbscan_of_distances(const Eigen::MatrixXd& distances, double epsilon, int minimum) {
+    check_reach(epsilon, minimum);
+    require_symmetric(distances, true, "DBSCAN");
+    return dbscan_by(static_cast<std::size_t>(distances.rows()), epsilon, minimum, [&](std::size_t i, std::size_t j) {
+        const auto a = static_cast<Eigen::Index>(std::min(i, j)), b = static_cast<Eigen::Index>(std::max(i, j));
+        return distances(a, b);
+    });
+}
+
+Eigen::MatrixXd distance_matrix(const Eigen::MatrixXd& samples) {
+    require_samples(samples, "distances");
+    const Eigen::MatrixXd columns = samples.transpose();
+    Eigen::MatrixXd result = Eigen::MatrixXd::Zero(samples.rows(), samples.rows());
+    for (Eigen::Index i = 0; i < samples.rows(); ++i)
+        for (Eigen::Index j = 0; j < i; ++j) result(i, j) = result(j, i) = (columns.col(i) - columns.col(j)).stableNorm();
+    return result;
+}
+
+double neighbour_epsilon(const Eigen::MatrixXd& samples, int neighbours) {
+    if (neighbours < 1) fail_usage("the number of neighbours is " + std::to_string(neighbours), "use 1 or more");
+    const Eigen::MatrixXd distances = distance_matrix(samples);
+    const auto n = static_cast<std::size_t>(samples.rows()), k = std::min(static_cast<std::size_t>(neighbours), n - 1);
+    if (k == 0) return 0;
+    double sum = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        std::vector<double> others;
+        for (std::size_t j = 0; j < n; ++j)
+            if (j != i) others.push_back(distances(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)));
+        std::partial_sort(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(k), others.end());
+        sum += std::accumulate(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(k), 0.0) / static_cast<double>(k);
+    }
+    return sum / static_cast<double>(n);
+}
+
+double volume_epsilon(const Eigen::MatrixXd& samples, int minimum) {
+    check_reach(0, minimum);
+    require_samples(samples, "DBSCAN");
+    // The ball of radius r in d dimensions holds pi^(d/2) r^d / Gamma(d/2 + 1); in logarithms, so that nothing overflows.
+    double log_volume = 0;
+    int dimensions = 0;
+    for (Eigen::Index j = 0; j < samples.cols(); ++j)
+        if (const double extent = samples.col(j).maxCoeff() - samples.col(j).minCoeff(); extent > 0) {
+            log_volume += std::log(extent);
+            ++dimensions;
+        }
+    if (dimensions == 0) return 0;
+    const double d = dimensions, n = static_cast<double>(samples.rows());
+    return std::exp((log_volume + std::log(minimum) + std::lgamma(d / 2 + 1) - std::log(n) - d / 2 * std::log(std::numbers::pi)) /
+                    d);
+}
+
+Linkage average_linkage(const Eigen::MatrixXd& distances) { return linkage(distances, "average"); }
+
+Linkage linkage(const Eigen::MatrixXd& distances, const std::string& method) {
+    if (method != "average" && method != "single" && method != "complete")
+        fail_usage("the linkage is '" + method + "'", "use average, single or complete");
+    require_symmetric(distances, true, "linkage");
+    const Eigen::Index n = distances.rows();
+    Eigen::MatrixXd between = (distances + distances.transpose()) / 2;
+    std::vector<double> sizes(static_cast<std::size_t>(n), 1.0);
+    std::vector<bool> gone(static_cast<std::size_t>(n));
+    struct Step {
+        Eigen::Index a, b;
+        double height;
+    };
+    std::vector<Step> steps;
+    std::vector<Eigen::Index> chain;
+    for (Eigen::Index start = 0; static_cast<Eigen::Index>(steps.size()) + 1 < n;) {
+        if (chain.empty()) {
+            while (gone[static_cast<std::size_t>(start)]) ++start;
+            chain.push_back(start);
+        }
+        const Eigen::Index last = chain.back(), before = chain.size() > 1 ? chain[chain.size() - 2] : -1;
+        // The nearest other cluster; the one before in the chain is kept among equals, so that chains end.
+        Eigen::Index nearest = before;
+        double least = before < 0 ? std::numeric_limits<double>::infinity() : between(last, before);
+        for (Eigen::Index j = 0; j < n; ++j)
+            if (j != last && !gone[static_cast<std::size_t>(j)] && between(last, j) < least)
+                least = between(last, j), nearest = j;
+        if (nearest != before) {
+            chain.push_back(nearest);
+            continue;
+        }
+        chain.resize(chain.size() - 2);
+        const Eigen::Index a = std::min(last, before), b = std::max(last, before);
+        steps.push_back({a, b, least});
+        const double na = sizes[static_cast<std::size_t>(a)], nb = sizes[static_cast<std::size_t>(b)];
+        for (Eigen::Index j = 0; j < n; ++j) {
+            if (j == a || j == b || gone[static_cast<std::size_t>(j)]) continue;
+            const double da = between(a, j), db = between(b, j);
+            between(a, j) = between(j, a) = method == "single"     ? std::min(da, db)
+                                            : method == "complete" ? std::max(da, db)
+                                                                   : (na * da + nb * db) / (na + nb);
+        }
+        sizes[static_cast<std::size_t>(a)] += nb;
+        gone[static_cast<std::size_t>(b)] = true;
+    }
+    std::stable_sort(steps.begin(), steps.end(), [](const Step& x, const Step& y) { return x.height < y.height; });
+
+    Linkage tree;
+    tree.samples = static_cast<int>(n);
+    std::vector<int> cluster(static_cast<std::size_t>(n)), size(static_cast<std::size_t>(n), 1),
+        root(static_cast<std::size_t>(n));
+    std::iota(cluster.begin(), cluster.end(), 0);
+    std::iota(root.begin(), root.end(), 0);
+    const auto find = [&](Eigen::Index i) {
+        auto at = static_cast<std::size_t>(i);
+        while (root[at] != static_cast<int>(at))
+            at = static_cast<std::size_t>(root[at] = root[static_cast<std::size_t>(root[at])]);
+        return at;
+    };
+    for (const Step& step : steps) {
+        const std::size_t a = find(step.a), b = find(step.b);
+        const int sum = size[a] + size[b];
+        tree.merges.push_back({std::min(cluster[a], cluster[b]), std::max(cluster[a], cluster[b]), step.height, sum});
+        root[b] = static_cast<int>(a);
+        size[a] = sum;
+        cluster[a] = static_cast<int>(n) + static_cast<int>(tree.merges.size()) - 1;
+    }
+    return tree;
+}
+
+std::vector<int> cut_at(const Linkage& tree, double height) {
+    std::size_t merges = 0;
+    while (merges < tree.merges.size() && tree.merges[merges].height <= height) ++merges;
+    return numbered(tree, merges);
+}
+
+std::vector<int> cut_into(const Linkage& tree, int clusters) {
+    if (clusters < 1 || clusters > tree.samples)
+        fail_usage("the number of clusters is " + std::to_string(clusters), "use 1 to " + std::to_string(tree.samples));
+    return numbered(tree, static_cast<std::size_t>(tree.samples - clusters));
+}
+
+std::vector<int> leaf_order(const Linkage& tree) {
+    std::vector<int> order;
+    std::vector<int> waiting;
+    if (tree.samples > 0) waiting.push_back(tree.merges.empty() ? 0 : tree.samples + static_cast<int>(tree.merges.size()) - 1);
+    while (!waiting.empty()) {
+        const int cluster = waiting.back();
+        waiting.pop_back();
+        if (cluster < tree.samples) {
+            order.push_back(cluster);
+            continue;
+        }
+        const Merge& merge = tree.merges[static_cast<std::size_t>(cluster - tree.samples)];
+        waiting.push_back(merge.second);
+        waiting.push_back(merge.first);
+    }
+    return order;
+}
+
+}  // namespace ostraka

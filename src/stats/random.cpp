@@ -1,0 +1,56 @@
+#include "ostraka/stats/random.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+namespace ostraka {
+
+namespace {
+
+/// A number in which each bit of `x` has a part (SplitMix64; Steele, Lea and Flood 2014).
+std::uint64_t mixed(std::uint64_t x) {
+    x += 0x9e3779b97f4a7c15U;
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9U;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111ebU;
+    return x ^ (x >> 31);
+}
+
+}  // namespace
+
+Random::Random(std::uint64_t seed, std::uint64_t stream) : engine_(mixed(mixed(seed) + stream)) {}
+
+std::size_t Random::below(std::size_t count) {
+    // Draws in the last, incomplete run of `count` numbers are thrown away, so that none is likelier than another.
+    const std::uint64_t n = count,
+                        last = std::numeric_limits<std::uint64_t>::max() - std::numeric_limits<std::uint64_t>::max() % n;
+    for (;;)
+        if (const std::uint64_t x = engine_(); x < last) return static_cast<std::size_t>(x % n);
+}
+
+double Random::normal() {
+    if (has_spare_) {
+        has_spare_ = false;
+        return spare_;
+    }
+    const double radius = std::sqrt(-2 * std::log(1 - uniform())), angle = 2 * std::numbers::pi * uniform();
+    spare_ = radius * std::sin(angle);
+    has_spare_ = true;
+    return radius * std::cos(angle);
+}
+
+std::vector<std::size_t> Random::permutation(std::size_t count) {
+    std::vector<std::size_t> list(count);
+    std::iota(list.begin(), list.end(), std::size_t{0});
+    shuffle(list);
+    return list;
+}
+
+std::vector<std::size_t> Random::resample(std::size_t count) {
+    std::vector<std::size_t> list(count);
+    for (std::size_t& i : list) i = below(count);
+    return list;
+}
+
+}  // namespace ostraka

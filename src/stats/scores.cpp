@@ -1,0 +1,214 @@
+#include "ostraka/stats/scores.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/stats/random.h"
+#include "ostraka/stats/summary.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <numeric>
+
+namespace ostraka {
+
+namespace {
+
+void require_same_length(std::size_t a, std::size_t b) {
+    if (a != b)
+        fail_usage("the lists have " + std::to_string(a) + " and " + std::to_string(b) + " entries",
+                   "give one of each for every sample");
+}
+
+double pairs(double count) { return count * (count - 1) / 2; }
+
+double share(std::size_t part, std::size_t whole) {
+    return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+std::size_t require_both(const std::vector<double>& values, const std::vector<bool>& truth) {
+    require_same_length(values.size(), truth.size());
+    require_finite(values, "scores");
+    const auto positives = static_cast<std::size_t>(std::count(truth.begin(), truth.end(), true));
+    if (positives == 0 || positives == truth.size())
+        fail_input("scores", positives == 0 ? "no sample is positive" : "no sample is negative", "give samples of both kinds");
+    return positives;
+}
+
+/// A distinct value and how many samples have it.
+struct Step {
+    double value;
+    std::size_t positives = 0, negatives = 0;
+};
+
+std::vector<Step> steps_up(const std::vector<double>& values, const std::vector<bool>& truth) {
+    std::vector<std::size_t> order(values.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return values[a] < values[b]; });
+    std::vector<Step> steps;
+    for (const std::size_t i : order) {
+        if (steps.empty() || steps.back().value != values[i]) steps.push_back({values[i]});
+        ++(truth[i] ? steps.back().positives : steps.back().negatives);
+    }
+    return steps;
+}
+
+}  // namespace
+
+double adjusted_rand_index(const std::vector<int>& labels, const std::vector<int>& truth) {
+    require_same_length(labels.size(), truth.size());
+    if (labels.empty()) fail_input("adjusted Rand index", "no sample is given", "give at least one");
+    std::map<std::pair<long, long>, double> both;
+    std::map<long, double> rows, columns;
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+        const long alone = -1 - static_cast<long>(i);
+        const long a = labels[i] < 0 ? alone : labels[i], b = truth[i] < 0 ? alone : truth[i];
+        both[{a, b}] += 1;
+        rows[a] += 1;
+        columns[b] += 1;
+    }
+    double together = 0, in_rows = 0, in_columns = 0;
+    for (const auto& [key, count] : both) together += pairs(count);
+    for (const auto& [key, count] : rows) in_rows += pairs(count);
+    for (const auto& [key, count] : columns) in_columns += pairs(count);
+    const double all = pairs(static_cast<double>(labels.size()));
+    const double expected = all > 0 ? in_rows * in_columns / all : 0, most = (in_rows + in_columns) / 2;
+    return most == expected ? 1.0 : (together - expected) / (most - expected);
+}
+
+double ConfusionScores::precision() const { return share(true_positive, true_positive + false_positive); }
+double ConfusionScores::recall() const { return share(true_positive, true_positive + false_negative); }
+double ConfusionScores::f1() const { return share(2 * true_positive, 2 * true_positive + false_positive + false_negative); }
+double ConfusionScores::accuracy() const { return share(true_positive + true_negative, count()); }
+
+void ConfusionScores::add(bool predicted, bool truth) {
+    ++(predicted ? (truth ? true_positive : false_positive) : (truth ? false_negative : true_negative));
+}
+
+ConfusionScores confusion(const std::vector<bool>& predicted, const std::vector<bool>& truth) {
+    require_same_length(predicted.size(), truth.size());
+    ConfusionScores scores;
+    for (std::size_t i = 0; i < truth.size(); ++i) scores.add(predicted[i], truth[i]);
+    return scores;
+}
+
+RocCurve roc_curve(const std::vector<double>& values, const std::vector<bool>& truth) {
+    const std::size_t positives = require_both(values, truth), negatives = truth.size() - positives;
+    std::vector<Step> steps = steps_up(values, truth);
+    std::reverse(steps.begin(), steps.end());
+    RocCurve curve;
+    curve.points.push_back({0, 0, std::numeric_limits<double>::infinity()});
+    std::size_t tp = 0, fp = 0;
+    double doubled = 0;  // twice the pairs below the curve: a whole number, so that nothing is rounded
+    for (const Step& step : steps) {
+        doubled += static_cast<double>(step.negatives) * static_cast<double>(2 * tp + step.positives);
+        tp += step.positives;
+        fp += step.negatives;
+        curve.points.push_back({share(fp, negatives), share(tp, positives), step.value});
+    }
+    curve.area = doubled / 2 / static_cast<double>(positives) / static_cast<double>(negatives);
+    return curve;
+}
+
+Threshold best_threshold(const std::vector<double>& values, const std::vector<bool>& truth, Side side) {
+    const std::size_t positives = require_both(values, truth), negatives = truth.size() - positives;
+    const std::vector<Step> steps = steps_up(values, truth);
+    Threshold best;
+    double best_gap = -1;
+    const auto consider = [&](double value, double gap, bool above, const ConfusionScores& scores) {
+        // Scores are compared without division, f1 = 2 tp / (tp + fp + positives).
+        const double now = static_cast<double>(scores.true_positive) *
+                           static_cast<double>(best.scores.true_positive + best.scores.false_positive + positives),
+                     then = static_cast<double>(best.scores.true_positive) *
+                            static_cast<double>(scores.true_positive + scores.false_positive + positives);
+        if (best_gap >= 0 && (now < then || (now == then && gap <= best_gap))) return;
+        best = {value, above, scores};
+        best_gap = gap;
+    };
+    for (const bool above : {true, false}) {
+        if (side == (above ? Side::below : Side::above)) continue;
+        // Steps 0 to i - 1 lie below the threshold.
+        std::size_t p = 0, n = 0;
+        for (std::size_t i = 0; i <= steps.size(); ++i) {
+            const bool inside = i > 0 && i < steps.size();
+            const double value = i == 0   ? steps.front().value
+                                 : inside ? steps[i - 1].value + (steps[i].value - steps[i - 1].value) / 2
+                                          : steps.back().value;
+            const double gap = inside ? steps[i].value - steps[i - 1].value : 0;
+            const bool all_or_none = above ? i == steps.size() : i == 0;
+            if (!all_or_none)
+                consider(value, gap, above,
+                         above ? ConfusionScores{positives - p, negatives - n, p, n}
+                               : ConfusionScores{p, n, positives - p, negatives - n});
+            if (i < steps.size()) p += steps[i].positives, n += steps[i].negatives;
+        }
+    }
+    return best;
+}
+
+CrossValidation cross_validate(const std::vector<bool>& truth, const Learner& learn, const CrossValidationOptions& options) {
+    check_options(options, "cross-validation");
+    std::vector<std::size_t> kinds[2];
+    for (std::size_t i = 0; i < truth.size(); ++i) kinds[truth[i] ? 1 : 0].push_back(i);
+    const std::size_t rarer = std::min(kinds[0].size(), kinds[1].size());
+    if (rarer < 2)
+        fail_input("cross-validation",
+                   "there are " + std::to_string(kinds[1].size()) + " positive and " + std::to_string(kinds[0].size()) +
+                       " negative samples",
+                   "give at least two of each");
+    const std::size_t folds = std::min(static_cast<std::size_t>(options.folds), rarer);
+    const auto repeats = static_cast<std::size_t>(options.repeats);
+    std::vector<std::vector<bool>> answers(repeats, std::vector<bool>(truth.size()));
+    parallel_for(
+        repeats,
+        [&](std::size_t r) {
+            Random random(options.seed, r);
+            std::vector<std::size_t> fold(truth.size());
+            std::size_t dealt = 0;
+            for (const auto& kind : kinds) {
+                std::vector<std::size_t> order = kind;
+                random.shuffle(order);
+                for (const std::size_t i : order) fold[i] = dealt++ % folds;
+            }
+            for (std::size_t f = 0; f < folds; ++f) {
+                std::vector<std::size_t> known, asked;
+                for (std::size_t i = 0; i < truth.size(); ++i) (fold[i] == f ? asked : known).push_back(i);
+                const std::vector<bool> said = learn(known, asked);
+                require_same_length(said.size(), asked.size());
+                for (std::size_t k = 0; k < asked.size(); ++k) answers[r][asked[k]] = said[k];
+            }
+        },
+        1);
+    CrossValidation result;
+    result.positive.assign(truth.size(), 0.0);
+    for (const auto& said : answers) {
+        const ConfusionScores scores = confusion(said, truth);
+        if (result.f1.empty()) result.first = scores;
+        result.f1.push_back(scores.f1());
+        for (std::size_t i = 0; i < truth.size(); ++i) result.positive[i] += said[i] ? 1 : 0;
+    }
+    for (double& share_of : result.positive) share_of /= static_cast<double>(repeats);
+    const Summary summary = summarise(result.f1, "F1");
+    result.mean_f1 = summary.mean;
+    result.deviation = summary.deviation.value_or(0);
+    return result;
+}
+
+CrossValidation cross_validate_threshold(const std::vector<double>& values, const std::vector<bool>& truth, Side side,
+                                         const CrossValidationOptions& options) {
+    require_both(values, truth);
+    return cross_validate(
+        truth,
+        [&](const std::vector<std::size_t>& known, const std::vector<std::size_t>& asked) {
+            std::vector<double> v;
+            std::vector<bool> t;
+            for (const std::size_t i : known) v.push_back(values[i]), t.push_back(truth[i]);
+            const Threshold threshold = best_threshold(v, t, side);
+            std::vector<bool> said;
+            for (const std::size_t i : asked) said.push_back(threshold.positive(values[i]));
+            return said;
+        },
+        options);
+}
+
+}  // namespace ostraka

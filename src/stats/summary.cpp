@@ -1,0 +1,138 @@
+#include "ostraka/stats/summary.h"
+
+#include "ostraka/core/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace ostraka {
+
+namespace {
+
+/// Values in ascending order with the sums of weights up to each.
+struct Distribution {
+    std::vector<double> values, sums;
+
+    Distribution(const std::vector<double>& given, const std::vector<double>& weights, const std::string& where) {
+        if (given.empty()) fail_input(where, "has no value here", "choose a region with values");
+        if (weights.size() != given.size())
+            fail_input(where,
+                       "has " + std::to_string(given.size()) + " values and " + std::to_string(weights.size()) + " weights",
+                       "give one weight a value");
+        for (std::size_t i = 0; i < given.size(); ++i) {
+            if (!std::isfinite(given[i]))
+                fail_input(where, "value " + std::to_string(i) + " is not a finite number",
+                           "mend the map or choose another region");
+            if (!(weights[i] >= 0 && std::isfinite(weights[i])))
+                fail_input(where, "weight " + std::to_string(i) + " is negative or not finite", "is a face broken?");
+        }
+        std::vector<std::size_t> order(given.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        std::stable_sort(order.begin(), order.end(), [&](auto i, auto j) { return given[i] < given[j]; });
+        const bool none = std::all_of(weights.begin(), weights.end(), [](double w) { return w == 0; });
+        double sum = 0;
+        for (const std::size_t i : order) {
+            const double weight = none ? 1 : weights[i];
+            if (weight == 0) continue;
+            values.push_back(given[i]);
+            sums.push_back(sum += weight);
+        }
+    }
+
+    [[nodiscard]] double at(double share) const {
+        const double wanted = share * sums.back();
+        const auto place = std::lower_bound(sums.begin(), sums.end(), wanted) - sums.begin();
+        const auto i = std::min<std::size_t>(static_cast<std::size_t>(place), values.size() - 1);
+        return sums[i] == wanted && i + 1 < values.size() ? (values[i] + values[i + 1]) / 2 : values[i];
+    }
+};
+
+void require_sample(const std::vector<double>& values, const std::string& where) {
+    if (values.empty()) fail_input(where, "no value is given", "give at least one");
+    require_finite(values, where);
+}
+
+/// Type 7 of Hyndman and Fan, of values in ascending order.
+double interpolated(const std::vector<double>& sorted, double share) {
+    const double at = share * static_cast<double>(sorted.size() - 1);
+    const auto below = std::min(static_cast<std::size_t>(at), sorted.size() - 1);
+    const double rest = at - static_cast<double>(below);
+    return rest == 0 ? sorted[below] : sorted[below] + rest * (sorted[below + 1] - sorted[below]);
+}
+
+}  // namespace
+
+Statistics statistics(const std::vector<double>& values, const std::vector<double>& weights, const std::string& where) {
+    const Distribution sorted(values, weights, where);
+    Statistics result;
+    result.count = values.size();
+    result.weight = sorted.sums.back();
+    // About the median, so that nothing is lost where values are large and near each other.
+    result.median = sorted.at(0.5);
+    double sum = 0, square = 0, before = 0;
+    for (std::size_t i = 0; i < sorted.values.size(); ++i) {
+        const double weight = sorted.sums[i] - before, off = sorted.values[i] - result.median;
+        before = sorted.sums[i];
+        sum += weight * off;
+        square += weight * off * off;
+    }
+    const double shift = sum / result.weight;
+    result.mean = result.median + shift;
+    result.deviation = std::sqrt(std::max(0.0, square / result.weight - shift * shift));
+    result.integral = result.mean * result.weight;
+    result.min = sorted.values.front();
+    result.max = sorted.values.back();
+    result.percentile_5 = sorted.at(0.05);
+    result.percentile_25 = sorted.at(0.25);
+    result.percentile_75 = sorted.at(0.75);
+    result.percentile_95 = sorted.at(0.95);
+    return result;
+}
+
+double quantile(const std::vector<double>& values, const std::vector<double>& weights, double share, const std::string& where) {
+    if (!(share >= 0 && share <= 1)) fail_usage("a quantile at " + std::to_string(share), "use a share from 0 to 1");
+    return Distribution(values, weights, where).at(share);
+}
+
+void require_finite(const std::vector<double>& values, const std::string& where) {
+    for (std::size_t i = 0; i < values.size(); ++i)
+        if (!std::isfinite(values[i]))
+            fail_input(where, "value " + std::to_string(i) + " is not a finite number", "leave it out, or mend it");
+}
+
+Summary summarise(const std::vector<double>& values, const std::string& where) {
+    require_sample(values, where);
+    std::vector<double> sorted = values;
+    std::sort(sorted.begin(), sorted.end());
+    Summary result;
+    result.count = sorted.size();
+    result.min = sorted.front();
+    result.max = sorted.back();
+    result.median = interpolated(sorted, 0.5);
+    // About the median and in units of the range, so that nothing is lost, overflows or vanishes.
+    const double n = static_cast<double>(result.count);
+    const double unit = std::max(result.max / 2 - result.min / 2, 0.0);
+    double sum = 0, square = 0;
+    if (unit > 0)
+        for (const double value : sorted) {
+            const double off = (value / 2 - result.median / 2) / unit;
+            sum += off;
+            square += off * off;
+        }
+    result.mean = std::clamp(result.median + sum / n * 2 * unit, result.min, result.max);
+    if (result.count > 1) {
+        result.deviation = 2 * unit * std::sqrt(std::max(0.0, square - sum * sum / n) / (n - 1));
+        if (result.mean != 0) result.variation = *result.deviation / std::abs(result.mean);
+    }
+    return result;
+}
+
+double sample_quantile(std::vector<double> values, double share, const std::string& where) {
+    if (!(share >= 0 && share <= 1)) fail_usage("a quantile at " + std::to_string(share), "use a share from 0 to 1");
+    require_sample(values, where);
+    std::sort(values.begin(), values.end());
+    return interpolated(values, share);
+}
+
+}  // namespace ostraka

@@ -1,0 +1,197 @@
+#include "ostraka/stats/k_means.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/stats/random.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+namespace ostraka {
+namespace {
+
+Eigen::MatrixXd column(const std::vector<double>& values) {
+    return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+/// Balls of deviation 1 about centres that lie `apart` from each other on an axis each.
+Eigen::MatrixXd balls(int clusters, int each, double apart, std::uint64_t seed) {
+    Random random(seed);
+    Eigen::MatrixXd samples(clusters * each, clusters);
+    for (Eigen::Index i = 0; i < samples.rows(); ++i)
+        for (Eigen::Index j = 0; j < samples.cols(); ++j) samples(i, j) = random.normal() + (i % clusters == j ? apart : 0);
+    return samples;
+}
+
+TEST(KMeans, OfPilesByHand) {
+    const KMeansResult found = k_means(column({0, 1, 10, 11, 12, 100}), {.clusters = 3});
+    EXPECT_EQ(found.labels, (std::vector<int>{1, 1, 0, 0, 0, 2})) << "by falling size";
+    EXPECT_NEAR(found.centres(0, 0), 11, 1e-12);
+    EXPECT_NEAR(found.centres(1, 0), 0.5, 1e-12);
+    EXPECT_NEAR(found.centres(2, 0), 100, 1e-12);
+    EXPECT_NEAR(found.cost, 0.5 + 2, 1e-12);
+    EXPECT_TRUE(found.converged);
+}
+
+TEST(KMeans, FindsBallsWhereverTheyAreAndInAnyUnit) {
+    const Eigen::MatrixXd samples = balls(4, 30, 20, 1);
+    for (const double scale : {1.0, 1e-150, 1e150})
+        for (const double shift : {0.0, 1e6}) {
+            const KMeansResult found = k_means(scale * (samples.array() + shift).matrix(), {.clusters = 4});
+            for (int i = 0; i < samples.rows(); ++i) ASSERT_EQ(found.labels[i], found.labels[i % 4]) << scale << ' ' << shift;
+            ASSERT_EQ(std::set<int>(found.labels.begin(), found.labels.end()).size(), 4u);
+        }
+}
+
+TEST(KMeans, NoSampleLiesNearerToAnotherCentre) {
+    const Eigen::MatrixXd samples = balls(3, 40, 2, 7);
+    const KMeansResult found = k_means(samples, {.clusters = 5});
+    ASSERT_TRUE(found.converged);
+    double cost = 0;
+    for (Eigen::Index i = 0; i < samples.rows(); ++i) {
+        const double own = (samples.row(i) - found.centres.row(found.labels[i])).squaredNorm();
+        cost += own;
+        for (Eigen::Index k = 0; k < 5; ++k) EXPECT_LE(own, (samples.row(i) - found.centres.row(k)).squaredNorm() + 1e-12);
+    }
+    EXPECT_NEAR(found.cost, cost, 1e-9 * cost);
+    for (int k = 0; k < 5; ++k) {
+        Eigen::RowVectorXd mean = Eigen::RowVectorXd::Zero(3);
+        int count = 0;
+        for (Eigen::Index i = 0; i < samples.rows(); ++i)
+            if (found.labels[i] == k) mean += samples.row(i), ++count;
+        ASSERT_GT(count, 0);
+        EXPECT_LT((mean / count - found.centres.row(k)).norm(), 1e-12);
+    }
+}
+
+TEST(KMeans, OfIdenticalAndOfFewSamples) {
+    const KMeansResult same = k_means(Eigen::MatrixXd::Constant(6, 2, 0.3), {.clusters = 3});
+    EXPECT_EQ(same.labels, std::vector<int>(6, 0));
+    EXPECT_EQ(same.centres.rows(), 1);
+    EXPECT_EQ(same.centres(0, 1), 0.3);
+    EXPECT_EQ(same.cost, 0);
+
+    const KMeansResult two = k_means(column({5, 7, 5, 7, 7}), {.clusters = 4});
+    EXPECT_EQ(two.labels, (std::vector<int>{1, 0, 1, 0, 0}));
+    EXPECT_EQ(two.centres.rows(), 2);
+
+    const KMeansResult one = k_means(column({5}), {.clusters = 1});
+    EXPECT_EQ(one.labels, std::vector<int>{0});
+    EXPECT_EQ(one.centres(0, 0), 5);
+
+    const KMeansResult each = k_means(column({1, 2, 3, 4, 5}), {.clusters = 5});
+    EXPECT_EQ(each.labels, (std::vector<int>{0, 1, 2, 3, 4}));
+    EXPECT_EQ(each.cost, 0);
+}
+
+TEST(KMeans, NeverLosesACluster) {
+    // One centre drawn far out and duplicates elsewhere are what empties clusters.
+    for (std::uint64_t seed = 0; seed < 50; ++seed) {
+        Random random(seed);
+        Eigen::MatrixXd samples(20, 2);
+        for (Eigen::Index i = 0; i < 20; ++i)
+            for (Eigen::Index j = 0; j < 2; ++j) samples(i, j) = static_cast<double>(random.below(4));
+        std::set<std::pair<double, double>> distinct;
+        for (Eigen::Index i = 0; i < 20; ++i) distinct.insert({samples(i, 0), samples(i, 1)});
+        const int k = static_cast<int>(distinct.size());
+        const KMeansResult found = k_means(samples, {.clusters = k, .restarts = 1, .seed = seed});
+        EXPECT_EQ(std::set<int>(found.labels.begin(), found.labels.end()).size(), distinct.size());
+        EXPECT_LT(found.cost, 1e-20) << "as many clusters as distinct samples";
+    }
+}
+
+TEST(KMeans, IsTheSameForAnyNumberOfThreads) {
+    const Eigen::MatrixXd samples = balls(5, 40, 3, 11);
+    const int before = threads();
+    set_threads(1);
+    const KMeansResult one = k_means(samples, {.clusters = 6});
+    const ClusterCount count_one = propose_cluster_count(samples, {.most = 4, .references = 5});
+    set_threads(3);
+    const KMeansResult three = k_means(samples, {.clusters = 6});
+    const ClusterCount count_three = propose_cluster_count(samples, {.most = 4, .references = 5});
+    set_threads(before);
+    EXPECT_EQ(one.labels, three.labels);
+    EXPECT_EQ(one.centres, three.centres);
+    EXPECT_EQ(one.cost, three.cost);
+    for (std::size_t k = 0; k < count_one.rows.size(); ++k) EXPECT_EQ(count_one.rows[k].gap, count_three.rows[k].gap);
+}
+
+TEST(KMeans, RefusesWhatItCannotUse) {
+    EXPECT_THROW(k_means(Eigen::MatrixXd(0, 2)), Error);
+    EXPECT_THROW(k_means(Eigen::MatrixXd(2, 0)), Error);
+    Eigen::MatrixXd bad = Eigen::MatrixXd::Zero(4, 2);
+    bad(2, 1) = std::nan("");
+    try {
+        k_means(bad);
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::input);
+        EXPECT_NE(std::string(error.what()).find("row 2, column 1"), std::string::npos);
+    }
+    EXPECT_THROW(k_means(column({1, 2}), {.clusters = 0}), Error);
+    EXPECT_THROW(k_means(column({1, 2}), {.restarts = 0}), Error);
+}
+
+TEST(Standardised, HasMeanZeroAndDeviationOne) {
+    Eigen::MatrixXd samples(4, 3);
+    samples << 1, 1e9, 0.1, 2, 1e9 + 1, 0.1, 3, 1e9 + 2, 0.1, 6, 1e9 + 5, 0.1;
+    const Eigen::MatrixXd s = standardised(samples);
+    for (int j = 0; j < 2; ++j) {
+        EXPECT_NEAR(s.col(j).mean(), 0, 1e-12);
+        EXPECT_NEAR(s.col(j).squaredNorm() / 3, 1, 1e-12);
+    }
+    EXPECT_TRUE(s.col(2).isZero(0)) << "a column without variation";
+    EXPECT_TRUE(standardised(samples.topRows(1)).isZero(0));
+}
+
+TEST(Silhouette, ByHand) {
+    // 0 and 1 against 10: a = 1, b = 10 and 9; 10 is alone.
+    const std::vector<double> s = silhouettes(column({0, 1, 10}), {0, 0, 1});
+    EXPECT_DOUBLE_EQ(s[0], 9.0 / 10);
+    EXPECT_DOUBLE_EQ(s[1], 8.0 / 9);
+    EXPECT_EQ(s[2], 0);
+    Eigen::MatrixXd distances(3, 3);
+    distances << 0, 1, 10, 1, 0, 9, 10, 9, 0;
+    EXPECT_EQ(silhouettes_of_distances(distances, {0, 0, 1}), s);
+    // Noise has none and counts for nobody.
+    const std::vector<double> with_noise = silhouettes(column({0, 1, 3, 10}), {0, 0, -1, 1});
+    EXPECT_EQ(with_noise[2], 0);
+    EXPECT_DOUBLE_EQ(with_noise[0], 9.0 / 10);
+    EXPECT_EQ(silhouettes(column({1, 2}), {0, 0}), std::vector<double>(2, 0.0)) << "one cluster";
+    EXPECT_EQ(silhouettes(column({1, 1, 1}), {0, 0, 1}), std::vector<double>(3, 0.0)) << "identical samples";
+    EXPECT_THROW(silhouettes(column({1, 2}), {0}), Error);
+}
+
+TEST(ClusterCount, FindsThePlantedNumber) {
+    for (const int planted : {2, 3, 4}) {
+        const ClusterCount found = propose_cluster_count(balls(planted, 30, 15, 5), {.most = 7, .references = 20});
+        EXPECT_EQ(found.by_silhouette, planted);
+        EXPECT_EQ(found.by_gap, planted);
+        EXPECT_EQ(found.proposed, planted);
+        ASSERT_EQ(found.rows.size(), 7u);
+        for (std::size_t k = 1; k < 7; ++k) EXPECT_LE(found.rows[k].cost, found.rows[k - 1].cost * (1 + 1e-9));
+    }
+}
+
+TEST(ClusterCount, GapTellsThatThereAreNoClusters) {
+    Random random(2);
+    Eigen::MatrixXd samples(200, 2);
+    for (Eigen::Index i = 0; i < 200; ++i) samples.row(i) << random.uniform(), random.uniform();
+    const ClusterCount found = propose_cluster_count(samples, {.most = 6, .criterion = "gap", .references = 20});
+    EXPECT_EQ(found.proposed, 1);
+    EXPECT_GT(found.by_silhouette, 1) << "which the silhouette cannot";
+}
+
+TEST(ClusterCount, OfFewAndIdenticalSamples) {
+    EXPECT_EQ(propose_cluster_count(Eigen::MatrixXd::Constant(5, 2, 1.0)).proposed, 1);
+    EXPECT_EQ(propose_cluster_count(column({3})).proposed, 1);
+    EXPECT_EQ(propose_cluster_count(column({3, 4})).rows.size(), 1u) << "a sample each is no clustering";
+    for (const char* criterion : {"silhouette", "gap"})
+        EXPECT_EQ(propose_cluster_count(column({3, 3, 3, 8, 8, 8}), {.criterion = criterion}).proposed, 2) << criterion;
+    EXPECT_THROW(propose_cluster_count(column({3, 4}), {.criterion = "elbow"}), Error);
+}
+
+}  // namespace
+}  // namespace ostraka
