@@ -98,6 +98,7 @@ void add_mesh_resize(CLI::App& mesh, Session& session);                // mesh_r
 void add_mesh_make(CLI::App& mesh, Session& session);                  // mesh_make.cpp
 void add_annotation(CLI::App& annotation, Session& session);           // annotation.cpp: apply, list, check
 void add_annotation_select(CLI::App& annotation, Session& session);    // annotation_select.cpp
+void add_annotation_creases(CLI::App& annotation, Session& session);   // annotation_creases.cpp
 void add_annotation_segment(CLI::App& annotation, Session& session);   // annotation_segment.cpp
 void add_annotation_transfer(CLI::App& annotation, Session& session);  // annotation_transfer.cpp
 void add_annotation_survival(CLI::App& annotation, Session& session);  // annotation_survival.cpp

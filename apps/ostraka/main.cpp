@@ -42,6 +42,7 @@ int main(int argc, char** argv) {
     app::add_mesh_make(*mesh, session);
     app::add_annotation(*annotation, session);
     app::add_annotation_select(*annotation, session);
+    app::add_annotation_creases(*annotation, session);
     app::add_annotation_segment(*annotation, session);
     app::add_annotation_transfer(*annotation, session);
     app::add_annotation_survival(*annotation, session);

@@ -1,0 +1,102 @@
+// ostraka annotation creases: ridges and hollows of the surface as candidates for joints.
+#include "command.h"
+
+#include "ostraka/annotation/annotation_file.h"
+#include "ostraka/io/mesh_file.h"
+#include "ostraka/measure/descriptors.h"
+#include "ostraka/select/creases.h"
+
+#include <iostream>
+#include <memory>
+
+namespace ostraka::app {
+
+namespace {
+
+struct Creases {
+    std::string mesh, output, unit;
+    bool regions = false;
+    CreaseOptions options;
+
+    int run(const Session& session) const {
+        check_outputs({mesh}, {output});
+        Provenance provenance{"annotation creases", list_options(options), {}};
+        provenance.options.emplace_back("regions", regions ? "true" : "false");
+        provenance.add_input(mesh);
+        const MeshFile file = read_mesh(mesh);
+        for (const auto& note : file.notes) session.note("note: " + note);
+        const std::vector<Crease> creases = in_file(mesh, [&] { return find_creases(file.mesh, options); });
+        AnnotationSet set;
+        set.unit = unit;
+        Json document(rapidjson::kObjectType);
+        auto& allocator = document.GetAllocator();
+        JsonValue result(rapidjson::kObjectType), list(rapidjson::kArrayType);
+        std::vector<std::vector<std::string>> rows;
+        std::array<int, 2> count{};
+        for (const Crease& crease : creases) {
+            Annotation annotation = annotate(crease, ++count.at(crease.ridge ? 0 : 1), set);
+            JsonValue entry(rapidjson::kObjectType);
+            add_member(entry, "id", JsonValue(annotation.id), allocator);
+            add_member(entry, "tag", annotation.tag, allocator);
+            add_member(entry, "closed", JsonValue(crease.closed), allocator);
+            for (const auto& [name, value] : figures(crease)) add_member(entry, name, JsonValue(value), allocator);
+            list.PushBack(entry, allocator);
+            rows.push_back({std::to_string(annotation.id), annotation.tag, crease.closed ? "yes" : "no", number(crease.length),
+                            number(crease.width), number(crease.mean_curvature), number(crease.strength, 3)});
+            set.annotations.push_back(std::move(annotation));
+        }
+        write_annotations(output, set, file.mesh, mesh, provenance);
+        add_member(result, "creases", std::move(list), allocator);
+        if (session.json) session.print_report(provenance, document, result);
+        else std::cout << table({"id", "tag", "closed", "length", "width", "mean curvature", "strength"}, rows);
+        if (creases.empty())
+            session.note("nothing stands out at this scale: try another --scale, or a lower --weak and --strong");
+        return creases.empty() ? answer_is_no : done;
+    }
+
+private:
+    static std::vector<std::pair<std::string, double>> figures(const Crease& crease) {
+        return {{"length", crease.length},
+                {"width", crease.width},
+                {"mean curvature", crease.mean_curvature},
+                {"strength", crease.strength}};
+    }
+
+    [[nodiscard]] Annotation annotate(const Crease& crease, int number, const AnnotationSet& set) const {
+        Annotation annotation;
+        annotation.id = free_id(set);
+        annotation.tag = (crease.ridge ? "ridge " : "hollow ") + std::to_string(number);
+        annotation.colour = crease.ridge ? std::array<int, 3>{213, 94, 0} : std::array<int, 3>{0, 114, 178};
+        annotation.type = regions ? AnnotationType::region : AnnotationType::line;
+        if (regions) annotation.faces = crease.faces;
+        else annotation.polylines = {crease.line};
+        std::vector<Quantity> quantities;
+        for (const auto& [name, value] : figures(crease)) {
+            if (name == "length" && regions) continue;
+            Quantity quantity;
+            quantity.name = name;
+            quantity.values = {value};
+            quantity.power = name == "mean curvature" ? -1 : name == "strength" ? 0 : 1;
+            quantities.push_back(quantity);
+        }
+        store(annotation, quantities, unit);
+        return annotation;
+    }
+};
+
+}  // namespace
+
+void add_annotation_creases(CLI::App& annotation, Session& session) {
+    const auto work = std::make_shared<Creases>();
+    CLI::App* command =
+        session.add(annotation, "creases",
+                    "find ridges and hollows of the surface, such as clay leaves at joints; exit code 3 if there is none",
+                    [&session, work] { return work->run(session); });
+    command->add_option("mesh", work->mesh, "mesh file")->required();
+    command->add_option("output", work->output, "annotations to write (.ant.json): lines along the crests")->required();
+    command->add_flag("--regions", work->regions, "regions instead of lines");
+    command->add_option("--unit", work->unit, "unit of the mesh's coordinates, e.g. mm");
+    add_flags(command, work->options);
+}
+
+}  // namespace ostraka::app

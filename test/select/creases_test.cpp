@@ -1,0 +1,170 @@
+#include "ostraka/select/creases.h"
+
+#include "meshes.h"
+#include "scratch.h"
+
+#include "ostraka/annotation/annotation_file.h"
+#include "ostraka/core/error.h"
+#include "ostraka/io/mesh_file.h"
+#include "ostraka/shapes/make_mesh.h"
+
+#include <algorithm>
+#include <numbers>
+#include <random>
+
+namespace ostraka {
+namespace {
+
+/// An upright tube of radius 10 and height 60, closed by its ends' rounding, whose radius grows by `bump` around z = 30 with a
+/// width of 1.5.
+TriangleSoup ringed_tube(double bump, double noise = 0, double scale = 1) {
+    std::mt19937_64 random(7);
+    TriangleSoup soup = test::grid(160, 300, true, false, [&](double u, double v) {
+        const double z = 60 * v, angle = 2 * std::numbers::pi * u, x = (z - 30) / 1.5;
+        const double r = 10 + bump * std::exp(-x * x) + noise * (double(random() >> 11) * 0x1p-53 - 0.5);
+        return std::array<double, 3>{scale * r * std::cos(angle), scale * r * std::sin(angle), scale * z};
+    });
+    return soup;
+}
+
+CreaseOptions fine() {
+    CreaseOptions options;
+    options.scale = 0.02;
+    return options;
+}
+
+TEST(Creases, ARingOfClayIsOneClosedRidgeAtItsPlace) {
+    for (const double scale : {1e-3, 1.0, 1e5}) {
+        const Mesh mesh = build_mesh(ringed_tube(1, 0, scale));
+        CreaseOptions options = fine();
+        options.kind = "ridge";
+        const auto creases = find_creases(mesh, options);
+        ASSERT_EQ(creases.size(), 1U) << scale;
+        EXPECT_TRUE(creases[0].closed);
+        EXPECT_TRUE(creases[0].ridge);
+        for (const Index v : creases[0].line) EXPECT_NEAR(mesh.point(Vertex(v)).z() / scale, 30, 0.3);
+        EXPECT_NEAR(creases[0].length / scale, 2 * std::numbers::pi * 11, 0.6);
+        EXPECT_GT(creases[0].mean_curvature, 0);
+        for (std::size_t i = 1; i < creases[0].line.size(); ++i)
+            EXPECT_NE(find_halfedge(mesh, Vertex(creases[0].line[i - 1]), Vertex(creases[0].line[i])), Mesh::null_halfedge());
+    }
+}
+
+TEST(Creases, AFurrowIsAHollow) {
+    const Mesh mesh = build_mesh(ringed_tube(-1));
+    CreaseOptions options = fine();
+    options.kind = "hollow";
+    const auto creases = find_creases(mesh, options);
+    ASSERT_EQ(creases.size(), 1U);
+    EXPECT_TRUE(creases[0].closed);
+    EXPECT_FALSE(creases[0].ridge);
+    EXPECT_LT(creases[0].mean_curvature, 0);
+}
+
+TEST(Creases, NoiseHidesNothingAndAddsNothing) {
+    const Mesh mesh = build_mesh(ringed_tube(1, 0.1));
+    CreaseOptions options = fine();
+    options.kind = "ridge";
+    const auto creases = find_creases(mesh, options);
+    ASSERT_EQ(creases.size(), 1U);
+    EXPECT_TRUE(creases[0].closed);
+    for (const Index v : creases[0].line) EXPECT_NEAR(mesh.point(Vertex(v)).z(), 30, 1.2);
+}
+
+TEST(Creases, SmoothShapesHaveNone) {
+    EXPECT_TRUE(find_creases(build_mesh(ringed_tube(0)), fine()).empty());
+    EXPECT_TRUE(find_creases(build_mesh(test::octahedron_sphere(5)), fine()).empty());
+    EXPECT_TRUE(find_creases(build_mesh(test::grid(20, 20, false, false,
+                                                   [](double u, double v) {
+                                                       return std::array<double, 3>{u, v, 0};
+                                                   })),
+                             fine())
+                    .empty());
+    EXPECT_TRUE(find_creases(Mesh(), fine()).empty());
+    EXPECT_TRUE(find_creases(build_mesh({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}), fine()).empty());
+}
+
+TEST(Creases, APartialRidgeIsAnOpenLine) {
+    // The ring only over half of the circle.
+    TriangleSoup soup = ringed_tube(0);
+    for (auto& p : soup.points) {
+        const double r = std::hypot(p[0], p[1]), x = (p[2] - 30) / 1.5;
+        if (p[1] <= 0) continue;
+        const double factor = 1 + 0.1 * std::exp(-x * x) * std::min(1.0, p[1] / 3);
+        p[0] *= factor, p[1] *= factor;
+        EXPECT_GT(r, 0);
+    }
+    CreaseOptions options = fine();
+    options.kind = "ridge";
+    const auto creases = find_creases(build_mesh(soup), options);
+    ASSERT_EQ(creases.size(), 1U);
+    EXPECT_FALSE(creases[0].closed);
+    EXPECT_NEAR(creases[0].length, std::numbers::pi * 10.5, 5);
+}
+
+TEST(Creases, JointsOfAMadeObjectAreHollows) {
+    MakeOptions options;
+    options.vertices = 30000;
+    const MadeObject& object = made_object("teapot");
+    const MadeMesh made = make_mesh(object, options);
+    const auto label = [&](const std::string& name) {
+        return static_cast<int>(std::find(object.parts.begin(), object.parts.end(), name) - object.parts.begin());
+    };
+    CreaseOptions finding;
+    finding.kind = "hollow";
+    finding.scale = 0.015;
+    std::vector<Point> found;
+    for (const Crease& crease : find_creases(made.mesh, finding))
+        for (const Index v : crease.line) found.push_back(made.mesh.point(Vertex(v)));
+    ASSERT_FALSE(found.empty());
+    const double tolerance = 0.02 * box_diagonal(made.mesh);
+    for (const auto& [one, other] : {std::pair{"handle", "body"}, {"spout", "body"}, {"base", "body"}, {"lid", "knob"}}) {
+        std::size_t near = 0, total = 0;
+        for (const Edge e : made.mesh.edges()) {
+            const Halfedge h = made.mesh.halfedge(e);
+            const int a = made.face_labels[made.mesh.face(h)], b = made.face_labels[made.mesh.face(made.mesh.opposite(h))];
+            if (std::minmax(a, b) != std::minmax(label(one), label(other))) continue;
+            double least = 1e300;
+            for (const Point& p : found) least = std::min(least, CGAL::squared_distance(p, made.mesh.point(made.mesh.source(h))));
+            near += std::sqrt(least) < tolerance ? 1 : 0;
+            ++total;
+        }
+        ASSERT_GT(total, 10U) << one;
+        EXPECT_GT(double(near), 0.7 * double(total)) << one << " on " << other;
+    }
+}
+
+TEST(Creases, OptionsOutOfRangeAreRefused) {
+    CreaseOptions options;
+    options.scale = 0;
+    EXPECT_THROW(find_creases(Mesh(), options), Error);
+    options = {};
+    options.kind = "groove";
+    EXPECT_THROW(find_creases(Mesh(), options), Error);
+}
+
+TEST(CreasesCommand, WritesAnnotationsOrSaysThatThereIsNothing) {
+    const test::Scratch scratch;
+    write_mesh(scratch / "tube.ply", build_mesh(ringed_tube(1)));
+    write_mesh(scratch / "ball.ply", build_mesh(test::octahedron_sphere(4)));
+    const auto run = [&](const std::string& mesh, const std::string& flags) {
+        return test::run_command("annotation creases " + (scratch / mesh).string() + " " + (scratch / "out.ant.json").string() +
+                                 flags);
+    };
+    const Mesh mesh = read_mesh(scratch / "tube.ply").mesh;
+    for (const char* flags : {" --scale 0.02 --kind ridge --unit mm", " --scale 0.02 --kind ridge --regions"}) {
+        const auto result = run("tube.ply", flags);
+        EXPECT_EQ(result.code, 0) << result.err;
+        const AnnotationSet set = read_annotations(scratch / "out.ant.json", mesh, {});
+        ASSERT_EQ(set.annotations.size(), 1U);
+        EXPECT_EQ(set.annotations[0].tag, "ridge 1");
+    }
+    const auto none = run("ball.ply", "");
+    EXPECT_EQ(none.code, 3);
+    EXPECT_NE(none.err.find("--scale"), std::string::npos);
+    EXPECT_EQ(run("tube.ply", " --scale 0").code, 2);
+    EXPECT_EQ(run("gone.ply", "").code, 1);
+}
+
+}  // namespace
+}  // namespace ostraka
