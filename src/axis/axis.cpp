@@ -32,28 +32,6 @@ LineFit fit_line(const std::vector<Vector3d>& points, const std::vector<double>&
     return {mean, solver.eigenvectors().col(2), std::sqrt(std::max(0.0, values[0]) + std::max(0.0, values[1]))};
 }
 
-CircleFit fit_circle(const std::vector<Eigen::Vector2d>& points, const std::vector<double>& weights) {
-    Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-    double total = 0;
-    for (std::size_t i = 0; i < points.size(); ++i) mean += weights[i] * points[i], total += weights[i];
-    if (!(total > 0)) return {};
-    mean /= total;
-    // |q|^2 = 2 c . q + (r^2 - |c|^2) about the mean.
-    Eigen::Matrix2d A = Eigen::Matrix2d::Zero();
-    Eigen::Vector2d b = Eigen::Vector2d::Zero();
-    double square = 0;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const Eigen::Vector2d q = points[i] - mean;
-        A += weights[i] * q * q.transpose();
-        b += weights[i] * q.squaredNorm() * q / 2;
-        square += weights[i] * q.squaredNorm();
-    }
-    const double determinant = A.determinant();
-    if (!(determinant > 1e-12 * A.trace() * A.trace())) return {};
-    const Eigen::Vector2d c = A.inverse() * b;
-    return {mean + c, std::sqrt(square / total + c.squaredNorm())};
-}
-
 double part_diagonal(const Mesh& mesh, const std::vector<Index>& faces) {
     CGAL::Bbox_3 box;
     for (const Index f : faces)
@@ -140,7 +118,7 @@ Axis circle_axis(const std::vector<Point>& points) {
     const Vector3d a = oriented(solver.eigenvectors().col(0)), u = solver.eigenvectors().col(2), w = a.cross(u);
     std::vector<Eigen::Vector2d> flat;
     for (const auto& p : points) flat.emplace_back(u.dot(eigen(p) - mean), w.dot(eigen(p) - mean));
-    const CircleFit circle = fit_circle(flat, std::vector<double>(flat.size(), 1));
+    const Circle circle = fit_circle(flat, std::vector<double>(flat.size(), 1));
     if (circle.radius < 0) {
         axis.reason = "its vertices lie on one line";
         return axis;

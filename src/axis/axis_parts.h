@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ostraka/axis/axis.h"
+#include "ostraka/geom/circle.h"
 #include "ostraka/geom/eigen.h"
 
 namespace ostraka::detail {
@@ -38,13 +39,6 @@ struct LineFit {
     double rms = 0;
 };
 LineFit fit_line(const std::vector<Vector3d>& points, const std::vector<double>& weights);
-
-/// Circle of least algebraic error (Kasa 1976) through points of the plane; the radius is negative if they lie on a line.
-struct CircleFit {
-    Eigen::Vector2d centre{0, 0};
-    double radius = -1;
-};
-CircleFit fit_circle(const std::vector<Eigen::Vector2d>& points, const std::vector<double>& weights);
 
 double part_diagonal(const Mesh& mesh, const std::vector<Index>& faces);
 /// The straight axis of a result, its point moved next to `centre`.

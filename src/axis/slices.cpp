@@ -60,7 +60,7 @@ Slice cut(const Mesh& mesh, const std::vector<Index>& faces, const Vector3d& poi
         angles.push_back(std::atan2(w.dot(m - centre), u.dot(m - centre)));
     }
     if (covered_percent(angles) < 100.0 * 300 / 360) {
-        const CircleFit circle = fit_circle(flat, lengths);
+        const Circle circle = fit_circle(flat, lengths);
         if (circle.radius < 0 || circle.radius > reach) return slice;
         centre = circle.centre.x() * u + circle.centre.y() * w;
     }

@@ -1,6 +1,8 @@
 // The oriented box: directions tried on a few hundred extreme points, then measured on all.
 #include "ostraka/geom/oriented_box.h"
 
+#include "calipers.h"
+
 #include "ostraka/core/mesh.h"
 #include "ostraka/core/parallel.h"
 
@@ -12,6 +14,8 @@
 #include <numeric>
 
 namespace ostraka {
+
+using namespace detail;
 
 namespace {
 
@@ -53,72 +57,6 @@ std::vector<Vector3d> extreme_points(const std::vector<Array3>& points, const st
     return list;
 }
 
-std::vector<Vector2d> convex_hull(std::vector<Vector2d> p) {
-    std::sort(p.begin(), p.end(),
-              [](const Vector2d& a, const Vector2d& b) { return a[0] < b[0] || (a[0] == b[0] && a[1] < b[1]); });
-    std::vector<Vector2d> hull;
-    const auto left = [&](const Vector2d& q) {
-        const Vector2d u = hull.back() - hull[hull.size() - 2], w = q - hull.back();
-        return u[0] * w[1] - u[1] * w[0] > 0;
-    };
-    for (int side = 0; side < 2; ++side) {
-        const std::size_t base = hull.size();
-        for (const Vector2d& q : p) {
-            while (hull.size() >= base + 2 && !left(q)) hull.pop_back();
-            hull.push_back(q);
-        }
-        hull.pop_back();
-        std::reverse(p.begin(), p.end());
-    }
-    return hull;
-}
-
-/// Sides of a rectangle around a convex polygon.
-struct Extent {
-    double x0, x1, y0, y1;
-};
-
-/// Along the unit vector `a` and across it, by looking at every corner.
-Extent extent_along(const Vector2d& a, const std::vector<Vector2d>& hull) {
-    Extent e{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
-             std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-    for (const Vector2d& q : hull) {
-        const double x = a.dot(q), y = a[0] * q[1] - a[1] * q[0];
-        e.x0 = std::min(e.x0, x), e.x1 = std::max(e.x1, x), e.y0 = std::min(e.y0, y), e.y1 = std::max(e.y1, y);
-    }
-    return e;
-}
-
-/// The corners of a counter-clockwise convex polygon that touch the rectangle along one side after the other only move on: three
-/// of them are followed, the fourth is the side itself (Toussaint 1983).
-class Calipers {
-public:
-    explicit Calipers(const std::vector<Vector2d>& hull) : hull_(hull) {}
-    Extent along(std::size_t side, const Vector2d& a) {
-        const Vector2d b(-a[1], a[0]);
-        if (!started_) right_ = top_ = left_ = side;
-        right_ = farthest(right_, a);
-        top_ = farthest(started_ ? top_ : right_, b);
-        left_ = farthest(started_ ? left_ : top_, -a);
-        started_ = true;
-        return {a.dot(hull_[left_]), a.dot(hull_[right_]), b.dot(hull_[side]), b.dot(hull_[top_])};
-    }
-
-private:
-    std::size_t farthest(std::size_t from, const Vector2d& direction) const {
-        for (std::size_t step = 0; step < hull_.size(); ++step) {
-            const std::size_t next = (from + 1) % hull_.size();
-            if (direction.dot(hull_[next]) < direction.dot(hull_[from])) break;
-            from = next;
-        }
-        return from;
-    }
-
-    const std::vector<Vector2d>& hull_;
-    std::size_t right_ = 0, top_ = 0, left_ = 0;
-    bool started_ = false;
-};
-
 struct Candidate {
     double volume = std::numeric_limits<double>::infinity();
     Vector3d normal = Vector3d::UnitZ(), side = Vector3d::UnitX();
@@ -135,7 +73,9 @@ Candidate box_across(const Vector3d& normal, const std::vector<Vector3d>& points
         low = std::min(low, normal.dot(p));
         high = std::max(high, normal.dot(p));
     }
-    const auto hull = convex_hull(std::move(flat));
+    const auto hull = convex_hull(std::move(flat), [](const Vector2d& a, const Vector2d& b, const Vector2d& c) {
+        return (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0]) > 0;
+    });
     Candidate best;
     best.normal = normal;
     // Flat objects have boxes of no volume: a trace of the sides' sum tells them apart.

@@ -1,0 +1,68 @@
+// Frames and heights of slices.
+#include "ostraka/slicing/slice.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/limits.h"
+
+namespace ostraka {
+
+namespace {
+
+constexpr double most_planes = 1e7;
+
+void check_range(double lowest, double highest) {
+    if (!(lowest <= highest) || !std::isfinite(highest - lowest))
+        fail_usage("there is no range of heights from " + std::to_string(lowest) + " to " + std::to_string(highest),
+                   "give the lower height first");
+}
+
+}  // namespace
+
+SliceFrame slice_frame(const Point& origin, const Vector& direction) {
+    SliceFrame frame;
+    frame.origin = origin;
+    frame.normal = unit_vector(direction);
+    if (frame.normal == CGAL::NULL_VECTOR)
+        fail_usage("the direction of the slices has no length", "give one that is not 0, 0, 0");
+    const Vector side = std::abs(frame.normal.x()) < 0.9 ? Vector(1, 0, 0) : Vector(0, 1, 0);
+    frame.u = unit_vector(side - (side * frame.normal) * frame.normal);
+    frame.v = CGAL::cross_product(frame.normal, frame.u);
+    return frame;
+}
+
+std::pair<double, double> height_range(const Mesh& mesh, const SliceFrame& frame, const std::vector<Index>& faces) {
+    std::pair<double, double> range(std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity());
+    const auto add = [&](Face f) {
+        for (const Vertex v : corners(mesh, f)) {
+            const double h = frame.height(mesh.point(v));
+            range.first = std::min(range.first, h), range.second = std::max(range.second, h);
+        }
+    };
+    if (faces.empty())
+        for (const Face f : mesh.faces()) add(f);
+    for (const Index f : faces) add(Face(f));
+    if (!(range.first <= range.second)) fail_input("mesh", "has no faces to cut", "choose another mesh");
+    return range;
+}
+
+std::vector<double> slice_heights(double lowest, double highest, int count) {
+    check_range(lowest, highest);
+    if (count < 1 || count > most_planes) fail_usage("the number of slices is " + std::to_string(count), "use 1 to ten million");
+    std::vector<double> heights;
+    for (int i = 0; i < count; ++i) heights.push_back(lowest + (highest - lowest) * ((i + 0.5) / count));
+    return heights;
+}
+
+std::vector<double> slice_heights_spaced(double lowest, double highest, double spacing) {
+    check_range(lowest, highest);
+    if (!(spacing > 0) || !((highest - lowest) / spacing < most_planes))
+        fail_usage("the spacing of the slices is " + std::to_string(spacing),
+                   "use a length above 0 that gives at most ten million slices");
+    // The last one may be missed by rounding only.
+    const double steps = std::floor((highest - lowest) / spacing * (1 + 1e-12));
+    std::vector<double> heights;
+    for (double i = 0; i <= steps; ++i) heights.push_back(std::min(lowest + i * spacing, highest));
+    return heights;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,221 @@
+// Descriptors of slices.
+#include "ostraka/slicing/slice_descriptors.h"
+
+#include "segment_tree.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/geom/planar.h"
+
+#include <array>
+#include <numbers>
+
+namespace ostraka {
+
+using Eigen::Vector2d;
+using std::numbers::pi;
+
+namespace {
+
+void add_pieces(PlaneSegments& segments, const Contour& contour) {
+    for (std::size_t i = 0; i < contour.faces.size(); ++i)
+        segments.emplace_back(contour.points[i], contour.points[(i + 1) % contour.points.size()]);
+}
+
+/// Whether an outer contour contains it.
+bool is_within(const Slice& slice, const Contour& contour) {
+    for (int c = contour.parent; c >= 0; c = slice.contours[static_cast<std::size_t>(c)].parent)
+        if (!slice.contours[static_cast<std::size_t>(c)].hole) return true;
+    return false;
+}
+
+/// Mean squared distance of the pieces to the sides of the rectangle they lie in. The distance is the least of four that are
+/// linear along a piece: it is cut where two of them are the same, and Simpson's rule is exact between.
+double rectangle_deviation(const PlaneSegments& segments, const PlaneRectangle& rectangle) {
+    const Vector2d a = rectangle.along, b(-a.y(), a.x());
+    const double x = rectangle.length / 2, y = rectangle.breadth / 2;
+    double sum = 0, length = 0;
+    for (const auto& [from, to] : segments) {
+        const auto sides = [&](const Vector2d& p) {
+            const double s = a.dot(p - rectangle.centre), t = b.dot(p - rectangle.centre);
+            return std::array<double, 4>{x - s, x + s, y - t, y + t};
+        };
+        const auto first = sides(from), last = sides(to);
+        std::vector<double> cuts{0, 1};
+        for (std::size_t i = 0; i < 4; ++i)
+            for (std::size_t j = i + 1; j < 4; ++j) {
+                const double d0 = first.at(i) - first.at(j), d1 = last.at(i) - last.at(j);
+                if ((d0 < 0) != (d1 < 0) && d0 != d1) cuts.push_back(std::clamp(d0 / (d0 - d1), 0.0, 1.0));
+            }
+        std::sort(cuts.begin(), cuts.end());
+        const auto square = [&](double t) {
+            double least = std::numeric_limits<double>::infinity();
+            for (std::size_t i = 0; i < 4; ++i) least = std::min(least, first.at(i) + t * (last.at(i) - first.at(i)));
+            return least * least;
+        };
+        const double piece = (to - from).norm();
+        for (std::size_t k = 0; k + 1 < cuts.size(); ++k)
+            sum += piece * (cuts[k + 1] - cuts[k]) / 6 *
+                   (square(cuts[k]) + 4 * square((cuts[k] + cuts[k + 1]) / 2) + square(cuts[k + 1]));
+        length += piece;
+    }
+    return length > 0 ? sum / length : 0;
+}
+
+/// Distances from the outer contour of a component to its holes.
+struct Walls {
+    double length = 0, first = 0, second = 0;
+    double least = std::numeric_limits<double>::infinity(), most = 0;
+
+    void add(const Slice& component) {
+        PlaneSegments inner;
+        for (std::size_t i = 1; i < component.contours.size(); ++i) add_pieces(inner, component.contours[i]);
+        if (inner.empty()) return;
+        const detail::SegmentTree tree(std::move(inner));
+        const Contour& outer = component.contours[0];
+        std::size_t hint = 0;
+        for (std::size_t i = 0; i < outer.points.size(); ++i) {
+            const Vector2d &a = outer.points[i], &b = outer.points[(i + 1) % outer.points.size()];
+            const double piece = (b - a).norm();
+            const int parts = std::max(1, static_cast<int>(std::ceil(500 * piece / outer.length)));
+            note(tree.distance(a, hint));
+            for (int k = 0; k < parts; ++k)
+                for (const double t : {0.5 - std::sqrt(1.0 / 12), 0.5 + std::sqrt(1.0 / 12)}) {
+                    const double d = tree.distance(a + (k + t) / parts * (b - a), hint), w = piece / parts / 2;
+                    length += w, first += w * d, second += w * d * d;
+                    note(d);
+                }
+        }
+    }
+
+private:
+    void note(double d) { least = std::min(least, d), most = std::max(most, d); }
+};
+
+void describe_outline(SliceDescriptors& d, const PlaneSegments& outline, const std::vector<Vector2d>& corners) {
+    const auto hull = convex_hull(corners);
+    const PlaneRectangle box = smallest_rectangle(hull);
+    d.box_length = box.length, d.box_breadth = box.breadth;
+    d.eccentricity = box.breadth / box.length;
+    d.elongation = 1 - d.eccentricity;
+    d.solidity = d.area / polygon_moments(hull, hull[0]).area;
+    d.rectangular_variance = rectangle_deviation(outline, box) / (box.area() / pi);
+    d.equivalent_radius = std::sqrt(d.outline_area / pi);
+    const CircleDeviation circle = circle_deviation(outline, {d.outline_barycentre, d.equivalent_radius});
+    d.circular_variance = circle.square / (d.equivalent_radius * d.equivalent_radius);
+    d.roundness_equivalent = circle.absolute;
+    d.roundness_equivalent_relative = circle.absolute / d.equivalent_radius;
+}
+
+}  // namespace
+
+SliceDescriptors describe_slice(const Slice& slice) {
+    SliceDescriptors d;
+    PlaneSegments outline, fitted;
+    std::vector<Vector2d> corners;
+    PolygonMoments whole, filled;
+    double perimeter = 0, holes = 0, outline_length = 0;
+    Walls walls;
+    const auto parts = components(slice);
+    const Vector2d reference = parts.empty() ? Vector2d(0, 0) : parts[0].contours[0].points[0];
+    const auto add = [](PolygonMoments& sum, const PolygonMoments& m) { sum.area += m.area, sum.first += m.first; };
+    for (const Slice& part : parts) {
+        ++d.components;
+        for (const Contour& contour : part.contours) {
+            add(whole, polygon_moments(contour.points, reference));
+            perimeter += contour.length;
+            if (contour.hole) ++d.holes, holes -= contour.area;
+        }
+        walls.add(part);
+    }
+    for (const Contour& contour : slice.contours) {
+        (contour.closed ? d.closed_length : d.open_length) += contour.length;
+        if (contour.closed && !contour.hole && !is_within(slice, contour)) {
+            add(filled, polygon_moments(contour.points, reference));
+            outline_length += contour.length;
+            add_pieces(outline, contour);
+            corners.insert(corners.end(), contour.points.begin(), contour.points.end());
+        } else if (!contour.closed) {
+            PlaneSegments pieces;
+            add_pieces(pieces, contour);
+            const Circle circle = fit_circle(pieces);
+            double turned = 0;
+            for (const auto& [a, b] : pieces) {
+                const Vector2d p = a - circle.centre, q = b - circle.centre;
+                turned += p.x() * q.y() - p.y() * q.x();
+            }
+            if (circle.radius > 0 && turned > 0) fitted.insert(fitted.end(), pieces.begin(), pieces.end());
+        }
+    }
+    d.euler_number = d.components - d.holes;
+    if (filled.area > 0) {
+        d.area = whole.area, d.perimeter = perimeter, d.hole_area = holes;
+        d.barycentre = reference + whole.first / whole.area;
+        d.outline_area = filled.area, d.outline_perimeter = outline_length;
+        d.outline_barycentre = reference + filled.first / filled.area;
+        d.hole_area_ratio = holes / (whole.area + holes);
+        d.compactness = 4 * pi * d.area / (perimeter * perimeter);
+        describe_outline(d, outline, corners);
+    }
+    fitted.insert(fitted.end(), outline.begin(), outline.end());
+    if (const Circle circle = fit_circle(fitted); circle.radius > 0) {
+        d.fitted_radius = circle.radius, d.fitted_centre = circle.centre;
+        d.roundness_fitted = circle_deviation(fitted, circle).absolute;
+        d.roundness_fitted_relative = d.roundness_fitted / circle.radius;
+    }
+    if (walls.length > 0) {
+        d.thickness_mean = walls.first / walls.length;
+        d.thickness_variance = std::max(0.0, walls.second / walls.length - d.thickness_mean * d.thickness_mean);
+        d.thickness_least = walls.least, d.thickness_most = walls.most;
+    }
+    return d;
+}
+
+std::vector<SliceDescriptors> describe_slices(const std::vector<Slice>& slices) {
+    std::vector<SliceDescriptors> list(slices.size());
+    parallel_for(
+        slices.size(), [&](std::size_t i) { list[i] = describe_slice(slices[i]); }, 1);
+    return list;
+}
+
+std::vector<double> thickness_profile(const Slice& slice, int directions) {
+    if (directions < 1 || directions > 1000000)
+        fail_usage("the profile has " + std::to_string(directions) + " directions", "use 1 to a million");
+    // Components and their holes come larger ones first.
+    const auto parts = components(slice);
+    if (parts.empty() || parts[0].contours.size() < 2) return {};
+    const Contour& hole = parts[0].contours[1];
+    const PolygonMoments moments = polygon_moments(hole.points, hole.points[0]);
+    const Vector2d centre = hole.points[0] + moments.first / moments.area;
+    PlaneSegments pieces;
+    for (const Contour& contour : parts[0].contours) add_pieces(pieces, contour);
+    const double step = 2 * pi / directions;
+    std::vector<Vector2d> rays;
+    for (int k = 0; k < directions; ++k) rays.emplace_back(std::cos(k * step), std::sin(k * step));
+    // Each crossing of a piece adds its distance on the way out of the material and takes it off on the way in.
+    std::vector<double> sums(rays.size(), 0);
+    std::vector<bool> met(rays.size(), false);
+    for (const auto& [from, to] : pieces) {
+        const Vector2d a = from - centre, b = to - centre;
+        double low = std::atan2(a.y(), a.x()), high = std::atan2(b.y(), b.x());
+        if (low > high) std::swap(low, high);
+        if (high - low > pi) low += 2 * pi, std::swap(low, high);
+        const auto first = static_cast<long>(std::floor(low / step)), last = static_cast<long>(std::ceil(high / step));
+        for (long k = first; k <= std::min(last, first + directions - 1); ++k) {
+            const auto i = static_cast<std::size_t>(((k % directions) + directions) % directions);
+            const Vector2d& ray = rays[i];
+            const double s = ray.x() * a.y() - ray.y() * a.x(), t = ray.x() * b.y() - ray.y() * b.x();
+            // A point on the ray counts as left of it.
+            if ((s >= 0) == (t >= 0)) continue;
+            const double distance = ray.dot(a + s / (s - t) * (b - a));
+            if (distance < 0) continue;
+            sums[i] += t > s ? distance : -distance;
+            met[i] = true;
+        }
+    }
+    for (std::size_t i = 0; i < sums.size(); ++i)
+        if (!met[i]) sums[i] = SliceDescriptors::absent;
+    return sums;
+}
+
+}  // namespace ostraka
