@@ -1,8 +1,7 @@
 // How fast the solver comes near the best that is known: plain and accelerated iterations compared.
 #pragma once
 
-#include "plot.h"
-
+#include "ostraka/report/plot.h"
 #include "ostraka/solver/solve.h"
 
 #include <limits>

@@ -202,34 +202,6 @@ std::string both(const std::array<double, 2>& mean_and_most, int after_point) {
     return digits(mean_and_most[0], after_point) + " (" + digits(mean_and_most[1], after_point) + ")";
 }
 
-std::string TextTable::markdown() const {
-    std::string text = "|", line = "|";
-    for (const std::string& column : columns_) text += ' ' + column + " |", line += "---|";
-    text += '\n' + line + '\n';
-    for (const auto& row : rows_) {
-        text += '|';
-        for (const std::string& cell : row) text += ' ' + cell + " |";
-        text += '\n';
-    }
-    return text;
-}
-
-std::string TextTable::csv() const {
-    const auto line = [](const std::vector<std::string>& cells) {
-        std::string text;
-        for (const std::string& cell : cells) text += (text.empty() ? "\"" : ",\"") + cell + '"';
-        return text + '\n';
-    };
-    std::string text = line(columns_);
-    for (const auto& row : rows_) text += line(row);
-    return text;
-}
-
-void TextTable::write(const Path& folder, const std::string& name) const {
-    write_file(folder / (name + ".md"), markdown());
-    write_file(folder / (name + ".csv"), csv());
-}
-
 std::string digits(double value, int after_point) {
     char text[48];
     std::snprintf(text, sizeof text, "%.*f", after_point, value);

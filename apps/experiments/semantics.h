@@ -1,8 +1,8 @@
 // What the experiments on semantic constraints share: objects, ways to solve, measures of the results, tables and files.
 #pragma once
 
-#include "plot.h"
-
+#include "ostraka/report/plot.h"
+#include "ostraka/report/table.h"
 #include "ostraka/semantic/deform.h"
 #include "ostraka/shapes/made_object.h"
 
@@ -74,20 +74,6 @@ std::array<double, 2> moved(const std::vector<Index>& vertices, const std::vecto
 /// "mean (most)".
 std::string both(const std::array<double, 2>& mean_and_most, int after_point);
 
-/// Rows of text, as Markdown and CSV.
-class TextTable {
-public:
-    explicit TextTable(std::vector<std::string> columns) : columns_(std::move(columns)) {}
-    void add(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
-    [[nodiscard]] std::string markdown() const;
-    [[nodiscard]] std::string csv() const;
-    /// FOLDER/NAME.md and .csv.
-    void write(const Path& folder, const std::string& name) const;
-
-private:
-    std::vector<std::string> columns_;
-    std::vector<std::vector<std::string>> rows_;
-};
 std::string digits(double value, int after_point);
 
 /// The result as a PLY in the annotations' colours, with one number a face as FILE.npy (not a number: none) if there are some.

@@ -1,0 +1,120 @@
+#include "ostraka/report/dendrogram.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/render/colour_scale.h"
+#include "sheet.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace ostraka {
+
+namespace {
+
+using namespace report;
+
+constexpr double row_height = 17, tree_width = 460, name_size = 12, largest_name = 220;
+
+void check(const Dendrogram& d) {
+    if (d.tree.samples < 1) fail_input("dendrogram", "the tree has no samples", "give at least one");
+    const auto n = static_cast<std::size_t>(d.tree.samples);
+    if (d.tree.merges.size() != n - 1)
+        fail_input("dendrogram",
+                   "the tree of " + std::to_string(n) + " samples has " + std::to_string(d.tree.merges.size()) + " merges",
+                   "a tree has one fewer than samples");
+    std::vector<bool> merged(2 * n);
+    for (std::size_t m = 0; m < d.tree.merges.size(); ++m)
+        for (const int child : {d.tree.merges[m].first, d.tree.merges[m].second}) {
+            if (child < 0 || static_cast<std::size_t>(child) >= n + m || merged[static_cast<std::size_t>(child)])
+                fail_input("dendrogram", "merge " + std::to_string(m) + " names cluster " + std::to_string(child),
+                           "each cluster is merged once, after it was made");
+            merged[static_cast<std::size_t>(child)] = true;
+        }
+    if (d.names.size() != n || (!d.classes.empty() && d.classes.size() != n))
+        fail_usage("the names or classes of a dendrogram do not fit its " + std::to_string(n) + " samples", "give one a sample");
+}
+
+std::string draw(const Dendrogram& d, Sheet::Format format) {
+    check(d);
+    const auto n = static_cast<std::size_t>(d.tree.samples);
+    std::map<std::string, std::size_t> classes;
+    for (const std::string& name : d.classes) classes.try_emplace(name, 0);
+    std::size_t number = 0;
+    for (auto& [name, index] : classes) index = number++;
+    double names = 0, legend = 0;
+    {
+        Sheet measure(10, 10);
+        for (const std::string& name : d.names)
+            names = std::max(names, std::min(largest_name, measure.width_of(name, name_size)));
+        for (const auto& [name, index] : classes) legend = std::max(legend, 34 + measure.width_of(name));
+        legend = std::max(legend, measure.width_of(d.title) - names - tree_width);
+    }
+    const double mark = classes.empty() ? 0 : 16, left = margin + names + 8 + mark, right = left + tree_width;
+    const double top = margin + 2 * text_size, bottom = top + static_cast<double>(n) * row_height;
+    const double height =
+        std::max(bottom + 3.4 * text_size, top + (static_cast<double>(classes.size()) + 1) * 1.6 * text_size) + margin;
+    Sheet sheet(right + 2 * margin + legend, height, format);
+    sheet.text(d.title, margin, margin + 0.8 * text_size, 0);
+
+    double highest = d.cut.value_or(0);
+    for (const Merge& merge : d.tree.merges) highest = std::max(highest, merge.height);
+    if (!(highest > 0)) highest = 1;
+    highest *= 1.04;
+    const auto x = [&](double value) { return left + value / highest * tree_width; };
+    const ColourScale range{0, highest, false, ""};
+    const std::vector<double> steps = ticks(range, 6);
+    for (const double value : steps) {
+        sheet.line(x(value), top, x(value), bottom, pale, 1);
+        sheet.text(tick_text(value, steps.size() > 1 ? steps[1] - steps[0] : value), x(value), bottom + 1.4 * text_size, 0.5);
+    }
+    sheet.line(left, bottom, right, bottom, ink, 1);
+    sheet.text(d.label, (left + right) / 2, bottom + 2.9 * text_size, 0.5);
+
+    const std::vector<int> leaves = leaf_order(d.tree);
+    const std::vector<int> clusters = d.cut ? cut_at(d.tree, *d.cut) : std::vector<int>(n, -1);
+    std::vector<double> place(2 * n), at(2 * n, 0.0);
+    std::vector<int> cluster(2 * n, -1);
+    for (std::size_t r = 0; r < leaves.size(); ++r) {
+        const auto leaf = static_cast<std::size_t>(leaves[r]);
+        place[leaf] = top + (static_cast<double>(r) + 0.5) * row_height;
+        cluster[leaf] = clusters[leaf];
+        sheet.text(sheet.fitted(d.names[leaf], largest_name, name_size), margin + names, place[leaf] + 0.35 * name_size, 1,
+                   name_size);
+        if (!classes.empty()) {
+            const std::size_t of = classes.at(d.classes[leaf]);
+            sheet.mark(left - 10, place[leaf], of, series_colour(of));
+        }
+    }
+    const auto colour = [&](int of) { return of < 0 ? ink : category_colour(static_cast<std::size_t>(of)); };
+    for (std::size_t m = 0; m < d.tree.merges.size(); ++m) {
+        const Merge& merge = d.tree.merges[m];
+        const auto a = static_cast<std::size_t>(merge.first), b = static_cast<std::size_t>(merge.second);
+        const double to = x(merge.height);
+        const bool below = d.cut && merge.height <= *d.cut;
+        cluster[n + m] = below ? cluster[a] : -1;
+        for (const std::size_t child : {a, b})
+            sheet.line(x(at[child]), place[child], to, place[child], colour(below ? cluster[child] : -1), 1.5);
+        sheet.line(to, place[a], to, place[b], colour(cluster[n + m]), 1.5);
+        place[n + m] = (place[a] + place[b]) / 2;
+        at[n + m] = merge.height;
+    }
+    if (d.cut) sheet.line(x(*d.cut), top - 4, x(*d.cut), bottom, {200, 30, 30}, 1.2, true);
+    double row = top + 0.8 * text_size;
+    for (const auto& [name, index] : classes) {
+        sheet.mark(right + margin + 13, row, index, series_colour(index));
+        sheet.text(name.empty() ? "not known" : name, right + margin + 26, row + 0.35 * text_size, 0);
+        row += 1.6 * text_size;
+    }
+    return sheet.finish();
+}
+
+}  // namespace
+
+std::string svg_bytes(const Dendrogram& dendrogram) { return draw(dendrogram, report::Sheet::Format::svg); }
+
+void write_plot(const Path& file, const Dendrogram& dendrogram) {
+    report::write_sheet(file, [&](report::Sheet::Format format) { return draw(dendrogram, format); });
+}
+
+}  // namespace ostraka

@@ -1,0 +1,235 @@
+#include "ostraka/report/plot.h"
+
+#include "ostraka/core/error.h"
+#include "ruler.h"
+#include "sheet.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ostraka {
+
+namespace {
+
+using namespace report;
+
+constexpr double label_size = 10.5;
+
+void check(const Plot& plot) {
+    for (const PlotSeries& series : plot.series) {
+        if (!series.labels.empty() && series.labels.size() != series.points.size())
+            fail_usage("series '" + series.name + "' of a plot has " + std::to_string(series.labels.size()) + " labels for " +
+                           std::to_string(series.points.size()) + " points",
+                       "give one a point, or none");
+        if (!series.intervals.empty() && series.intervals.size() != series.points.size())
+            fail_usage("series '" + series.name + "' of a plot has " + std::to_string(series.intervals.size()) +
+                           " intervals for " + std::to_string(series.points.size()) + " points",
+                       "give one a point, or none");
+    }
+}
+
+/// Draws the series of a plot whose axes have their places.
+class Drawing {
+public:
+    Drawing(Sheet& sheet, const Plot& plot, const Ruler& x, const Ruler& y) : sheet_(sheet), plot_(plot), x_(x), y_(y) {
+        for (const PlotSeries& series : plot.series) bars_ += series.mark == Mark::bars ? 1 : 0;
+    }
+
+    void draw(std::size_t index) {
+        const PlotSeries& series = plot_.series[index];
+        const Rgb colour = series_colour(series.colour.value_or(index));
+        if (series.mark == Mark::bars) draw_bars(series, colour);
+        draw_intervals(series, colour);
+        if (series.mark == Mark::bars) return;
+        std::vector<std::array<double, 2>> run;
+        const auto end_run = [&] {
+            if (series.joined && run.size() > 1) sheet_.polyline(run, colour, series.dashed);
+            run.clear();
+        };
+        for (const auto& point : series.points) {
+            if (placed(point)) run.push_back(pixel(point));
+            else end_run();
+        }
+        end_run();
+        if (!series.marked) return;
+        for (const auto& point : series.points)
+            if (placed(point)) {
+                const auto [px, py] = pixel(point);
+                if (series.joined) sheet_.dot(px, py, colour);
+                else sheet_.mark(px, py, series.colour.value_or(index), colour);
+                taken_.push_back({px - 4, py - 4, px + 4, py + 4});
+            }
+    }
+
+    /// After all marks: each label where it covers least of what is there.
+    void draw_labels(const Box& area) {
+        for (const PlotSeries& series : plot_.series)
+            for (std::size_t i = 0; i < series.labels.size(); ++i) {
+                if (series.labels[i].empty() || !placed(series.points[i])) continue;
+                const std::string words = sheet_.fitted(series.labels[i], 140, label_size);
+                const double width = sheet_.width_of(words, label_size), height = label_size;
+                const auto [px, py] = pixel(series.points[i]);
+                Box best;
+                int least = std::numeric_limits<int>::max();
+                for (const auto& [dx, dy] : {std::array{6.0, -height / 2},
+                                             {6.0, -height - 4},
+                                             {6.0, 4.0},
+                                             {-6.0 - width, -height / 2},
+                                             {-6.0 - width, -height - 4},
+                                             {-6.0 - width, 4.0},
+                                             {-width / 2, -height - 6},
+                                             {-width / 2, 6.0}}) {
+                    const Box box{px + dx, py + dy, px + dx + width, py + dy + height};
+                    int covered =
+                        box.left < area.left || box.right > area.right || box.top < area.top || box.bottom > area.bottom ? 3 : 0;
+                    for (const Box& other : taken_) covered += box.meets(other) ? 1 : 0;
+                    if (covered < least) least = covered, best = box;
+                }
+                taken_.push_back(best);
+                sheet_.text(words, best.left, best.bottom - 0.15 * height, 0, label_size);
+            }
+    }
+
+private:
+    [[nodiscard]] bool placed(const std::array<double, 2>& point) const {
+        return has_place(plot_.x, point[0]) && has_place(plot_.y, point[1]);
+    }
+    [[nodiscard]] std::array<double, 2> pixel(const std::array<double, 2>& point) const {
+        return {x_.pixel(point[0]), y_.pixel(point[1])};
+    }
+    [[nodiscard]] double bar_width() const {
+        return std::min(60.0,
+                        0.8 * std::abs(x_.pixel(plot_.x.logarithmic ? 10 : 1) - x_.pixel(plot_.x.logarithmic ? 1 : 0)) / bars_);
+    }
+    void draw_bars(const PlotSeries& series, const Rgb& colour) {
+        const double width = bar_width(), base = y_.pixel(y_.inside(0) && !plot_.y.logarithmic ? 0 : y_.lowest());
+        offset_ = (static_cast<double>(bar_) - (bars_ - 1) / 2.0) * width;
+        ++bar_;
+        for (const auto& point : series.points) {
+            if (!placed(point)) continue;
+            const auto [px, py] = pixel(point);
+            sheet_.rectangle({px + offset_ - 0.46 * width, std::min(py, base), px + offset_ + 0.46 * width, std::max(py, base)},
+                             colour);
+        }
+    }
+    void draw_intervals(const PlotSeries& series, const Rgb& colour) {
+        const bool bars = series.mark == Mark::bars;
+        const double shift = bars ? offset_ : 0;
+        for (std::size_t i = 0; i < series.intervals.size(); ++i) {
+            if (!series.intervals[i] || !placed(series.points[i])) continue;
+            const auto [low, high] = *series.intervals[i];
+            if (!has_place(plot_.y, low) || !has_place(plot_.y, high)) continue;
+            const double px = x_.pixel(series.points[i][0]) + shift, a = y_.pixel(low), b = y_.pixel(high);
+            const Rgb line = bars ? ink : colour;
+            sheet_.line(px, a, px, b, line, 1.4);
+            for (const double end : {a, b}) sheet_.line(px - 4, end, px + 4, end, line, 1.4);
+        }
+    }
+
+    Sheet& sheet_;
+    const Plot& plot_;
+    const Ruler &x_, &y_;
+    int bars_ = 0, bar_ = 0;
+    double offset_ = 0;
+    std::vector<Box> taken_;
+};
+
+void draw_legend(Sheet& sheet, const Plot& plot, double left, double top) {
+    double row = top + 0.8 * text_size;
+    for (std::size_t i = 0; i < plot.series.size(); ++i) {
+        const PlotSeries& series = plot.series[i];
+        if (series.name.empty()) continue;
+        const Rgb colour = series_colour(series.colour.value_or(i));
+        if (series.mark == Mark::bars) sheet.rectangle({left + 6, row - 6, left + 20, row + 6}, colour);
+        else if (series.joined) sheet.polyline({{left, row}, {left + 26, row}}, colour, series.dashed);
+        if (series.mark == Mark::dots && series.marked) {
+            if (series.joined) sheet.dot(left + 13, row, colour);
+            else sheet.mark(left + 13, row, series.colour.value_or(i), colour);
+        }
+        sheet.text(series.name, left + 34, row + 0.35 * text_size, 0);
+        row += 1.6 * text_size;
+    }
+}
+
+std::string draw(const Plot& plot, Sheet::Format format) {
+    check(plot);
+    Ruler x(plot, 0), y(plot, 1);
+    double widest_tick = 0, widest_name = 0, widest_below = 0;
+    {
+        Sheet measure(10, 10);
+        for (const Tick& tick : y.ticks()) widest_tick = std::max(widest_tick, std::min(180.0, measure.width_of(tick.text)));
+        for (const Tick& tick : x.ticks()) widest_below = std::max(widest_below, std::min(180.0, measure.width_of(tick.text)));
+        for (const PlotSeries& series : plot.series) widest_name = std::max(widest_name, measure.width_of(series.name));
+    }
+    const double left = margin + 1.6 * text_size + widest_tick + 8, top = margin + 1.8 * text_size;
+    double right = plot.width - (widest_name > 0 ? 2 * margin + 34 + widest_name : 2 * margin);
+    // Names that do not fit side by side stand upright.
+    const bool upright = !plot.x.names.empty() && widest_below + 8 > (right - left) / static_cast<double>(plot.x.names.size());
+    double bottom = plot.height - margin - (upright ? 1.9 * text_size + widest_below + 4 : 3.2 * text_size);
+    right = std::max(right, left + 80);
+    bottom = std::max(bottom, top + 80);
+    if (plot.square) right = left + std::min(right - left, bottom - top), bottom = top + (right - left);
+    if (plot.equal) {
+        const double unit = std::max(x.extent() / (right - left), y.extent() / (bottom - top));
+        x.widen(unit * (right - left));
+        y.widen(unit * (bottom - top));
+    }
+    const double width = plot.square ? right + (widest_name > 0 ? 2 * margin + 34 + widest_name : 2 * margin) : plot.width;
+    const double height = plot.square ? bottom + plot.height - (plot.height - margin - 3.2 * text_size) : plot.height;
+    Sheet sheet(std::max(width, right + margin), std::max(height, bottom + 4 * text_size), format);
+    const double sheet_bottom = std::max(height, bottom + 4 * text_size);
+    x.stretch_over(left, right);
+    y.stretch_over(bottom, top);
+    for (const Tick& tick : x.ticks()) {
+        const double at = x.pixel(tick.value);
+        if (plot.x.names.empty()) sheet.line(at, top, at, bottom, pale, 1);
+        if (upright) sheet.upward_text(sheet.fitted(tick.text, 180), at + 0.35 * text_size, bottom + 6, 1);
+        else sheet.text(sheet.fitted(tick.text, 180), at, bottom + 1.4 * text_size, 0.5);
+    }
+    for (const Tick& tick : y.ticks()) {
+        if (plot.y.names.empty()) sheet.line(left, y.pixel(tick.value), right, y.pixel(tick.value), pale, 1);
+        sheet.text(sheet.fitted(tick.text, 180), left - 6, y.pixel(tick.value) + 0.35 * text_size, 1);
+    }
+    sheet.line(left, bottom, right, bottom, ink, 1);
+    sheet.line(left, top, left, bottom, ink, 1);
+    sheet.text(plot.title, left, margin + 0.8 * text_size, 0);
+    sheet.text(plot.x.label, (left + right) / 2, sheet_bottom - margin, 0.5);
+    sheet.upward_text(plot.y.label, margin + 0.8 * text_size, (top + bottom) / 2);
+    draw_legend(sheet, plot, right + margin, top);
+
+    const Box area{left, top, right, bottom};
+    sheet.clip({left, top - 5, right + 5, bottom + 5});
+    for (const PlotLine& mark : plot.lines) {
+        if (!has_place(mark.upright ? plot.x : plot.y, mark.value)) continue;
+        const double at = (mark.upright ? x : y).pixel(mark.value);
+        if (mark.upright) sheet.line(at, top, at, bottom, ink, 1, true);
+        else sheet.line(left, at, right, at, ink, 1, true);
+    }
+    Drawing drawing(sheet, plot, x, y);
+    for (std::size_t i = 0; i < plot.series.size(); ++i) drawing.draw(i);
+    drawing.draw_labels(area);
+    for (const PlotLine& mark : plot.lines) {
+        if (mark.label.empty() || !has_place(mark.upright ? plot.x : plot.y, mark.value)) continue;
+        const double at = (mark.upright ? x : y).pixel(mark.value), length = sheet.width_of(mark.label, label_size);
+        if (mark.upright) {
+            sheet.rectangle({at - 5 - label_size, top + 2, at - 2, top + 6 + length}, paper);
+            sheet.upward_text(mark.label, at - 4, top + 3, 1, label_size);
+        } else {
+            sheet.rectangle({right - 6 - length, at - 4 - label_size, right - 2, at - 2}, paper);
+            sheet.text(mark.label, right - 4, at - 4, 1, label_size);
+        }
+    }
+    sheet.unclip();
+    return sheet.finish();
+}
+
+}  // namespace
+
+std::string svg_bytes(const Plot& plot) { return draw(plot, report::Sheet::Format::svg); }
+
+void write_plot(const Path& file, const Plot& plot) {
+    report::write_sheet(file, [&](report::Sheet::Format format) { return draw(plot, format); });
+}
+
+}  // namespace ostraka

@@ -1,0 +1,46 @@
+// An axis of a plot: its range, its ticks, its places on the sheet.
+#pragma once
+
+#include "ostraka/report/plot.h"
+
+#include <string>
+#include <vector>
+
+namespace ostraka::report {
+
+struct Tick {
+    double value;
+    std::string text;
+};
+
+/// Whether a value can be shown on the axis.
+bool has_place(const PlotAxis& axis, double value);
+
+/// One axis with its range, along the sheet from `low` to `high`.
+class Ruler {
+public:
+    /// coordinate 0: x; 1: y. Throws Error (input) where no point has a place.
+    Ruler(const Plot& plot, std::size_t coordinate);
+
+    void stretch_over(double low, double high) { low_ = low, high_ = high; }
+    [[nodiscard]] double pixel(double value) const { return low_ + (place(value) - least_) / (most_ - least_) * (high_ - low_); }
+    [[nodiscard]] std::vector<Tick> ticks() const;
+    [[nodiscard]] bool inside(double value) const { return place(value) >= least_ && place(value) <= most_; }
+    /// Lower end, as a value.
+    [[nodiscard]] double lowest() const;
+    [[nodiscard]] double extent() const { return most_ - least_; }
+    /// Makes the range `extent` wide about its middle.
+    void widen(double extent);
+
+private:
+    [[nodiscard]] double place(double value) const;
+    void include(double value);
+    [[nodiscard]] std::vector<Tick> even_ticks() const;
+
+    const PlotAxis* axis_;
+    bool logarithmic_;
+    double least_, most_;  ///< places: values, or their logarithms
+    double low_ = 0, high_ = 1;
+};
+
+}  // namespace ostraka::report

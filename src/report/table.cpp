@@ -1,0 +1,178 @@
+#include "ostraka/report/table.h"
+
+#include "ostraka/core/csv.h"
+#include "ostraka/core/text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <stdexcept>
+
+namespace ostraka {
+
+namespace {
+
+/// One line of shown characters: what breaks lines or steers becomes a blank.
+std::string one_line(const std::string& text) { return without_controls(text, " "); }
+
+bool is_number(const std::string& cell) {
+    std::string bare = cell;
+    while (!bare.empty() && (bare.back() == '%' || bare.back() == ' ')) bare.pop_back();
+    return number_of(bare).has_value();
+}
+
+std::size_t characters(const std::string& text) {
+    return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; }));
+}
+
+}  // namespace
+
+void TextTable::add(std::vector<std::string> cells) {
+    if (cells.size() != columns_.size())
+        throw std::logic_error("a row of " + std::to_string(cells.size()) + " cells in a table of " +
+                               std::to_string(columns_.size()) + " columns");
+    rows_.push_back(std::move(cells));
+}
+
+std::vector<bool> TextTable::numeric() const {
+    std::vector<bool> result(columns_.size(), !rows_.empty());
+    for (std::size_t j = 0; j < columns_.size(); ++j) {
+        bool any = false;
+        for (const auto& row : rows_) {
+            if (row[j].empty() || row[j] == "-") continue;
+            any = true;
+            if (!is_number(row[j])) result[j] = false;
+        }
+        if (!any) result[j] = false;
+    }
+    return result;
+}
+
+std::string TextTable::csv() const {
+    std::string text = csv_row(columns_);
+    for (const auto& row : rows_) text += csv_row(row);
+    return text;
+}
+
+std::string markdown_text(const std::string& text) {
+    std::string result;
+    for (const char c : one_line(text)) {
+        if (c == '<') result += "&lt;";
+        else if (c == '>') result += "&gt;";
+        else if (c == '&') result += "&amp;";
+        else {
+            if (std::string_view("\\|`*_[]#~").find(c) != std::string_view::npos) result += '\\';
+            result += c;
+        }
+    }
+    return result;
+}
+
+std::string TextTable::markdown() const {
+    const std::vector<bool> right = numeric();
+    std::string text = "|", line = "|";
+    for (std::size_t j = 0; j < columns_.size(); ++j)
+        text += ' ' + markdown_text(columns_[j]) + " |", line += right[j] ? "---:|" : "---|";
+    text += '\n' + line + '\n';
+    for (const auto& row : rows_) {
+        text += '|';
+        for (const std::string& cell : row) text += ' ' + markdown_text(cell) + " |";
+        text += '\n';
+    }
+    return text;
+}
+
+std::string latex_text(const std::string& text) {
+    static const std::map<char, std::string> names{{'\\', "\\textbackslash{}"},
+                                                   {'{', "\\{"},
+                                                   {'}', "\\}"},
+                                                   {'$', "\\$"},
+                                                   {'&', "\\&"},
+                                                   {'#', "\\#"},
+                                                   {'%', "\\%"},
+                                                   {'_', "\\_"},
+                                                   {'~', "\\textasciitilde{}"},
+                                                   {'^', "\\textasciicircum{}"},
+                                                   {'<', "\\textless{}"},
+                                                   {'>', "\\textgreater{}"},
+                                                   {'|', "\\textbar{}"},
+                                                   {'"', "\\textquotedbl{}"},
+                                                   {'`', "\\textasciigrave{}"},
+                                                   {'-', "{-}"}};
+    std::string result;
+    const std::string line = one_line(text);
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        const auto found = names.find(line[i]);
+        // Hyphens in a row would be joined to a dash; one by itself stays.
+        const bool alone = line[i] == '-' && (i == 0 || line[i - 1] != '-') && (i + 1 == line.size() || line[i + 1] != '-');
+        if (found == names.end() || alone) result += line[i];
+        else result += found->second;
+    }
+    return result;
+}
+
+std::string TextTable::latex(const std::string& caption, const std::string& label) const {
+    const std::vector<bool> right = numeric();
+    std::string columns;
+    for (const bool r : right) columns += r ? 'r' : 'l';
+    const auto row_text = [](const std::vector<std::string>& cells) {
+        std::string text;
+        for (std::size_t j = 0; j < cells.size(); ++j) text += (j == 0 ? "" : " & ") + latex_text(cells[j]);
+        // A bracket at the beginning of the next row would be read as an argument of the line break.
+        return text + " \\\\\\relax\n";
+    };
+    std::string text = "\\begin{tabular}{" + columns + "}\n\\toprule\n" + row_text(columns_) + "\\midrule\n";
+    for (const auto& row : rows_) text += row_text(row);
+    text += "\\bottomrule\n\\end{tabular}\n";
+    if (caption.empty()) return text;
+    return "\\begin{table}\n\\centering\n" + text + "\\caption{" + latex_text(caption) + "}\n" +
+           (label.empty() ? "" : "\\label{" + label + "}\n") + "\\end{table}\n";
+}
+
+std::string TextTable::plain() const {
+    const std::vector<bool> right = numeric();
+    std::vector<std::size_t> widths;
+    for (std::size_t j = 0; j < columns_.size(); ++j) {
+        widths.push_back(characters(one_line(columns_[j])));
+        for (const auto& row : rows_) widths[j] = std::max(widths[j], characters(one_line(row[j])));
+    }
+    const auto line = [&](const std::vector<std::string>& cells) {
+        std::string text;
+        for (std::size_t j = 0; j < cells.size(); ++j) {
+            const std::string cell = one_line(cells[j]), blanks(widths[j] - characters(cell), ' ');
+            text += (j == 0 ? "" : "  ") + (right[j] ? blanks + cell : cell + blanks);
+        }
+        while (!text.empty() && text.back() == ' ') text.pop_back();
+        return text + '\n';
+    };
+    std::string text = line(columns_);
+    for (const auto& row : rows_) text += line(row);
+    return text;
+}
+
+void TextTable::write(const Path& folder, const std::string& name, const std::string& caption) const {
+    write_file(folder / (name + ".md"), markdown());
+    write_file(folder / (name + ".csv"), csv());
+    write_file(folder / (name + ".tex"), latex(caption));
+}
+
+std::string fixed(double value, int after_point) {
+    std::string text(400, '\0');
+    text.resize(static_cast<std::size_t>(std::snprintf(text.data(), text.size(), "%.*f", after_point, value)));
+    return text.find_first_not_of("-0.") == std::string::npos && text.front() == '-' ? text.substr(1) : text;
+}
+
+std::string significant(double value, int digits) {
+    char text[64];
+    std::snprintf(text, sizeof text, "%.*g", digits, value);
+    return text;
+}
+
+std::string significant(const std::optional<double>& value, int digits) { return value ? significant(*value, digits) : "-"; }
+
+std::string percent(const std::optional<double>& share, int after_point) {
+    return share ? fixed(100 * *share, after_point) + "%" : "-";
+}
+
+}  // namespace ostraka

@@ -1,0 +1,88 @@
+#include "ostraka/report/table.h"
+
+#include "ostraka/core/csv.h"
+#include "scratch.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace ostraka {
+namespace {
+
+TextTable table() {
+    TextTable t({"name", "cv", "n"});
+    t.add({"arm/height", "3.1%", "40"});
+    t.add({"a|b, \"c\"", "-", "7"});
+    return t;
+}
+
+TEST(TextTable, AsMarkdown) {
+    EXPECT_EQ(table().markdown(), "| name | cv | n |\n|---|---:|---:|\n| arm/height | 3.1% | 40 |\n| a\\|b, \"c\" | - | 7 |\n");
+}
+
+TEST(TextTable, AsLatex) {
+    EXPECT_EQ(table().latex(),
+              "\\begin{tabular}{lrr}\n\\toprule\nname & cv & n \\\\\\relax\n\\midrule\narm/height & 3.1\\% & 40 \\\\\\relax\n"
+              "a\\textbar{}b, \\textquotedbl{}c\\textquotedbl{} & - & 7 \\\\\\relax\n\\bottomrule\n\\end{tabular}\n");
+    const std::string with_caption = table().latex("50 % of \\all", "tab:x");
+    EXPECT_NE(with_caption.find("\\caption{50 \\% of \\textbackslash{}all}"), std::string::npos);
+    EXPECT_NE(with_caption.find("\\label{tab:x}"), std::string::npos);
+}
+
+TEST(TextTable, AsCsvReadsBack) {
+    const std::string text = table().csv();
+    const auto rows = csv_rows(text, ',', "table");
+    ASSERT_EQ(rows.size(), 3u);
+    EXPECT_EQ(unguarded(rows[2].cells[0]), "a|b, \"c\"");
+    EXPECT_EQ(rows[1].cells[1], "3.1%");
+}
+
+TEST(TextTable, TextFromOutsideStaysText) {
+    TextTable hostile({"=1+1", "<b>"});
+    hostile.add({"=cmd|' /C calc'!A0", "line\nbreak | \\input{/etc/passwd} `x` _a_ <script> 50% $x$ #1 ~ ^ {} -- \x1b[31m"});
+    EXPECT_EQ(hostile.csv().find("\n=cmd"), std::string::npos);
+    EXPECT_EQ(unguarded(csv_rows(hostile.csv(), ',', "table")[0].cells[0]), "=1+1");
+    EXPECT_EQ(csv_rows(hostile.csv(), ',', "table")[0].cells[0].front(), '\'') << "no formula";
+    const std::string markdown = hostile.markdown(), latex = hostile.latex();
+    EXPECT_EQ(markdown.find("<script"), std::string::npos);
+    EXPECT_EQ(std::count(markdown.begin(), markdown.end(), '\n'), 3) << "a row is a line";
+    EXPECT_EQ(latex.find("\\input"), std::string::npos);
+    EXPECT_EQ(latex.find('\x1b'), std::string::npos);
+    for (const std::string bare : {" 50%", " $x", " #1", " ~", " ^", " {}", "--"})
+        EXPECT_EQ(latex.find(bare), std::string::npos) << bare;
+}
+
+TEST(TextTable, IsWrittenInThreeFormats) {
+    const test::Scratch scratch;
+    table().write(scratch.path(), "t", "caption");
+    EXPECT_EQ(read_file(scratch / "t.md"), table().markdown());
+    EXPECT_EQ(read_file(scratch / "t.csv"), table().csv());
+    EXPECT_EQ(read_file(scratch / "t.tex"), table().latex("caption"));
+}
+
+TEST(TextTable, RowsHaveACellAColumn) {
+    TextTable t({"a", "b"});
+    EXPECT_THROW(t.add({"1"}), std::logic_error);
+    EXPECT_EQ(t.markdown(), "| a | b |\n|---|---|\n");
+    EXPECT_EQ(t.latex(), "\\begin{tabular}{ll}\n\\toprule\na & b \\\\\\relax\n\\midrule\n\\bottomrule\n\\end{tabular}\n");
+}
+
+TEST(TextTable, ForATerminal) {
+    EXPECT_EQ(table().plain(), "name          cv   n\narm/height  3.1%  40\na|b, \"c\"       -   7\n");
+}
+
+TEST(Numbers, AsText) {
+    EXPECT_EQ(fixed(-0.001, 1), "0.0");
+    EXPECT_EQ(fixed(-0.06, 1), "-0.1");
+    EXPECT_EQ(fixed(1e300, 0).size(), 301u);
+    EXPECT_EQ(significant(0.00012345, 3), "0.000123");
+    EXPECT_EQ(significant(1234567.0, 3), "1.23e+06");
+    EXPECT_EQ(significant(std::optional<double>{}, 3), "-");
+    EXPECT_EQ(percent(0.0314), "3.1%");
+    EXPECT_EQ(percent(std::nullopt), "-");
+}
+
+}  // namespace
+}  // namespace ostraka
