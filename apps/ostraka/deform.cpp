@@ -10,8 +10,10 @@
 #include "ostraka/semantic/deform.h"
 
 #include <chrono>
+#include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 namespace ostraka::app {
 

@@ -43,8 +43,6 @@ double volume(const Mesh& mesh, const Points& points) {
     return sum;
 }
 
-std::vector<int> ids_of(const std::vector<Index>& vertices) { return {vertices.begin(), vertices.end()}; }
-
 }  // namespace
 
 Statement co_axiality(const ReaderPtr& read, const RelationOptions& tolerances) {

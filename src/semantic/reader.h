@@ -15,6 +15,9 @@ namespace ostraka::semantic {
 
 using Eigen::Vector3d;
 
+/// As the solver has them.
+inline std::vector<int> ids_of(const std::vector<Index>& vertices) { return {vertices.begin(), vertices.end()}; }
+
 /// minValue and maxValue of a constraint.
 struct Range {
     double min = 0, max = 0;
@@ -115,6 +118,9 @@ public:
             fail(std::string(name) + " is not a number from " + std::to_string(least) + " to " + std::to_string(most), "mend it");
         return value->GetDouble();
     }
+    /// As the solver has them.
+    inline std::vector<int> ids_of(const std::vector<Index>& vertices) { return {vertices.begin(), vertices.end()}; }
+
     /// minValue and maxValue (Appendix B.2), positive.
     [[nodiscard]] Range range() const {
         const auto number = [&](const char* name) {

@@ -157,8 +157,7 @@ public:
         SeatReport report;
         constexpr double widest = 3;
         for (const double reach : {2.0, widest}) {
-            report = {};
-            const Points tried = surroundings(search, reach, report);
+            const Points tried = surroundings(search, reach);
             report.folded = folded(tried);
             if (report.folded == 0 || reach == widest) points_ = tried;
             if (report.folded == 0) break;
@@ -240,7 +239,7 @@ private:
     }
 
     /// All points with the features in place and what is around them drawn along on the base.
-    Points surroundings(const SurfaceSearch& search, double reach, SeatReport& report) const {
+    Points surroundings(const SurfaceSearch& search, double reach) const {
         // Displacements along the base, and what outlines stand off it, both carried smoothly to nothing.
         Points moved = Points::Zero(3, points_.cols()), off = moved, result = points_;
         for (const Feature& feature : features_)
@@ -250,10 +249,8 @@ private:
             }
         std::vector<bool> ring(points_.cols(), false);
         for (const Feature& feature : features_) {
-            for (const Index v : feature.outline) {
+            for (const Index v : feature.outline)
                 off.col(v) = result.col(v) - eigen(search.closest(point_of(result.col(v))).point);
-                report.lifted = std::max(report.lifted, off.col(v).norm());
-            }
             grow(feature, reach * feature.radius, ring);
         }
         std::vector<Index> free;

@@ -18,7 +18,6 @@ bool has_outline(const Mesh& mesh, const Annotation& region);
 
 struct SeatReport {
     std::size_t folded = 0;  ///< faces around features that had to turn over
-    double lifted = 0;       ///< greatest distance of an outline from the base, in the mesh's unit
 };
 
 /// The base is `points` with the features' insides replaced by the smoothest surface over their outlines. Each feature comes back

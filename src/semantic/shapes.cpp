@@ -5,8 +5,6 @@ namespace ostraka::semantic {
 
 namespace {
 
-std::vector<int> ids_of(const std::vector<Index>& vertices) { return {vertices.begin(), vertices.end()}; }
-
 /// The vertex of an annotation that stands for its place: nearest to the mean of its vertices on its plane (section 5.2.1).
 Index reference_vertex(const Points& rest, const std::vector<Index>& vertices) {
     Vector3d mean = Vector3d::Zero();
