@@ -109,6 +109,7 @@ void add_annotation_edit(CLI::App& annotation, Session& session);      // annota
 void add_annotation_merge(CLI::App& annotation, Session& session);     // annotation_merge.cpp: diff, merge
 void add_measure(CLI::App& measure, Session& session);                 // measure.cpp: take, describe, refresh
 void add_measure_map(CLI::App& measure, Session& session);             // measure_map.cpp
+void add_measure_clay(CLI::App& measure, Session& session);            // measure_clay.cpp
 void add_annotation_infer(CLI::App& annotation, Session& session);     // annotation_infer.cpp
 void add_template(CLI::App& bundle, Session& session);                 // template.cpp
 void add_vocabulary(CLI::App& vocabulary, Session& session);           // vocabulary.cpp

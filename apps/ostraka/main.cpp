@@ -53,6 +53,7 @@ int main(int argc, char** argv) {
     app::add_annotation_merge(*annotation, session);
     app::add_measure(*measure, session);
     app::add_measure_map(*measure, session);
+    app::add_measure_clay(*measure, session);
     app::add_annotation_infer(*annotation, session);
     app::add_template(*bundle, session);
     app::add_vocabulary(*vocabulary, session);

@@ -1,0 +1,77 @@
+// ostraka measure clay: how much clay an object holds, with what is not seen of its inside.
+#include "command.h"
+#include "number_lists.h"
+
+#include "ostraka/core/limits.h"
+#include "ostraka/io/mesh_file.h"
+#include "ostraka/slicing/clay.h"
+
+#include <cmath>
+#include <iostream>
+#include <memory>
+
+namespace ostraka::app {
+
+namespace {
+
+struct Clay {
+    std::string mesh, up = "0,0,1", unit;
+    ClayOptions options;
+
+    int run(const Session& session) const {
+        const auto direction = numbers_of<double>(up, "--up");
+        if (direction.size() != 3 || unit_vector({direction[0], direction[1], direction[2]}) == CGAL::NULL_VECTOR)
+            fail_usage("--up '" + up + "' is no direction", "give three numbers that are not all 0: x,y,z");
+        Provenance provenance{"measure clay", list_options(options), {}};
+        provenance.options.emplace_back("up", up);
+        provenance.options.emplace_back("unit", unit);
+        provenance.add_input(mesh);
+        const MeshFile file = read_mesh(mesh);
+        for (const auto& note : file.notes) session.note("note: " + note);
+        const SliceFrame frame = slice_frame(Point(0, 0, 0), Vector(direction[0], direction[1], direction[2]));
+        const ClayVolume clay = in_file(mesh, [&] { return clay_volume(file.mesh, frame, options); });
+        const std::string cubed = unit.empty() ? "" : unit + "^3";
+        const std::vector<std::tuple<std::string, double, std::string>> figures{
+            {"most clay", clay.most, cubed},
+            {"least clay", clay.least, cubed},
+            {"within the outer surface", clay.envelope, cubed},
+            {"wall taken for least", clay.wall, unit},
+            {"wall seen, mean", clay.wall_mean, unit},
+            {"wall seen, least", clay.wall_least, unit},
+            {"wall seen, most", clay.wall_most, unit},
+            {"slices", clay.slices, ""},
+            {"slices with a cavity seen", clay.with_cavity, ""},
+            {"slices without an outline", clay.without_outline, ""}};
+        Json document(rapidjson::kObjectType);
+        auto& allocator = document.GetAllocator();
+        JsonValue result(rapidjson::kObjectType);
+        std::vector<std::vector<std::string>> rows;
+        for (const auto& [name, value, its_unit] : figures) {
+            add_member(result, name, std::isnan(value) ? JsonValue(rapidjson::kNullType) : JsonValue(value), allocator);
+            rows.push_back({name, std::isnan(value) ? "unknown" : number(value) + (its_unit.empty() ? "" : " " + its_unit)});
+        }
+        add_member(result, "unit", unit, allocator);
+        if (session.json) session.print_report(provenance, document, result);
+        else std::cout << table({"clay", ""}, rows);
+        if (std::isnan(clay.least)) session.note("no wall is seen, so there is no least: give one with --wall");
+        if (clay.without_outline > 0)
+            session.note(std::to_string(clay.without_outline) +
+                         " slices have no closed outline: taken as between their neighbours");
+        return done;
+    }
+};
+
+}  // namespace
+
+void add_measure_clay(CLI::App& measure, Session& session) {
+    const auto work = std::make_shared<Clay>();
+    CLI::App* command =
+        session.add(measure, "clay", "volume of clay, between what it is if the unseen inside is solid and if it is hollow",
+                    [&session, work] { return work->run(session); });
+    command->add_option("mesh", work->mesh, "mesh file, closed or open")->required();
+    command->add_option("--up", work->up, "x,y,z: direction that slices lie across")->capture_default_str();
+    command->add_option("--unit", work->unit, "unit of the mesh's coordinates, e.g. mm");
+    add_flags(command, work->options);
+}
+
+}  // namespace ostraka::app

@@ -1,0 +1,112 @@
+#include "ostraka/slicing/clay.h"
+
+#include "ostraka/slicing/slice_descriptors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace ostraka {
+
+namespace {
+
+/// What is known of one layer.
+struct Layer {
+    bool met = false, outlined = false, cavity = false;
+    double material = 0;  ///< area that may be clay
+    double outline = 0;   ///< area within outer contours
+    double wall = 0;      ///< mean, of those with a cavity
+};
+
+Layer layer_of(const Slice& slice, const SliceDescriptors& descriptors) {
+    Layer layer;
+    layer.met = !slice.contours.empty();
+    if (std::isnan(descriptors.area)) return layer;
+    layer.outlined = true;
+    layer.material = descriptors.area;
+    layer.outline = descriptors.outline_area;
+    layer.cavity = descriptors.holes > 0 && std::isfinite(descriptors.thickness_mean);
+    if (layer.cavity) layer.wall = descriptors.thickness_mean;
+    return layer;
+}
+
+/// The least clay of a slice: contours with a hole are as they are, others may be hollow but for a wall.
+double least_of(const Slice& slice, double wall) {
+    double sum = 0;
+    std::vector<bool> holed(slice.contours.size(), false);
+    for (const Contour& contour : slice.contours)
+        if (contour.closed && contour.hole && contour.parent >= 0) holed[static_cast<std::size_t>(contour.parent)] = true;
+    for (std::size_t i = 0; i < slice.contours.size(); ++i) {
+        const Contour& contour = slice.contours[i];
+        if (!contour.closed) continue;
+        const double area = std::abs(contour.area);
+        if (contour.hole) {
+            if (contour.parent >= 0) sum -= area;
+        } else if (holed[i] || wall >= 2 * area / contour.length) {
+            sum += area;
+        } else {
+            sum += std::min(area, contour.length * wall - std::numbers::pi * wall * wall);
+        }
+    }
+    return std::max(0.0, sum);
+}
+
+/// Layers that the object crosses without an outline are as those next to them, above and below, in the mean by distance.
+void fill_between(std::vector<Layer>& layers) {
+    const auto next = [&](std::size_t i, int step) {
+        auto k = static_cast<long long>(i);
+        while (k >= 0 && k < static_cast<long long>(layers.size()) && !layers[static_cast<std::size_t>(k)].outlined) k += step;
+        return k;
+    };
+    const std::vector<Layer> before = layers;
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        if (!layers[i].met || layers[i].outlined) continue;
+        const long long below = next(i, -1), above = next(i, 1);
+        const bool has_below = below >= 0, has_above = above < static_cast<long long>(layers.size());
+        if (!has_below && !has_above) continue;
+        const double share = !has_below ? 1 : !has_above ? 0 : (double(i) - double(below)) / double(above - below);
+        const Layer& a = before[static_cast<std::size_t>(has_below ? below : above)];
+        const Layer& b = before[static_cast<std::size_t>(has_above ? above : below)];
+        layers[i].material = (1 - share) * a.material + share * b.material;
+        layers[i].outline = (1 - share) * a.outline + share * b.outline;
+    }
+}
+
+}  // namespace
+
+ClayVolume clay_volume(const Mesh& mesh, const SliceFrame& frame, const ClayOptions& options) {
+    check_options(options, "clay");
+    const auto [lowest, highest] = height_range(mesh, frame);
+    const SliceStack stack = slice_mesh(mesh, frame, slice_heights(lowest, highest, options.slices));
+    const std::vector<SliceDescriptors> descriptors = describe_slices(stack.slices);
+    std::vector<Layer> layers(stack.slices.size());
+    for (std::size_t i = 0; i < layers.size(); ++i) layers[i] = layer_of(stack.slices[i], descriptors[i]);
+    ClayVolume result;
+    for (const Layer& layer : layers) {
+        if (!layer.met) continue;
+        ++result.slices;
+        if (!layer.outlined) ++result.without_outline;
+        if (!layer.cavity) continue;
+        if (result.with_cavity == 0) result.wall_least = result.wall_most = layer.wall, result.wall_mean = 0;
+        ++result.with_cavity;
+        result.wall_mean += layer.wall;
+        result.wall_least = std::min(result.wall_least, layer.wall);
+        result.wall_most = std::max(result.wall_most, layer.wall);
+    }
+    if (result.with_cavity > 0) result.wall_mean /= result.with_cavity;
+    result.wall = options.wall > 0 ? options.wall : result.wall_least;
+    fill_between(layers);
+    const double height = (highest - lowest) / options.slices;
+    for (const Layer& layer : layers) {
+        result.most += height * layer.material;
+        result.envelope += height * layer.outline;
+    }
+    if (std::isnan(result.wall)) return result;
+    result.least = 0;
+    for (const Slice& slice : stack.slices) result.least += height * least_of(slice, result.wall);
+    result.least = std::min(result.least, result.most);
+    return result;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,136 @@
+#include "ostraka/slicing/clay.h"
+
+#include "meshes.h"
+#include "scratch.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/io/mesh_file.h"
+
+#include <numbers>
+
+namespace ostraka {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// A cup turned around z that stands on its rim: outer radius 10, height 40; the cavity, of radius 7, is seen from below up to
+/// `seen` and closed there by a disc, or left open.
+TriangleSoup cup(double seen, bool closed, Index around = 360) {
+    std::vector<std::array<double, 2>> profile;  // radius, height: from the axis on top, down outside, up inside
+    profile = {{0, 40}, {10, 40}, {10, 0}, {7, 0}, {7, seen}};
+    if (closed) profile.push_back({0, seen});
+    TriangleSoup soup;
+    std::vector<std::vector<Index>> rings;
+    for (const auto& [r, z] : profile) {
+        rings.emplace_back();
+        for (Index i = 0; i < (r > 0 ? around : 1); ++i) {
+            rings.back().push_back(static_cast<Index>(soup.points.size()));
+            const double angle = 2 * pi * i / around;
+            soup.points.push_back({r * std::cos(angle), r * std::sin(angle), z});
+        }
+    }
+    for (std::size_t k = 0; k + 1 < rings.size(); ++k)
+        for (Index i = 0; i < around; ++i) {
+            const Index j = (i + 1) % around;
+            const auto& a = rings[k];
+            const auto& b = rings[k + 1];
+            const auto at = [](const std::vector<Index>& ring, Index n) { return ring.size() == 1 ? ring[0] : ring[n]; };
+            if (b.size() > 1) soup.triangles.push_back({at(a, i), b[i], b[j]});
+            if (a.size() > 1) soup.triangles.push_back({a[i], at(b, j), a[j]});
+        }
+    return soup;
+}
+
+/// Areas of the polygons that stand for circles.
+double disc(double radius, Index around = 360) { return around * radius * radius * std::sin(2 * pi / around) / 2; }
+
+SliceFrame upright() { return slice_frame(Point(0, 0, 0), Vector(0, 0, 1)); }
+
+TEST(Clay, BoundsHoldWhatIsNotSeen) {
+    for (const bool closed : {true, false}) {
+        const ClayVolume clay = clay_volume(build_mesh(cup(10, closed)), upright());
+        EXPECT_NEAR(clay.envelope, 40 * disc(10), 1e-6 * clay.envelope);
+        EXPECT_NEAR(clay.most, 40 * disc(10) - 10 * disc(7), 1e-6 * clay.envelope) << closed;
+        EXPECT_NEAR(clay.wall_mean, 3, 1e-3);
+        // Where nothing is seen: a wall of 3 around a disc of 10.
+        EXPECT_NEAR(clay.least, 10 * (disc(10) - disc(7)) + 30 * (disc(10) - disc(7)), 1e-3 * clay.envelope);
+        EXPECT_EQ(clay.slices, 400);
+        EXPECT_EQ(clay.with_cavity, 100);
+        EXPECT_EQ(clay.without_outline, 0);
+    }
+}
+
+TEST(Clay, ASolidObjectHasNoLeastUnlessAWallIsGiven) {
+    const Mesh ball = build_mesh(test::octahedron_sphere(6));
+    const ClayVolume unknown = clay_volume(ball, upright());
+    EXPECT_NEAR(unknown.most, 4 * pi / 3, 2e-3);
+    EXPECT_EQ(unknown.most, unknown.envelope);
+    EXPECT_TRUE(std::isnan(unknown.least));
+    ClayOptions options;
+    options.wall = 0.1;
+    const ClayVolume clay = clay_volume(ball, upright(), options);
+    // In slices the wall is measured within the plane.
+    double expected = 0;
+    const int n = 100000;
+    for (int i = 0; i < n; ++i) {
+        const double z = -1 + 2 * (i + 0.5) / n, r = std::sqrt(1 - z * z);
+        expected += 2.0 / n * pi * (r > 0.1 ? r * r - (r - 0.1) * (r - 0.1) : r * r);
+    }
+    EXPECT_NEAR(clay.least, expected, 3e-3);
+    options.wall = 5;
+    EXPECT_EQ(clay_volume(ball, upright(), options).least, unknown.most);
+}
+
+TEST(Clay, ScalesAndPlacesDoNotMatter) {
+    const ClayVolume base = clay_volume(build_mesh(cup(10, true)), upright());
+    for (const double scale : {1e-5, 1e5}) {
+        TriangleSoup soup = cup(10, true);
+        for (auto& p : soup.points)
+            for (auto& x : p) x = scale * (x + 1000);
+        const ClayVolume other = clay_volume(build_mesh(soup), upright());
+        EXPECT_NEAR(other.most / (scale * scale * scale), base.most, 1e-7 * base.most);
+        EXPECT_NEAR(other.least / (scale * scale * scale), base.least, 1e-7 * base.least);
+    }
+}
+
+TEST(Clay, LayersWithoutOutlineAreTakenFromTheirNeighbours) {
+    // A tube with a slit all along a stretch of its height: there the outer contour is open.
+    const Index around = 120;
+    TriangleSoup soup = test::grid(around, 40, true, false, [](double u, double v) {
+        return std::array<double, 3>{5 * std::cos(2 * pi * u), 5 * std::sin(2 * pi * u), 40 * v};
+    });
+    std::vector<std::array<Index, 3>> kept;
+    for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
+        const std::size_t quad = t / 2, column = quad % around, row = quad / around;
+        if (column != 0 || row < 10 || row >= 20) kept.push_back(soup.triangles[t]);
+    }
+    soup.triangles = kept;
+    const ClayVolume clay = clay_volume(build_mesh(soup), upright());
+    EXPECT_EQ(clay.without_outline, 100);
+    EXPECT_NEAR(clay.most, 40 * disc(5, around), 1e-6 * clay.most);
+}
+
+TEST(Clay, WhatMakesNoSenseIsRefused) {
+    EXPECT_THROW(clay_volume(Mesh(), upright()), Error);
+    ClayOptions options;
+    options.wall = -1;
+    EXPECT_THROW(clay_volume(build_mesh(cup(10, true)), upright(), options), Error);
+    const ClayVolume flat = clay_volume(build_mesh({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}), upright());
+    EXPECT_EQ(flat.most, 0);
+}
+
+TEST(ClayCommand, SaysBoundsAndWhatTheyRestOn) {
+    const test::Scratch scratch;
+    write_mesh(scratch / "cup.ply", build_mesh(cup(10, true)));
+    const auto result = test::run_command("measure clay --unit cm " + (scratch / "cup.ply").string());
+    EXPECT_EQ(result.code, 0) << result.err;
+    EXPECT_NE(result.out.find("cm^3"), std::string::npos);
+    EXPECT_EQ(test::run_command("measure clay --up 0,0,0 " + (scratch / "cup.ply").string()).code, 2);
+    write_mesh(scratch / "ball.ply", build_mesh(test::octahedron_sphere(3)));
+    const auto ball = test::run_command("measure clay " + (scratch / "ball.ply").string());
+    EXPECT_EQ(ball.code, 0);
+    EXPECT_NE((ball.out + ball.err).find("--wall"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace ostraka
