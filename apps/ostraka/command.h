@@ -90,32 +90,4 @@ std::string table(const std::vector<std::string>& header, const std::vector<std:
 /// A number for people: `digits` significant digits.
 std::string number(double value, int digits = 5);
 
-// One registration function a file; each adds its commands to the tool.
-void add_mesh_info(CLI::App& mesh, Session& session);                  // mesh_info.cpp
-void add_mesh_convert(CLI::App& mesh, Session& session);               // mesh_convert.cpp
-void add_mesh_repair(CLI::App& mesh, Session& session);                // mesh_repair.cpp
-void add_mesh_resize(CLI::App& mesh, Session& session);                // mesh_resize.cpp: simplify, refine, remesh
-void add_mesh_make(CLI::App& mesh, Session& session);                  // mesh_make.cpp
-void add_annotation(CLI::App& annotation, Session& session);           // annotation.cpp: apply, list, check
-void add_annotation_select(CLI::App& annotation, Session& session);    // annotation_select.cpp
-void add_annotation_creases(CLI::App& annotation, Session& session);   // annotation_creases.cpp
-void add_annotation_segment(CLI::App& annotation, Session& session);   // annotation_segment.cpp
-void add_annotation_transfer(CLI::App& annotation, Session& session);  // annotation_transfer.cpp
-void add_annotation_survival(CLI::App& annotation, Session& session);  // annotation_survival.cpp
-void add_axis(CLI::App& tool, Session& session);                       // axis.cpp
-void add_relation(CLI::App& relation, Session& session);               // relation.cpp
-void add_annotation_exchange(CLI::App& annotation, Session& session);  // annotation_exchange.cpp: export, import
-void add_annotation_edit(CLI::App& annotation, Session& session);      // annotation_edit.cpp
-void add_annotation_merge(CLI::App& annotation, Session& session);     // annotation_merge.cpp: diff, merge
-void add_measure(CLI::App& measure, Session& session);                 // measure.cpp: take, describe, refresh
-void add_measure_map(CLI::App& measure, Session& session);             // measure_map.cpp
-void add_measure_clay(CLI::App& measure, Session& session);            // measure_clay.cpp
-void add_annotation_infer(CLI::App& annotation, Session& session);     // annotation_infer.cpp
-void add_template(CLI::App& bundle, Session& session);                 // template.cpp
-void add_vocabulary(CLI::App& vocabulary, Session& session);           // vocabulary.cpp
-void add_cage(CLI::App& cage, Session& session);                       // cage.cpp: weights, influence
-void add_cage_make(CLI::App& cage, Session& session);                  // cage_make.cpp: make, check, edit
-void add_deform(CLI::App& tool, Session& session);                     // deform.cpp
-void add_render(CLI::App& tool, Session& session);                     // render.cpp
-
 }  // namespace ostraka::app

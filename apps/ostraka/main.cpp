@@ -1,4 +1,4 @@
-#include "command.h"
+#include "commands.h"
 
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"

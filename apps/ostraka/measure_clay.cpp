@@ -2,7 +2,6 @@
 #include "command.h"
 #include "number_lists.h"
 
-#include "ostraka/core/limits.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/slicing/clay.h"
 
@@ -19,9 +18,7 @@ struct Clay {
     ClayOptions options;
 
     int run(const Session& session) const {
-        const auto direction = numbers_of<double>(up, "--up");
-        if (direction.size() != 3 || unit_vector({direction[0], direction[1], direction[2]}) == CGAL::NULL_VECTOR)
-            fail_usage("--up '" + up + "' is no direction", "give three numbers that are not all 0: x,y,z");
+        const auto direction = direction_of(up, "--up");
         Provenance provenance{"measure clay", list_options(options), {}};
         provenance.options.emplace_back("up", up);
         provenance.options.emplace_back("unit", unit);
