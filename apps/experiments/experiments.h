@@ -87,4 +87,11 @@ void before_and_after(const SemanticOptions& options);
 /// The faces nearest to a seed vertex (by edge paths), up to a share of the mesh's area.
 std::vector<Index> disc(const Mesh& mesh, Vertex seed, double share);
 
+/// Planted proportions found in many made populations, and false ones.
+struct FixedProportionsOptions {
+    std::string output = "experiments-output/proportions";
+    int seeds = 100;
+};
+void fixed_proportions(const FixedProportionsOptions& options);
+
 }  // namespace ostraka::experiments

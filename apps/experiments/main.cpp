@@ -94,6 +94,13 @@ int main(int argc, char** argv) {
     cage_command->add_option("--vertices", cages.vertices, "wanted numbers of vertices")->delimiter(',');
     cage_command->add_option("--csv", cages.csv, "raw rows");
 
+    experiments::FixedProportionsOptions fixed;
+    CLI::App* fixed_command = tool.add_subcommand("proportions", "planted proportions found in made populations, and false ones");
+    fixed_command->add_option("output", fixed.output, "folder for table and plot")->capture_default_str();
+    fixed_command->add_option("--seeds", fixed.seeds, "populations of each kind")
+        ->check(CLI::Range(1, 100000))
+        ->capture_default_str();
+
     experiments::SemanticOptions semantic;
     std::vector<std::pair<CLI::App*, void (*)(const experiments::SemanticOptions&)>> semantic_commands;
     const struct {
@@ -128,6 +135,7 @@ int main(int argc, char** argv) {
         if (reach_command->parsed()) experiments::cage_reach(reach);
         if (cage_command->parsed()) experiments::cages(cages);
         if (label_command->parsed()) experiments::label_transfer(labels);
+        if (fixed_command->parsed()) experiments::fixed_proportions(fixed);
         for (const auto& [command, run] : semantic_commands)
             if (command->parsed()) run(semantic);
         return 0;

@@ -1,0 +1,155 @@
+#include "ostraka/collection/measure_table.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/stats/random.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+
+namespace ostraka {
+
+namespace {
+
+/// The unit's usual name and its length in metres.
+struct LengthUnit {
+    std::string name;
+    double metres;
+};
+
+const std::vector<LengthUnit>& length_units() {
+    static const std::vector<LengthUnit> list{{"mm", 1e-3},   {"cm", 1e-2}, {"m", 1},   {"in", 0.0254},
+                                              {"ft", 0.3048}, {"um", 1e-6}, {"km", 1e3}};
+    return list;
+}
+
+std::string usual_name(std::string unit) {
+    std::transform(unit.begin(), unit.end(), unit.begin(),
+                   [](unsigned char c) { return c < 128 ? static_cast<char>(std::tolower(c)) : static_cast<char>(c); });
+    static const std::map<std::string, std::string> names{
+        {"millimetre", "mm"},  {"millimetres", "mm"}, {"millimeter", "mm"},  {"millimeters", "mm"}, {"centimetre", "cm"},
+        {"centimetres", "cm"}, {"centimeter", "cm"},  {"centimeters", "cm"}, {"metre", "m"},        {"metres", "m"},
+        {"meter", "m"},        {"meters", "m"},       {"inch", "in"},        {"inches", "in"},      {"\"", "in"},
+        {"foot", "ft"},        {"feet", "ft"},        {"micrometre", "um"},  {"micrometer", "um"},  {"\u00b5m", "um"},
+        {"\u03bcm", "um"},     {"kilometre", "km"},   {"kilometer", "km"}};
+    const auto found = names.find(unit);
+    return found == names.end() ? unit : found->second;
+}
+
+std::optional<double> metres(const std::string& unit) {
+    for (const LengthUnit& known : length_units())
+        if (known.name == unit) return known.metres;
+    return std::nullopt;
+}
+
+std::string power_of(const std::string& unit, int power) {
+    if (unit.empty() || power == 0) return {};
+    return power == 1 ? unit : unit + "^" + std::to_string(power);
+}
+
+std::string counted(std::size_t count, const std::string& what) {
+    return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+}  // namespace
+
+UnifiedMeasures unify_units(const MeasureTable& table) {
+    const std::size_t n = table.objects.size();
+    if (table.units.size() != n || static_cast<std::size_t>(table.values.rows()) != n ||
+        static_cast<std::size_t>(table.values.cols()) != table.measures.size())
+        fail_usage("the table of measures has " + std::to_string(table.values.rows()) + " rows for " + std::to_string(n) +
+                       " objects and " + std::to_string(table.values.cols()) + " columns for " +
+                       std::to_string(table.measures.size()) + " measures",
+                   "give a row an object, a column a measure, a unit an object");
+    UnifiedMeasures result{table, std::vector<bool>(n, true), {}};
+    const bool lengths = std::any_of(table.measures.begin(), table.measures.end(), [](const auto& m) { return m.power != 0; });
+    std::map<std::string, std::size_t> counts;
+    for (std::string& unit : result.table.units) {
+        unit = usual_name(unit);
+        if (!unit.empty()) ++counts[unit];
+    }
+    if (counts.empty() || !lengths) return result;
+
+    std::string common;
+    std::size_t most = 0;
+    for (const LengthUnit& known : length_units())
+        if (const auto found = counts.find(known.name); found != counts.end() && found->second > most)
+            common = known.name, most = found->second;
+    for (const auto& [unit, count] : counts)
+        if (count > most) common = unit, most = count;
+
+    std::map<std::string, std::size_t> converted, foreign;
+    std::size_t unknown = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        std::string& unit = result.table.units[i];
+        if (unit == common) continue;
+        const std::optional<double> from = metres(unit), to = metres(common);
+        if (unit.empty() || !from || !to) {
+            result.comparable[i] = false;
+            if (unit.empty()) ++unknown;
+            else ++foreign[unit];
+            continue;
+        }
+        for (std::size_t j = 0; j < table.measures.size(); ++j)
+            result.table.values(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) *=
+                std::pow(*from / *to, table.measures[j].power);
+        ++converted[unit];
+        unit = common;
+    }
+    for (MeasureColumn& column : result.table.measures)
+        if (column.power != 0) column.unit = power_of(common, column.power);
+    for (const auto& [unit, count] : converted)
+        result.notes.push_back("lengths of " + counted(count, "object") + " were converted from " + unit + " to " + common);
+    if (unknown > 0)
+        result.notes.push_back(counted(unknown, "object") +
+                               " without a unit: left out of the rows of lengths, kept in those of ratios");
+    for (const auto& [unit, count] : foreign)
+        result.notes.push_back(counted(count, "object") + " in '" + unit + "', which cannot be converted to " + common +
+                               ": left out of the rows of lengths, kept in those of ratios");
+    return result;
+}
+
+MadeMeasures make_measures(const MadeMeasuresOptions& options) {
+    check_options(options, "made measures");
+    if (options.groups * options.group_size > options.measures)
+        fail_usage(std::to_string(options.groups) + " groups of " + std::to_string(options.group_size) +
+                       " measures need more than " + std::to_string(options.measures),
+                   "raise --measures or lower the groups");
+    Random random(options.seed);
+    const auto n = static_cast<Eigen::Index>(options.objects), m = static_cast<Eigen::Index>(options.measures);
+    MadeMeasures made;
+    made.table.values.resize(n, m);
+    made.table.units.assign(static_cast<std::size_t>(n), "mm");
+    // Which measures belong together is drawn, so that their order tells nothing.
+    made.groups.assign(static_cast<std::size_t>(m), -1);
+    const std::vector<std::size_t> order = random.permutation(static_cast<std::size_t>(m));
+    for (int g = 0, next = 0; g < options.groups; ++g)
+        for (int k = 0; k < options.group_size; ++k) made.groups[order[static_cast<std::size_t>(next++)]] = g;
+    std::vector<double> centre, own;
+    for (Eigen::Index j = 0; j < m; ++j) {
+        made.table.measures.push_back({"measure " + std::to_string(j + 1), 1, "mm"});
+        centre.push_back(std::log(random.uniform(20, 200)));
+        own.push_back(options.ratio_deviation / std::sqrt(2.0) * random.uniform(1 - options.spread, 1 + options.spread));
+    }
+    for (Eigen::Index i = 0; i < n; ++i) {
+        made.table.objects.push_back("object " + std::to_string(i + 1));
+        const double size = random.normal(0, options.size_deviation);
+        std::vector<double> shared(static_cast<std::size_t>(options.groups));
+        for (double& value : shared) value = random.normal();
+        for (Eigen::Index j = 0; j < m; ++j) {
+            const auto at = static_cast<std::size_t>(j);
+            const double alone = random.normal(), drawn = random.uniform();
+            const double deviation = made.groups[at] < 0 ? own[at] * alone
+                                                         : options.ratio_deviation / std::sqrt(2.0) *
+                                                                   shared[static_cast<std::size_t>(made.groups[at])] +
+                                                               options.planted_deviation / std::sqrt(2.0) * alone;
+            made.table.values(i, j) =
+                drawn < options.missing ? std::numeric_limits<double>::quiet_NaN() : std::exp(centre[at] + size + deviation);
+        }
+    }
+    return made;
+}
+
+}  // namespace ostraka

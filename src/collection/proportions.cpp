@@ -1,0 +1,301 @@
+#include "ostraka/collection/proportions.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+#include "ratio_tests.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+
+namespace ostraka {
+
+namespace {
+
+using proportions::Pair;
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t most_measures = 60;
+
+/// Standard deviation (n - 1), over the magnitude of the mean if `relative`.
+std::optional<double> deviation_of(const std::vector<double>& values, const std::vector<std::size_t>& chosen, bool relative) {
+    if (chosen.size() < 2) return std::nullopt;
+    const double n = static_cast<double>(chosen.size()), base = values[chosen.front()];
+    double sum = 0, square = 0;
+    for (const std::size_t i : chosen) sum += values[i] - base, square += (values[i] - base) * (values[i] - base);
+    const double deviation = std::sqrt(std::max(0.0, square - sum * sum / n) / (n - 1)), mean = std::abs(base + sum / n);
+    if (!relative) return deviation;
+    return mean > 0 ? std::optional(deviation / mean) : std::nullopt;
+}
+
+MeasureRow row_of(const std::string& name, const std::string& unit, const std::vector<double>& values,
+                  const BootstrapOptions& bootstrap) {
+    MeasureRow row{name, unit, std::nullopt, std::nullopt, std::nullopt, std::nullopt};
+    if (values.empty()) return row;
+    row.summary = summarise(values, name);
+    // In units of the largest, so that squares neither overflow nor vanish.
+    double largest = 0;
+    for (const double value : values) largest = std::max(largest, std::abs(value));
+    std::vector<double> scaled = values;
+    if (largest > 0)
+        for (double& value : scaled) value /= largest;
+    if (values.size() < 3) return row;
+    row.deviation_interval = bootstrap_interval(
+        values.size(), [&](const auto& chosen) { return deviation_of(scaled, chosen, false); }, bootstrap);
+    if (row.deviation_interval) row.deviation_interval->low *= largest, row.deviation_interval->high *= largest;
+    row.variation_interval = bootstrap_interval(
+        values.size(), [&](const auto& chosen) { return deviation_of(scaled, chosen, true); }, bootstrap);
+    return row;
+}
+
+/// The measures of one kind: ratios are taken among them.
+struct Kind {
+    std::vector<std::size_t> measures;
+    Eigen::MatrixXd logs;  ///< of the values above zero
+};
+
+std::vector<Kind> kinds_of(const MeasureTable& table) {
+    std::map<std::pair<int, std::string>, Kind> kinds;
+    for (std::size_t j = 0; j < table.measures.size(); ++j) {
+        const MeasureColumn& column = table.measures[j];
+        kinds[{column.power, column.power == 0 ? column.unit : ""}].measures.push_back(j);
+    }
+    std::vector<Kind> result;
+    for (auto& [key, kind] : kinds) {
+        kind.logs.resize(table.values.rows(), static_cast<Eigen::Index>(kind.measures.size()));
+        for (std::size_t c = 0; c < kind.measures.size(); ++c)
+            for (Eigen::Index i = 0; i < table.values.rows(); ++i) {
+                const double value = table.values(i, static_cast<Eigen::Index>(kind.measures[c]));
+                kind.logs(i, static_cast<Eigen::Index>(c)) = value > 0 ? std::log(value) : none;
+            }
+        result.push_back(std::move(kind));
+    }
+    return result;
+}
+
+std::vector<double> corrected(const std::vector<double>& p, const std::string& correction) {
+    return correction == "by" ? benjamini_yekutieli(p) : benjamini_hochberg(p);
+}
+
+/// Numbers measures that are joined by pairs with the same number.
+std::vector<int> components(std::size_t count, const std::vector<Pair>& joined) {
+    std::vector<int> group(count);
+    std::iota(group.begin(), group.end(), 0);
+    for (const Pair& pair : joined) {
+        const int from = group[static_cast<std::size_t>(pair.b)], to = group[static_cast<std::size_t>(pair.a)];
+        for (int& g : group)
+            if (g == from) g = to;
+    }
+    return group;
+}
+
+/// A ratio that is waiting for its corrected p-value.
+struct Candidate {
+    RatioRow ratio;
+    Pair pair;
+    std::size_t count = 0;
+};
+
+/// Rows and p-values of the ratios of one kind.
+std::vector<Candidate> ratios_of(const MeasureTable& table, const Kind& kind, const ProportionOptions& options) {
+    std::vector<Candidate> list;
+    const auto m = static_cast<Eigen::Index>(kind.measures.size());
+    std::vector<double> medians;
+    for (Eigen::Index j = 0; j < m; ++j) {
+        std::vector<double> values;
+        for (const double value : kind.logs.col(j))
+            if (!std::isnan(value)) values.push_back(value);
+        medians.push_back(values.empty() ? -std::numeric_limits<double>::infinity() : summarise(values).median);
+    }
+    for (Eigen::Index a = 0; a < m; ++a)
+        for (Eigen::Index b = a + 1; b < m; ++b) {
+            Candidate candidate;
+            const bool swapped = medians[static_cast<std::size_t>(b)] > medians[static_cast<std::size_t>(a)];
+            candidate.pair = swapped ? Pair{b, a} : Pair{a, b};
+            candidate.ratio.numerator = kind.measures[static_cast<std::size_t>(candidate.pair.a)];
+            candidate.ratio.denominator = kind.measures[static_cast<std::size_t>(candidate.pair.b)];
+            list.push_back(std::move(candidate));
+        }
+    const Eigen::MatrixXd centred = proportions::centred_columns(kind.logs);
+    parallel_for(
+        list.size(),
+        [&](std::size_t r) {
+            Candidate& candidate = list[r];
+            RatioRow& ratio = candidate.ratio;
+            std::vector<double> values;
+            for (Eigen::Index i = 0; i < centred.rows(); ++i) {
+                if (std::isnan(centred(i, candidate.pair.a)) || std::isnan(centred(i, candidate.pair.b))) continue;
+                const double value = table.values(i, static_cast<Eigen::Index>(ratio.numerator)) /
+                                     table.values(i, static_cast<Eigen::Index>(ratio.denominator));
+                if (std::isfinite(value) && value > 0) values.push_back(value);
+            }
+            candidate.count = values.size();
+            ratio.row = row_of(table.measures[ratio.numerator].name + " / " + table.measures[ratio.denominator].name, "", values,
+                               options.bootstrap);
+            if (values.empty()) return;
+            ratio.log_deviation = std::sqrt(proportions::ratio_variance(centred, candidate.pair).value);
+            ratio.low = sample_quantile(values, (1 - options.range) / 2);
+            ratio.high = sample_quantile(values, (1 + options.range) / 2);
+        },
+        1);
+    return list;
+}
+
+void test(std::vector<Candidate>& list, const Kind& kind, const ProportionOptions& options, int permutations,
+          std::uint64_t seed) {
+    if (list.empty()) return;
+    const Eigen::MatrixXd centred = proportions::centred_columns(kind.logs);
+    std::vector<Pair> pairs;
+    for (const Candidate& candidate : list) pairs.push_back(candidate.pair);
+    const std::vector<double> pairing = proportions::pairing_test(centred, pairs, permutations, seed);
+    // With two measures of a kind there is no other ratio to compare with.
+    const std::vector<double> others = kind.measures.size() < 3
+                                           ? std::vector<double>(list.size(), 1.0)
+                                           : proportions::others_test(centred, pairs, permutations, seed + 1);
+    const std::vector<double> q = corrected(others, options.correction);
+    std::vector<Pair> joined;
+    for (std::size_t r = 0; r < list.size(); ++r) {
+        list[r].ratio.p_pairing = pairing[r];
+        list[r].ratio.p_others = others[r];
+        if (q[r] <= options.false_discoveries) joined.push_back(pairs[r]);
+    }
+    const std::vector<int> groups = components(kind.measures.size(), joined);
+    for (std::size_t r = 0; r < list.size(); ++r)
+        if (q[r] <= options.false_discoveries)
+            list[r].ratio.p_size = proportions::size_test(centred, pairs[r], groups, permutations, seed + 2 + r);
+}
+
+Fixedness verdict(const Candidate& candidate, double alpha, double q_others) {
+    const RatioRow& ratio = candidate.ratio;
+    if (candidate.count < 4) return Fixedness::unknown;
+    if (ratio.q <= alpha) return Fixedness::fixed;
+    if (q_others <= alpha) return Fixedness::stable;
+    return ratio.q_pairing <= alpha ? Fixedness::with_size : Fixedness::free;
+}
+
+void check(const MeasureTable& table, std::vector<std::string>& notes) {
+    if (table.measures.empty()) fail_input("measures", "there is no measure", "define at least one");
+    if (table.objects.empty()) fail_input("measures", "there is no object", "give at least one");
+    if (table.measures.size() > most_measures)
+        fail_usage("there are " + std::to_string(table.measures.size()) + " measures, and a ratio for each two of them",
+                   "use at most " + std::to_string(most_measures));
+    std::size_t missing = 0, not_positive = 0;
+    for (Eigen::Index i = 0; i < table.values.rows(); ++i)
+        for (Eigen::Index j = 0; j < table.values.cols(); ++j) {
+            const double value = table.values(i, j);
+            if (std::isnan(value)) ++missing;
+            else if (!std::isfinite(value))
+                fail_input("measures",
+                           "the value of '" + table.measures[static_cast<std::size_t>(j)].name + "' of object '" +
+                               table.objects[static_cast<std::size_t>(i)] + "' is not finite",
+                           "leave it out");
+            else if (!(value > 0)) ++not_positive;
+        }
+    if (missing > 0)
+        notes.push_back("values that are missing: " + std::to_string(missing) + " of " + std::to_string(table.values.size()) +
+                        "; each row tells its number of objects");
+    if (not_positive > 0)
+        notes.push_back("values that are not above zero: " + std::to_string(not_positive) + "; ratios with them are left out");
+}
+
+}  // namespace
+
+std::string to_string(Fixedness fixedness) {
+    switch (fixedness) {
+        case Fixedness::free:
+            return "free";
+        case Fixedness::with_size:
+            return "with size";
+        case Fixedness::stable:
+            return "stable";
+        case Fixedness::fixed:
+            return "fixed";
+        case Fixedness::unknown:
+            break;
+    }
+    return "unknown";
+}
+
+ProportionStudy study_proportions(const MeasureTable& given, const ProportionOptions& options) {
+    check_options(options, "proportions");
+    UnifiedMeasures unified = unify_units(given);
+    const MeasureTable& table = unified.table;
+    ProportionStudy study;
+    check(table, study.notes);
+    study.notes.insert(study.notes.end(), unified.notes.begin(), unified.notes.end());
+
+    for (std::size_t j = 0; j < table.measures.size(); ++j) {
+        std::vector<double> values;
+        for (std::size_t i = 0; i < table.objects.size(); ++i)
+            if (const double value = table.values(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+                !std::isnan(value) && (table.measures[j].power == 0 || unified.comparable[i]))
+                values.push_back(value);
+        study.measures.push_back(row_of(table.measures[j].name, table.measures[j].unit, values, options.bootstrap));
+        if (values.empty()) study.notes.push_back("measure '" + table.measures[j].name + "' has no value in any object");
+    }
+
+    const std::vector<Kind> kinds = kinds_of(table);
+    if (kinds.size() > 1)
+        study.notes.push_back("measures of different kinds (lengths, areas, volumes, others): ratios are taken within each kind");
+    std::vector<Candidate> all;
+    std::size_t ratios = 0;
+    for (const Kind& kind : kinds) ratios += kind.measures.size() * (kind.measures.size() - 1) / 2;
+    // A single fixed ratio must be able to come below its corrected limit.
+    const int permutations =
+        std::max(options.permutations, static_cast<int>(std::ceil(2 * static_cast<double>(ratios) / options.false_discoveries)));
+    for (std::size_t k = 0; k < kinds.size(); ++k) {
+        const Kind& kind = kinds[k];
+        std::vector<Candidate> list = ratios_of(table, kind, options);
+        test(list, kind, options, permutations, options.bootstrap.seed + 1000003 * (k + 1));
+        const Eigen::MatrixXd centred = proportions::centred_columns(kind.logs);
+        if (const auto own = proportions::own_deviations(centred)) {
+            for (std::size_t c = 0; c < own->size(); ++c) study.measures[kind.measures[c]].own_deviation = (*own)[c];
+            if (table.measures[kind.measures.front()].power == 1) {
+                // What is common to two lengths: their covariance over the comparable objects.
+                double sum = 0, count = 0;
+                for (Eigen::Index c = 0; c < centred.cols(); ++c) {
+                    double mean = 0, square = 0, n = 0;
+                    for (Eigen::Index i = 0; i < centred.rows(); ++i)
+                        if (unified.comparable[static_cast<std::size_t>(i)] && !std::isnan(centred(i, c)))
+                            mean += centred(i, c), square += centred(i, c) * centred(i, c), n += 1;
+                    if (n < 2) continue;
+                    sum += (square - mean * mean / n) / (n - 1) -
+                           (*own)[static_cast<std::size_t>(c)] * (*own)[static_cast<std::size_t>(c)];
+                    count += 1;
+                }
+                if (count > 0) study.size_deviation = std::sqrt(std::max(0.0, sum / count));
+            }
+        }
+        all.insert(all.end(), std::make_move_iterator(list.begin()), std::make_move_iterator(list.end()));
+    }
+
+    std::vector<double> joint, others, pairing;
+    for (const Candidate& candidate : all) {
+        joint.push_back(std::max(candidate.ratio.p_others, candidate.ratio.p_size.value_or(0)));
+        others.push_back(candidate.ratio.p_others);
+        pairing.push_back(candidate.ratio.p_pairing);
+    }
+    const std::vector<double> q = corrected(joint, options.correction), q_others = corrected(others, options.correction),
+                              q_pairing = corrected(pairing, options.correction);
+    std::size_t few = 0;
+    for (std::size_t r = 0; r < all.size(); ++r) {
+        all[r].ratio.q = q[r];
+        all[r].ratio.q_pairing = q_pairing[r];
+        all[r].ratio.fixedness = verdict(all[r], options.false_discoveries, q_others[r]);
+        few += all[r].count < 4 ? 1 : 0;
+        study.ratios.push_back(std::move(all[r].ratio));
+    }
+    if (few > 0)
+        study.notes.push_back("ratios known of fewer than four objects, of which nothing can be said: " + std::to_string(few));
+    if (study.ratios.empty()) study.notes.push_back("there are no two measures of one kind: no ratios");
+    for (const Kind& kind : kinds)
+        if (kind.measures.size() == 2)
+            study.notes.push_back("'" + table.measures[kind.measures[0]].name + "' and '" +
+                                  table.measures[kind.measures[1]].name +
+                                  "' are the only measures of their kind: there is no other ratio to compare theirs with");
+    return study;
+}
+
+}  // namespace ostraka

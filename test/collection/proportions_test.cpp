@@ -1,0 +1,285 @@
+#include "ostraka/collection/proportions.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/stats/random.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+
+namespace ostraka {
+namespace {
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+MeasureTable table_of(const std::vector<std::string>& names, const std::vector<std::vector<double>>& rows) {
+    MeasureTable table;
+    for (const auto& name : names) table.measures.push_back({name, 1, "mm"});
+    table.values.resize(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(names.size()));
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        table.objects.push_back("object " + std::to_string(i));
+        table.units.emplace_back("mm");
+        for (std::size_t j = 0; j < names.size(); ++j)
+            table.values(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = rows[i][j];
+    }
+    return table;
+}
+
+ProportionOptions quick(std::uint64_t seed = 1) {
+    ProportionOptions options;
+    options.permutations = 999;
+    options.bootstrap.resamples = 50;
+    options.bootstrap.seed = seed;
+    return options;
+}
+
+struct Counts {
+    double planted = 0, hit = 0, wrong = 0;
+};
+
+Counts over_seeds(MadeMeasuresOptions made, int seeds) {
+    Counts counts;
+    for (int s = 1; s <= seeds; ++s) {
+        made.seed = static_cast<std::uint64_t>(s);
+        const MadeMeasures population = make_measures(made);
+        for (const RatioRow& ratio : study_proportions(population.table, quick(made.seed)).ratios) {
+            const int a = population.groups[ratio.numerator], b = population.groups[ratio.denominator];
+            const bool planted = a >= 0 && a == b, called = ratio.fixedness == Fixedness::fixed;
+            counts.planted += planted ? 1 : 0;
+            counts.hit += planted && called ? 1 : 0;
+            counts.wrong += !planted && called ? 1 : 0;
+        }
+    }
+    return counts;
+}
+
+TEST(Proportions, RowsByHand) {
+    const ProportionStudy study = study_proportions(table_of({"arm", "height"}, {{8, 20}, {9, 18}, {7, 21}, {8, 25}}), quick());
+    ASSERT_EQ(study.measures.size(), 2u);
+    ASSERT_EQ(study.ratios.size(), 1u);
+    EXPECT_EQ(study.measures[0].summary->mean, 8);
+    EXPECT_DOUBLE_EQ(*study.measures[0].summary->deviation, std::sqrt(2.0 / 3));
+    EXPECT_DOUBLE_EQ(*study.measures[0].summary->variation, std::sqrt(2.0 / 3) / 8);
+    EXPECT_EQ(study.measures[0].unit, "mm");
+    const RatioRow& ratio = study.ratios[0];
+    EXPECT_EQ(ratio.numerator, 1u) << "the larger over the smaller";
+    EXPECT_EQ(ratio.row.name, "height / arm");
+    EXPECT_DOUBLE_EQ(ratio.row.summary->mean, (20.0 / 8 + 2 + 3 + 25.0 / 8) / 4);
+    EXPECT_EQ(ratio.row.summary->count, 4u);
+    const auto inside = [](const Interval& interval, double value) { return interval.low <= value && value <= interval.high; };
+    EXPECT_TRUE(inside(*ratio.row.variation_interval, *ratio.row.summary->variation));
+    EXPECT_NE(ratio.fixedness, Fixedness::fixed) << "with two measures there is nothing to compare with";
+}
+
+TEST(Proportions, PlantedOnesAreFoundWithAndWithoutCommonSize) {
+    for (const double size : {0.0, 0.15, 0.4}) {
+        MadeMeasuresOptions made;
+        made.size_deviation = size;
+        const Counts counts = over_seeds(made, 10);
+        EXPECT_GE(counts.hit, 0.9 * counts.planted) << size;
+        EXPECT_LE(counts.wrong, 0.15 * counts.hit) << size << ": 5 % are allowed on average over many populations";
+    }
+}
+
+TEST(Proportions, GroupsOfThreeAreFoundToo) {
+    MadeMeasuresOptions made;
+    made.group_size = 3;
+    const Counts counts = over_seeds(made, 6);
+    EXPECT_GE(counts.hit, 0.9 * counts.planted);
+    EXPECT_LE(counts.wrong, 0.15 * counts.hit);
+}
+
+TEST(Proportions, NearlyNoneWhereNoneIsPlanted) {
+    for (const double size : {0.0, 0.15, 0.4}) {
+        MadeMeasuresOptions made;
+        made.groups = 0;
+        made.size_deviation = size;
+        EXPECT_LE(over_seeds(made, 10).wrong, 3) << size;
+    }
+    MadeMeasuresOptions unequal;
+    unequal.groups = 0;
+    unequal.spread = 0.5;
+    EXPECT_LE(over_seeds(unequal, 10).wrong, 3) << "measures that follow the size closely are not bound to each other";
+}
+
+TEST(Proportions, ScaledCopiesGoWithTheSize) {
+    MadeMeasuresOptions made;
+    made.groups = 0;
+    made.ratio_deviation = 0.03;
+    made.size_deviation = 0.2;
+    const ProportionStudy study = study_proportions(make_measures(made).table, quick());
+    for (const RatioRow& ratio : study.ratios) {
+        EXPECT_EQ(ratio.fixedness, Fixedness::with_size) << ratio.row.name;
+        EXPECT_LT(*ratio.row.summary->variation, 0.06);
+    }
+    EXPECT_NEAR(*study.size_deviation, 0.2, 0.08);
+    for (const MeasureRow& row : study.measures) EXPECT_NEAR(*row.own_deviation, 0.03 / std::sqrt(2.0), 0.012);
+}
+
+TEST(Proportions, DoNotDependOnUnitsOrderOrThreads) {
+    MadeMeasuresOptions made;
+    made.missing = 0.1;
+    const MeasureTable table = make_measures(made).table;
+    const int before = threads();
+    set_threads(1);
+    const ProportionStudy one = study_proportions(table, quick());
+    set_threads(3);
+    const ProportionStudy three = study_proportions(table, quick());
+    set_threads(before);
+    for (std::size_t r = 0; r < one.ratios.size(); ++r) {
+        EXPECT_EQ(one.ratios[r].p_others, three.ratios[r].p_others);
+        EXPECT_EQ(one.ratios[r].p_pairing, three.ratios[r].p_pairing);
+        EXPECT_EQ(one.ratios[r].q, three.ratios[r].q);
+        EXPECT_EQ(one.ratios[r].row.variation_interval->high, three.ratios[r].row.variation_interval->high);
+    }
+    // Each object in a unit of its own changes sizes and nothing else.
+    MeasureTable other = table;
+    Random random(5);
+    for (std::size_t i = 0; i < other.objects.size(); ++i) {
+        other.values.row(static_cast<Eigen::Index>(i)) *= std::exp2(static_cast<double>(random.below(40)) - 20);
+        other.units[i].clear();
+    }
+    const ProportionStudy scaled = study_proportions(other, quick());
+    for (std::size_t r = 0; r < one.ratios.size(); ++r) {
+        std::size_t same = scaled.ratios.size();
+        for (std::size_t k = 0; k < scaled.ratios.size(); ++k)
+            if (std::set{scaled.ratios[k].numerator, scaled.ratios[k].denominator} ==
+                std::set{one.ratios[r].numerator, one.ratios[r].denominator})
+                same = k;
+        ASSERT_LT(same, scaled.ratios.size());
+        EXPECT_NEAR(scaled.ratios[same].log_deviation, one.ratios[r].log_deviation, 1e-9);
+        EXPECT_EQ(scaled.ratios[same].fixedness == Fixedness::fixed, one.ratios[r].fixedness == Fixedness::fixed);
+    }
+}
+
+TEST(Proportions, MissingValuesAreToldInEachRow) {
+    MadeMeasuresOptions made;
+    MadeMeasures population = make_measures(made);
+    population.table.values.col(3).head(15).setConstant(none);
+    population.table.values.col(5).setConstant(none);
+    population.table.values(0, 0) = 0;
+    const ProportionStudy study = study_proportions(population.table, quick());
+    EXPECT_EQ(study.measures[3].summary->count, 25u);
+    EXPECT_FALSE(study.measures[5].summary);
+    for (const RatioRow& ratio : study.ratios) {
+        if (ratio.numerator == 5 || ratio.denominator == 5) {
+            EXPECT_EQ(ratio.fixedness, Fixedness::unknown);
+            EXPECT_FALSE(ratio.row.summary);
+            EXPECT_EQ(ratio.p_others, 1);
+        } else {
+            const std::size_t expected =
+                40 - (ratio.numerator == 3 || ratio.denominator == 3 ? 15 : 0) -
+                (ratio.numerator == 0 || ratio.denominator == 0 ? 1 : 0) +
+                (ratio.numerator + ratio.denominator == 3 && ratio.numerator * ratio.denominator == 0 ? 1 : 0);
+            EXPECT_EQ(ratio.row.summary->count, expected) << ratio.row.name;
+        }
+    }
+    std::string notes;
+    for (const auto& note : study.notes) notes += note + '\n';
+    EXPECT_NE(notes.find("55 of 320"), std::string::npos) << notes;
+    EXPECT_NE(notes.find("not above zero: 1;"), std::string::npos) << notes;
+}
+
+TEST(Proportions, OfOneObjectAndOfIdenticalOnes) {
+    const ProportionStudy one = study_proportions(table_of({"a", "b", "c"}, {{1, 2, 3}}), quick());
+    ASSERT_EQ(one.ratios.size(), 3u);
+    for (const RatioRow& ratio : one.ratios) {
+        EXPECT_EQ(ratio.fixedness, Fixedness::unknown);
+        EXPECT_FALSE(ratio.row.summary->deviation);
+        EXPECT_FALSE(ratio.row.variation_interval);
+    }
+    EXPECT_FALSE(one.notes.empty());
+    const std::vector<std::vector<double>> same(10, {1, 2, 3, 5});
+    for (const RatioRow& ratio : study_proportions(table_of({"a", "b", "c", "d"}, same), quick()).ratios) {
+        EXPECT_EQ(*ratio.row.summary->deviation, 0);
+        EXPECT_EQ(ratio.fixedness, Fixedness::free) << "nothing varies: nothing can be more stable";
+        EXPECT_EQ(ratio.p_others, 1);
+        EXPECT_EQ(ratio.p_pairing, 1);
+    }
+}
+
+TEST(Proportions, AnExactProportionAmongOthersIsFixed) {
+    MadeMeasures population = make_measures({.groups = 0});
+    population.table.values.col(2) = 0.41 * population.table.values.col(6);
+    int exact = 0;
+    for (const RatioRow& ratio : study_proportions(population.table, quick()).ratios)
+        if (std::set{ratio.numerator, ratio.denominator} == std::set<std::size_t>{2, 6}) {
+            ++exact;
+            EXPECT_EQ(ratio.fixedness, Fixedness::fixed);
+            EXPECT_NEAR(ratio.log_deviation, 0, 1e-9);
+            EXPECT_NEAR(ratio.low, ratio.high, 1e-12);
+        }
+    EXPECT_EQ(exact, 1);
+}
+
+TEST(Proportions, RatiosAreTakenWithinAKind) {
+    MeasureTable table =
+        table_of({"length", "area", "width", "other area"}, {{1, 2, 3, 4}, {2, 3, 4, 5}, {2, 3, 5, 6}, {2, 3, 4, 7}});
+    table.measures[1].power = table.measures[3].power = 2;
+    const ProportionStudy study = study_proportions(table, quick());
+    ASSERT_EQ(study.ratios.size(), 2u);
+    for (const RatioRow& ratio : study.ratios)
+        EXPECT_EQ(table.measures[ratio.numerator].power, table.measures[ratio.denominator].power);
+}
+
+TEST(Proportions, RefuseWhatTheyCannotUse) {
+    EXPECT_THROW(study_proportions(MeasureTable{}), Error);
+    EXPECT_THROW(study_proportions(table_of({"a"}, {})), Error);
+    EXPECT_THROW(study_proportions(table_of({"a"}, {{std::numeric_limits<double>::infinity()}})), Error);
+    MeasureTable wrong = table_of({"a"}, {{1}});
+    wrong.units.clear();
+    EXPECT_THROW(study_proportions(wrong), Error);
+    EXPECT_THROW(study_proportions(table_of(std::vector<std::string>(61, "a"), {std::vector<double>(61, 1)})), Error);
+    EXPECT_THROW(study_proportions(table_of({"a"}, {{1}}), {.false_discoveries = 2}), Error);
+}
+
+TEST(Units, AreMadeTheCommonestOne) {
+    MeasureTable table = table_of({"length", "area"}, {{10, 100}, {20, 200}, {3, 9}, {5, 7}, {1, 1}});
+    table.measures[1].power = 2;
+    table.units = {"mm", "millimetres", "cm", "", "ell"};
+    const UnifiedMeasures unified = unify_units(table);
+    EXPECT_EQ(unified.table.measures[0].unit, "mm");
+    EXPECT_EQ(unified.table.measures[1].unit, "mm^2");
+    EXPECT_DOUBLE_EQ(unified.table.values(2, 0), 30);
+    EXPECT_DOUBLE_EQ(unified.table.values(2, 1), 900);
+    EXPECT_EQ(unified.comparable, (std::vector<bool>{true, true, true, false, false}));
+    EXPECT_EQ(unified.notes.size(), 3u);
+    const ProportionStudy study = study_proportions(table_of({"a", "b"}, {{1, 2}, {2, 3}}), quick());
+    EXPECT_TRUE(unify_units(table_of({"a"}, {{1}})).notes.empty());
+    table.units.assign(5, "");
+    for (const bool comparable : unify_units(table).comparable) EXPECT_TRUE(comparable) << "nobody says a unit";
+}
+
+TEST(Units, ThatAreNotKnownStayInTheRatios) {
+    MeasureTable table = table_of({"a", "b"}, {{1, 2}, {2, 4}, {300, 900}, {4, 8}});
+    table.units[2].clear();
+    const ProportionStudy study = study_proportions(table, quick());
+    EXPECT_EQ(study.measures[0].summary->count, 3u);
+    EXPECT_EQ(study.measures[0].summary->max, 4);
+    EXPECT_EQ(study.ratios[0].row.summary->count, 4u);
+    EXPECT_EQ(study.ratios[0].row.summary->max, 3);
+}
+
+TEST(MadeMeasures, VaryAsTheyAreAskedTo) {
+    MadeMeasuresOptions options;
+    options.objects = 4000;
+    const MadeMeasures made = make_measures(options);
+    const auto deviation = [&](std::size_t a, std::size_t b) {
+        const Eigen::VectorXd logs = (made.table.values.col(static_cast<Eigen::Index>(a)).array() /
+                                      made.table.values.col(static_cast<Eigen::Index>(b)).array())
+                                         .log();
+        return std::sqrt((logs.array() - logs.mean()).square().sum() / 3999);
+    };
+    for (std::size_t a = 0; a < 8; ++a)
+        for (std::size_t b = 0; b < a; ++b) {
+            const bool planted = made.groups[a] >= 0 && made.groups[a] == made.groups[b];
+            EXPECT_NEAR(deviation(a, b), planted ? 0.03 : 0.15, 0.06 * (planted ? 0.03 : 0.15)) << a << ' ' << b;
+        }
+    EXPECT_THROW(make_measures({.measures = 3}), Error);
+}
+
+}  // namespace
+}  // namespace ostraka
