@@ -74,10 +74,44 @@ std::vector<LegendEntry> merged_legend(const std::vector<Scene>& scenes) {
     return list;
 }
 
-std::size_t column_count(std::size_t panes, bool six, std::size_t scenes) {
+/// Room for the panes of a sheet.
+struct Room {
+    double width = 0, height = 0;  ///< of all panes
+    double strip = 0;              ///< under each: scale bar and caption
+};
+
+/// Six views stand in one row, three in two of one object; up to three panes stand side by side. More are set in the number of
+/// columns that lets the objects be largest: the smallest of them if they share one scale, else their logarithms in the mean.
+/// `extents` are width and height of each pane's object in its view.
+std::size_t column_count(const std::vector<std::array<double, 2>>& extents, bool six, std::size_t scenes, bool one_scale,
+                         const Room& room) {
+    const std::size_t panes = extents.size();
     if (six) return scenes == 1 ? 3 : 6;
     if (panes <= 3) return panes;
-    return static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(panes))));
+    std::size_t best = panes;
+    double most = -std::numeric_limits<double>::infinity();
+    for (std::size_t columns = panes; columns >= 1; --columns) {
+        const std::size_t rows = (panes + columns - 1) / columns;
+        const double width = room.width / double(columns), height = std::max(1.0, room.height / double(rows) - room.strip);
+        double least = std::numeric_limits<double>::infinity(), sum = 0;
+        for (const auto& [wide, high] : extents) {
+            const double scale = std::min(width / wide, height / high);
+            least = std::min(least, scale);
+            sum += std::log(scale);
+        }
+        // Rounding shall not choose among columns that do as well.
+        if (const double value = one_scale ? std::log(least) : sum; value > most + 1e-9) most = value, best = columns;
+    }
+    return best;
+}
+
+/// Width and height of an object in a view, in the mesh's unit.
+std::array<double, 2> extent_of(const Scene& scene, const Surface& surface, const View& view, const std::array<double, 3>& up) {
+    const auto point = [&](std::size_t k) { return surface.to_local(scene.mesh.points[surface.used_points()[k]]); };
+    // What alone limits the scale of a pane that is narrow, or low.
+    const double narrow = detail::fit_camera(surface.used_points().size(), point, view, up, 1, 1e9, false).scale;
+    const double low = detail::fit_camera(surface.used_points().size(), point, view, up, 1e9, 1, false).scale;
+    return {surface.unit_length() / narrow, surface.unit_length() / low};
 }
 
 std::vector<Plan> plan_panes(const std::vector<Scene>& scenes, const RenderOptions& options) {
@@ -160,9 +194,13 @@ Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options)
                                   style);
     const double side_left = size.width - side.width() - (side.width() > 0 ? edge / 2 : 0);
     const bool six = options.views == "six";
-    const std::size_t columns = column_count(plans.size(), six, scenes.size());
-    const std::size_t rows = (plans.size() + columns - 1) / columns;
     const double strip = options.no_scale_bar ? 0 : detail::bar_strip * style.size, caption = any_caption ? 30 * style.size : 0;
+    std::vector<std::array<double, 2>> extents;
+    for (const Plan& plan : plans)
+        extents.push_back(extent_of(scenes[plan.pane.scene], *surfaces[plan.pane.scene], plan.view, up));
+    const std::size_t columns = column_count(extents, six, scenes.size(), options.fit == "all",
+                                             {side_left, static_cast<double>(size.height), strip + caption});
+    const std::size_t rows = (plans.size() + columns - 1) / columns;
     const double cell_width = side_left / static_cast<double>(columns), cell_height = size.height / static_cast<double>(rows);
     for (std::size_t i = 0; i < plans.size(); ++i) {
         Pane& pane = plans[i].pane;

@@ -4,6 +4,7 @@
 #include "scenes.h"
 
 #include <gtest/gtest.h>
+#include <set>
 
 #include <numbers>
 
@@ -129,6 +130,18 @@ TEST(Render, ScaleBarIsAsLongAsItSays) {
         int wide = 0;
         for (int column = 0; column < 800; ++column) wide += rendering.picture.at(column, pane.height / 2) != 0xFFFFFFFFU;
         EXPECT_NEAR(wide, 2 * size * pane.pixels_per_unit, 1.5);
+    }
+}
+
+TEST(Render, ObjectsAreSetSoThatTheyAreLargest) {
+    RenderOptions options;
+    options.view = "front";
+    for (const auto& [size, rows] : {std::pair{"1600x300", 1}, {"1600x900", 2}, {"300x1600", 6}}) {
+        options.size = size;
+        const std::vector<Scene> scenes(6, test::cube());
+        std::set<int> tops;
+        for (const Pane& pane : render(scenes, options).panes) tops.insert(pane.top);
+        EXPECT_EQ(tops.size(), static_cast<std::size_t>(rows)) << size;
     }
 }
 
