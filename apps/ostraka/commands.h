@@ -32,5 +32,6 @@ void add_cage(CLI::App& cage, Session& session);                       // cage.c
 void add_cage_make(CLI::App& cage, Session& session);                  // cage_make.cpp: make, check, edit
 void add_deform(CLI::App& tool, Session& session);                     // deform.cpp
 void add_render(CLI::App& tool, Session& session);                     // render.cpp
+void add_study_proportions(CLI::App& study, Session& session);         // study_proportions.cpp
 
 }  // namespace ostraka::app

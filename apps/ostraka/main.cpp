@@ -61,6 +61,7 @@ int main(int argc, char** argv) {
     app::add_cage(*cage, session);
     app::add_deform(tool, session);
     app::add_render(tool, session);
+    app::add_study_proportions(*study, session);
     try {
         tool.parse(argc, argv);
         set_threads(session.threads);

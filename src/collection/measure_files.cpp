@@ -1,0 +1,199 @@
+#include "ostraka/collection/measure_definitions.h"
+#include "ostraka/core/csv.h"
+#include "ostraka/core/error.h"
+#include "ostraka/core/text.h"
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+
+namespace ostraka {
+
+namespace {
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+std::string lower_case(std::string text) {
+    for (char& c : text)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return text;
+}
+
+/// A heading "name [unit]": the measure, and the unit of lengths where the brackets hold one.
+struct Heading {
+    MeasureColumn column;
+    std::string length_unit;
+};
+
+Heading heading_of(const std::string& text) {
+    Heading heading;
+    const std::size_t open = text.rfind('[');
+    if (open == std::string::npos || text.back() != ']') {
+        heading.column.name = text;
+        return heading;
+    }
+    heading.column.name = std::string(trimmed(text.substr(0, open)));
+    std::string unit(trimmed(text.substr(open + 1, text.size() - open - 2)));
+    int power = 1;
+    if (const std::size_t caret = unit.find('^'); caret != std::string::npos) {
+        if (const auto number = whole_of(unit.substr(caret + 1)); number && *number >= 1 && *number <= 3) {
+            power = *number;
+            unit.resize(caret);
+        }
+    }
+    static const std::set<std::string> lengths{"mm", "cm", "m", "um", "km", "in", "ft", "unit"};
+    if (lengths.contains(lower_case(unit))) {
+        heading.column.power = power;
+        heading.length_unit = unit == "unit" ? "" : lower_case(unit);
+    } else {
+        heading.column.power = 0;
+        heading.column.unit = unit == "-" ? "" : unit;
+    }
+    return heading;
+}
+
+}  // namespace
+
+Json object_measures_to_json(const ObjectMeasures& measures) {
+    Json document(rapidjson::kObjectType);
+    auto& allocator = document.GetAllocator();
+    const auto strings = [&](const std::vector<std::string>& list) {
+        JsonValue array(rapidjson::kArrayType);
+        for (const auto& text : list) array.PushBack(json_string(text, allocator), allocator);
+        return array;
+    };
+    JsonValue values(rapidjson::kArrayType), powers(rapidjson::kArrayType);
+    for (const auto& value : measures.values) values.PushBack(value ? JsonValue(*value) : JsonValue(), allocator);
+    for (const int power : measures.powers) powers.PushBack(power, allocator);
+    add_member(document, "unit", measures.unit, allocator);
+    add_member(document, "values", std::move(values), allocator);
+    add_member(document, "powers", std::move(powers), allocator);
+    add_member(document, "units", strings(measures.units), allocator);
+    add_member(document, "notes", strings(measures.notes), allocator);
+    return document;
+}
+
+ObjectMeasures object_measures_from_json(const JsonValue& value) {
+    ObjectMeasures measures;
+    measures.unit = value["unit"].GetString();
+    for (const JsonValue& entry : value["values"].GetArray())
+        measures.values.push_back(entry.IsNull() ? std::nullopt : std::optional(entry.GetDouble()));
+    for (const JsonValue& entry : value["powers"].GetArray()) measures.powers.push_back(entry.GetInt());
+    for (const JsonValue& entry : value["units"].GetArray()) measures.units.emplace_back(entry.GetString());
+    for (const JsonValue& entry : value["notes"].GetArray()) measures.notes.emplace_back(entry.GetString());
+    return measures;
+}
+
+MeasureTable measure_table(const std::vector<std::string>& names, const std::vector<std::optional<ObjectMeasures>>& objects,
+                           const MeasureDefinitions& definitions, std::vector<std::string>& notes) {
+    MeasureTable table;
+    std::vector<const ObjectMeasures*> rows;
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+        if (!objects[i]) continue;
+        table.objects.push_back(names[i]);
+        table.units.push_back(objects[i]->unit);
+        rows.push_back(&*objects[i]);
+    }
+    table.values.setConstant(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(definitions.list.size()), none);
+    for (std::size_t j = 0; j < definitions.list.size(); ++j) {
+        std::map<std::pair<int, std::string>, std::size_t> kinds;
+        for (const ObjectMeasures* row : rows)
+            if (row->values[j]) ++kinds[{row->powers[j], row->units[j]}];
+        std::pair<int, std::string> kind{1, ""};
+        std::size_t most = 0;
+        for (const auto& [key, count] : kinds)
+            if (count > most) kind = key, most = count;
+        table.measures.push_back({definitions.list[j].name, kind.first, kind.second});
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            if (!rows[i]->values[j]) continue;
+            if (std::pair(rows[i]->powers[j], rows[i]->units[j]) == kind)
+                table.values(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = *rows[i]->values[j];
+            else
+                notes.push_back("'" + definitions.list[j].name + "' of '" + table.objects[i] +
+                                "' has another unit than most: left out");
+        }
+    }
+    return table;
+}
+
+MeasureTable read_measure_table(const Path& file) {
+    const std::string text = read_file(file);
+    const auto rows = csv_rows(text, csv_separator(text), file.string());
+    if (rows.size() < 2) fail_input(file.string(), "the table has no rows", "give a line of headings and a line an object");
+    MeasureTable table;
+    std::vector<std::size_t> columns;
+    std::optional<std::size_t> unit_column;
+    std::string unit;
+    const auto& head = rows.front().cells;
+    std::set<std::string> known;
+    for (std::size_t c = 1; c < head.size(); ++c) {
+        const std::string name(trimmed(unguarded(head[c])));
+        const std::string at = file.string() + ", line " + std::to_string(rows.front().line);
+        if (name == "unit") {
+            unit_column = c;
+            continue;
+        }
+        if (name.empty()) fail_input(at, "column " + std::to_string(c + 1) + " has no heading", "name its measure");
+        const Heading heading = heading_of(name);
+        if (!known.insert(heading.column.name).second)
+            fail_input(at, "the measure '" + heading.column.name + "' has two columns", "give each a name of its own");
+        if (heading.column.power != 0 && !heading.length_unit.empty()) {
+            if (!unit.empty() && unit != heading.length_unit)
+                fail_input(at, "the headings name lengths in " + unit + " and in " + heading.length_unit,
+                           "use one unit, or a column 'unit'");
+            unit = heading.length_unit;
+        }
+        table.measures.push_back(heading.column);
+        columns.push_back(c);
+    }
+    if (columns.empty())
+        fail_input(file.string(), "the table has no column of a measure", "the first column holds names, the others measures");
+    table.values.resize(static_cast<Eigen::Index>(rows.size() - 1), static_cast<Eigen::Index>(columns.size()));
+    std::set<std::string> names;
+    for (std::size_t r = 1; r < rows.size(); ++r) {
+        const std::string at = file.string() + ", line " + std::to_string(rows[r].line);
+        if (rows[r].cells.size() != head.size())
+            fail_input(
+                at,
+                "there are " + std::to_string(rows[r].cells.size()) + " cells for " + std::to_string(head.size()) + " headings",
+                "is a separator missing?");
+        const std::string name = unguarded(rows[r].cells[0]);
+        if (!names.insert(name).second)
+            fail_input(at, "the object '" + name + "' comes twice", "give each object a line of its own");
+        table.objects.push_back(name);
+        table.units.push_back(unit_column ? std::string(trimmed(rows[r].cells[*unit_column])) : unit);
+        for (std::size_t c = 0; c < columns.size(); ++c) {
+            const std::string cell(trimmed(rows[r].cells[columns[c]]));
+            std::optional<double> value;
+            if (cell.empty() || cell == "-") value = none;
+            else value = number_of(cell);
+            if (!value)
+                fail_input(at, "'" + cell + "' under '" + head[columns[c]] + "' is no number",
+                           "leave the cell empty where the measure is missing");
+            table.values(static_cast<Eigen::Index>(r - 1), static_cast<Eigen::Index>(c)) = *value;
+        }
+    }
+    return table;
+}
+
+std::string measure_table_to_csv(const MeasureTable& table) {
+    std::vector<std::string> head{"name", "unit"};
+    for (const MeasureColumn& column : table.measures) {
+        const std::string power = column.power == 1 ? "" : "^" + std::to_string(column.power);
+        head.push_back(column.name +
+                       (column.power == 0 ? " [" + (column.unit.empty() ? "-" : column.unit) + "]" : " [unit" + power + "]"));
+    }
+    std::string text = csv_row(head);
+    for (std::size_t i = 0; i < table.objects.size(); ++i) {
+        std::vector<std::string> cells{table.objects[i], table.units[i]};
+        for (std::size_t j = 0; j < table.measures.size(); ++j) {
+            const double value = table.values(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+            cells.push_back(std::isnan(value) ? "" : digits(value));
+        }
+        text += csv_row(cells);
+    }
+    return text;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,196 @@
+// `ostraka study proportions` as users run it.
+#include "meshes.h"
+#include "scratch.h"
+
+#include "ostraka/annotation/annotation_file.h"
+#include "ostraka/collection/measure_definitions.h"
+#include "ostraka/collection/measure_table.h"
+#include "ostraka/core/json.h"
+#include "ostraka/io/mesh_file.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace ostraka {
+namespace {
+
+using test::count_files;
+using test::run_command;
+using test::Scratch;
+
+std::string quoted(const Path& path) { return "'" + path.string() + "'"; }
+
+/// Boxes stretched along their axes, with three parts: the sides of each are its measures.
+void write_boxes(const Scratch& scratch, const Path& folder, const MeasureTable& table) {
+    std::filesystem::create_directories(folder);
+    const TriangleSoup unit = test::octahedron_sphere(2);
+    for (std::size_t i = 0; i < table.objects.size(); ++i) {
+        TriangleSoup soup;
+        AnnotationSet set;
+        set.unit = "mm";
+        std::vector<std::vector<Index>> faces;
+        for (Eigen::Index part = 0; part < 3; ++part) {
+            const Index base = static_cast<Index>(soup.points.size());
+            std::vector<Index> list;
+            for (const auto& p : unit.points) {
+                std::array<double, 3> q{};
+                for (std::size_t c = 0; c < 3; ++c)
+                    q[c] = 0.5 * p[c] *
+                           (3 * part + static_cast<Eigen::Index>(c) < table.values.cols()
+                                ? table.values(static_cast<Eigen::Index>(i), 3 * part + static_cast<Eigen::Index>(c))
+                                : 1);
+                q[0] += 1000.0 * static_cast<double>(part);
+                soup.points.push_back(q);
+            }
+            for (const auto& [a, b, c] : unit.triangles) {
+                list.push_back(static_cast<Index>(soup.triangles.size()));
+                soup.triangles.push_back({a + base, b + base, c + base});
+            }
+            faces.push_back(list);
+        }
+        const Mesh mesh = build_mesh(soup);
+        for (int part = 0; part < 3; ++part) {
+            Annotation annotation;
+            annotation.id = part;
+            annotation.tag = "part " + std::to_string(part + 1);
+            annotation.faces = faces[static_cast<std::size_t>(part)];
+            set.annotations.push_back(annotation);
+        }
+        write_mesh(folder / (table.objects[i] + ".ply"), mesh);
+        write_annotations(folder / (table.objects[i] + ".ant.json"), set, mesh, table.objects[i] + ".ply", {});
+    }
+    std::string list;
+    for (int part = 1; part <= 3; ++part)
+        for (int c = 0; c < 3 && 3 * (part - 1) + c < 8; ++c)
+            list += (list.empty() ? "" : ",") + std::string("{\"name\": \"measure ") + std::to_string(3 * (part - 1) + c + 1) +
+                    "\", \"tool\": \"bounding\", \"annotation\": \"part " + std::to_string(part) + "\", \"direction\": [" +
+                    (c == 0   ? "1,0,0"
+                     : c == 1 ? "0,1,0"
+                              : "0,0,1") +
+                    "]}";
+    (void)scratch.file("boxes.measures.json", R"({"format": "ostraka-measures", "version": 1, "measures": [)" + list + "]}");
+}
+
+struct Boxes {
+    Scratch scratch;
+    MadeMeasures made;
+    std::string command;
+
+    explicit Boxes(std::uint64_t seed = 3) {
+        MadeMeasuresOptions options;
+        options.objects = 24;
+        options.seed = seed;
+        made = make_measures(options);
+        write_boxes(scratch, scratch / "boxes", made.table);
+        command = "study proportions " + quoted(scratch / "boxes") + " --measures " + quoted(scratch / "boxes.measures.json") +
+                  " --output " + quoted(scratch / "out") + " --permutations 999 --resamples 100";
+    }
+};
+
+TEST(StudyProportionsCommand, FindsPlantedProportionsOfAnnotatedMeshes) {
+    const Boxes boxes;
+    const auto result = run_command(boxes.command + " --json");
+    ASSERT_EQ(result.code, 0) << result.err;
+    const Json report = parse_json(result.out, "report");
+    validate(report, "report", "report");
+    EXPECT_EQ(report["result"]["objects"].GetInt(), 24);
+    const Json kept = read_json(boxes.scratch / "out" / "proportions.json");
+    validate(kept, "proportions", "proportions.json");
+    for (const JsonValue& ratio : kept["ratios"].GetArray()) {
+        const auto number = [&](const char* name) {
+            return static_cast<std::size_t>(std::stoi(std::string(ratio[name].GetString()).substr(8)) - 1);
+        };
+        const int a = boxes.made.groups[number("numerator")], b = boxes.made.groups[number("denominator")];
+        if (a >= 0 && a == b) {
+            EXPECT_STREQ(ratio["verdict"].GetString(), "fixed");
+        }
+    }
+    for (const char* name : {"table-3-1.md", "table-3-1.csv", "table-3-1.tex", "ratios.md", "values.csv", "variation.svg",
+                             "deviations.svg", "measures.svg"})
+        EXPECT_TRUE(std::filesystem::exists(boxes.scratch / "out" / name)) << name;
+    // The values are those of the table the boxes were made of, and the table by itself gives the same.
+    const auto from_table = run_command("study proportions " + quoted(boxes.scratch / "out" / "values.csv") + " --output " +
+                                        quoted(boxes.scratch / "other") + " --permutations 999 --resamples 100 --json");
+    ASSERT_EQ(from_table.code, 0) << from_table.err;
+    const Json other = parse_json(from_table.out, "report");
+    for (rapidjson::SizeType r = 0; r < other["result"]["ratios"].Size(); ++r)
+        EXPECT_EQ(other["result"]["ratios"][r]["q"].GetDouble(), kept["ratios"][r]["q"].GetDouble());
+}
+
+TEST(StudyProportionsCommand, ResumesAndGivesTheSameForAnyNumberOfThreads) {
+    const Boxes boxes;
+    ASSERT_EQ(run_command(boxes.command + " --threads 1").code, 0);
+    const std::string first = read_file(boxes.scratch / "out" / "proportions.json");
+    const std::size_t kept = count_files(boxes.scratch / "out" / "objects");
+    EXPECT_EQ(kept, 24u);
+    ASSERT_EQ(run_command(boxes.command + " --threads 2").code, 0);
+    EXPECT_EQ(read_file(boxes.scratch / "out" / "proportions.json"), first);
+    std::filesystem::remove_all(boxes.scratch / "out");
+    ASSERT_EQ(run_command(boxes.command + " --threads 2").code, 0);
+    EXPECT_EQ(read_file(boxes.scratch / "out" / "proportions.json"), first);
+}
+
+TEST(StudyProportionsCommand, ObjectsThatFailAreToldAndTheRestStands) {
+    const Boxes boxes;
+    (void)boxes.scratch.file("boxes/broken.ply", "ply\nnonsense");
+    write_mesh(boxes.scratch / "boxes" / "bare.ply", build_mesh(test::octahedron_sphere(1)));
+    std::filesystem::remove(boxes.scratch / "boxes" / "object 1.ant.json");
+    const auto result = run_command(boxes.command + " --json");
+    ASSERT_EQ(result.code, 0) << result.err;
+    const Json report = parse_json(result.out, "report");
+    EXPECT_EQ(report["result"]["failed"].Size(), 3u);
+    EXPECT_EQ(report["result"]["objects"].GetInt(), 23);
+    EXPECT_NE(result.err.find("left out: broken"), std::string::npos);
+    EXPECT_NE(result.err.find("left out: bare"), std::string::npos);
+}
+
+TEST(StudyProportionsCommand, ProposesConstraintsForATemplate) {
+    const Boxes boxes;
+    const Path folder = boxes.scratch / "boxes";
+    const auto result =
+        run_command(boxes.command + " --template-mesh " + quoted(folder / "object 1.ply") + " --template-annotations " +
+                    quoted(folder / "object 1.ant.json") + " --graph " + quoted(boxes.scratch / "g.graph.json") +
+                    " --annotations-out " + quoted(boxes.scratch / "t.ant.json") + " --json");
+    ASSERT_EQ(result.code, 0) << result.err;
+    const Json report = parse_json(result.out, "report"), graph = read_json(boxes.scratch / "g.graph.json");
+    validate(graph, "graph", "graph");
+    EXPECT_EQ(graph["relationships"].Size(), report["result"]["proposed"].GetUint());
+    const auto check = run_command("relation check " + quoted(folder / "object 1.ply") + " " +
+                                   quoted(boxes.scratch / "t.ant.json") + " " + quoted(boxes.scratch / "g.graph.json"));
+    EXPECT_EQ(check.code, 0) << check.err << check.out;
+}
+
+TEST(StudyProportionsCommand, SaysNoWhereNothingIsFixed) {
+    const Scratch scratch;
+    const Path one = scratch.file("one.csv", "name,arm [cm],height [cm]\na,8,20\n"),
+               same = scratch.file("same.csv", "name,arm,height,base\na,8,20,5\nb,8,20,5\nc,8,20,5\nd,8,20,5\ne,8,20,5\n");
+    for (const Path& file : {one, same}) {
+        const auto result = run_command("study proportions " + quoted(file) + " --output " + quoted(scratch / "out"));
+        EXPECT_EQ(result.code, 3) << result.err;
+        EXPECT_NE(result.out.find("0 of "), std::string::npos);
+    }
+}
+
+TEST(StudyProportionsCommand, RefusesWrongUsage) {
+    const Boxes boxes;
+    const std::string folder =
+        "study proportions " + quoted(boxes.scratch / "boxes") + " --output " + quoted(boxes.scratch / "out");
+    EXPECT_EQ(run_command(folder).code, 2) << "no measures";
+    EXPECT_EQ(run_command(folder + " --measures nowhere.json").code, 1);
+    EXPECT_EQ(run_command(boxes.command + " --graph g.json").code, 2) << "no template";
+    EXPECT_EQ(run_command(boxes.command + " --template-mesh m.ply").code, 2) << "no graph";
+    EXPECT_EQ(
+        run_command("study proportions " + quoted(boxes.scratch / "no.csv") + " --output " + quoted(boxes.scratch / "out")).code,
+        1);
+    EXPECT_EQ(run_command(boxes.command + " --false-discoveries 2").code, 2);
+    const Path wrong = boxes.scratch.file(
+        "wrong.measures.json",
+        R"({"format": "ostraka-measures", "version": 1, "measures": [{"name": "x", "descriptor": "beauty"}]})");
+    const auto none = run_command(folder + " --measures " + quoted(wrong));
+    EXPECT_EQ(none.code, 1);
+    EXPECT_NE(none.err.find("not one object could be measured"), std::string::npos) << none.err;
+}
+
+}  // namespace
+}  // namespace ostraka
