@@ -33,5 +33,7 @@ void add_cage_make(CLI::App& cage, Session& session);                  // cage_m
 void add_deform(CLI::App& tool, Session& session);                     // deform.cpp
 void add_render(CLI::App& tool, Session& session);                     // render.cpp
 void add_study_proportions(CLI::App& study, Session& session);         // study_proportions.cpp
+void add_study_moulds(CLI::App& study, Session& session);              // study_moulds.cpp
+void add_study_make_moulds(CLI::App& made, Session& session);          // study_make_moulds.cpp
 
 }  // namespace ostraka::app

@@ -62,6 +62,8 @@ int main(int argc, char** argv) {
     app::add_deform(tool, session);
     app::add_render(tool, session);
     app::add_study_proportions(*study, session);
+    app::add_study_moulds(*study, session);
+    app::add_study_make_moulds(*made, session);
     try {
         tool.parse(argc, argv);
         set_threads(session.threads);

@@ -1,8 +1,8 @@
 #include "ostraka/fields/curvature.h"
 
-#include "neighbourhood.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/geom/neighbourhood.h"
 
 #include <cmath>
 #include <numbers>

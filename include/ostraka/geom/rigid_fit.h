@@ -1,0 +1,34 @@
+// The motion that carries one set of points onto another, in closed form.
+#pragma once
+
+#include <Eigen/Dense>
+
+#include <vector>
+
+namespace ostraka {
+
+/// p -> scale turn p + shift.
+struct Motion {
+    Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  ///< a rotation: determinant 1
+    Eigen::Vector3d shift = Eigen::Vector3d::Zero();
+    double scale = 1;
+
+    [[nodiscard]] Eigen::Vector3d operator()(const Eigen::Vector3d& p) const { return scale * (turn * p) + shift; }
+    [[nodiscard]] Motion inverse() const;
+    /// First `other`, then this.
+    [[nodiscard]] Motion after(const Motion& other) const;
+};
+
+struct FitOptions {
+    bool scale = false;                        ///< a free scale as well
+    double least_scale = 0, most_scale = 1e9;  ///< a free scale is held within these
+};
+
+/// The motion with the least sum of weights |T(from) - to|^2 (Umeyama 1991: singular values of the covariance, never a
+/// reflection; a scale held within limits is the clamped one, as the sum is a parabola in it). `weights` empty: all 1. Points
+/// that leave the motion open (one point, all on a line or equal) get one of the best ones. Throws Error (usage) if the numbers
+/// of points differ or there is none.
+Motion fit_motion(const std::vector<Eigen::Vector3d>& from, const std::vector<Eigen::Vector3d>& to,
+                  const std::vector<double>& weights = {}, const FitOptions& options = {});
+
+}  // namespace ostraka

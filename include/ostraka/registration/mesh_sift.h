@@ -1,0 +1,73 @@
+// Salient points of a surface with descriptors of what lies around them, and their matches on another surface.
+#pragma once
+
+#include "ostraka/core/mesh.h"
+#include "ostraka/core/options.h"
+
+#include <Eigen/Dense>
+
+#include <vector>
+
+namespace ostraka {
+
+struct SiftOptions {
+    double size = 0;             ///< the length that scales are shares of; 0 = the square root of the mesh's area
+    double first_scale = 0.015;  ///< sigma of the first smoothing
+    int scales = 7;              ///< levels of smoothing
+    int per_octave = 3;          ///< levels in which sigma doubles
+    double border = 1;           ///< no feature within this many sigma of the border
+    double contrast = 0.01;      ///< least |sigma (H' - H)| of a feature
+    double second_direction = 0.8;
+
+    template <class Visitor>
+    void describe(Visitor& visit) {
+        visit("feature-size", size, "length that scales are shares of, in the mesh's unit; 0 = the square root of its area",
+              Range{0, 1e60});
+        visit("first-scale", first_scale, "standard deviation of the first smoothing, as a share of the size", Range{1e-4, 0.5});
+        visit("scales", scales, "levels of smoothing", Range{4, 20});
+        visit("scales-per-octave", per_octave, "levels in which the standard deviation doubles", Range{1, 8});
+        visit("border", border, "no features within this many standard deviations of the border", Range{0, 10});
+        visit("contrast", contrast, "least difference of curvature between two levels, times the standard deviation",
+              Range{0, 10});
+        visit("second-direction", second_direction,
+              "peaks of the histogram of directions above this share of the highest give a "
+              "feature each",
+              Range{0.1, 1});
+    }
+};
+
+/// A salient point with a direction in its tangent plane. A point with several directions is there several times.
+struct Feature {
+    Index vertex = no_index;
+    Eigen::Vector3d point, normal, direction;  ///< on the smoothed surface; unit vectors at right angles to each other
+    double scale = 0;                          ///< sigma, in the mesh's unit
+};
+
+/// Columns of `descriptors` belong to the features: nine discs of 8 bins of shape index and 8 of slant angle each.
+struct FeatureSet {
+    static constexpr int discs = 9, bins = 8, length = discs * 2 * bins;
+    std::vector<Feature> features;
+    Eigen::MatrixXf descriptors;  ///< 144 x features; a disc that is mostly beyond the border is zero
+    Eigen::MatrixXf present;      ///< 9 x features: 1 where a disc holds surface
+    double size = 0;              ///< the length that scales referred to
+};
+
+/// MeshSIFT (Smeets, Keustermans, Vandermeulen and Suetens 2013) ... Throws Error (usage) for options out of range, Error (input)
+/// for a mesh without area.
+FeatureSet mesh_sift(const Mesh& mesh, const SiftOptions& options = {});
+
+struct FeatureMatch {
+    Index a = 0, b = 0;
+    double angle = 0, ratio = 0;
+};
+struct MatchOptions {
+    double ratio = 0.8;  ///< of the smallest angle over the second smallest; 1 takes every nearest feature
+    template <class Visitor>
+    void describe(Visitor& visit) {
+        visit("ratio", ratio, "a match's angle over that of the next best feature, at most", Range{0, 1});
+    }
+};
+/// For each feature of `a` the one of `b` under the smallest angle, if the ratio allows.
+std::vector<FeatureMatch> match_features(const FeatureSet& a, const FeatureSet& b, const MatchOptions& options = {});
+
+}  // namespace ostraka

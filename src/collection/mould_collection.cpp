@@ -1,0 +1,130 @@
+#include "ostraka/collection/moulds.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/geom/submesh.h"
+#include "ostraka/io/mesh_file.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ostraka {
+
+namespace {
+
+Mesh read_head(const CollectionObject& object, const std::vector<int>& leave_out) {
+    const std::string where = object.mesh.empty() ? object.name : object.mesh.filename().string();
+    if (object.mesh.empty()) fail_input(where, "there is no mesh", "heads are compared by their surfaces");
+    MeshFile file = read_mesh(object.mesh);
+    std::vector<bool> keep(file.mesh.number_of_faces(), true);
+    if (!leave_out.empty()) {
+        const auto& labels = file.extras.face_labels;
+        if (labels.size() != keep.size())
+            fail_input(where, "its faces have no labels, by which parts could be left out", "write labels into the PLY file");
+        for (std::size_t f = 0; f < keep.size(); ++f)
+            keep[f] = std::find(leave_out.begin(), leave_out.end(), labels[f]) == leave_out.end();
+    }
+    Mesh mesh = keep_faces(file.mesh, keep, true).mesh;
+    if (mesh.number_of_faces() == 0) fail_input(where, "no face is left of it", "leave fewer parts out");
+    return mesh;
+}
+
+JsonValue to_json(const FeatureSet& set, JsonAllocator& allocator) {
+    JsonValue object(rapidjson::kObjectType), list(rapidjson::kArrayType);
+    for (std::size_t i = 0; i < set.features.size(); ++i) {
+        const Feature& feature = set.features[i];
+        const auto column = static_cast<Eigen::Index>(i);
+        JsonValue row(rapidjson::kArrayType);
+        row.PushBack(JsonValue(feature.vertex), allocator).PushBack(JsonValue(feature.scale), allocator);
+        for (const auto* v : {&feature.point, &feature.normal, &feature.direction})
+            for (int k = 0; k < 3; ++k) row.PushBack(JsonValue((*v)[k]), allocator);
+        for (int k = 0; k < FeatureSet::discs; ++k)
+            row.PushBack(JsonValue(static_cast<double>(set.present(k, column))), allocator);
+        for (int k = 0; k < FeatureSet::length; ++k)
+            row.PushBack(JsonValue(static_cast<double>(set.descriptors(k, column))), allocator);
+        list.PushBack(std::move(row), allocator);
+    }
+    add_member(object, "size", JsonValue(set.size), allocator);
+    add_member(object, "features", std::move(list), allocator);
+    return object;
+}
+
+FeatureSet from_json(const JsonValue& value) {
+    FeatureSet set;
+    set.size = value["size"].GetDouble();
+    const JsonValue& list = value["features"];
+    set.features.resize(list.Size());
+    set.descriptors.resize(FeatureSet::length, static_cast<Eigen::Index>(list.Size()));
+    set.present.resize(FeatureSet::discs, static_cast<Eigen::Index>(list.Size()));
+    for (rapidjson::SizeType i = 0; i < list.Size(); ++i) {
+        Feature& feature = set.features[i];
+        rapidjson::SizeType at = 0;
+        const auto next = [&] { return list[i][at++].GetDouble(); };
+        feature.vertex = static_cast<Index>(next());
+        feature.scale = next();
+        for (auto* v : {&feature.point, &feature.normal, &feature.direction})
+            for (int k = 0; k < 3; ++k) (*v)[k] = next();
+        for (int k = 0; k < FeatureSet::discs; ++k) set.present(k, i) = static_cast<float>(next());
+        for (int k = 0; k < FeatureSet::length; ++k) set.descriptors(k, i) = static_cast<float>(next());
+    }
+    return set;
+}
+
+/// The median of the sizes, to the nearest power of 1.1.
+double common_size(std::vector<double> sizes) {
+    if (sizes.empty()) return 0;
+    std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2), sizes.end());
+    return std::pow(1.1, std::round(std::log(sizes[sizes.size() / 2]) / std::log(1.1)));
+}
+
+}  // namespace
+
+PreparedCollection prepare_collection(const Collection& collection, const CompareOptions& options,
+                                      const std::vector<int>& leave_out, const ResultStore& store) {
+    check_options(options, "moulds");
+    std::string left_out = "without";
+    for (const int label : leave_out) left_out += " " + std::to_string(label);
+    PreparedCollection prepared;
+    prepared.options = options;
+    double& size = prepared.options.features.size;
+    if (!(size > 0)) {
+        const auto areas = for_each_object(collection, store, {"mould size", left_out}, [&](const CollectionObject& object) {
+            Json result;
+            result.SetDouble(std::sqrt(surface_area(read_head(object, leave_out))));
+            return result;
+        });
+        std::vector<double> sizes;
+        for (const auto& area : areas)
+            if (area.problem.empty() && area.result.GetDouble() > 0) sizes.push_back(area.result.GetDouble());
+        size = common_size(std::move(sizes));
+    }
+    std::vector<std::string> what{"mould features", left_out};
+    for (const auto& [name, value] : list_options(prepared.options.features)) what.push_back(name + "=" + value);
+    prepared.results = for_each_object(collection, store, what, [&](const CollectionObject& object) {
+        const PreparedHead head = prepare_head(read_head(object, leave_out), prepared.options);
+        Json result;
+        static_cast<JsonValue&>(result) = to_json(head.features, result.GetAllocator());
+        return result;
+    });
+    for (std::size_t i = 0; i < prepared.results.size(); ++i)
+        if (prepared.results[i].problem.empty()) prepared.objects.push_back(i);
+    std::vector<std::optional<PreparedHead>> heads(prepared.objects.size());
+    parallel_for(
+        heads.size(),
+        [&](std::size_t k) {
+            const std::size_t i = prepared.objects[k];
+            heads[k].emplace(PreparedHead{from_json(prepared.results[i].result),
+                                          AlignSurface(read_head(collection.objects[i], leave_out), options.align.samples)});
+        },
+        1);
+    for (std::size_t k = 0; k < heads.size(); ++k) {
+        const std::size_t i = prepared.objects[k];
+        prepared.heads.push_back(std::move(*heads[k]));
+        prepared.names.push_back(collection.objects[i].name);
+        prepared.checksums.push_back(collection.objects[i].checksum + " " + left_out);
+        prepared.results[i].result.SetNull();
+    }
+    return prepared;
+}
+
+}  // namespace ostraka

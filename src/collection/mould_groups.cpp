@@ -1,0 +1,199 @@
+#include "ostraka/collection/moulds.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/stats/clustering.h"
+#include "ostraka/stats/embedding.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+
+namespace ostraka {
+
+namespace {
+
+/// Labels by falling size of their groups, then by first member.
+std::vector<int> by_size(const std::vector<int>& labels) {
+    std::map<int, std::pair<int, int>> groups;  // size (negative), first member
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+        auto& [size, first] = groups.try_emplace(labels[i], 0, static_cast<int>(i)).first->second;
+        --size;
+    }
+    std::vector<std::pair<std::pair<int, int>, int>> order;
+    for (const auto& [label, group] : groups) order.emplace_back(group, label);
+    std::sort(order.begin(), order.end());
+    std::map<int, int> fresh;
+    for (std::size_t i = 0; i < order.size(); ++i) fresh[order[i].second] = static_cast<int>(i);
+    std::vector<int> result;
+    for (const int label : labels) result.push_back(fresh[label]);
+    return result;
+}
+
+double mean(const std::vector<double>& values) {
+    double sum = 0;
+    for (const double value : values) sum += value;
+    return values.empty() ? 0 : sum / static_cast<double>(values.size());
+}
+
+/// Mean over the heads of the mean distance to their k nearest others.
+double knn_epsilon(const Eigen::MatrixXd& d, int k) {
+    double sum = 0;
+    for (Eigen::Index i = 0; i < d.rows(); ++i) {
+        std::vector<double> row;
+        for (Eigen::Index j = 0; j < d.cols(); ++j)
+            if (j != i) row.push_back(d(i, j));
+        std::sort(row.begin(), row.end());
+        row.resize(std::min(row.size(), static_cast<std::size_t>(std::max(k, 1))));
+        sum += mean(row);
+    }
+    return d.rows() > 0 ? sum / static_cast<double>(d.rows()) : 0;
+}
+
+/// The distances to the nearest other in rising order make a curve; its bend is the point farthest below the chord between its
+/// ends (Satopaa, Albrecht, Irwin and Raghavan 2011).
+double knee_epsilon(const Eigen::MatrixXd& d) {
+    std::vector<double> nearest;
+    for (Eigen::Index i = 0; i < d.rows(); ++i) {
+        double least = std::numeric_limits<double>::infinity();
+        for (Eigen::Index j = 0; j < d.cols(); ++j)
+            if (j != i) least = std::min(least, d(i, j));
+        if (std::isfinite(least)) nearest.push_back(least);
+    }
+    if (nearest.empty()) return 0;
+    std::sort(nearest.begin(), nearest.end());
+    const double low = nearest.front(), high = nearest.back();
+    double most = 0, knee = high;
+    for (std::size_t i = 0; i < nearest.size() && high > low; ++i) {
+        const double along = static_cast<double>(i) / static_cast<double>(nearest.size() - 1);
+        const double below = along - (nearest[i] - low) / (high - low);
+        if (below > most) most = below, knee = nearest[i];
+    }
+    return knee;
+}
+
+class Grouping {
+public:
+    Grouping(const Eigen::MatrixXd& distances, const GroupOptions& options)
+        : d_(distances), tree_(linkage(distances, options.method == "linkage" ? "average" : "single")) {}
+
+    [[nodiscard]] std::vector<int> at(double epsilon) const { return cut_at(tree_, epsilon); }
+
+    /// Halfway between the two merges between which the groups have the largest mean silhouette.
+    [[nodiscard]] double best_epsilon() const {
+        double best = -2, epsilon = 0;
+        for (std::size_t i = 0; i + 1 < tree_.merges.size(); ++i) {
+            const double low = tree_.merges[i].height, high = tree_.merges[i + 1].height;
+            if (!(high > low)) continue;
+            const double value = mean(silhouettes(d_, at(low)));
+            if (value > best) best = value, epsilon = (low + high) / 2;
+        }
+        if (best <= -2) epsilon = tree_.merges.empty() ? 0 : tree_.merges.back().height;
+        return epsilon;
+    }
+    [[nodiscard]] const Linkage& tree() const { return tree_; }
+    [[nodiscard]] double top() const { return tree_.merges.empty() ? 0 : tree_.merges.back().height; }
+
+private:
+    const Eigen::MatrixXd& d_;
+    Linkage tree_;
+};
+
+}  // namespace
+
+std::vector<double> silhouettes(const Eigen::MatrixXd& distances, const std::vector<int>& labels) {
+    const auto n = static_cast<Eigen::Index>(labels.size());
+    if (distances.rows() != n || distances.cols() != n) fail_usage("labels and distances are of different numbers of objects");
+    const int groups = labels.empty() ? 0 : *std::max_element(labels.begin(), labels.end()) + 1;
+    std::vector<double> result(labels.size(), 0);
+    std::vector<double> sum(static_cast<std::size_t>(std::max(groups, 0)));
+    std::vector<int> size(sum.size());
+    for (const int label : labels)
+        if (label >= 0) ++size[static_cast<std::size_t>(label)];
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const int own = labels[static_cast<std::size_t>(i)];
+        if (own < 0 || size[static_cast<std::size_t>(own)] < 2) continue;
+        std::fill(sum.begin(), sum.end(), 0);
+        for (Eigen::Index j = 0; j < n; ++j)
+            if (j != i && labels[static_cast<std::size_t>(j)] >= 0)
+                sum[static_cast<std::size_t>(labels[static_cast<std::size_t>(j)])] += distances(i, j);
+        const double inside = sum[static_cast<std::size_t>(own)] / (size[static_cast<std::size_t>(own)] - 1);
+        double outside = std::numeric_limits<double>::infinity();
+        for (std::size_t g = 0; g < sum.size(); ++g)
+            if (static_cast<int>(g) != own && size[g] > 0) outside = std::min(outside, sum[g] / size[g]);
+        const double larger = std::max(inside, outside);
+        if (std::isfinite(outside) && larger > 0) result[static_cast<std::size_t>(i)] = (outside - inside) / larger;
+    }
+    return result;
+}
+
+MouldGroups group_heads(const Eigen::MatrixXd& distances, const GroupOptions& options) {
+    check_options(options, "groups");
+    MouldGroups groups;
+    const auto embedding = spectral_embedding(distances, options.dimensions);
+    groups.coordinates = embedding.coordinates;
+    Eigen::MatrixXd between = distance_matrix(groups.coordinates);
+    if (between.maxCoeff() > 0) {
+        groups.coordinates /= between.maxCoeff();
+        between /= between.maxCoeff();
+    }
+    const Eigen::MatrixXd& d = options.method == "embedding" ? between : distances;
+    const Grouping grouping(d, options);
+    double number = 0;
+    const char* end = options.epsilon.data() + options.epsilon.size();
+    const auto parsed = std::from_chars(options.epsilon.data(), end, number);
+    const int expected = options.expected_size > 0 ? options.expected_size - 1
+                                                   : static_cast<int>(std::lround(std::sqrt(static_cast<double>(d.rows()))));
+    if (parsed.ec == std::errc() && parsed.ptr == end && number >= 0) groups.epsilon = number;
+    else if (options.epsilon == "knn") groups.epsilon = knn_epsilon(d, expected);
+    else if (options.epsilon == "volume") groups.epsilon = volume_epsilon(groups.coordinates, 1);
+    else if (options.epsilon == "knee") groups.epsilon = knee_epsilon(d);
+    else if (options.epsilon == "silhouette") groups.epsilon = grouping.best_epsilon();
+    else fail_usage("epsilon is '" + options.epsilon + "'", "give a number from 0 up, or knn, volume, knee or silhouette");
+    groups.tree = grouping.tree();
+    groups.labels = by_size(grouping.at(groups.epsilon));
+    groups.head_silhouettes = silhouettes(d, groups.labels);
+    groups.silhouette = mean(groups.head_silhouettes);
+    // Made heads of one mould, or each of its own, stay below both (doc/moulds.md); an embedding makes more of what there is.
+    groups.clear = groups.silhouette >= (options.method == "embedding" ? 0.7 : 0.2);
+    if (options.epsilon == "silhouette" && !groups.clear) {
+        groups.epsilon = grouping.top();
+        groups.labels.assign(groups.labels.size(), 0);
+        groups.head_silhouettes.assign(groups.labels.size(), 0);
+    }
+    return groups;
+}
+
+std::vector<ClusterStability> group_stability(const Eigen::MatrixXd& distances, const MouldGroups& groups,
+                                              const GroupOptions& options, const StabilityOptions& stability) {
+    const auto again = [&](const std::vector<std::size_t>& heads) {
+        const auto n = static_cast<Eigen::Index>(heads.size());
+        Eigen::MatrixXd some(n, n);
+        for (Eigen::Index i = 0; i < n; ++i)
+            for (Eigen::Index j = 0; j < n; ++j)
+                some(i, j) = distances(static_cast<Eigen::Index>(heads[static_cast<std::size_t>(i)]),
+                                       static_cast<Eigen::Index>(heads[static_cast<std::size_t>(j)]));
+        return group_heads(some, options).labels;
+    };
+    return cluster_stability(groups.labels, again, stability);
+}
+
+std::vector<double> relative_sizes(const MouldMatrices& matrices, const std::vector<int>& labels) {
+    if (static_cast<Eigen::Index>(labels.size()) != matrices.scale.rows())
+        fail_usage(std::to_string(labels.size()) + " labels for " + std::to_string(matrices.scale.rows()) + " heads",
+                   "give one a head");
+    std::vector<double> sizes(labels.size(), 1);
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+        double sum = 0;
+        int count = 0;
+        for (std::size_t j = 0; j < labels.size(); ++j) {
+            if (labels[j] != labels[i]) continue;
+            sum += std::log(matrices.scale(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(i)));
+            ++count;
+        }
+        sizes[i] = std::exp(sum / count);
+    }
+    return sizes;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,164 @@
+#include "ostraka/collection/moulds.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/core/progress.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace ostraka {
+
+PreparedHead prepare_head(const Mesh& mesh, const CompareOptions& options) {
+    PreparedHead head{mesh_sift(mesh, options.features), AlignSurface(mesh, options.align.samples)};
+    std::set<Index> points;
+    for (const Feature& feature : head.features.features) points.insert(feature.vertex);
+    if (points.size() < 3)
+        fail_input("mesh", "it has " + std::to_string(points.size()) + " salient points, which is too few to compare it by",
+                   "is it a head? Try smaller --first-scale, --contrast and --border");
+    return head;
+}
+
+PairComparison compare_pair(const PreparedHead& a, const PreparedHead& b, const CompareOptions& options) {
+    PairComparison result;
+    result.matches_ab = static_cast<int>(match_features(a.features, b.features, options.matches).size());
+    result.matches_ba = static_cast<int>(match_features(b.features, a.features, options.matches).size());
+    MatchOptions loose = options.matches;
+    loose.ratio = options.loose_ratio;
+    const ConsistentMatches there =
+        consistent_matches(a.features, b.features, match_features(a.features, b.features, loose), options.consistent);
+    const ConsistentMatches back =
+        consistent_matches(b.features, a.features, match_features(b.features, a.features, loose), options.consistent);
+    result.consistent_ab = static_cast<int>(there.matches.size());
+    result.consistent_ba = static_cast<int>(back.matches.size());
+    // Where few matches agree their motion says nothing: the principal axes are tried as well.
+    std::vector<Motion> starts{there.motion, back.motion.inverse()};
+    constexpr int trusted = 12;
+    if (std::max(result.consistent_ab, result.consistent_ba) < trusted)
+        for (const Motion& start : principal_starts(a.surface, b.surface)) starts.push_back(start);
+    AlignOptions align_options = options.align;
+    align_options.shrinkage = options.consistent.shrinkage;
+    const Alignment alignment = align(a.surface, b.surface, starts, align_options);
+    result.distance = alignment.distance;
+    result.overlap = alignment.overlap;
+    result.scale = alignment.motion.scale;
+    return result;
+}
+
+namespace {
+
+JsonValue to_json(const PairComparison& pair, JsonAllocator& allocator) {
+    JsonValue list(rapidjson::kArrayType);
+    for (const int count : {pair.matches_ab, pair.matches_ba, pair.consistent_ab, pair.consistent_ba})
+        list.PushBack(JsonValue(count), allocator);
+    for (const double value : {pair.distance, pair.overlap, pair.scale}) list.PushBack(JsonValue(value), allocator);
+    return list;
+}
+
+bool from_json(const JsonValue& value, PairComparison& pair) {
+    if (!value.IsArray() || value.Size() != 7) return false;
+    for (rapidjson::SizeType i = 0; i < 7; ++i)
+        if (i < 4 ? !value[i].IsInt() : !value[i].IsNumber()) return false;
+    pair = {value[0].GetInt(),    value[1].GetInt(),    value[2].GetInt(),   value[3].GetInt(),
+            value[4].GetDouble(), value[5].GetDouble(), value[6].GetDouble()};
+    return true;
+}
+
+}  // namespace
+
+MouldMatrices compare_heads(const std::vector<std::string>& names, const std::vector<PreparedHead>& heads,
+                            const CompareOptions& options, const ResultStore& store, const std::vector<std::string>& checksums) {
+    check_options(options, "moulds");
+    const auto n = static_cast<Eigen::Index>(heads.size());
+    MouldMatrices m;
+    m.names = names;
+    m.matches = m.consistent = m.registration = Eigen::MatrixXd::Zero(n, n);
+    m.scale = Eigen::MatrixXd::Ones(n, n);
+    Progress progress("comparing", heads.size() * (heads.size() + 1) / 2);
+    const auto is_kept = !checksums.empty();
+    for (std::size_t i = 0; i < heads.size(); ++i) {
+        std::string key;
+        std::optional<Json> kept;
+        if (is_kept) {
+            std::vector<std::string> parts{"mould pairs", checksums[i]};
+            for (const auto& [name, value] : list_options(options)) parts.push_back(name + "=" + value);
+            key = ResultStore::key(parts);
+            kept = store.find(names[i], key);
+        }
+        std::vector<PairComparison> row(heads.size() - i);
+        std::vector<std::size_t> missing;
+        for (std::size_t k = 0; k < row.size(); ++k) {
+            const JsonValue* known = kept ? find_member(*kept, checksums[i + k] + " " + names[i + k]) : nullptr;
+            if (known == nullptr || !from_json(*known, row[k])) missing.push_back(k);
+        }
+        progress.advance(row.size() - missing.size());
+        parallel_for(
+            missing.size(),
+            [&](std::size_t w) {
+                row[missing[w]] = compare_pair(heads[i], heads[i + missing[w]], options);
+                progress.advance();
+            },
+            1);
+        if (is_kept && !missing.empty()) {
+            Json document;
+            document.SetObject();
+            for (std::size_t k = 0; k < row.size(); ++k)
+                add_member(document, checksums[i + k] + " " + names[i + k], to_json(row[k], document.GetAllocator()),
+                           document.GetAllocator());
+            store.keep(names[i], key, document);
+        }
+        for (std::size_t k = 0; k < row.size(); ++k) {
+            const auto a = static_cast<Eigen::Index>(i), b = static_cast<Eigen::Index>(i + k);
+            m.matches(a, b) = row[k].matches_ab, m.matches(b, a) = row[k].matches_ba;
+            m.consistent(a, b) = row[k].consistent_ab, m.consistent(b, a) = row[k].consistent_ba;
+            if (k == 0) continue;
+            m.registration(a, b) = m.registration(b, a) = row[k].distance;
+            m.scale(a, b) = row[k].scale, m.scale(b, a) = 1 / row[k].scale;
+        }
+    }
+    return m;
+}
+
+std::vector<std::string> mould_similarities() { return {"matches", "consistent", "registration", "combined"}; }
+
+namespace {
+
+Eigen::MatrixXd of_counts(const Eigen::MatrixXd& counts) {
+    Eigen::MatrixXd d = Eigen::MatrixXd::Zero(counts.rows(), counts.cols());
+    for (Eigen::Index i = 0; i < d.rows(); ++i) {
+        for (Eigen::Index j = 0; j < i; ++j) {
+            const auto share = [&](Eigen::Index from, Eigen::Index to) {
+                return counts(from, from) > 0 ? std::min(counts(from, to) / counts(from, from), 1.0) : 0.0;
+            };
+            d(i, j) = d(j, i) = 1 - 0.5 * (share(i, j) + share(j, i));
+        }
+    }
+    return d;
+}
+
+Eigen::MatrixXd of_lengths(const Eigen::MatrixXd& lengths) {
+    std::vector<double> list;
+    for (Eigen::Index i = 0; i < lengths.rows(); ++i)
+        for (Eigen::Index j = 0; j < i; ++j) list.push_back(lengths(i, j));
+    Eigen::MatrixXd d = Eigen::MatrixXd::Zero(lengths.rows(), lengths.cols());
+    if (list.empty()) return d;
+    std::nth_element(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(list.size() / 2), list.end());
+    const double median = list[list.size() / 2];
+    for (Eigen::Index i = 0; i < d.rows(); ++i)
+        for (Eigen::Index j = 0; j < d.cols(); ++j)
+            if (i != j && lengths(i, j) > 0) d(i, j) = lengths(i, j) / (lengths(i, j) + median);
+    return d;
+}
+
+}  // namespace
+
+Eigen::MatrixXd mould_distances(const MouldMatrices& matrices, const std::string& similarity) {
+    if (similarity == "matches") return of_counts(matrices.matches);
+    if (similarity == "consistent") return of_counts(matrices.consistent);
+    if (similarity == "registration") return of_lengths(matrices.registration);
+    if (similarity == "combined") return (of_counts(matrices.consistent) + of_lengths(matrices.registration)) / 2;
+    fail_usage("there is no similarity '" + similarity + "'", "use one of: matches, consistent, registration, combined");
+}
+
+}  // namespace ostraka

@@ -1,0 +1,52 @@
+#include "ostraka/geom/rigid_fit.h"
+
+#include "ostraka/core/error.h"
+
+#include <algorithm>
+#include <string>
+
+namespace ostraka {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+Motion Motion::inverse() const {
+    Motion back;
+    back.turn = turn.transpose();
+    back.scale = 1 / scale;
+    back.shift = -back.scale * (back.turn * shift);
+    return back;
+}
+
+Motion Motion::after(const Motion& other) const {
+    return {turn * other.turn, scale * (turn * other.shift) + shift, scale * other.scale};
+}
+
+Motion fit_motion(const std::vector<Vector3d>& from, const std::vector<Vector3d>& to, const std::vector<double>& weights,
+                  const FitOptions& options) {
+    if (from.empty() || from.size() != to.size() || (!weights.empty() && weights.size() != from.size())) {
+        fail_usage(std::to_string(from.size()) + " points are to be carried onto " + std::to_string(to.size()),
+                   "give as many of the one as of the other, at least one, and a weight for each or none");
+    }
+    const auto weight = [&](std::size_t i) { return weights.empty() ? 1.0 : weights[i]; };
+    Vector3d a = Vector3d::Zero(), b = Vector3d::Zero();
+    double total = 0;
+    for (std::size_t i = 0; i < from.size(); ++i) a += weight(i) * from[i], b += weight(i) * to[i], total += weight(i);
+    if (total > 0) a /= total, b /= total;
+    Matrix3d m = Matrix3d::Zero();
+    double spread = 0;
+    for (std::size_t i = 0; i < from.size(); ++i) {
+        m += weight(i) * (to[i] - b) * (from[i] - a).transpose();
+        spread += weight(i) * (from[i] - a).squaredNorm();
+    }
+    const Eigen::JacobiSVD<Matrix3d> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Vector3d sign(1, 1, svd.matrixU().determinant() * svd.matrixV().determinant() < 0 ? -1 : 1);
+    Motion result;
+    result.turn = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
+    if (options.scale && spread > 0)
+        result.scale = std::clamp(svd.singularValues().dot(sign) / spread, options.least_scale, options.most_scale);
+    result.shift = b - result.scale * (result.turn * a);
+    return result;
+}
+
+}  // namespace ostraka

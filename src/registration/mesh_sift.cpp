@@ -1,0 +1,313 @@
+#include "ostraka/registration/mesh_sift.h"
+
+#include "ostraka/core/parallel.h"
+#include "ostraka/fields/curvature.h"
+#include "ostraka/geom/diffusion.h"
+#include "ostraka/geom/eigen.h"
+#include "ostraka/geom/neighbourhood.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace ostraka {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// A level of the scale space: the smoothed surface and what the descriptors take from it.
+struct Level {
+    double sigma = 0;
+    Mesh mesh;
+    std::vector<double> mean, shape_index, curvedness, area;
+    std::vector<Vector3d> normals;
+};
+
+Level smoothed_level(const Mesh& mesh, const Diffusion& diffusion, const Eigen::MatrixXd& start, double sigma) {
+    Level level;
+    level.sigma = sigma;
+    level.mesh = mesh;
+    set_positions(level.mesh, diffusion.smoothed(start, sigma, 2));
+    // Curvature averaged over a radius that grows with the scale: blind to how the surface is cut into triangles.
+    CurvatureOptions options;
+    const double diagonal = box_diagonal(level.mesh);
+    options.scale = diagonal > 0 ? std::min(1.0, 1.5 * sigma / diagonal) : 0;
+    const Curvature curvature = ostraka::curvature(level.mesh, options);
+    const std::size_t count = mesh.number_of_vertices();
+    level.mean = curvature.mean;
+    level.shape_index.resize(count), level.curvedness.resize(count), level.area.assign(count, 0), level.normals.resize(count);
+    parallel_for(count, [&](std::size_t i) {
+        const Vertex v(static_cast<Index>(i));
+        const double h = curvature.mean[i], half = std::sqrt(std::max(h * h - curvature.gaussian[i], 0.0));
+        // Koenderink and van Doorn 1992; 1 on a cap, -1 in a cup.
+        level.shape_index[i] = 2 / pi * std::atan2(h, half);
+        level.curvedness[i] = std::sqrt(h * h + half * half);
+        if (mesh.is_isolated(v)) {
+            level.normals[i] = Vector3d::Zero();
+            return;
+        }
+        level.normals[i] = eigen(vertex_normal(level.mesh, v));
+        for (const Face face : mesh.faces_around_target(mesh.halfedge(v)))
+            if (face != Mesh::null_face()) level.area[i] += face_area(level.mesh, face) / 3;
+    });
+    return level;
+}
+
+/// Distance of each vertex to the border along edges; infinite on closed meshes.
+std::vector<double> border_distances(const Mesh& mesh) {
+    std::vector<double> distance(mesh.number_of_vertices(), std::numeric_limits<double>::infinity());
+    std::vector<std::pair<double, Index>> heap;
+    for (const Vertex v : mesh.vertices()) {
+        if (mesh.is_isolated(v)) distance[v] = 0;
+        else if (mesh.is_border(v)) distance[v] = 0, heap.emplace_back(0, v);
+    }
+    std::make_heap(heap.begin(), heap.end(), std::greater<>());
+    while (!heap.empty()) {
+        std::pop_heap(heap.begin(), heap.end(), std::greater<>());
+        const auto [d, i] = heap.back();
+        heap.pop_back();
+        if (d > distance[i]) continue;
+        for (const Halfedge h : mesh.halfedges_around_target(mesh.halfedge(Vertex(i)))) {
+            const Vertex next = mesh.source(h);
+            const double through = d + std::sqrt(CGAL::squared_distance(mesh.point(next), mesh.point(Vertex(i))));
+            if (through < distance[next]) {
+                distance[next] = through;
+                heap.emplace_back(through, next);
+                std::push_heap(heap.begin(), heap.end(), std::greater<>());
+            }
+        }
+    }
+    return distance;
+}
+
+struct Salient {
+    Index vertex;
+    std::size_t level;
+};
+
+/// Vertices at which the difference of two levels is larger, or smaller, than at all neighbours on this level and the two beside.
+std::vector<Salient> extrema(const Mesh& mesh, const std::vector<Level>& levels, const std::vector<double>& to_border,
+                             const SiftOptions& options) {
+    std::vector<std::vector<double>> differences;
+    for (std::size_t s = 0; s + 1 < levels.size(); ++s) {
+        auto& d = differences.emplace_back(mesh.number_of_vertices());
+        for (std::size_t v = 0; v < d.size(); ++v) d[v] = levels[s].sigma * (levels[s + 1].mean[v] - levels[s].mean[v]);
+    }
+    std::vector<Salient> found;
+    for (std::size_t s = 1; s + 1 < differences.size(); ++s) {
+        for (const Vertex v : mesh.vertices()) {
+            const double value = differences[s][v];
+            if (std::abs(value) < options.contrast || to_border[v] < options.border * levels[s].sigma || mesh.is_isolated(v))
+                continue;
+            bool largest = true, smallest = true;
+            const auto compare = [&](double other) { largest = largest && value > other, smallest = smallest && value < other; };
+            for (const std::size_t t : {s - 1, s, s + 1}) {
+                if (t != s) compare(differences[t][v]);
+                for (const Halfedge h : mesh.halfedges_around_target(mesh.halfedge(v))) {
+                    compare(differences[t][mesh.source(h)]);
+                    if (!largest && !smallest) break;
+                }
+            }
+            if (largest || smallest) found.push_back({v, s});
+        }
+    }
+    return found;
+}
+
+/// What lies around a salient point: places in its tangent plane, with weights.
+struct Around {
+    std::vector<Vector2d> place, tilt;  ///< in units of sigma; the normal's projection
+    std::vector<Index> vertex;
+};
+
+class Describer {
+public:
+    Describer(const Level& level, Index vertex) : level_(level), vertex_(vertex) {
+        normal_ = level.normals[vertex];
+        const Vector3d other = std::abs(normal_.x()) < 0.6 ? Vector3d::UnitX() : Vector3d::UnitY();
+        u_ = other.cross(normal_).normalized();
+        v_ = normal_.cross(u_);
+        const Vector3d centre = eigen(level.mesh.point(Vertex(vertex)));
+        this_threads_neighbourhood().walk(level.mesh, Vertex(vertex), reach * level.sigma, [&](Vertex w, double squared) {
+            if (level.normals[w].isZero()) return;
+            const Vector3d offset = eigen(level.mesh.point(w)) - centre;
+            Vector2d flat(u_.dot(offset), v_.dot(offset));
+            const double length = flat.norm();
+            if (length > 0) flat *= std::sqrt(squared) / length / level.sigma;
+            around_.place.push_back(flat);
+            around_.tilt.emplace_back(u_.dot(level.normals[w]), v_.dot(level.normals[w]));
+            around_.vertex.push_back(w);
+        });
+    }
+
+    /// Peaks of the histogram of the directions in which the normals lean, the highest first.
+    [[nodiscard]] std::vector<double> directions(double share) const {
+        constexpr int bins = 360;
+        std::vector<double> histogram(bins, 0), smooth(bins, 0);
+        for (std::size_t i = 0; i < around_.place.size(); ++i) {
+            const double weight = std::exp(-around_.place[i].squaredNorm() / (2 * 4.5 * 4.5)) * around_.tilt[i].norm() *
+                                  level_.area[around_.vertex[i]];
+            const double at = bins * (std::atan2(around_.tilt[i].y(), around_.tilt[i].x()) / (2 * pi) + 0.5);
+            const int low = static_cast<int>(std::floor(at));
+            histogram[static_cast<std::size_t>(low % bins)] += weight * (1 - (at - low));
+            histogram[static_cast<std::size_t>((low + 1) % bins)] += weight * (at - low);
+        }
+        constexpr int half = 51;  // three standard deviations of 17 degrees
+        for (int i = 0; i < bins; ++i)
+            for (int k = -half; k <= half; ++k)
+                smooth[static_cast<std::size_t>(i)] +=
+                    std::exp(-k * k / (2 * 17.0 * 17.0)) * histogram[static_cast<std::size_t>((i + k + bins) % bins)];
+        const double highest = *std::max_element(smooth.begin(), smooth.end());
+        std::vector<std::pair<double, double>> peaks;  // height (negative), direction
+        for (int i = 0; i < bins; ++i) {
+            const double here = smooth[static_cast<std::size_t>(i)],
+                         before = smooth[static_cast<std::size_t>((i + bins - 1) % bins)],
+                         after = smooth[static_cast<std::size_t>((i + 1) % bins)];
+            if (!(here > 0) || here < share * highest || here <= before || here < after) continue;
+            const double shift = 0.5 * (before - after) / (before - 2 * here + after);
+            peaks.emplace_back(-here, (i + shift) / bins * 2 * pi - pi);
+        }
+        std::sort(peaks.begin(), peaks.end());
+        std::vector<double> directions;
+        for (const auto& [height, direction] : peaks) directions.push_back(direction);
+        return directions;
+    }
+
+    void describe(double direction, Feature& feature, Eigen::Ref<Eigen::VectorXf> descriptor,
+                  Eigen::Ref<Eigen::VectorXf> present) const {
+        const Vector2d x(std::cos(direction), std::sin(direction)), y(-x.y(), x.x());
+        feature.vertex = vertex_;
+        feature.scale = level_.sigma;
+        feature.point = eigen(level_.mesh.point(Vertex(vertex_)));
+        feature.normal = normal_;
+        feature.direction = x.x() * u_ + x.y() * v_;
+        Eigen::Matrix<double, 2 * FeatureSet::bins, FeatureSet::discs> histograms;
+        histograms.setZero();
+        Eigen::Matrix<double, FeatureSet::discs, 1> covered = Eigen::Matrix<double, FeatureSet::discs, 1>::Zero();
+        for (std::size_t i = 0; i < around_.place.size(); ++i) {
+            const Vector2d place(x.dot(around_.place[i]), y.dot(around_.place[i]));
+            const Index w = around_.vertex[i];
+            const double area = level_.area[w] / (level_.sigma * level_.sigma);
+            const double tilt = around_.tilt[i].norm();
+            const double slant = std::atan2(y.dot(around_.tilt[i]), x.dot(around_.tilt[i]));
+            for (int disc = 0; disc < FeatureSet::discs; ++disc) {
+                const double squared = (place - centre(disc)).squaredNorm();
+                if (squared >= disc_radius * disc_radius) continue;
+                covered[disc] += area;
+                const double weight = area * std::exp(-squared / (2 * 0.25 * disc_radius * disc_radius));
+                // Shape index from -1 to 1, slant angle around the circle; shared between the two nearest bins.
+                const double s =
+                    std::clamp((level_.shape_index[w] + 1) / 2 * FeatureSet::bins - 0.5, 0.0, FeatureSet::bins - 1.0);
+                const int low = std::min(static_cast<int>(s), FeatureSet::bins - 2);
+                const double curved = weight * level_.curvedness[w] * level_.sigma;
+                histograms(low, disc) += curved * (1 - (s - low));
+                histograms(low + 1, disc) += curved * (s - low);
+                const double a = (slant / (2 * pi) + 1) * FeatureSet::bins;
+                const int first = static_cast<int>(a);
+                histograms(FeatureSet::bins + first % FeatureSet::bins, disc) += weight * tilt * (1 - (a - first));
+                histograms(FeatureSet::bins + (first + 1) % FeatureSet::bins, disc) += weight * tilt * (a - first);
+            }
+        }
+        const double most = 1 / std::sqrt(static_cast<double>(FeatureSet::bins));
+        for (int disc = 0; disc < FeatureSet::discs; ++disc) {
+            const bool there = covered[disc] > 0.5 * pi * disc_radius * disc_radius;
+            present[disc] = there ? 1 : 0;
+            for (int part = 0; part < 2; ++part) {
+                auto h = histograms.col(disc).segment<FeatureSet::bins>(part * FeatureSet::bins);
+                const double norm = h.norm();
+                if (norm > 0) h /= norm;
+                h = h.cwiseMin(most);
+                if (!there) h.setZero();
+            }
+            descriptor.segment<2 * FeatureSet::bins>(disc * 2 * FeatureSet::bins) = histograms.col(disc).cast<float>();
+        }
+    }
+
+private:
+    static constexpr double disc_radius = 3.75, ring_radius = 4.5, reach = 9;  ///< in sigma
+    static Vector2d centre(int disc) {
+        if (disc == 0) return Vector2d::Zero();
+        const double angle = (disc - 1) * pi / 4;
+        return ring_radius * Vector2d(std::cos(angle), std::sin(angle));
+    }
+    const Level& level_;
+    Index vertex_;
+    Vector3d normal_, u_, v_;
+    Around around_;
+};
+
+}  // namespace
+
+FeatureSet mesh_sift(const Mesh& mesh, const SiftOptions& options) {
+    check_options(options, "features");
+    const double area = surface_area(mesh);
+    if (!(area > 0)) fail_input("mesh", "it has no area, so that nothing on it can be salient", "is it the right file?");
+    FeatureSet set;
+    set.size = options.size > 0 ? options.size : std::sqrt(area);
+    const Diffusion diffusion(mesh);
+    const Eigen::MatrixXd start = positions(mesh);
+    std::vector<Level> levels;
+    for (int s = 0; s < options.scales; ++s)
+        levels.push_back(smoothed_level(mesh, diffusion, start,
+                                        options.first_scale * set.size * std::exp2(static_cast<double>(s) / options.per_octave)));
+    const std::vector<Salient> salient = extrema(mesh, levels, border_distances(mesh), options);
+
+    std::vector<std::vector<Feature>> features(salient.size());
+    std::vector<Eigen::MatrixXf> descriptors(salient.size()), present(salient.size());
+    parallel_for(
+        salient.size(),
+        [&](std::size_t i) {
+            const Level& level = levels[salient[i].level];
+            if (level.normals[salient[i].vertex].isZero()) return;
+            const Describer describer(level, salient[i].vertex);
+            const std::vector<double> directions = describer.directions(options.second_direction);
+            features[i].resize(directions.size());
+            descriptors[i].resize(FeatureSet::length, static_cast<Eigen::Index>(directions.size()));
+            present[i].resize(FeatureSet::discs, static_cast<Eigen::Index>(directions.size()));
+            for (std::size_t k = 0; k < directions.size(); ++k) {
+                const auto column = static_cast<Eigen::Index>(k);
+                describer.describe(directions[k], features[i][k], descriptors[i].col(column), present[i].col(column));
+            }
+        },
+        8);
+    for (const auto& list : features) set.features.insert(set.features.end(), list.begin(), list.end());
+    set.descriptors.resize(FeatureSet::length, static_cast<Eigen::Index>(set.features.size()));
+    set.present.resize(FeatureSet::discs, static_cast<Eigen::Index>(set.features.size()));
+    Eigen::Index column = 0;
+    for (std::size_t i = 0; i < salient.size(); ++i) {
+        set.descriptors.middleCols(column, descriptors[i].cols()) = descriptors[i];
+        set.present.middleCols(column, present[i].cols()) = present[i];
+        column += descriptors[i].cols();
+    }
+    return set;
+}
+
+std::vector<FeatureMatch> match_features(const FeatureSet& a, const FeatureSet& b, const MatchOptions& options) {
+    check_options(options, "matches");
+    std::vector<FeatureMatch> matches;
+    if (a.features.empty() || b.features.size() < 2) return matches;
+    const auto norms = [](const FeatureSet& set) {
+        Eigen::VectorXf list = set.descriptors.colwise().norm().transpose();
+        return list;
+    };
+    const Eigen::VectorXf na = norms(a), nb = norms(b);
+    const Eigen::MatrixXf dots = b.descriptors.transpose() * a.descriptors;
+    for (Eigen::Index i = 0; i < dots.cols(); ++i) {
+        Eigen::Index best = -1;
+        double first = pi, second = pi;
+        for (Eigen::Index j = 0; j < dots.rows(); ++j) {
+            const double size = static_cast<double>(na[i]) * nb[j];
+            const double angle = size > 0 ? std::acos(std::clamp(dots(j, i) / size, -1.0, 1.0)) : pi;
+            if (angle < first) second = first, first = angle, best = j;
+            else if (angle < second) second = angle;
+        }
+        if (best < 0 || !(first <= options.ratio * second)) continue;
+        matches.push_back({static_cast<Index>(i), static_cast<Index>(best), first, second > 0 ? first / second : 0});
+    }
+    return matches;
+}
+
+}  // namespace ostraka

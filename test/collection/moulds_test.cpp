@@ -1,0 +1,283 @@
+#include "ostraka/collection/moulds.h"
+
+#include "meshes.h"
+#include "scratch.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/npy.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/io/mesh_file.h"
+#include "ostraka/shapes/head_casts.h"
+#include "ostraka/stats/scores.h"
+
+namespace ostraka {
+namespace {
+
+using test::Scratch;
+
+/// Distances of objects in groups of these sizes: 0.3 within, 0.8 between, less a little that differs.
+Eigen::MatrixXd blocks(const std::vector<int>& sizes, double within = 0.3, double between = 0.8) {
+    std::vector<int> group;
+    for (std::size_t g = 0; g < sizes.size(); ++g)
+        group.insert(group.end(), static_cast<std::size_t>(sizes[g]), static_cast<int>(g));
+    const auto n = static_cast<Eigen::Index>(group.size());
+    Eigen::MatrixXd d = Eigen::MatrixXd::Zero(n, n);
+    for (Eigen::Index i = 0; i < n; ++i)
+        for (Eigen::Index j = 0; j < i; ++j) {
+            const bool same = group[static_cast<std::size_t>(i)] == group[static_cast<std::size_t>(j)];
+            d(i, j) = d(j, i) = (same ? within : between) - 0.05 * static_cast<double>((i * 7 + j * 3) % 5) / 5;
+        }
+    return d;
+}
+
+std::vector<int> labels_of(const std::vector<int>& sizes) {
+    std::vector<int> labels;
+    for (std::size_t g = 0; g < sizes.size(); ++g)
+        labels.insert(labels.end(), static_cast<std::size_t>(sizes[g]), static_cast<int>(g));
+    return labels;
+}
+
+TEST(MouldGroups, EveryMethodFindsWhatStandsOut) {
+    const std::vector<int> sizes{7, 5, 4};
+    for (const char* method : {"linkage", "dbscan", "embedding"}) {
+        GroupOptions options;
+        options.method = method;
+        const MouldGroups groups = group_heads(blocks(sizes), options);
+        EXPECT_EQ(groups.labels, labels_of(sizes)) << method;
+        EXPECT_TRUE(groups.clear);
+        EXPECT_GT(groups.epsilon, 0);
+    }
+}
+
+TEST(MouldGroups, AnEpsilonIsTakenAtItsWord) {
+    GroupOptions options;
+    options.epsilon = "0.1";
+    EXPECT_EQ(adjusted_rand_index(group_heads(blocks({3, 3}), options).labels, {0, 1, 2, 3, 4, 5}), 1);
+    options.epsilon = "0.5";
+    EXPECT_EQ(group_heads(blocks({3, 3}), options).labels, labels_of({3, 3}));
+    options.epsilon = "0.99";
+    EXPECT_EQ(group_heads(blocks({3, 3}), options).labels, std::vector<int>(6, 0));
+    for (const char* wrong : {"-1", "nan", "0.1x", "much", ""}) {
+        options.epsilon = wrong;
+        EXPECT_THROW((void)group_heads(blocks({3, 3}), options), Error) << wrong;
+    }
+}
+
+TEST(MouldGroups, WhereNothingStandsOutThereIsOneGroupAndItSaysSo) {
+    for (const std::vector<int>& sizes : {std::vector<int>{9}, std::vector<int>{1, 1, 1, 1, 1, 1}}) {
+        const MouldGroups groups = group_heads(blocks(sizes));
+        EXPECT_FALSE(groups.clear);
+        EXPECT_EQ(groups.labels, std::vector<int>(groups.labels.size(), 0));
+    }
+    EXPECT_EQ(group_heads(Eigen::MatrixXd::Zero(1, 1)).labels, std::vector<int>{0});
+    EXPECT_EQ(group_heads(Eigen::MatrixXd::Zero(5, 5)).labels, std::vector<int>(5, 0));
+    EXPECT_THROW((void)group_heads(Eigen::MatrixXd()), Error);
+    Eigen::MatrixXd skew = blocks({2, 2});
+    skew(0, 1) = 0.9;
+    EXPECT_THROW((void)group_heads(skew), Error);
+}
+
+TEST(MouldGroups, SilhouettesOfTwoPairs) {
+    // Within 1, between 4: (4 - 1) / 4.
+    Eigen::MatrixXd d(4, 4);
+    d << 0, 1, 4, 4, 1, 0, 4, 4, 4, 4, 0, 1, 4, 4, 1, 0;
+    for (const double s : silhouettes(d, {0, 0, 1, 1})) EXPECT_DOUBLE_EQ(s, 0.75);
+    EXPECT_DOUBLE_EQ(silhouettes(d, {0, 0, 0, 1})[3], 0);
+    EXPECT_DOUBLE_EQ(silhouettes(d, {0, 0, 0, 0})[0], 0);
+}
+
+TEST(MouldGroups, StabilityTellsFirmGroupsFromLooseOnes) {
+    const Eigen::MatrixXd firm = blocks({8, 8});
+    for (const auto& group : group_stability(firm, group_heads(firm), {})) EXPECT_GT(group.jaccard, 0.99);
+    GroupOptions options;
+    options.epsilon = "0.27";  // in the midst of the distances within
+    const Eigen::MatrixXd loose = blocks({16});
+    const MouldGroups groups = group_heads(loose, options);
+    double least = 1;
+    for (const auto& group : group_stability(loose, groups, options)) least = std::min(least, group.jaccard);
+    EXPECT_LT(least, 0.9);
+}
+
+TEST(MouldDistances, AreSharesOfTheSelfSimilarity) {
+    MouldMatrices m;
+    m.matches.resize(2, 2);
+    m.matches << 100, 30, 20, 50;
+    m.consistent = m.matches;
+    m.registration.resize(2, 2);
+    m.registration << 0, 0.01, 0.01, 0;
+    // The mean of 1 - 30/100 and 1 - 20/50.
+    EXPECT_DOUBLE_EQ(mould_distances(m, "matches")(0, 1), 0.65);
+    EXPECT_DOUBLE_EQ(mould_distances(m, "matches")(1, 0), 0.65);
+    EXPECT_DOUBLE_EQ(mould_distances(m, "registration")(0, 1), 0.5);
+    EXPECT_DOUBLE_EQ(mould_distances(m, "combined")(0, 1), 0.575);
+    EXPECT_DOUBLE_EQ(mould_distances(m, "matches")(0, 0), 0);
+    EXPECT_THROW((void)mould_distances(m, "taste"), Error);
+}
+
+TEST(MouldDistances, RelativeSizesAreMeansOverTheGroup) {
+    MouldMatrices m;
+    const std::vector<double> sizes{1, 0.9, 0.81, 5};
+    m.scale.resize(4, 4);
+    for (Eigen::Index i = 0; i < 4; ++i)
+        for (Eigen::Index j = 0; j < 4; ++j)
+            m.scale(i, j) = sizes[static_cast<std::size_t>(j)] / sizes[static_cast<std::size_t>(i)];
+    const std::vector<double> found = relative_sizes(m, {0, 0, 0, 1});
+    EXPECT_NEAR(found[0], 1 / 0.9, 1e-12);
+    EXPECT_NEAR(found[1], 1, 1e-12);
+    EXPECT_NEAR(found[2], 0.9, 1e-12);
+    EXPECT_NEAR(found[3], 1, 1e-12);
+}
+
+/// Nine heads of three moulds, worn and pressed, as PLY files; their moulds.
+std::map<std::string, std::string> write_heads(const Path& folder) {
+    MouldPopulationOptions population;
+    population.objects = 9, population.moulds = 3, population.seed = 4;
+    CastOptions cast;
+    cast.vertices = 4500, cast.wear = 0.01, cast.pressure = 0.01, cast.noise = 0.001;
+    std::map<std::string, std::string> moulds;
+    std::filesystem::create_directories(folder);
+    for (const auto& head : plan_heads(population, cast)) {
+        const HeadCast made = cast_head(head.shape, head.cast);
+        MeshExtras extras;
+        extras.face_labels = made.face_labels;
+        write_mesh(folder / (head.name + ".ply"), made.mesh, extras);
+        moulds[head.name] = head.mould;
+    }
+    return moulds;
+}
+
+class MouldStudy : public testing::Test {
+protected:
+    static void SetUpTestSuite() {
+        scratch = new Scratch();
+        moulds = write_heads(*scratch / "heads");
+    }
+    static void TearDownTestSuite() { delete scratch; }
+    static MouldMatrices compare(const PreparedCollection& prepared, const ResultStore& store = ResultStore()) {
+        return compare_heads(prepared.names, prepared.heads, prepared.options, store, prepared.checksums);
+    }
+    static Scratch* scratch;
+    static std::map<std::string, std::string> moulds;
+};
+Scratch* MouldStudy::scratch = nullptr;
+std::map<std::string, std::string> MouldStudy::moulds;
+
+TEST_F(MouldStudy, FindsTheMouldsOfWornCasts) {
+    const auto prepared = prepare_collection(read_collection(*scratch / "heads"), {}, {9}, ResultStore());
+    ASSERT_EQ(prepared.heads.size(), 9U);
+    const MouldMatrices matrices = compare(prepared);
+    std::map<std::string, int> numbers;
+    std::vector<int> truth;
+    for (const auto& name : prepared.names)
+        truth.push_back(numbers.try_emplace(moulds.at(name), static_cast<int>(numbers.size())).first->second);
+    for (const auto& similarity : {"consistent", "combined"}) {
+        const MouldGroups groups = group_heads(mould_distances(matrices, similarity));
+        EXPECT_EQ(adjusted_rand_index(groups.labels, truth), 1) << similarity;
+        EXPECT_TRUE(groups.clear) << similarity;
+    }
+    // Every head is at least as much like itself as like any other.
+    for (Eigen::Index i = 0; i < 9; ++i) EXPECT_EQ(matrices.consistent.row(i).maxCoeff(), matrices.consistent(i, i));
+}
+
+TEST_F(MouldStudy, SameForAnyNumberOfThreadsAndAfterAnInterruption) {
+    const Collection all = read_collection(*scratch / "heads");
+    Collection some = all;
+    some.objects.resize(5);
+    CompareOptions options;
+    options.features.size = 66;
+    set_threads(1);
+    const auto plain = prepare_collection(all, options, {}, ResultStore());
+    const MouldMatrices expected = compare(plain);
+    set_threads(2);
+    const ResultStore features(*scratch / "features"), pairs(*scratch / "pairs");
+    // As a run that broke off: five heads are done.
+    (void)compare(prepare_collection(some, options, {}, features), pairs);
+    const auto resumed = prepare_collection(all, options, {}, features);
+    EXPECT_EQ(std::count_if(resumed.results.begin(), resumed.results.end(), [](const auto& r) { return r.resumed; }), 5);
+    for (int round = 0; round < 2; ++round) {
+        const MouldMatrices found = compare(resumed, pairs);
+        EXPECT_TRUE(found.matches == expected.matches);
+        EXPECT_TRUE(found.consistent == expected.consistent);
+        EXPECT_TRUE(found.registration == expected.registration);
+        EXPECT_TRUE(found.scale == expected.scale);
+    }
+    set_threads(0);
+}
+
+TEST_F(MouldStudy, WhatCannotBeComparedIsLeftOut) {
+    const Path folder = *scratch / "odd";
+    std::filesystem::create_directories(folder);
+    int count = 0;
+    for (const auto& [name, mould] : moulds)
+        if (count++ < 3) std::filesystem::copy_file(*scratch / "heads" / (name + ".ply"), folder / (name + ".ply"));
+    write_mesh(folder / "ball.ply", build_mesh(test::octahedron_sphere(4)));
+    write_file(folder / "broken.ply", "ply\nformat ascii 1.0\nelement vertex 3\n");
+    const auto prepared = prepare_collection(read_collection(folder), {}, {}, ResultStore());
+    EXPECT_EQ(prepared.heads.size(), 3U);
+    ASSERT_EQ(prepared.results.size(), 5U);
+    EXPECT_NE(prepared.results[0].problem.find("salient"), std::string::npos) << prepared.results[0].problem;
+    EXPECT_FALSE(prepared.results[1].problem.empty());
+    // Parts can be left out only where faces have labels.
+    const auto without = prepare_collection(read_collection(folder), {}, {9}, ResultStore());
+    EXPECT_NE(without.results[0].problem.find("labels"), std::string::npos) << without.results[0].problem;
+}
+
+TEST_F(MouldStudy, TheCommandWritesAllItPromises) {
+    std::string truth = "name,label\n";
+    for (const auto& [name, mould] : moulds) truth += name + "," + mould + "\n";
+    const Path table = scratch->file("truth.csv", truth), out = *scratch / "out";
+    const std::string call = "study moulds " + (*scratch / "heads").string() + " --output " + out.string() + " --truth " +
+                             table.string() + " --choices --json";
+    const auto result = test::run_command(call);
+    ASSERT_EQ(result.code, 0) << result.err;
+    const Json report = parse_json(result.out, "report");
+    EXPECT_EQ(report["result"]["adjustedRandIndex"].GetDouble(), 1);
+    EXPECT_EQ(report["result"]["groups"].Size(), 3U);
+    validate(read_json(out / "moulds.json"), "mould-study", "moulds.json");
+    for (const char* name : {"matches", "consistent", "registration", "distances"}) {
+        EXPECT_EQ(read_npy(out / (std::string(name) + ".npy")).shape, (std::vector<std::size_t>{9, 9})) << name;
+        EXPECT_TRUE(std::filesystem::exists(out / (std::string(name) + ".csv"))) << name;
+    }
+    for (const char* name :
+         {"groups.csv", "groups.md", "heads.csv", "choices.csv", "distances.svg", "dendrogram.svg", "embedding-1-2.svg"})
+        EXPECT_TRUE(std::filesystem::exists(out / name)) << name;
+    const std::string before = read_file(out / "moulds.json");
+    const auto again = test::run_command(call + " --threads 1");
+    ASSERT_EQ(again.code, 0) << again.err;
+    EXPECT_EQ(read_file(out / "moulds.json"), before);
+}
+
+TEST(MouldCommand, SaysWhatIsWrong) {
+    const Scratch scratch;
+    std::filesystem::create_directories(scratch / "heads");
+    write_mesh(scratch / "heads" / "ball.ply", build_mesh(test::octahedron_sphere(3)));
+    const auto one =
+        test::run_command("study moulds " + (scratch / "heads").string() + " --output " + (scratch / "out").string());
+    EXPECT_EQ(one.code, 1);
+    EXPECT_NE(one.err.find("at least two"), std::string::npos) << one.err;
+    EXPECT_EQ(test::run_command("study moulds " + (scratch / "heads").string() + " --output " + (scratch / "out").string() +
+                                " --similarity taste")
+                  .code,
+              2);
+}
+
+TEST(MouldCommand, MakesAPopulationWithItsTruth) {
+    const Scratch scratch;
+    const std::string call = "study make moulds " + (scratch / "heads").string() +
+                             " --objects 3 --moulds 2 --hand-made 1 --vertices 1800 --beard 1 --seed 3";
+    const auto result = test::run_command(call);
+    ASSERT_EQ(result.code, 0) << result.err;
+    const auto labels = read_labels(scratch / "heads" / "truth.csv");
+    EXPECT_EQ(labels.size(), 4U);
+    const Collection collection = read_collection(scratch / "heads");
+    ASSERT_EQ(collection.objects.size(), 4U);
+    for (const auto& object : collection.objects) {
+        const MeshFile file = read_mesh(object.mesh);
+        EXPECT_EQ(file.extras.face_labels.size(), file.mesh.number_of_faces());
+        EXPECT_TRUE(labels.contains(object.name));
+    }
+    EXPECT_EQ(test::run_command(call + " --wear 5").code, 2);
+}
+
+}  // namespace
+}  // namespace ostraka
