@@ -32,15 +32,15 @@ SliceFrame slice_frame(const Point& origin, const Vector& direction) {
 
 std::pair<double, double> height_range(const Mesh& mesh, const SliceFrame& frame, const std::vector<Index>& faces) {
     std::pair<double, double> range(std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity());
-    const auto add = [&](Face f) {
-        for (const Vertex v : corners(mesh, f)) {
-            const double h = frame.height(mesh.point(v));
-            range.first = std::min(range.first, h), range.second = std::max(range.second, h);
-        }
+    const auto add = [&](Vertex v) {
+        const double h = frame.height(mesh.point(v));
+        range.first = std::min(range.first, h), range.second = std::max(range.second, h);
     };
     if (faces.empty())
-        for (const Face f : mesh.faces()) add(f);
-    for (const Index f : faces) add(Face(f));
+        for (const Vertex v : mesh.vertices())
+            if (!mesh.is_isolated(v)) add(v);
+    for (const Index f : faces)
+        for (const Vertex v : corners(mesh, Face(f))) add(v);
     if (!(range.first <= range.second)) fail_input("mesh", "has no faces to cut", "choose another mesh");
     return range;
 }

@@ -97,10 +97,14 @@ void Sweep::set_heights(const std::vector<double>& heights) {
         4096);
     tolerance_ = on_plane_share * box_diagonal(mesh_);
     double lowest = std::numeric_limits<double>::infinity();
-    for (const Index f : faces_)
-        if (!mesh_.is_removed(Face(f)))
+    if (faces_.size() == mesh_.num_faces()) {
+        for (const Vertex v : mesh_.vertices())
+            if (!mesh_.is_isolated(v)) lowest = std::min(lowest, height_[v.idx()]);
+    } else {
+        for (const Index f : faces_)
             for (const Vertex v : CGAL::vertices_around_face(mesh_.halfedge(Face(f)), mesh_))
                 lowest = std::min(lowest, height_[v.idx()]);
+    }
     for (std::size_t i = 0; i < heights.size(); ++i) {
         const bool base = std::abs(heights[i] - lowest) <= tolerance_;
         // On the lowest plane, ON counts as below.
@@ -120,30 +124,39 @@ void Sweep::set_heights(const std::vector<double>& heights) {
 }
 
 void Sweep::sort_faces() {
-    // Counting sort in blocks: how many faces of each block cross each plane, then where they go.
+    // Counting sort in blocks: which faces of each cross planes, how many cross each plane, then where they go.
+    struct Crossing {
+        Index face, low, high;
+    };
     const std::size_t block = std::max<std::size_t>(65536, faces_.size() / 32 + 1);
     const std::size_t blocks = (faces_.size() + block - 1) / block, count = planes_.size();
+    std::vector<std::vector<Crossing>> crossings(blocks);
     std::vector<std::vector<std::size_t>> next(blocks, std::vector<std::size_t>(count, 0));
-    const auto each = [&](auto&& work) {
-        parallel_for(
-            blocks,
-            [&](std::size_t b) {
-                for (std::size_t i = b * block; i < std::min(faces_.size(), (b + 1) * block); ++i) {
-                    if (mesh_.is_removed(Face(faces_[i]))) continue;
-                    const auto [low, high] = levels(faces_[i]);
-                    for (Index plane = low; plane < high; ++plane) work(next[b][plane], faces_[i]);
-                }
-            },
-            1);
-    };
-    each([](std::size_t& counted, Index) { ++counted; });
+    parallel_for(
+        blocks,
+        [&](std::size_t b) {
+            for (std::size_t i = b * block; i < std::min(faces_.size(), (b + 1) * block); ++i) {
+                if (mesh_.is_removed(Face(faces_[i]))) continue;
+                const auto [low, high] = levels(faces_[i]);
+                if (low == high) continue;
+                crossings[b].push_back({faces_[i], low, high});
+                for (Index plane = low; plane < high; ++plane) ++next[b][plane];
+            }
+        },
+        1);
     first_.assign(count + 1, 0);
     for (std::size_t plane = 0; plane < count; ++plane) {
         first_[plane + 1] = first_[plane];
         for (auto& counts : next) first_[plane + 1] += std::exchange(counts[plane], first_[plane + 1]);
     }
     crossed_.resize(first_.back());
-    each([&](std::size_t& place, Index f) { crossed_[place++] = f; });
+    parallel_for(
+        blocks,
+        [&](std::size_t b) {
+            for (const auto& [face, low, high] : crossings[b])
+                for (Index plane = low; plane < high; ++plane) crossed_[next[b][plane]++] = face;
+        },
+        1);
 }
 
 /// Takes pieces without length out, and pieces that run there and back along one another. False if nothing is left.
