@@ -19,19 +19,6 @@ const AxisFigure* Axis::figure(const std::string& name) const {
 
 namespace detail {
 
-LineFit fit_line(const std::vector<Vector3d>& points, const std::vector<double>& weights) {
-    Vector3d mean = Vector3d::Zero();
-    double total = 0;
-    for (std::size_t i = 0; i < points.size(); ++i) mean += weights[i] * points[i], total += weights[i];
-    mean /= total;
-    Matrix3d covariance = Matrix3d::Zero();
-    for (std::size_t i = 0; i < points.size(); ++i)
-        covariance += weights[i] / total * (points[i] - mean) * (points[i] - mean).transpose();
-    const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(covariance);
-    const Vector3d values = solver.eigenvalues();
-    return {mean, solver.eigenvectors().col(2), std::sqrt(std::max(0.0, values[0]) + std::max(0.0, values[1]))};
-}
-
 double part_diagonal(const Mesh& mesh, const std::vector<Index>& faces) {
     CGAL::Bbox_3 box;
     for (const Index f : faces)

@@ -4,6 +4,7 @@
 #include "ostraka/axis/axis.h"
 #include "ostraka/geom/circle.h"
 #include "ostraka/geom/eigen.h"
+#include "ostraka/geom/line.h"
 
 namespace ostraka::detail {
 
@@ -32,13 +33,6 @@ inline double covered_percent(std::vector<double> angles) {
     for (std::size_t i = 1; i < angles.size(); ++i) gap = std::max(gap, angles[i] - angles[i - 1]);
     return gap < std::max(5 * M_PI / 180, 6 * M_PI / double(angles.size())) ? 100 : 100 * (1 - gap / (2 * M_PI));
 }
-
-/// Straight line through weighted points: mean and direction of largest spread.
-struct LineFit {
-    Vector3d point, direction;
-    double rms = 0;
-};
-LineFit fit_line(const std::vector<Vector3d>& points, const std::vector<double>& weights);
 
 double part_diagonal(const Mesh& mesh, const std::vector<Index>& faces);
 /// The straight axis of a result, its point moved next to `centre`.

@@ -1,0 +1,163 @@
+// Axes, straightness, evenness, tubes.
+#include "ostraka/slicing/slice_axes.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/limits.h"
+#include "ostraka/geom/eigen.h"
+#include "ostraka/geom/line.h"
+#include "ostraka/geom/shortest_path.h"
+#include "ostraka/stats/k_means.h"
+#include "ostraka/stats/summary.h"
+
+#include <numeric>
+
+namespace ostraka {
+
+namespace {
+
+Straightness summary_of(const std::vector<double>& distances, double length) {
+    Straightness result;
+    if (distances.empty()) return result;
+    const Summary summary = summarise(distances);
+    result.mean = summary.mean, result.deviation = summary.deviation.value_or(0), result.most = summary.max;
+    result.length = length;
+    if (length > 0) result.relative = result.mean / length;
+    return result;
+}
+
+bool may_belong(const Slice& slice, const SliceDescriptors& d, const TubeOptions& options) {
+    return slice.completeness.complete() && d.components == 1 && d.eccentricity >= options.least_eccentricity &&
+           d.roundness_equivalent_relative <= options.most_roundness;
+}
+
+/// k-means with the least number of groups whose rms distances from their centres are small enough.
+std::vector<int> similar_groups(const Eigen::MatrixXd& samples, const TubeOptions& options) {
+    KMeansOptions means;
+    means.seed = options.seed;
+    for (means.clusters = 1;; ++means.clusters) {
+        const KMeansResult groups = k_means(samples, means);
+        std::vector<double> square(static_cast<std::size_t>(groups.centres.rows()), 0), count(square.size(), 0);
+        for (Eigen::Index i = 0; i < samples.rows(); ++i) {
+            const int label = groups.labels[static_cast<std::size_t>(i)];
+            square[static_cast<std::size_t>(label)] += (samples.row(i) - groups.centres.row(label)).squaredNorm();
+            count[static_cast<std::size_t>(label)] += 1;
+        }
+        bool even = true;
+        for (std::size_t g = 0; g < square.size(); ++g) even = even && std::sqrt(square[g] / count[g]) <= options.similarity;
+        if (even || means.clusters >= samples.rows()) return groups.labels;
+    }
+}
+
+}  // namespace
+
+std::vector<Point> barycentres(const SliceStack& stack, const std::vector<SliceDescriptors>& descriptors, bool of_outline) {
+    std::vector<Point> list;
+    for (std::size_t i = 0; i < stack.slices.size(); ++i) {
+        const auto& place = of_outline ? descriptors[i].outline_barycentre : descriptors[i].barycentre;
+        if (place.allFinite()) list.push_back(stack.frame.point(place, stack.slices[i].height));
+    }
+    return list;
+}
+
+SliceLine mean_line(const SliceFrame& frame, const std::vector<Point>& barycentres) {
+    if (barycentres.empty())
+        fail_input("slices", "no slice has a barycentre", "choose heights where the mesh has closed contours");
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (const auto& p : barycentres) sum += eigen(p) - eigen(barycentres[0]);
+    return {barycentres[0] + vector_of(sum / double(barycentres.size())), frame.normal};
+}
+
+SliceLine regression_line(const SliceFrame& frame, const std::vector<Point>& barycentres) {
+    std::vector<Eigen::Vector3d> points;
+    for (const auto& p : barycentres) points.push_back(eigen(p));
+    bool distinct = false;
+    for (const auto& p : points) distinct = distinct || p != points[0];
+    if (!distinct) fail_input("slices", "no line goes through fewer than two barycentres", "cut more slices");
+    const LineFit fit = fit_line(points, std::vector<double>(points.size(), 1));
+    const Vector direction = unit_vector(vector_of(fit.direction));
+    return {point_of(fit.point), direction * frame.normal < 0 ? -direction : direction};
+}
+
+Straightness straightness(const std::vector<Point>& barycentres, const SliceLine& axis) {
+    std::vector<double> distances;
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const auto& p : barycentres) {
+        const double along = axis.direction * (p - axis.point);
+        low = std::min(low, along), high = std::max(high, along);
+        distances.push_back(std::sqrt(CGAL::cross_product(axis.direction, p - axis.point).squared_length()));
+    }
+    return summary_of(distances, high - low);
+}
+
+Straightness straightness(const std::vector<Point>& barycentres, const std::vector<Point>& polyline) {
+    if (polyline.empty()) fail_usage("an axis without points is given", "give a poly-line");
+    std::vector<double> distances;
+    double length = 0;
+    for (std::size_t i = 1; i < polyline.size(); ++i) length += std::sqrt((polyline[i] - polyline[i - 1]).squared_length());
+    for (const auto& p : barycentres) distances.push_back(distance_to_polyline(p, polyline));
+    return summary_of(distances, length);
+}
+
+ThicknessHomogeneity thickness_homogeneity(const std::vector<SliceDescriptors>& descriptors) {
+    ThicknessHomogeneity result;
+    std::vector<double> means, within;
+    double second = 0;
+    for (const auto& d : descriptors) {
+        if (!std::isfinite(d.thickness_mean)) continue;
+        means.push_back(d.thickness_mean);
+        if (d.thickness_mean > 0) within.push_back(std::sqrt(d.thickness_variance) / d.thickness_mean);
+        second += d.thickness_variance + d.thickness_mean * d.thickness_mean;
+    }
+    result.slices = means.size();
+    if (means.empty()) return result;
+    const Summary summary = summarise(means);
+    result.mean = summary.mean;
+    result.across = summary.variation.value_or(ThicknessHomogeneity::absent);
+    if (!within.empty()) result.within = summarise(within).mean;
+    if (result.mean > 0)
+        result.overall = std::sqrt(std::max(0.0, second / double(means.size()) - result.mean * result.mean)) / result.mean;
+    return result;
+}
+
+Tube tubular_part(const SliceStack& stack, const std::vector<SliceDescriptors>& descriptors, const TubeOptions& options) {
+    check_options(options, "tube");
+    if (descriptors.size() != stack.slices.size())
+        fail_usage("there are not as many descriptors as slices", "describe each slice");
+    const std::size_t n = stack.slices.size();
+    std::vector<std::size_t> order(n);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return stack.slices[a].height < stack.slices[b].height; });
+    Tube tube;
+    tube.cluster.assign(n, -1);
+    std::vector<std::size_t> able;
+    for (std::size_t i = 0; i < n; ++i)
+        if (may_belong(stack.slices[order[i]], descriptors[order[i]], options)) able.push_back(i);
+    if (able.size() < 2) {
+        tube.reason = "fewer than two slices are round, complete and of one outer contour";
+        return tube;
+    }
+    std::vector<double> radii;
+    for (const std::size_t i : able) radii.push_back(descriptors[order[i]].equivalent_radius);
+    const double median = summarise(radii).median;
+    Eigen::MatrixXd samples(able.size(), 3);
+    for (std::size_t k = 0; k < able.size(); ++k) {
+        const auto& d = descriptors[order[able[k]]];
+        samples.row(static_cast<Eigen::Index>(k)) << d.equivalent_radius / median, d.eccentricity,
+            d.roundness_equivalent_relative;
+    }
+    const auto labels = similar_groups(samples, options);
+    for (std::size_t k = 0; k < able.size(); ++k) tube.cluster[able[k]] = labels[k];
+    double longest = 0;
+    for (std::size_t i = 0; i < n;) {
+        std::size_t j = i;
+        while (j + 1 < n && tube.cluster[j + 1] == tube.cluster[i]) ++j;
+        const double length = stack.slices[order[j]].height - stack.slices[order[i]].height;
+        if (tube.cluster[i] >= 0 && length > longest) longest = length, tube.first = i, tube.last = j, tube.found = true;
+        i = j + 1;
+    }
+    if (!tube.found) tube.reason = "no two slices one above the other are of one group";
+    return tube;
+}
+
+}  // namespace ostraka

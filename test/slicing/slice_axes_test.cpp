@@ -1,0 +1,110 @@
+// Axes of stacks of discs whose centres are known; walls of known evenness; tubes between other things.
+#include "ostraka/slicing/slice_axes.h"
+
+#include "ostraka/core/error.h"
+#include "prisms.h"
+
+#include <gtest/gtest.h>
+
+using namespace ostraka;
+using namespace ostraka::test;
+
+namespace {
+
+/// A slice made of polygons, without a mesh.
+Slice slice_at(double height, const std::vector<Polygon>& polygons) {
+    Slice slice = slice_mesh(walls(polygons), slice_frame({0, 0, 0}, {0, 0, 1}), {0.5}).slices[0];
+    slice.height = height;
+    return slice;
+}
+
+}  // namespace
+
+TEST(SliceAxes, OfALeaningTube) {
+    SliceStack stack;
+    stack.frame = slice_frame({5, 6, 7}, {0, 1, 0});
+    for (int i = 0; i <= 10; ++i) stack.slices.push_back(slice_at(i, {ellipse(50, 2, 2, {0.3 * i, 0})}));
+    const auto descriptors = describe_slices(stack.slices);
+    const auto centres = barycentres(stack, descriptors);
+    ASSERT_EQ(centres.size(), 11U);
+    const SliceLine mean = mean_line(stack.frame, centres), fit = regression_line(stack.frame, centres);
+    EXPECT_NEAR((mean.direction - Vector(0, 1, 0)).squared_length(), 0, 1e-20);
+    const Vector lean = (stack.frame.normal + 0.3 * stack.frame.u) / std::sqrt(1.09);
+    EXPECT_NEAR((fit.direction - lean).squared_length(), 0, 1e-20);
+    // The mean line is 0.3 |i - 5| away, 0.3 * 30 / 11 on average; the fitted one passes through all.
+    const Straightness from_mean = straightness(centres, mean), from_fit = straightness(centres, fit);
+    EXPECT_NEAR(from_mean.mean, 0.3 * 30 / 11, 1e-9);
+    EXPECT_NEAR(from_mean.most, 1.5, 1e-9);
+    EXPECT_NEAR(from_mean.length, 10, 1e-9);
+    EXPECT_NEAR(from_mean.relative, 0.03 * 30 / 11, 1e-10);
+    EXPECT_NEAR(from_fit.mean, 0, 1e-9);
+    EXPECT_NEAR(from_fit.length, 10 * std::sqrt(1.09), 1e-9);
+    EXPECT_NEAR(straightness(centres, centres).mean, 0, 1e-12);
+    EXPECT_NEAR(straightness(centres, std::vector<Point>{centres.front(), centres.back()}).length, 10 * std::sqrt(1.09), 1e-9);
+    // Outlines and material differ where the cavity is off the centre.
+    SliceStack hollow = stack;
+    hollow.slices = {slice_at(0, {ellipse(400, 3, 3), reversed(ellipse(400, 1, 1, {1, 0}))})};
+    const auto of_hollow = describe_slices(hollow.slices);
+    EXPECT_NEAR((hollow.frame.place(barycentres(hollow, of_hollow)[0])).x(), -1.0 / 8, 1e-4);
+    EXPECT_NEAR((hollow.frame.place(barycentres(hollow, of_hollow, true)[0])).x(), 0, 1e-9);
+}
+
+TEST(SliceAxes, OfTooFewSlices) {
+    const SliceFrame frame = slice_frame({0, 0, 0}, {0, 0, 1});
+    EXPECT_THROW((void)mean_line(frame, {}), Error);
+    EXPECT_THROW((void)regression_line(frame, {{1, 2, 3}}), Error);
+    EXPECT_THROW((void)regression_line(frame, {{1, 2, 3}, {1, 2, 3}}), Error);
+    EXPECT_THROW((void)straightness({{1, 2, 3}}, std::vector<Point>{}), Error);
+    EXPECT_EQ(straightness({{0, 3, 1}}, SliceLine{}).mean, 3);
+    EXPECT_EQ(straightness({{0, 3, 1}}, SliceLine{}).relative, 0);
+    EXPECT_EQ(straightness({}, SliceLine{}).mean, 0);
+}
+
+TEST(SliceAxes, EvennessOfWalls) {
+    // Concentric rings, of walls 1, 2 and 3: even within, not across.
+    std::vector<Slice> slices;
+    for (const double wall : {1.0, 2.0, 3.0})
+        slices.push_back(slice_at(wall, {ellipse(500, 5, 5), reversed(ellipse(500, 5 - wall, 5 - wall))}));
+    slices.push_back(slice_at(4, {ellipse(50, 5, 5)}));
+    const auto even = thickness_homogeneity(describe_slices(slices));
+    EXPECT_EQ(even.slices, 3U);
+    EXPECT_NEAR(even.mean, 2, 1e-3);
+    EXPECT_NEAR(even.within, 0, 1e-3);
+    EXPECT_NEAR(even.across, 0.5, 1e-3);
+    EXPECT_NEAR(even.overall, std::sqrt(2.0 / 3) / 2, 1e-3);
+    const auto one = thickness_homogeneity(describe_slices({slices[0]}));
+    EXPECT_TRUE(std::isnan(one.across));
+    EXPECT_NEAR(one.overall, 0, 1e-3);
+    EXPECT_TRUE(std::isnan(thickness_homogeneity({}).mean));
+    // No wall at all: the hole covers the outline.
+    const auto none = thickness_homogeneity(describe_slices({slice_at(0, {ellipse(50, 5, 5), reversed(ellipse(50, 5, 5))})}));
+    EXPECT_TRUE(std::isnan(none.mean) || none.mean < 1e-12);
+}
+
+TEST(SliceAxes, TheTubeBetweenFeetAndHead) {
+    SliceStack stack;
+    // Two feet, an even body, wide shoulders, a square head; slices in any order.
+    for (int i = 0; i < 4; ++i) stack.slices.push_back(slice_at(i, {ellipse(40, 1, 1, {-2, 0}), ellipse(40, 1, 1, {2, 0})}));
+    for (int i = 4; i < 20; ++i) stack.slices.push_back(slice_at(i, {ellipse(60, 3 - 0.01 * i, 3 + 0.01 * i)}));
+    for (int i = 20; i < 25; ++i) stack.slices.push_back(slice_at(i, {ellipse(60, 8, 2)}));
+    for (int i = 25; i < 28; ++i) stack.slices.push_back(slice_at(i, {ellipse(60, 1.2, 1.2)}));
+    std::reverse(stack.slices.begin(), stack.slices.begin() + 15);
+    const auto descriptors = describe_slices(stack.slices);
+    const Tube tube = tubular_part(stack, descriptors);
+    ASSERT_TRUE(tube.found) << tube.reason;
+    EXPECT_EQ(tube.first, 4U);
+    EXPECT_EQ(tube.last, 19U);
+    EXPECT_EQ(tube.cluster[0], -1);
+    EXPECT_EQ(tube.cluster[22], -1);
+    EXPECT_NE(tube.cluster[26], tube.cluster[10]);
+    TubeOptions strict;
+    strict.most_roundness = 1e-6;
+    EXPECT_FALSE(tubular_part(stack, descriptors, strict).found);
+    EXPECT_FALSE(tubular_part({}, {}).found);
+    EXPECT_THROW((void)tubular_part(stack, {}), Error);
+    // All the same: one group.
+    SliceStack even;
+    for (int i = 0; i < 5; ++i) even.slices.push_back(slice_at(i, {ellipse(40, 1, 1)}));
+    const Tube whole = tubular_part(even, describe_slices(even.slices));
+    EXPECT_TRUE(whole.found && whole.first == 0 && whole.last == 4);
+}
