@@ -18,6 +18,7 @@ void add_annotation_segment(CLI::App& annotation, Session& session);   // annota
 void add_annotation_transfer(CLI::App& annotation, Session& session);  // annotation_transfer.cpp
 void add_annotation_survival(CLI::App& annotation, Session& session);  // annotation_survival.cpp
 void add_axis(CLI::App& tool, Session& session);                       // axis.cpp
+void add_slice(CLI::App& tool, Session& session);                      // slice.cpp
 void add_relation(CLI::App& relation, Session& session);               // relation.cpp
 void add_annotation_exchange(CLI::App& annotation, Session& session);  // annotation_exchange.cpp: export, import
 void add_annotation_edit(CLI::App& annotation, Session& session);      // annotation_edit.cpp

@@ -47,6 +47,7 @@ int main(int argc, char** argv) {
     app::add_annotation_transfer(*annotation, session);
     app::add_annotation_survival(*annotation, session);
     app::add_axis(tool, session);
+    app::add_slice(tool, session);
     app::add_relation(*relation, session);
     app::add_annotation_exchange(*annotation, session);
     app::add_annotation_edit(*annotation, session);

@@ -1,5 +1,7 @@
-// Point-in-polygon with exact predicates over strips.
+// Which contours contain which, by votes of their points.
 #include "nesting.h"
+
+#include "strips.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,98 +11,6 @@ namespace ostraka::detail {
 namespace {
 
 using Eigen::Vector2d;
-
-/// Edges of all closed contours, sorted into horizontal strips.
-class Strips {
-public:
-    explicit Strips(const std::vector<Contour>& contours) {
-        double variation = 0;
-        for (std::size_t c = 0; c < contours.size() && contours[c].closed; ++c) {
-            const auto& points = contours[c].points;
-            for (std::size_t i = 0; i < points.size(); ++i) {
-                edges_.push_back({points[i], points[(i + 1) % points.size()], static_cast<int>(c)});
-                variation += std::abs(edges_.back().b.y() - edges_.back().a.y());
-            }
-        }
-        low_ = high_ = edges_.front().a.y();
-        for (const auto& edge : edges_) low_ = std::min(low_, edge.a.y()), high_ = std::max(high_, edge.a.y());
-        // As many strips as let the entries be about twice the edges.
-        const double wanted = variation > 0 ? double(edges_.size()) * (high_ - low_) / variation : 1;
-        strips_ = static_cast<std::size_t>(std::clamp(wanted, 1.0, double(edges_.size())));
-        first_.assign(strips_ + 1, 0);
-        for (const auto& edge : edges_) {
-            const auto [from, to] = range(edge);
-            for (std::size_t s = from; s <= to; ++s) ++first_[s + 1];
-        }
-        for (std::size_t s = 0; s < strips_; ++s) first_[s + 1] += first_[s];
-        entries_.resize(first_.back());
-        std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
-        for (std::size_t e = 0; e < edges_.size(); ++e) {
-            const auto [from, to] = range(edges_[e]);
-            for (std::size_t s = from; s <= to; ++s) entries_[next[s]++] = static_cast<Index>(e);
-        }
-    }
-
-    /// The contours that contain the point in their inside, and those that pass through it.
-    void locate(const Vector2d& p, std::vector<int>& inside, std::vector<int>& on) const {
-        inside.clear(), on.clear();
-        std::vector<int>& crossed = inside;
-        const std::size_t s = strip(p.y());
-        for (std::size_t k = first_[s]; k < first_[s + 1]; ++k) {
-            const Edge& edge = edges_[entries_[k]];
-            const auto &a = edge.a, &b = edge.b;
-            if (std::max(a.y(), b.y()) < p.y() || std::min(a.y(), b.y()) > p.y() || std::min(a.x(), b.x()) > p.x()) continue;
-            const bool ahead = std::max(a.x(), b.x()) < p.x();  // the whole edge lies to the left
-            if (a.y() == b.y()) {
-                if (!ahead) on.push_back(edge.contour);
-                continue;
-            }
-            if (!ahead) {
-                const auto side = CGAL::orientation(Kernel::Point_2(a.x(), a.y()), Kernel::Point_2(b.x(), b.y()),
-                                                    Kernel::Point_2(p.x(), p.y()));
-                if (side == CGAL::COLLINEAR) {
-                    on.push_back(edge.contour);
-                    continue;
-                }
-                if ((side == CGAL::LEFT_TURN) == (b.y() > a.y())) continue;  // it passes on the right
-            }
-            if ((a.y() <= p.y()) != (b.y() <= p.y())) crossed.push_back(edge.contour);
-        }
-        std::sort(on.begin(), on.end());
-        on.erase(std::unique(on.begin(), on.end()), on.end());
-        // Odd crossings are inside.
-        std::sort(crossed.begin(), crossed.end());
-        std::size_t kept = 0;
-        for (std::size_t i = 0; i < crossed.size();) {
-            std::size_t j = i;
-            while (j < crossed.size() && crossed[j] == crossed[i]) ++j;
-            const int contour = crossed[i];
-            if ((j - i) % 2 == 1 && !std::binary_search(on.begin(), on.end(), contour)) crossed[kept++] = contour;
-            i = j;
-        }
-        crossed.resize(kept);
-    }
-
-private:
-    struct Edge {
-        Vector2d a, b;
-        int contour;
-    };
-    [[nodiscard]] std::size_t strip(double y) const {
-        if (!(high_ > low_)) return 0;
-        const double at = (y - low_) / (high_ - low_) * double(strips_);
-        return static_cast<std::size_t>(std::clamp(at, 0.0, double(strips_ - 1)));
-    }
-    [[nodiscard]] std::pair<std::size_t, std::size_t> range(const Edge& edge) const {
-        return std::minmax(strip(edge.a.y()), strip(edge.b.y()));
-    }
-
-    std::vector<Edge> edges_;
-    std::vector<std::size_t> first_;
-    std::vector<Index> entries_;
-    double low_ = 0, high_ = 0;
-    std::size_t strips_ = 1;
-};
 
 struct Votes {
     int contour, inside, decided;

@@ -100,11 +100,30 @@ void describe_outline(SliceDescriptors& d, const PlaneSegments& outline, const s
     d.elongation = 1 - d.eccentricity;
     d.solidity = d.area / polygon_moments(hull, hull[0]).area;
     d.rectangular_variance = rectangle_deviation(outline, box) / (box.area() / pi);
-    d.equivalent_radius = std::sqrt(d.outline_area / pi);
-    const CircleDeviation circle = circle_deviation(outline, {d.outline_barycentre, d.equivalent_radius});
+}
+
+void describe_roundness(SliceDescriptors& d, const Contour& main) {
+    PlaneSegments pieces;
+    add_pieces(pieces, main);
+    const PolygonMoments moments = polygon_moments(main.points, main.points[0]);
+    d.equivalent_radius = std::sqrt(moments.area / pi);
+    const CircleDeviation circle = circle_deviation(pieces, {main.points[0] + moments.first / moments.area, d.equivalent_radius});
     d.circular_variance = circle.square / (d.equivalent_radius * d.equivalent_radius);
     d.roundness_equivalent = circle.absolute;
     d.roundness_equivalent_relative = circle.absolute / d.equivalent_radius;
+}
+
+/// Pieces of an open contour if it runs counter-clockwise around the circle that fits it.
+PlaneSegments outer_arc(const Contour& contour) {
+    PlaneSegments pieces;
+    add_pieces(pieces, contour);
+    const Circle circle = fit_circle(pieces);
+    double turned = 0;
+    for (const auto& [a, b] : pieces) {
+        const Vector2d p = a - circle.centre, q = b - circle.centre;
+        turned += p.x() * q.y() - p.y() * q.x();
+    }
+    return circle.radius > 0 && turned > 0 ? pieces : PlaneSegments{};
 }
 
 }  // namespace
@@ -112,9 +131,10 @@ void describe_outline(SliceDescriptors& d, const PlaneSegments& outline, const s
 SliceDescriptors describe_slice(const Slice& slice) {
     SliceDescriptors d;
     PlaneSegments outline, fitted;
+    const Contour* main = nullptr;
     std::vector<Vector2d> corners;
     PolygonMoments whole, filled;
-    double perimeter = 0, holes = 0, outline_length = 0;
+    double perimeter = 0, holes = 0, outline_length = 0, arcs = 0;
     Walls walls;
     const auto parts = components(slice);
     const Vector2d reference = parts.empty() ? Vector2d(0, 0) : parts[0].contours[0].points[0];
@@ -131,20 +151,15 @@ SliceDescriptors describe_slice(const Slice& slice) {
     for (const Contour& contour : slice.contours) {
         (contour.closed ? d.closed_length : d.open_length) += contour.length;
         if (contour.closed && !contour.hole && !is_within(slice, contour)) {
+            if (main == nullptr) main = &contour;  // the largest comes first
             add(filled, polygon_moments(contour.points, reference));
             outline_length += contour.length;
             add_pieces(outline, contour);
             corners.insert(corners.end(), contour.points.begin(), contour.points.end());
         } else if (!contour.closed) {
-            PlaneSegments pieces;
-            add_pieces(pieces, contour);
-            const Circle circle = fit_circle(pieces);
-            double turned = 0;
-            for (const auto& [a, b] : pieces) {
-                const Vector2d p = a - circle.centre, q = b - circle.centre;
-                turned += p.x() * q.y() - p.y() * q.x();
-            }
-            if (circle.radius > 0 && turned > 0) fitted.insert(fitted.end(), pieces.begin(), pieces.end());
+            const PlaneSegments pieces = outer_arc(contour);
+            fitted.insert(fitted.end(), pieces.begin(), pieces.end());
+            if (!pieces.empty()) arcs += contour.length;
         }
     }
     d.euler_number = d.components - d.holes;
@@ -156,8 +171,12 @@ SliceDescriptors describe_slice(const Slice& slice) {
         d.hole_area_ratio = holes / (whole.area + holes);
         d.compactness = 4 * pi * d.area / (perimeter * perimeter);
         describe_outline(d, outline, corners);
+        describe_roundness(d, *main);
+        if (main->length >= arcs) {
+            fitted.clear();
+            add_pieces(fitted, *main);
+        }
     }
-    fitted.insert(fitted.end(), outline.begin(), outline.end());
     if (const Circle circle = fit_circle(fitted); circle.radius > 0) {
         d.fitted_radius = circle.radius, d.fitted_centre = circle.centre;
         d.roundness_fitted = circle_deviation(fitted, circle).absolute;
@@ -169,6 +188,44 @@ SliceDescriptors describe_slice(const Slice& slice) {
         d.thickness_least = walls.least, d.thickness_most = walls.most;
     }
     return d;
+}
+
+std::vector<NamedDescriptor> list_descriptors(const SliceDescriptors& d) {
+    return {{"area", "area", d.area},
+            {"perimeter", "length", d.perimeter},
+            {"hole_area", "area", d.hole_area},
+            {"barycentre_x", "length", d.barycentre.x()},
+            {"barycentre_y", "length", d.barycentre.y()},
+            {"outline_area", "area", d.outline_area},
+            {"outline_perimeter", "length", d.outline_perimeter},
+            {"outline_barycentre_x", "length", d.outline_barycentre.x()},
+            {"outline_barycentre_y", "length", d.outline_barycentre.y()},
+            {"box_length", "length", d.box_length},
+            {"box_breadth", "length", d.box_breadth},
+            {"elongation", "", d.elongation},
+            {"eccentricity", "", d.eccentricity},
+            {"solidity", "", d.solidity},
+            {"compactness", "", d.compactness},
+            {"circular_variance", "", d.circular_variance},
+            {"rectangular_variance", "", d.rectangular_variance},
+            {"components", "", double(d.components)},
+            {"holes", "", double(d.holes)},
+            {"euler_number", "", double(d.euler_number)},
+            {"hole_area_ratio", "", d.hole_area_ratio},
+            {"equivalent_radius", "length", d.equivalent_radius},
+            {"roundness_equivalent", "length", d.roundness_equivalent},
+            {"roundness_equivalent_relative", "", d.roundness_equivalent_relative},
+            {"fitted_radius", "length", d.fitted_radius},
+            {"fitted_centre_x", "length", d.fitted_centre.x()},
+            {"fitted_centre_y", "length", d.fitted_centre.y()},
+            {"roundness_fitted", "length", d.roundness_fitted},
+            {"roundness_fitted_relative", "", d.roundness_fitted_relative},
+            {"thickness_mean", "length", d.thickness_mean},
+            {"thickness_variance", "area", d.thickness_variance},
+            {"thickness_least", "length", d.thickness_least},
+            {"thickness_most", "length", d.thickness_most},
+            {"closed_length", "length", d.closed_length},
+            {"open_length", "length", d.open_length}};
 }
 
 std::vector<SliceDescriptors> describe_slices(const std::vector<Slice>& slices) {

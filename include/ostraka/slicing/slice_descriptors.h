@@ -2,8 +2,9 @@
 //
 // They are of the closed contours only: an open contour bounds nothing and is never closed by a straight line. What needs an area
 // is absent (NaN) in a slice without a closed outer contour; where open contours are there besides, `Completeness` says how much
-// is missing. Only the fitted circle takes open contours in. The shape is the material: outer contours without their holes. Its
-// outline are the outermost contours, with what is in them filled. Where outer contours overlap (a mesh that passes through
+// is missing. Only the fitted circle may be one of open contours. The shape is the material: outer contours without their holes.
+// Its outline are the outermost contours, with what is in them filled; circles are compared with the largest of these, the main
+// outline, so that handles and arms beside the body do not count. Where outer contours overlap (a mesh that passes through
 // itself), areas count twice. Integrals along contours go by length, so that cutting their pieces in two changes nothing.
 #pragma once
 
@@ -25,24 +26,25 @@ struct SliceDescriptors {
     Eigen::Vector2d outline_barycentre{absent, absent};
 
     double box_length = absent,
-           box_breadth = absent;           ///< M >= m: sides of the smallest rectangle (by area, MBR) around the outline
-    double elongation = absent;            ///< 1 - m / M: 0 square, to 1 long
-    double eccentricity = absent;          ///< m / M (thesis, 3.2.1: the ratio between the axes of the MBR)
-    double solidity = absent;              ///< A / A_CH, A_CH the area of the convex hull
-    double compactness = absent;           ///< 4 pi A / P^2: 1 for a disc only; a disc with a hole has less
-    double circular_variance = absent;     ///< mean of (|p - c| - r)^2 over the outline / r^2; c its barycentre, pi r^2 its area
+           box_breadth = absent;   ///< M >= m: sides of the smallest rectangle (by area, MBR) around the outline
+    double elongation = absent;    ///< 1 - m / M: 0 square, to 1 long
+    double eccentricity = absent;  ///< m / M (thesis, 3.2.1: the ratio between the axes of the MBR)
+    double solidity = absent;      ///< A / A_CH, A_CH the area of the convex hull
+    double compactness = absent;   ///< 4 pi A / P^2: 1 for a disc only; a disc with a hole has less
+    double circular_variance =
+        absent;  ///< mean of (|p - c| - r)^2 over the main outline / r^2; c its barycentre, pi r^2 its area
     double rectangular_variance = absent;  ///< mean squared distance of the outline to the rectangle's sides / (M m / pi)
 
     int components = 0, holes = 0;
     int euler_number = 0;             ///< components - holes
     double hole_area_ratio = absent;  ///< A_H / (A + A_H)
 
-    double equivalent_radius = absent;              ///< r of the circle around the outline's barycentre of the outline's area
-    double roundness_equivalent = absent;           ///< mean of ||p - c| - r| over the outline; unit (thesis, 3.2)
+    double equivalent_radius = absent;              ///< r of the circle around the main outline's barycentre with its area; unit
+    double roundness_equivalent = absent;           ///< mean of ||p - c| - r| over the main outline; unit (thesis, 3.2)
     double roundness_equivalent_relative = absent;  ///< that / r
 
-    /// The circle of least mean squared distance from outer contours and open ones that run counter-clockwise around their own
-    /// circle.
+    /// The circle of least mean squared distance from the main outline, or from all open contours that run counter-clockwise
+    /// around their own circle, whichever is longer.
     double fitted_radius = absent;
     Eigen::Vector2d fitted_centre{absent, absent};
     double roundness_fitted = absent;           ///< mean distance from it; unit (thesis, 3.2.1)
@@ -56,6 +58,14 @@ struct SliceDescriptors {
 
     double closed_length = 0, open_length = 0;  ///< of closed and of open contours; unit
 };
+
+/// A descriptor by its name, for tables and files.
+struct NamedDescriptor {
+    const char* name;  ///< as in the structure; barycentres as barycentre_x, barycentre_y
+    const char* unit;  ///< "length", "area", or empty for a number without unit
+    double value;      ///< NaN: absent
+};
+std::vector<NamedDescriptor> list_descriptors(const SliceDescriptors& descriptors);
 
 /// Linear in the number of pieces but for sorting (hull) and searching (thickness). Thickness is integrated by Gauss quadrature
 /// with two points on pieces of at most 1/500 of the contour, all else exactly or to about 1e-12.

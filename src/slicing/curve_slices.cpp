@@ -1,0 +1,95 @@
+// Planes across a curve, and what of each belongs to it.
+#include "ostraka/slicing/curve_slices.h"
+
+#include "completeness.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/limits.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ostraka {
+
+using Eigen::Vector2d;
+
+namespace {
+
+/// The place at a length along the curve; before its start and behind its end, those.
+class Walk {
+public:
+    explicit Walk(const std::vector<Point>& curve) : curve_(curve), lengths_{0} {
+        for (std::size_t i = 1; i < curve.size(); ++i)
+            lengths_.push_back(lengths_.back() + std::sqrt((curve[i] - curve[i - 1]).squared_length()));
+    }
+    [[nodiscard]] double length() const { return lengths_.back(); }
+    [[nodiscard]] Point at(double length) const {
+        if (length <= 0) return curve_.front();
+        const auto next = std::upper_bound(lengths_.begin(), lengths_.end(), length);
+        if (next == lengths_.end()) return curve_.back();
+        const auto i = static_cast<std::size_t>(next - lengths_.begin());
+        return curve_[i - 1] + (length - lengths_[i - 1]) / (lengths_[i] - lengths_[i - 1]) * (curve_[i] - curve_[i - 1]);
+    }
+
+private:
+    const std::vector<Point>& curve_;
+    std::vector<double> lengths_;
+};
+
+/// Distance of the origin from a contour; 0 within a closed one.
+double distance_from(const Contour& contour) {
+    double least = std::numeric_limits<double>::infinity();
+    bool inside = false;
+    for (std::size_t i = 0; i < contour.faces.size(); ++i) {
+        const Vector2d &a = contour.points[i], &b = contour.points[(i + 1) % contour.points.size()], along = b - a;
+        const double t = std::clamp(-along.dot(a) / along.squaredNorm(), 0.0, 1.0);
+        least = std::min(least, (a + t * along).norm());
+        if ((a.y() <= 0) != (b.y() <= 0) && a.x() - a.y() / along.y() * along.x() < 0) inside = !inside;
+    }
+    return contour.closed && inside ? 0 : least;
+}
+
+Slice nearest_part(const Slice& slice) {
+    double least = std::numeric_limits<double>::infinity();
+    Slice kept{slice.height, {}, {}};
+    for (const Slice& part : components(slice))
+        // Later ones are smaller.
+        if (const double d = distance_from(part.contours[0]); d <= least) least = d, kept = part;
+    for (const auto& contour : slice.contours) {
+        if (contour.closed) continue;
+        if (const double d = distance_from(contour); d < least) least = d, kept.contours = {contour};
+    }
+    kept.completeness = detail::completeness(kept.contours);
+    return kept;
+}
+
+}  // namespace
+
+CurveSlices slice_along(const Mesh& mesh, const std::vector<Point>& curve, int count, const std::vector<Index>& faces) {
+    if (count < 1 || count > 1000000) fail_usage("the number of slices is " + std::to_string(count), "use 1 to a million");
+    if (curve.size() < 2) fail_usage("the curve to cut across has fewer than two points", "give a longer one");
+    const Walk walk(curve);
+    CurveSlices result;
+    result.length = walk.length();
+    if (!(result.length > 0)) fail_usage("the curve to cut across has no length", "give a longer one");
+    const double piece = result.length / count;
+    for (int i = 0; i < count; ++i) {
+        const double at = (i + 0.5) * piece;
+        const Vector tangent = walk.at(at + piece) - walk.at(at - piece);
+        SliceFrame frame = slice_frame(walk.at(at), tangent == CGAL::NULL_VECTOR ? curve.back() - curve.front() : tangent);
+        if (!result.frames.empty()) {
+            const Vector before = result.frames.back().u, turned = before - (before * frame.normal) * frame.normal;
+            if (turned.squared_length() > 1e-6) {
+                frame.u = unit_vector(turned);
+                frame.v = CGAL::cross_product(frame.normal, frame.u);
+            }
+        }
+        Slice slice = nearest_part(slice_mesh(mesh, frame, {0}, faces).slices[0]);
+        slice.height = at;
+        result.frames.push_back(frame);
+        result.slices.push_back(std::move(slice));
+    }
+    return result;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,197 @@
+// Voronoi edges of boundary samples, pruned and joined to poly-lines.
+#include "ostraka/slicing/medial_axis.h"
+
+#include "strips.h"
+
+#include "ostraka/core/error.h"
+
+#include <CGAL/Delaunay_triangulation_2.h>
+#include <CGAL/Triangulation_face_base_with_info_2.h>
+#include <CGAL/Triangulation_vertex_base_with_info_2.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace ostraka {
+
+using Eigen::Vector2d;
+
+namespace {
+
+struct Sample {
+    Vector2d place;
+    int contour = 0;
+    double along = 0;  ///< length of the contour up to here
+};
+
+using Info = CGAL::Triangulation_vertex_base_with_info_2<std::size_t, Kernel>;
+using Number = CGAL::Triangulation_face_base_with_info_2<int, Kernel>;
+using Delaunay = CGAL::Delaunay_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<Info, Number>>;
+
+std::vector<Sample> sample(const std::vector<Contour>& contours, int samples) {
+    std::vector<Sample> list;
+    for (std::size_t c = 0; c < contours.size() && contours[c].closed; ++c) {
+        const auto& points = contours[c].points;
+        double along = 0;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const Vector2d &a = points[i], &b = points[(i + 1) % points.size()];
+            const double piece = (b - a).norm();
+            const int parts = std::max(1, static_cast<int>(std::ceil(piece * samples / contours[c].length)));
+            for (int k = 0; k < parts; ++k)
+                list.push_back({a + double(k) / parts * (b - a), static_cast<int>(c), along + piece * k / parts});
+            along += piece;
+        }
+    }
+    return list;
+}
+
+/// A Voronoi edge between two nodes.
+struct Link {
+    int from, to;
+    double residue;
+};
+
+struct Graph {
+    std::vector<Vector2d> places;
+    std::vector<double> radii;
+    std::vector<Link> links;
+};
+
+Graph voronoi(const std::vector<Contour>& contours, int samples) {
+    const auto list = sample(contours, samples);
+    Delaunay delaunay;
+    Delaunay::Face_handle hint;
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        const std::size_t before = delaunay.number_of_vertices();
+        const auto vertex = delaunay.insert({list[i].place.x(), list[i].place.y()}, hint);
+        if (delaunay.number_of_vertices() > before) vertex->info() = i;
+        hint = vertex->face();
+    }
+    Graph graph;
+    const detail::Strips strips(contours);
+    std::vector<int> inside, on;
+    for (auto f = delaunay.all_faces_begin(); f != delaunay.all_faces_end(); ++f) f->info() = -1;
+    for (auto f = delaunay.finite_faces_begin(); f != delaunay.finite_faces_end(); ++f) {
+        const Sample& first = list[f->vertex(0)->info()];
+        // About the first corner, or digits are lost far away.
+        const Vector2d b = list[f->vertex(1)->info()].place - first.place, c = list[f->vertex(2)->info()].place - first.place;
+        const double twice = 2 * (b.x() * c.y() - b.y() * c.x());
+        const Vector2d centre(c.y() * b.squaredNorm() - b.y() * c.squaredNorm(),
+                              b.x() * c.squaredNorm() - c.x() * b.squaredNorm());
+        const Vector2d place = first.place + centre / twice;
+        if (!place.allFinite()) continue;
+        strips.locate(place, inside, on);
+        // The signed number of contours around it: within the material, outer ones prevail.
+        int around = 0;
+        for (const int k : inside) around += contours[static_cast<std::size_t>(k)].hole ? -1 : 1;
+        if (around <= 0 || !on.empty()) continue;
+        f->info() = static_cast<int>(graph.places.size());
+        graph.places.push_back(place);
+        graph.radii.push_back((centre / twice).norm());
+    }
+    for (auto e = delaunay.finite_edges_begin(); e != delaunay.finite_edges_end(); ++e) {
+        const auto f = e->first, g = f->neighbor(e->second);
+        if (f->info() < 0 || g->info() < 0) continue;
+        const Sample &a = list[f->vertex(Delaunay::cw(e->second))->info()],
+                     &b = list[f->vertex(Delaunay::ccw(e->second))->info()];
+        double residue = 1;
+        if (a.contour == b.contour) {
+            const double whole = contours[static_cast<std::size_t>(a.contour)].length, way = std::abs(a.along - b.along);
+            residue = (std::min(way, whole - way) - (a.place - b.place).norm()) / whole;
+        }
+        graph.links.push_back({f->info(), g->info(), residue});
+    }
+    return graph;
+}
+
+/// The nodes of links no longer than `least` become one: the node of the lowest number.
+void contract(Graph& graph, double least, double floor) {
+    std::vector<int> root(graph.places.size());
+    std::iota(root.begin(), root.end(), 0);
+    const auto find = [&](int i) {
+        while (root[static_cast<std::size_t>(i)] != i)
+            i = root[static_cast<std::size_t>(i)] = root[static_cast<std::size_t>(root[static_cast<std::size_t>(i)])];
+        return i;
+    };
+    for (const auto& link : graph.links) {
+        if (link.residue < floor) continue;
+        if ((graph.places[static_cast<std::size_t>(link.from)] - graph.places[static_cast<std::size_t>(link.to)]).norm() > least)
+            continue;
+        const int a = find(link.from), b = find(link.to);
+        root[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+    }
+    for (auto& link : graph.links) link.from = find(link.from), link.to = find(link.to);
+}
+
+MedialAxis::Level prune(const Graph& graph, double residue) {
+    MedialAxis::Level level;
+    level.residue = residue;
+    std::vector<std::vector<std::pair<int, int>>> around(graph.places.size());  // link, node at its other end
+    int alone = -1;
+    double strongest = -1;
+    for (std::size_t k = 0; k < graph.links.size(); ++k) {
+        const Link& link = graph.links[k];
+        if (link.residue < residue) continue;
+        if (link.from == link.to) {
+            if (link.residue > strongest) strongest = link.residue, alone = link.from;
+            continue;
+        }
+        around[static_cast<std::size_t>(link.from)].emplace_back(static_cast<int>(k), link.to);
+        around[static_cast<std::size_t>(link.to)].emplace_back(static_cast<int>(k), link.from);
+    }
+    std::vector<bool> used(graph.links.size(), false);
+    const auto follow = [&](int node, std::pair<int, int> step) {
+        MedialAxis::Branch branch;
+        const auto add = [&](int n) {
+            branch.points.push_back(graph.places[static_cast<std::size_t>(n)]);
+            branch.radii.push_back(graph.radii[static_cast<std::size_t>(n)]);
+        };
+        add(node);
+        while (true) {
+            used[static_cast<std::size_t>(step.first)] = true;
+            add(step.second);
+            level.length += (branch.points.back() - branch.points[branch.points.size() - 2]).norm();
+            const auto& next = around[static_cast<std::size_t>(step.second)];
+            if (next.size() != 2 || step.second == node) break;
+            const auto on = next[0].first == step.first ? next[1] : next[0];
+            if (used[static_cast<std::size_t>(on.first)]) break;
+            step = on;
+        }
+        level.branches.push_back(std::move(branch));
+    };
+    for (const bool loops : {false, true})
+        for (std::size_t n = 0; n < around.size(); ++n) {
+            if (!loops && around[n].size() == 2) continue;
+            for (const auto& step : around[n])
+                if (!used[static_cast<std::size_t>(step.first)]) follow(static_cast<int>(n), step);
+        }
+    if (level.branches.empty() && alone >= 0)
+        level.branches.push_back(
+            {{graph.places[static_cast<std::size_t>(alone)]}, {graph.radii[static_cast<std::size_t>(alone)]}});
+    return level;
+}
+
+}  // namespace
+
+MedialAxis medial_axis(const Slice& slice, const std::vector<double>& residues, int samples) {
+    for (const double residue : residues)
+        if (!(residue >= 0.001 && residue <= 1)) fail_usage("a residue is " + std::to_string(residue), "use 0.001 to 1");
+    if (samples < 20 || samples > 1000000) fail_usage("there are " + std::to_string(samples) + " samples", "use 20 to a million");
+    MedialAxis axis;
+    std::vector<Contour> contours;
+    double size = 0;
+    for (const Slice& part : components(slice))
+        for (const auto& contour : part.contours) contours.push_back(contour), size = std::max(size, contour.length);
+    if (contours.empty()) {
+        for (const double residue : residues) axis.levels.push_back({residue, 0, {}});
+        return axis;
+    }
+    Graph graph = voronoi(contours, samples);
+    contract(graph, 1e-6 * size, 0.001);
+    for (const double residue : residues) axis.levels.push_back(prune(graph, residue));
+    return axis;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,155 @@
+// Half sections around an axis, and what a drawing needs beside them.
+#include "ostraka/slicing/profile.h"
+
+#include "ostraka/slicing/silhouette.h"
+#include "ostraka/slicing/slice_descriptors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace ostraka {
+
+using Eigen::Vector2d;
+using std::numbers::pi;
+
+namespace {
+
+SliceFrame section_frame(const SliceFrame& axis, double angle) {
+    SliceFrame frame;
+    frame.origin = axis.origin;
+    frame.u = -(std::cos(angle) * axis.u + std::sin(angle) * axis.v);
+    frame.v = axis.normal;
+    frame.normal = CGAL::cross_product(frame.u, frame.v);
+    return frame;
+}
+
+/// Area of the closed contours, and length of the open ones, where x <= 0.
+struct Half {
+    double angle = 0, area = 0, open = 0;
+};
+Half half_of(const Slice& section, double angle) {
+    Half half{angle};
+    for (const auto& contour : section.contours) {
+        std::vector<Vector2d> kept;
+        for (std::size_t i = 0; i < contour.faces.size(); ++i) {
+            const Vector2d &a = contour.points[i], &b = contour.points[(i + 1) % contour.points.size()];
+            if (a.x() <= 0) kept.push_back(a);
+            if ((a.x() <= 0) != (b.x() <= 0)) kept.push_back(a + a.x() / (a.x() - b.x()) * (b - a));
+        }
+        if (!contour.closed) {
+            for (std::size_t i = 0; i + 1 < kept.size(); ++i) half.open += (kept[i + 1] - kept[i]).norm();
+            continue;
+        }
+        for (std::size_t i = 0; i < kept.size(); ++i) {
+            const Vector2d &a = kept[i], &b = kept[(i + 1) % kept.size()];
+            half.area += (a.x() * b.y() - a.y() * b.x()) / 2;
+        }
+    }
+    return half;
+}
+
+/// How far the section reaches from the axis at a height, to the left; 0 where it does not.
+double reach(const Slice& section, double height) {
+    double most = 0;
+    for (const auto& contour : section.contours)
+        for (std::size_t i = 0; i < contour.faces.size(); ++i) {
+            const Vector2d &a = contour.points[i], &b = contour.points[(i + 1) % contour.points.size()];
+            if ((a.y() <= height) == (b.y() <= height)) continue;
+            most = std::max(most, -(a.x() + (height - a.y()) / (b.y() - a.y()) * (b.x() - a.x())));
+        }
+    return most;
+}
+
+/// Corners of the outer profile: of the poly-line of 200 reaches, where it turns by more than 25 degrees over 1/40 of the height,
+/// at the sharpest place of each such stretch.
+std::vector<Profile::Edge> breaks(const Slice& section, double low, double high) {
+    constexpr int steps = 200, window = 5;
+    std::vector<Vector2d> line;
+    for (int i = 0; i < steps; ++i) {
+        const double h = low + (high - low) * (i + 0.5) / steps;
+        line.emplace_back(reach(section, h), h);
+    }
+    std::vector<double> turn(steps, 0);
+    for (std::size_t i = window; i + window < steps; ++i) {
+        const Vector2d a = line[i] - line[i - window], b = line[i + window] - line[i];
+        turn[i] = std::abs(std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b)));
+    }
+    std::vector<Profile::Edge> edges;
+    for (std::size_t i = 2 * window; i + 2 * window < steps; ++i) {
+        if (turn[i] < 25 * pi / 180) continue;
+        bool sharpest = true;
+        for (std::size_t k = i - window; k <= i + window; ++k)
+            sharpest = sharpest && (turn[k] < turn[i] || (turn[k] == turn[i] && k >= i));
+        if (sharpest) edges.push_back({line[i].y(), line[i].x()});
+    }
+    return edges;
+}
+
+/// The one of 36 directions in which the mesh reaches farthest from the axis.
+double widest(const Mesh& mesh, const SliceFrame& axis) {
+    double best = 0, most = -1;
+    for (int k = 0; k < 36; ++k) {
+        const double angle = k * pi / 18;
+        const Vector along = std::cos(angle) * axis.u + std::sin(angle) * axis.v;
+        for (const Vertex v : mesh.vertices())
+            if (const double reach = along * (mesh.point(v) - axis.origin); reach > most * (1 + 1e-9)) most = reach, best = angle;
+    }
+    return best;
+}
+
+}  // namespace
+
+Profile find_profile(const Mesh& mesh, const SliceFrame& axis, double angle) {
+    Profile profile;
+    std::tie(profile.low, profile.high) = height_range(mesh, axis);
+    if (std::isnan(angle)) {
+        std::vector<Half> halves;
+        for (int k = 0; k < 36; ++k) {
+            const double at = k * pi / 18;
+            halves.push_back(half_of(slice_mesh(mesh, section_frame(axis, at), {0}).slices[0], at));
+        }
+        const auto complete = [](const Half& half) { return half.open == 0 && half.area > 0; };
+        if (std::any_of(halves.begin(), halves.end(), complete)) {
+            std::erase_if(halves, [&](const Half& half) { return !complete(half); });
+            std::stable_sort(halves.begin(), halves.end(), [](const Half& a, const Half& b) { return a.area < b.area; });
+            angle = halves[(halves.size() - 1) / 2].angle;
+        } else {
+            angle = std::min_element(halves.begin(), halves.end(), [](const Half& a, const Half& b) {
+                        return a.open < b.open;
+                    })->angle;
+        }
+    }
+    profile.angle = angle;
+    profile.frame = section_frame(axis, angle);
+    profile.section = slice_mesh(mesh, profile.frame, {0}).slices[0];
+    const double size = profile.high - profile.low;
+    auto heights = slice_heights(profile.low, profile.high, 24);
+    for (const double share : {0.002, 0.005, 0.01, 0.015, 0.02, 0.03}) heights.push_back(profile.high - share * size);
+    const auto stack = slice_mesh(mesh, axis, heights);
+    const auto descriptors = describe_slices(stack.slices);
+    std::size_t round = 0;
+    for (std::size_t i = 0; i < 24; ++i) round += descriptors[i].roundness_fitted_relative < 0.05 ? 1 : 0;
+    profile.turned = 2 * round >= 24;
+    for (std::size_t i = 24; i < heights.size(); ++i) {
+        const auto& d = descriptors[i];
+        const bool mouth = d.holes > 0 || !stack.slices[i].completeness.complete();
+        if (!mouth || !(d.roundness_fitted_relative < 0.1) || 2 * d.fitted_radius <= profile.rim_diameter) continue;
+        profile.rim_diameter = 2 * d.fitted_radius;
+        profile.rim_share = stack.slices[i].completeness.angle / (2 * pi);
+    }
+    profile.view_angle = angle + pi;
+    if (profile.turned) {
+        // Only where what is there is round and as wide: no edge of an arm or a handle.
+        for (const auto& edge : breaks(profile.section, profile.low, profile.high)) {
+            const auto layer = static_cast<std::size_t>(std::clamp((edge.height - profile.low) / size * 24, 0.0, 23.0));
+            const auto& d = descriptors[layer];
+            if (d.roundness_fitted_relative < 0.05 && edge.radius < 1.3 * d.fitted_radius) profile.edges.push_back(edge);
+        }
+        profile.view_angle = widest(mesh, axis);
+    }
+    profile.outline = silhouette(mesh, section_frame(axis, profile.view_angle + pi), 1000);
+    return profile;
+}
+
+}  // namespace ostraka

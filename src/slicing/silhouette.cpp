@@ -1,0 +1,217 @@
+// Triangles sampled into a fine mask, its coverage traced by marching squares.
+#include "ostraka/slicing/silhouette.h"
+
+#include "ostraka/core/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+namespace ostraka {
+
+using Eigen::Vector2d;
+
+namespace {
+
+constexpr int fine = 4;  ///< samples a cell and direction
+
+/// What is covered, at samples `step` apart.
+class Mask {
+public:
+    Mask(const Vector2d& low, const Vector2d& high, int cells) {
+        const Vector2d size = high - low;
+        step_ = std::max(size.maxCoeff(), std::numeric_limits<double>::min()) / (cells * fine);
+        columns_ = (static_cast<int>(std::ceil(size.x() / step_ / fine)) + 2) * fine;
+        rows_ = (static_cast<int>(std::ceil(size.y() / step_ / fine)) + 2) * fine;
+        low_ = low - Vector2d(fine * step_, fine * step_);
+        covered_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), false);
+    }
+
+    void add(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
+        const Vector2d corner[3] = {(a - low_) / step_, (b - low_) / step_, (c - low_) / step_};
+        const double bottom = std::min({corner[0].y(), corner[1].y(), corner[2].y()});
+        const double top = std::max({corner[0].y(), corner[1].y(), corner[2].y()});
+        // Samples stand in the middles of their cells.
+        for (int row = std::max(0, static_cast<int>(std::ceil(bottom - 0.5))); row <= std::min(rows_ - 1.0, top - 0.5); ++row) {
+            const double y = row + 0.5;
+            double left = std::numeric_limits<double>::infinity(), right = -left;
+            for (int k = 0; k < 3; ++k) {
+                const Vector2d &p = corner[k], &q = corner[(k + 1) % 3];
+                if (std::min(p.y(), q.y()) > y || std::max(p.y(), q.y()) < y) continue;
+                const double at = p.y() == q.y() ? p.x() : p.x() + (y - p.y()) / (q.y() - p.y()) * (q.x() - p.x());
+                left = std::min(left, at), right = std::max(right, at);
+                if (p.y() == q.y()) left = std::min(left, q.x()), right = std::max(right, q.x());
+            }
+            // A hair more, so that no gap shows between neighbours.
+            const int from = std::max(0, static_cast<int>(std::ceil(left - 0.5 - 1e-9)));
+            for (int column = from; column <= std::min(columns_ - 1.0, right - 0.5 + 1e-9); ++column)
+                covered_[at(column, row)] = true;
+        }
+    }
+
+    [[nodiscard]] int cell_columns() const { return columns_ / fine; }
+    [[nodiscard]] int cell_rows() const { return rows_ / fine; }
+    /// Share of a cell's samples that are covered.
+    [[nodiscard]] double coverage(int column, int row) const {
+        int count = 0;
+        for (int i = 0; i < fine; ++i)
+            for (int j = 0; j < fine; ++j) count += covered_[at(column * fine + i, row * fine + j)] ? 1 : 0;
+        return double(count) / (fine * fine);
+    }
+    [[nodiscard]] Vector2d place(const Vector2d& cell) const { return low_ + step_ * fine * cell; }
+    [[nodiscard]] double cell() const { return step_ * fine; }
+
+private:
+    [[nodiscard]] std::size_t at(int column, int row) const {
+        return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
+    }
+    Vector2d low_;
+    double step_ = 1;
+    int columns_ = 0, rows_ = 0;
+    std::vector<bool> covered_;
+};
+
+/// Curves where the coverage is one half, with more of it to the left.
+std::vector<std::vector<Vector2d>> trace(const Mask& mask) {
+    const int columns = mask.cell_columns(), rows = mask.cell_rows();
+    std::vector<double> values(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+    const auto value = [&](int c, int r) -> double& {
+        return values[static_cast<std::size_t>(r) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(c)];
+    };
+    for (int r = 0; r < rows; ++r)
+        for (int c = 0; c < columns; ++c) value(c, r) = mask.coverage(c, r);
+    // Edges of the grid of cell middles: even keys to the right of (c, r), odd ones above.
+    const auto right = [&](int c, int r) { return 2 * (static_cast<std::int64_t>(r) * columns + c); };
+    const auto above = [&](int c, int r) { return right(c, r) + 1; };
+    std::unordered_map<std::int64_t, std::int64_t> next;
+    std::vector<std::int64_t> starts;
+    for (int r = 0; r + 1 < rows; ++r)
+        for (int c = 0; c + 1 < columns; ++c) {
+            const bool a = value(c, r) >= 0.5, b = value(c + 1, r) >= 0.5, d = value(c + 1, r + 1) >= 0.5,
+                       e = value(c, r + 1) >= 0.5;
+            const std::int64_t bottom = right(c, r), side = above(c + 1, r), top = right(c, r + 1), left = above(c, r);
+            const auto join = [&](std::int64_t from, std::int64_t to) { next[from] = to, starts.push_back(from); };
+            switch (int(a) | int(b) << 1 | int(d) << 2 | int(e) << 3) {
+                case 1:
+                    join(bottom, left);
+                    break;
+                case 2:
+                    join(side, bottom);
+                    break;
+                case 3:
+                    join(side, left);
+                    break;
+                case 4:
+                    join(top, side);
+                    break;
+                case 5:
+                    join(bottom, side), join(top, left);
+                    break;  // covered corners are joined
+                case 6:
+                    join(top, bottom);
+                    break;
+                case 7:
+                    join(top, left);
+                    break;
+                case 8:
+                    join(left, top);
+                    break;
+                case 9:
+                    join(bottom, top);
+                    break;
+                case 10:
+                    join(left, bottom), join(side, top);
+                    break;
+                case 11:
+                    join(side, top);
+                    break;
+                case 12:
+                    join(left, side);
+                    break;
+                case 13:
+                    join(bottom, side);
+                    break;
+                case 14:
+                    join(left, bottom);
+                    break;
+                default:
+                    break;
+            }
+        }
+    const auto place = [&](std::int64_t key) {
+        const auto r = static_cast<int>(key / 2 / columns), c = static_cast<int>(key / 2 % columns);
+        const double from = value(c, r), to = key % 2 == 0 ? value(c + 1, r) : value(c, r + 1), t = (0.5 - from) / (to - from);
+        return mask.place(Vector2d(c + 0.5 + (key % 2 == 0 ? t : 0), r + 0.5 + (key % 2 == 0 ? 0 : t)));
+    };
+    std::vector<std::vector<Vector2d>> curves;
+    for (const auto start : starts) {
+        auto at = next.find(start);
+        if (at == next.end()) continue;
+        std::vector<Vector2d> curve;
+        while (at != next.end()) {
+            curve.push_back(place(at->first));
+            const auto to = at->second;
+            next.erase(at);
+            at = next.find(to);
+        }
+        curves.push_back(std::move(curve));
+    }
+    return curves;
+}
+
+/// Points farther than `tolerance` from the line between those kept stay (Douglas and Peucker 1973).
+std::vector<Vector2d> thinned(const std::vector<Vector2d>& curve, double tolerance) {
+    std::vector<bool> keep(curve.size(), false);
+    std::size_t far = 0;
+    for (std::size_t i = 0; i < curve.size(); ++i)
+        if ((curve[i] - curve[0]).norm() > (curve[far] - curve[0]).norm()) far = i;
+    keep[0] = keep[far] = true;
+    const std::size_t n = curve.size();
+    std::vector<std::pair<std::size_t, std::size_t>> stack{{0, far}, {far, n}};
+    while (!stack.empty()) {
+        const auto [from, to] = stack.back();
+        stack.pop_back();
+        const Vector2d a = curve[from], along = curve[to % n] - a;
+        double most = tolerance;
+        std::size_t worst = from;
+        for (std::size_t i = from + 1; i < to; ++i) {
+            const Vector2d q = curve[i] - a;
+            const double t = along.squaredNorm() > 0 ? std::clamp(q.dot(along) / along.squaredNorm(), 0.0, 1.0) : 0;
+            if (const double d = (q - t * along).norm(); d > most) most = d, worst = i;
+        }
+        if (worst == from) continue;
+        keep[worst] = true;
+        stack.emplace_back(from, worst), stack.emplace_back(worst, to);
+    }
+    std::vector<Vector2d> list;
+    for (std::size_t i = 0; i < n; ++i)
+        if (keep[i]) list.push_back(curve[i]);
+    return list;
+}
+
+}  // namespace
+
+std::vector<std::vector<Vector2d>> silhouette(const Mesh& mesh, const SliceFrame& frame, int cells,
+                                              const std::vector<Index>& faces) {
+    if (cells < 8 || cells > 4000) fail_usage("a silhouette of " + std::to_string(cells) + " cells", "use 8 to 4000");
+    std::vector<std::array<Vector2d, 3>> triangles;
+    const auto add = [&](Face f) {
+        const auto [a, b, c] = corners(mesh, f);
+        triangles.push_back({frame.place(mesh.point(a)), frame.place(mesh.point(b)), frame.place(mesh.point(c))});
+    };
+    if (faces.empty())
+        for (const Face f : mesh.faces()) add(f);
+    for (const Index f : faces) add(Face(f));
+    if (triangles.empty()) fail_input("mesh", "has no faces to draw", "choose another mesh");
+    Vector2d low = triangles[0][0], high = low;
+    for (const auto& triangle : triangles)
+        for (const auto& p : triangle) low = low.cwiseMin(p), high = high.cwiseMax(p);
+    Mask mask(low, high, cells);
+    for (const auto& [a, b, c] : triangles) mask.add(a, b, c);
+    std::vector<std::vector<Vector2d>> curves;
+    for (const auto& curve : trace(mask))
+        if (curve.size() > 3) curves.push_back(thinned(curve, mask.cell() / 8));
+    return curves;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,165 @@
+// The built command, as people run it.
+#include "meshes.h"
+#include "ostraka/core/json.h"
+#include "ostraka/io/mesh_file.h"
+#include "scratch.h"
+
+#include <gtest/gtest.h>
+
+using namespace ostraka;
+using namespace ostraka::test;
+
+namespace {
+
+const std::string data = OSTRAKA_SOURCE_DIR "/data/";
+const std::string vase = data + "vase.ply " + data + "vase.ant.json ";
+
+std::size_t lines(const std::string& text) { return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')); }
+
+void expect_fails(const std::string& line, int code, const std::string& words) {
+    const auto result = run_command(line);
+    EXPECT_EQ(result.code, code) << line << result.err;
+    EXPECT_NE(result.err.find(words), std::string::npos) << line << result.err;
+}
+
+}  // namespace
+
+TEST(SliceCommand, EverythingIntoAFolder) {
+    const Scratch scratch;
+    const std::string folder = (scratch / "cut").string();
+    const auto result = run_command("slice " + vase + "--count 12 --medial-axis 0.02,0.1 --output " + folder);
+    ASSERT_EQ(result.code, 0) << result.err;
+    EXPECT_NE(result.out.find("mean of barycentres"), std::string::npos);
+    EXPECT_EQ(count_files(folder), 5U);
+    const Json json = read_json(Path(folder) / "slices.json");
+    validate(json, "slices", "slices.json");
+    ASSERT_EQ(json["slices"].Size(), 12U);
+    EXPECT_EQ(std::string(json["unit"].GetString()), "mm");
+    for (const auto& slice : json["slices"].GetArray()) {
+        EXPECT_TRUE(slice["completeness"]["complete"].GetBool());
+        EXPECT_EQ(slice["medial_axis"].Size(), 2U);
+        EXPECT_LE(slice["medial_axis"][1]["length"].GetDouble(), slice["medial_axis"][0]["length"].GetDouble() * (1 + 1e-12));
+    }
+    // A belly with a cavity: one component, one hole, round.
+    const auto& belly = json["slices"][5]["descriptors"];
+    EXPECT_EQ(belly["euler_number"].GetInt(), 0);
+    EXPECT_GT(belly["eccentricity"].GetDouble(), 0.98);
+    EXPECT_GT(belly["hole_area_ratio"].GetDouble(), 0.5);
+    EXPECT_EQ(lines(read_file(Path(folder) / "slices.csv")), 13U);
+    EXPECT_NE(read_file(Path(folder) / "slices.svg").find("</svg>"), std::string::npos);
+    EXPECT_NE(read_file(Path(folder) / "profile.svg").find("</svg>"), std::string::npos);
+    EXPECT_EQ(read_mesh(Path(folder) / "slices.ply").extras.face_colours.size(),
+              read_mesh(data + "vase.ply").mesh.number_of_faces());
+    // The same again, to the byte, on one thread.
+    const std::string again = (scratch / "again").string();
+    ASSERT_EQ(run_command("slice --threads 1 " + vase + "--count 12 --medial-axis 0.02,0.1 --output " + again).code, 0);
+    for (const char* name : {"slices.json", "slices.csv", "slices.svg", "slices.ply", "profile.svg"})
+        EXPECT_EQ(read_file(Path(folder) / name), read_file(Path(again) / name)) << name;
+}
+
+TEST(SliceCommand, DirectionsHeightsAndReports) {
+    const auto json_of = [](const std::string& words) {
+        const auto result = run_command("slice --json " + words);
+        EXPECT_EQ(result.code, 0) << words << result.err;
+        Json report = parse_json(result.out, "report");
+        validate(report, "report", "report");
+        return report;
+    };
+    const Json spaced = json_of(vase + "--spacing 20 --range 0,0.5");
+    const auto& slices = spaced["result"]["slices"];
+    ASSERT_EQ(slices.Size(), 7U);
+    EXPECT_EQ(slices[0]["height"].GetDouble(), 0);
+    EXPECT_EQ(slices[6]["height"].GetDouble(), 120);
+    const Json listed = json_of(vase + "--heights 40,20");
+    EXPECT_EQ(listed["result"]["slices"][0]["height"].GetDouble(), 40);
+    EXPECT_EQ(listed["result"]["slices"][1]["contours"], slices[1]["contours"]);
+    for (const std::string direction : {"principal", "rotation", "0,0,-1"})
+        EXPECT_EQ(json_of(vase + "--count 5 --direction " + direction)["result"]["slices"].Size(), 5U);
+    const Json plane = json_of(vase + "--plane 0,0,100,0,0,1");
+    EXPECT_EQ(plane["result"]["slices"].Size(), 1U);
+    const Json axes = json_of(vase + "--count 9 --axes");
+    EXPECT_EQ(axes["result"]["axes"].Size(), 6U);
+    // Across a bent tube its slices are round, which they are not along any straight direction.
+    const Scratch scratch;
+    TriangleSoup soup = grid(40, 120, true, false, [](double u, double v) {
+        const double a = 2 * M_PI * u, b = M_PI * v;
+        return std::array<double, 3>{(5 + std::cos(a)) * std::cos(b), (5 + std::cos(a)) * std::sin(b), std::sin(a)};
+    });
+    const auto rim = static_cast<Index>(soup.points.size());
+    soup.points.push_back({5, 0, 0}), soup.points.push_back({-5, 0, 0});
+    for (Index i = 0; i < 40; ++i) {
+        soup.triangles.push_back({rim, (i + 1) % 40, i});
+        soup.triangles.push_back({rim + 1, 4800 + i, 4800 + (i + 1) % 40});
+    }
+    for (auto& t : soup.triangles) std::swap(t[1], t[2]);
+    const std::string bent = (scratch / "bent.ply").string();
+    write_triangles(bent, soup);
+    const Json across = json_of(bent + " --direction skeleton --count 11 --output " + (scratch / "bent").string());
+    EXPECT_EQ(std::string(across["result"]["planes"].GetString()), "across a curve");
+    for (unsigned i = 2; i < 9; ++i) {
+        const auto& d = across["result"]["slices"][i]["descriptors"];
+        EXPECT_EQ(d["components"].GetInt(), 1);
+        EXPECT_NEAR(d["equivalent_radius"].GetDouble(), 1, 0.02) << i;
+        EXPECT_GT(d["eccentricity"].GetDouble(), 0.97) << i;
+    }
+    EXPECT_EQ(count_files(scratch / "bent"), 4U);  // no profile
+}
+
+TEST(SliceCommand, OpenScansAndPartsAreSaidToBeOpen) {
+    const Scratch scratch;
+    const std::string open = (scratch / "open.ply").string(), json = (scratch / "o.json").string();
+    write_triangles(open, grid(60, 10, false, false, [](double u, double v) {
+                        return std::array<double, 3>{std::cos(5 * u), std::sin(5 * u), v};
+                    }));
+    const auto result =
+        run_command("slice " + open + " --count 3 --output " + json + " --output " + (scratch / "o.svg").string());
+    EXPECT_EQ(result.code, 0);
+    EXPECT_NE(result.err.find("no slice has a closed contour"), std::string::npos) << result.err;
+    const Json document = read_json(json);
+    validate(document, "slices", json);
+    const auto& slice = document["slices"][0];
+    EXPECT_FALSE(slice["completeness"]["complete"].GetBool());
+    EXPECT_FALSE(slice["descriptors"].HasMember("area"));
+    EXPECT_TRUE(slice["descriptors"].HasMember("fitted_radius"));
+    EXPECT_FALSE(slice["contours"][0]["closed"].GetBool());
+    // A handle alone: its slices end where the body begins.
+    const auto part =
+        run_command("slice --json " + data + "teapot.ply " + data + "teapot.ant.json --annotation handle --count 8");
+    ASSERT_EQ(part.code, 0) << part.err;
+    EXPECT_EQ(parse_json(part.out, "report")["result"]["slices"].Size(), 8U);
+}
+
+TEST(SliceCommand, BadInputIsSaidAndWritesNothing) {
+    const Scratch scratch;
+    const std::string file = (scratch / "o.json").string();
+    const auto missed =
+        run_command("slice " + vase + "--heights 1000 --output " + file + " --output " + (scratch / "o.svg").string());
+    EXPECT_EQ(missed.code, 3);
+    EXPECT_NE(missed.err.find("no plane meets the mesh: its heights go from 0 to"), std::string::npos) << missed.err;
+    EXPECT_EQ(read_json(file)["slices"][0]["contours"].Size(), 0U);
+    EXPECT_FALSE(std::filesystem::exists(scratch / "o.svg"));
+    const auto plane = run_command("slice " + vase + "--plane 0,0,900,0,0,1");
+    EXPECT_EQ(plane.code, 3);
+    EXPECT_NE(plane.err.find("the plane misses the mesh"), std::string::npos);
+    std::filesystem::remove(file);
+    expect_fails("slice " + vase + "--count 3 --spacing 2", 2, "more than one way");
+    expect_fails("slice " + vase + "--plane 0,0,1", 2, "six numbers");
+    expect_fails("slice " + vase + "--plane 0,0,1,0,0,0", 2, "no length");
+    expect_fails("slice " + vase + "--range 0.4,0.2", 2, "--range");
+    expect_fails("slice " + vase + "--heights 1,two", 2, "--heights");
+    expect_fails("slice " + vase + "--heights 1e999", 2, "--heights");
+    expect_fails("slice " + vase + "--direction 0,0,0", 2, "--direction");
+    expect_fails("slice " + vase + "--direction sideways", 2, "--direction");
+    expect_fails("slice " + vase + "--spacing 1e-9", 2, "spacing");
+    expect_fails("slice " + vase + "--annotation nothing", 1, "nothing");
+    expect_fails("slice " + vase + "--medial-axis 2 --output " + file, 2, "residue");
+    expect_fails("slice " + vase + "--colour-by beauty --output " + (scratch / "o.ply").string(), 2, "beauty");
+    expect_fails("slice " + vase + "--output " + (scratch / "o.txt").string(), 2, "end its name in");
+    expect_fails("slice " + vase + "--profile " + (scratch / "o.pdf").string(), 2, "no drawing");
+    expect_fails("slice " + data + "vase.ply --annotation 1", 2, "there are no annotations");
+    expect_fails("slice " + data + "vase.ply --output " + data + "vase.ply", 2, "vase.ply");
+    const std::string ball = (scratch / "ball.ply").string();
+    ASSERT_EQ(run_command("mesh make sphere " + ball + " --vertices 500").code, 0);
+    expect_fails("slice " + ball + " --direction principal", 3, "no principal axis");
+    EXPECT_EQ(count_files(scratch.path()), 1U);
+}
