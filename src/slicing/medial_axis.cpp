@@ -10,6 +10,7 @@
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -72,11 +73,19 @@ Graph voronoi(const std::vector<Contour>& contours, int samples) {
     Graph graph;
     const detail::Strips strips(contours);
     std::vector<int> inside, on;
+    // In the order of their samples: that in which CGAL walks over edges hangs on addresses in memory.
+    std::vector<std::pair<std::array<std::size_t, 3>, Delaunay::Face_handle>> triangles;
     for (auto f = delaunay.all_faces_begin(); f != delaunay.all_faces_end(); ++f) f->info() = -1;
     for (auto f = delaunay.finite_faces_begin(); f != delaunay.finite_faces_end(); ++f) {
-        const Sample& first = list[f->vertex(0)->info()];
+        std::array<std::size_t, 3> corners{f->vertex(0)->info(), f->vertex(1)->info(), f->vertex(2)->info()};
+        std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+        triangles.emplace_back(corners, f);
+    }
+    std::sort(triangles.begin(), triangles.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (const auto& [corners, f] : triangles) {
+        const Sample& first = list[corners[0]];
         // About the first corner, or digits are lost far away.
-        const Vector2d b = list[f->vertex(1)->info()].place - first.place, c = list[f->vertex(2)->info()].place - first.place;
+        const Vector2d b = list[corners[1]].place - first.place, c = list[corners[2]].place - first.place;
         const double twice = 2 * (b.x() * c.y() - b.y() * c.x());
         const Vector2d centre(c.y() * b.squaredNorm() - b.y() * c.squaredNorm(),
                               b.x() * c.squaredNorm() - c.x() * b.squaredNorm());
@@ -91,18 +100,22 @@ Graph voronoi(const std::vector<Contour>& contours, int samples) {
         graph.places.push_back(place);
         graph.radii.push_back((centre / twice).norm());
     }
-    for (auto e = delaunay.finite_edges_begin(); e != delaunay.finite_edges_end(); ++e) {
-        const auto f = e->first, g = f->neighbor(e->second);
-        if (f->info() < 0 || g->info() < 0) continue;
-        const Sample &a = list[f->vertex(Delaunay::cw(e->second))->info()],
-                     &b = list[f->vertex(Delaunay::ccw(e->second))->info()];
-        double residue = 1;
-        if (a.contour == b.contour) {
-            const double whole = contours[static_cast<std::size_t>(a.contour)].length, way = std::abs(a.along - b.along);
-            residue = (std::min(way, whole - way) - (a.place - b.place).norm()) / whole;
+    for (const auto& entry : triangles) {
+        const Delaunay::Face_handle f = entry.second;
+        for (int k = 0; k < 3; ++k) {
+            const auto g = f->neighbor(k);
+            if (f->info() < 0 || g->info() <= f->info()) continue;
+            const Sample &a = list[f->vertex(Delaunay::cw(k))->info()], &b = list[f->vertex(Delaunay::ccw(k))->info()];
+            double residue = 1;
+            if (a.contour == b.contour) {
+                const double whole = contours[static_cast<std::size_t>(a.contour)].length, way = std::abs(a.along - b.along);
+                residue = (std::min(way, whole - way) - (a.place - b.place).norm()) / whole;
+            }
+            graph.links.push_back({f->info(), g->info(), residue});
         }
-        graph.links.push_back({f->info(), g->info(), residue});
     }
+    std::sort(graph.links.begin(), graph.links.end(),
+              [](const Link& a, const Link& b) { return std::pair(a.from, a.to) < std::pair(b.from, b.to); });
     return graph;
 }
 

@@ -54,7 +54,8 @@ TEST(SliceCommand, EverythingIntoAFolder) {
     const std::string again = (scratch / "again").string();
     ASSERT_EQ(run_command("slice --threads 1 " + vase + "--count 12 --medial-axis 0.02,0.1 --output " + again).code, 0);
     for (const char* name : {"slices.json", "slices.csv", "slices.svg", "slices.ply", "profile.svg"})
-        EXPECT_EQ(read_file(Path(folder) / name), read_file(Path(again) / name)) << name;
+        EXPECT_TRUE(read_file(Path(folder) / name) == read_file(Path(again) / name))
+            << name;  // EXPECT_EQ would tell megabytes apart
 }
 
 TEST(SliceCommand, DirectionsHeightsAndReports) {
