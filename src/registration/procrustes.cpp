@@ -1,0 +1,139 @@
+#include "ostraka/registration/procrustes.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ostraka {
+
+namespace {
+
+constexpr int most_iterations = 10000;
+
+Eigen::RowVector3d centroid_of(const Landmarks& landmarks) {
+    // About the first one, so that nothing is lost far from the origin.
+    return landmarks.row(0) + (landmarks.rowwise() - landmarks.row(0)).colwise().mean();
+}
+
+void check(const Landmarks& landmarks, Eigen::Index count, const std::string& where) {
+    if (landmarks.rows() != count)
+        fail_input(where, "it has " + std::to_string(landmarks.rows()) + " landmarks, the first has " + std::to_string(count),
+                   "give the same landmarks everywhere, in the same order");
+    if (count < 3) fail_input(where, "there are " + std::to_string(count) + " landmarks", "give at least three");
+    if (!landmarks.allFinite())
+        fail_input(where, "a coordinate is not a finite number", "leave that landmark out everywhere, or mend it");
+    if (!(centroid_size(landmarks) > 0)) fail_input(where, "all landmarks are in one place", "leave it out");
+}
+
+/// The rotation R that makes trace(R A) largest for A = from^T to of centred configurations (rows), and the trace.
+struct Turn {
+    Eigen::Matrix3d rotation;
+    double trace = 0;
+};
+Turn best_turn(const Landmarks& from, const Landmarks& to, bool reflection) {
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(from.transpose() * to, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Eigen::Vector3d signs = Eigen::Vector3d::Ones();
+    if (!reflection && (svd.matrixU().determinant() < 0) != (svd.matrixV().determinant() < 0)) signs[2] = -1;
+    return {svd.matrixV() * signs.asDiagonal() * svd.matrixU().transpose(), svd.singularValues().dot(signs)};
+}
+
+}  // namespace
+
+double centroid_size(const Landmarks& landmarks) {
+    if (landmarks.rows() == 0) return 0;
+    return (landmarks.rowwise() - centroid_of(landmarks)).stableNorm();
+}
+
+Landmarks SimilarityMap::apply(const Landmarks& landmarks) const {
+    return (scale * landmarks * rotation.transpose()).rowwise() + translation.transpose();
+}
+
+SimilarityMap procrustes(const Landmarks& from, const Landmarks& to, const ProcrustesOptions& options) {
+    check(from, from.rows(), "the landmarks to be moved");
+    check(to, from.rows(), "the landmarks of the goal");
+    const Eigen::RowVector3d a = centroid_of(from), b = centroid_of(to);
+    // Of size 1 each, so that products neither overflow nor vanish.
+    const double from_size = centroid_size(from), to_size = centroid_size(to);
+    const Landmarks x = (from.rowwise() - a) / from_size, y = (to.rowwise() - b) / to_size;
+    const Turn turn = best_turn(x, y, options.reflection);
+    SimilarityMap map;
+    map.rotation = turn.rotation;
+    map.scale = options.scaling ? turn.trace * to_size / from_size : 1;
+    map.translation = (b - map.scale * (a * map.rotation.transpose())).transpose();
+    map.sum_of_squares = ((map.scale * from_size) * x * map.rotation.transpose() - to_size * y).squaredNorm();
+    return map;
+}
+
+GeneralisedProcrustes generalised_procrustes(const std::vector<Landmarks>& configurations, const ProcrustesOptions& options) {
+    if (configurations.empty()) fail_input("landmarks", "there is no configuration", "give at least one");
+    const std::size_t n = configurations.size();
+    GeneralisedProcrustes result;
+    std::vector<Eigen::RowVector3d> centres;
+    std::vector<Landmarks> centred;
+    double unit = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        check(configurations[i], configurations[0].rows(), "configuration " + std::to_string(i + 1));
+        result.centroid_sizes.push_back(centroid_size(configurations[i]));
+        unit = std::max(unit, result.centroid_sizes.back());
+    }
+    // In units of the largest size, or each of size 1.
+    for (std::size_t i = 0; i < n; ++i) {
+        centres.push_back(centroid_of(configurations[i]));
+        centred.push_back((configurations[i].rowwise() - centres.back()) / (options.scaling ? result.centroid_sizes[i] : unit));
+    }
+    const double back = options.scaling ? 1 : unit;
+    result.aligned = centred;
+    std::vector<Eigen::Matrix3d> turns(n, Eigen::Matrix3d::Identity());
+    result.mean = centred.front();
+    double before = std::numeric_limits<double>::infinity(), all = 0;
+    for (const Landmarks& x : centred) all += x.squaredNorm();
+    while (result.iterations < most_iterations && !result.converged) {
+        ++result.iterations;
+        parallel_for(n, [&](std::size_t i) {
+            turns[i] = best_turn(centred[i], result.mean, options.reflection).rotation;
+            result.aligned[i] = centred[i] * turns[i].transpose();
+        });
+        Landmarks mean = Landmarks::Zero(result.mean.rows(), 3);
+        for (const Landmarks& x : result.aligned) mean += x / static_cast<double>(n);
+        double sum = 0;
+        for (const Landmarks& x : result.aligned) sum += (x - mean).squaredNorm();
+        // At the end the mean moves by the root of what the sum still falls.
+        const double moved = (mean - result.mean).squaredNorm() * static_cast<double>(n);
+        result.converged = std::abs(before - sum) <= 1e-15 * all && (n == 1 || moved <= 1e-26 * all);
+        before = sum;
+        result.mean = mean;
+    }
+    if (options.scaling && result.mean.norm() > 0) result.mean /= result.mean.norm();
+    // In the orientation of the first configuration.
+    const Eigen::Matrix3d turn_back = turns.front().transpose();
+    result.mean = back * (result.mean * turn_back.transpose());
+    for (std::size_t i = 0; i < n; ++i) {
+        const Eigen::Matrix3d turn = turn_back * turns[i];
+        result.aligned[i] = back * (centred[i] * turn.transpose());
+        SimilarityMap map;
+        map.scale = options.scaling ? 1 / result.centroid_sizes[i] : 1;
+        map.rotation = turn;
+        map.translation = -map.scale * (turn * centres[i].transpose());
+        map.sum_of_squares = (result.aligned[i] - result.mean).squaredNorm();
+        result.sum_of_squares += map.sum_of_squares;
+        result.maps.push_back(map);
+    }
+    return result;
+}
+
+Eigen::MatrixXd shape_rows(const std::vector<Landmarks>& configurations) {
+    if (configurations.empty()) return {};
+    Eigen::MatrixXd rows(static_cast<Eigen::Index>(configurations.size()), 3 * configurations[0].rows());
+    for (std::size_t i = 0; i < configurations.size(); ++i)
+        for (Eigen::Index k = 0; k < configurations[i].rows(); ++k)
+            rows.block<1, 3>(static_cast<Eigen::Index>(i), 3 * k) = configurations[i].row(k);
+    return rows;
+}
+
+}  // namespace ostraka
