@@ -1,7 +1,8 @@
 // Circle fits, and integrals of the distance from a circle along straight pieces.
 #include "ostraka/geom/circle.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 
 #include <array>
 #include <cmath>
@@ -47,6 +48,7 @@ void integrate_piece(const Vector2d& a, const Vector2d& b, const Vector2d& centr
 struct Fit {
     double length = 0, radius = 0, square = 0;  ///< square: mean of (d - radius)^2
     Vector2d gradient = Vector2d::Zero();       ///< of square / 2
+    Vector2d downhill = Vector2d::Zero();       ///< where the Hessian is negative: a direction in which it is
     Matrix2d hessian = Matrix2d::Zero();        ///< of square / 2, or Gauss-Newton's where that is not positive
 };
 
@@ -73,8 +75,9 @@ Fit fit_at(const PlaneSegments& segments, const Vector2d& centre, double guess) 
     fit.gradient = -(moment / fit.length - mean * unit);
     // d^2 has the Hessian 2 I, d has (I - n n^T) / d.
     fit.hessian = Matrix2d::Identity() - unit * unit.transpose() - fit.radius / fit.length * bend;
-    if (!(fit.hessian.trace() > 0 && fit.hessian.determinant() > 1e-12))
-        fit.hessian = units / fit.length - unit * unit.transpose();
+    const Eigen::SelfAdjointEigenSolver<Matrix2d> solver(fit.hessian);
+    if (solver.eigenvalues()[0] < 0) fit.downhill = solver.eigenvectors().col(0);
+    if (!(solver.eigenvalues()[0] > 1e-12)) fit.hessian = units / fit.length - unit * unit.transpose();
     return fit;
 }
 
@@ -113,7 +116,14 @@ Circle fit_circle(const PlaneSegments& segments) {
     if (circle.radius < 0) return circle;
     Fit fit = fit_at(segments, circle.centre, circle.radius);
     double damping = 0;
-    for (int step = 0; step < 60; ++step) {
+    for (int step = 0, leaps = 0; step < 60; ++step) {
+        // A place that is best along one direction and worst along the other is left, to the side of the larger coordinates.
+        if (fit.gradient.norm() < 1e-9 * fit.radius && fit.downhill.norm() > 0 && leaps++ < 2) {
+            const Vector2d side = fit.downhill.sum() < 0 ? Vector2d(-fit.downhill) : fit.downhill;
+            circle.centre += 0.01 * fit.radius * side;
+            fit = fit_at(segments, circle.centre, fit.radius);
+            continue;
+        }
         const Matrix2d H = fit.hessian + damping * Matrix2d::Identity();
         const Vector2d move = -H.inverse() * fit.gradient;
         if (!(move.norm() > 1e-15 * fit.radius)) break;

@@ -27,7 +27,7 @@ void scale_bar(Sheet& sheet, double x, double y, double scale, double most, cons
     }
     sheet.frame({x, y, x + scale * length, y + 4}, ink, 0.6);
     sheet.text("0", x, y - 4, 0.5, 9);
-    sheet.text(digits + (unit.empty() ? " units" : " " + unit), x + scale * length, y - 4, 0.5, 9);
+    sheet.text(digits + (unit.empty() ? (digits == "1" ? " unit" : " units") : " " + unit), x + scale * length, y - 4, 0.5, 9);
 }
 
 void open_contours(Sheet& sheet, const Slice& slice, const Placing& placing) {

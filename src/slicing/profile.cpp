@@ -131,9 +131,13 @@ Profile find_profile(const Mesh& mesh, const SliceFrame& axis, double angle) {
     std::size_t round = 0;
     for (std::size_t i = 0; i < 24; ++i) round += descriptors[i].roundness_fitted_relative < 0.05 ? 1 : 0;
     profile.turned = 2 * round >= 24;
+    // A wall without thickness has its mouth where the mesh ends.
+    const bool ends_open = std::any_of(mesh.vertices().begin(), mesh.vertices().end(), [&](Vertex v) {
+        return !mesh.is_isolated(v) && mesh.is_border(v) && axis.height(mesh.point(v)) > profile.high - 0.03 * size;
+    });
     for (std::size_t i = 24; i < heights.size(); ++i) {
         const auto& d = descriptors[i];
-        const bool mouth = d.holes > 0 || !stack.slices[i].completeness.complete();
+        const bool mouth = ends_open || d.holes > 0 || !stack.slices[i].completeness.complete();
         if (!mouth || !(d.roundness_fitted_relative < 0.1) || 2 * d.fitted_radius <= profile.rim_diameter) continue;
         profile.rim_diameter = 2 * d.fitted_radius;
         profile.rim_share = stack.slices[i].completeness.angle / (2 * pi);

@@ -210,7 +210,7 @@ std::vector<std::vector<Vector2d>> silhouette(const Mesh& mesh, const SliceFrame
     for (const auto& [a, b, c] : triangles) mask.add(a, b, c);
     std::vector<std::vector<Vector2d>> curves;
     for (const auto& curve : trace(mask))
-        if (curve.size() > 3) curves.push_back(thinned(curve, mask.cell() / 8));
+        if (curve.size() > 3) curves.push_back(thinned(curve, mask.cell() / 4));
     return curves;
 }
 

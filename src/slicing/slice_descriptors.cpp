@@ -102,12 +102,17 @@ void describe_outline(SliceDescriptors& d, const PlaneSegments& outline, const s
     d.rectangular_variance = rectangle_deviation(outline, box) / (box.area() / pi);
 }
 
+/// From the first point on.
+Vector2d polygon_centre(const Contour& contour) {
+    const PolygonMoments moments = polygon_moments(contour.points, contour.points[0]);
+    return moments.first / moments.area;
+}
+
 void describe_roundness(SliceDescriptors& d, const Contour& main) {
     PlaneSegments pieces;
     add_pieces(pieces, main);
-    const PolygonMoments moments = polygon_moments(main.points, main.points[0]);
-    d.equivalent_radius = std::sqrt(moments.area / pi);
-    const CircleDeviation circle = circle_deviation(pieces, {main.points[0] + moments.first / moments.area, d.equivalent_radius});
+    d.equivalent_radius = std::sqrt(main.area / pi);
+    const CircleDeviation circle = circle_deviation(pieces, {main.points[0] + polygon_centre(main), d.equivalent_radius});
     d.circular_variance = circle.square / (d.equivalent_radius * d.equivalent_radius);
     d.roundness_equivalent = circle.absolute;
     d.roundness_equivalent_relative = circle.absolute / d.equivalent_radius;
@@ -177,7 +182,12 @@ SliceDescriptors describe_slice(const Slice& slice) {
             add_pieces(fitted, *main);
         }
     }
-    if (const Circle circle = fit_circle(fitted); circle.radius > 0) {
+    Circle circle = fit_circle(fitted);
+    // The circle that fits a bar best is as good as a straight line.
+    const bool around = circle.radius > 0 && !(circle.radius > d.box_length);
+    if (!around && main != nullptr && main->length >= arcs)
+        circle = {main->points[0] + polygon_centre(*main), d.equivalent_radius};
+    if (circle.radius > 0) {
         d.fitted_radius = circle.radius, d.fitted_centre = circle.centre;
         d.roundness_fitted = circle_deviation(fitted, circle).absolute;
         d.roundness_fitted_relative = d.roundness_fitted / circle.radius;

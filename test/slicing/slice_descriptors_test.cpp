@@ -268,6 +268,23 @@ TEST(SliceDescriptors, WhatOpenContoursHave) {
     EXPECT_TRUE(thickness_profile(Slice{}).empty());
 }
 
+TEST(SliceDescriptors, CirclesOfWhatIsNotRound) {
+    // The circle that fits a bar best is nearly a line: the equivalent one stands for it.
+    const auto bar = describe({rectangle(20, 1)});
+    EXPECT_EQ(bar.roundness_fitted, bar.roundness_equivalent);
+    EXPECT_NEAR(bar.fitted_radius, std::sqrt(20 / M_PI), 1e-9);
+    EXPECT_GT(bar.roundness_fitted_relative, 0.5);
+    // Handles beside a body do not make it less round.
+    const auto alone = describe({ellipse(80, 3, 2.9)}), handled = describe({ellipse(80, 3, 2.9), ellipse(20, 0.5, 0.5, {5, 0})});
+    EXPECT_EQ(handled.roundness_fitted, alone.roundness_fitted);
+    EXPECT_EQ(handled.circular_variance, alone.circular_variance);
+    EXPECT_LT(handled.eccentricity, alone.eccentricity);
+    // The fitted circle is no worse than the equivalent one in the mean square, and is where the arc is, not where the area is.
+    const auto egg = describe({{{-2, 0}, {-1, -1.6}, {0, -2}, {1, -1.9}, {3, 0}, {1, 1.9}, {0, 2}, {-1, 1.6}}});
+    EXPECT_LT(egg.roundness_fitted_relative, 0.2);
+    EXPECT_NEAR(egg.fitted_centre.y(), 0, 1e-9);
+}
+
 TEST(SliceDescriptors, SeveralComponents) {
     const auto d = describe({rectangle(2, 2), rectangle(1, 1, {4, 0}), reversed(rectangle(1, 1))});
     EXPECT_EQ(d.components, 2);

@@ -20,10 +20,10 @@ struct Profile {
     std::vector<Edge> edges;  ///< where the outer profile of a turned object breaks by more than 25 degrees
     bool turned = false;      ///< half of 24 slices have a relative roundness (fitted circle) below 0.05
     double view_angle = 0;    ///< of the direction that lies to the right in the outline, radians
-    double rim_diameter =
-        0;  ///< largest diameter of the circles that fit slices in the uppermost 3 % of the height best, of
-            ///< those with a relative roundness below 0.1 and a mouth (a hole, or open contours); 0 if there is none
-    double rim_share = 1;  ///< of that circle's turn that is there
+    double rim_diameter = 0;  ///< largest diameter of the circles that fit slices in the uppermost 3 % of the height best, of
+                              ///< those with a relative roundness below 0.1 and a mouth (a hole, open contours, a border of the
+                              ///< mesh); 0 if there is none
+    double rim_share = 1;     ///< of that circle's turn that is there
 };
 
 /// `axis` has its normal along the object's axis and its origin on it. The section goes along `angle` (radians from u,

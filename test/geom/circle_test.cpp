@@ -1,0 +1,113 @@
+// Circles, lines, hulls and rectangles that are known.
+#include "ostraka/geom/circle.h"
+#include "ostraka/geom/line.h"
+#include "ostraka/geom/planar.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace ostraka;
+using Eigen::Vector2d;
+
+namespace {
+
+PlaneSegments arc(double from, double to, double radius, const Vector2d& centre, int pieces) {
+    PlaneSegments segments;
+    const auto at = [&](int k) {
+        const double t = from + (to - from) * k / pieces;
+        return Vector2d(centre + radius * Vector2d(std::cos(t), std::sin(t)));
+    };
+    for (int k = 0; k < pieces; ++k) segments.emplace_back(at(k), at(k + 1));
+    return segments;
+}
+
+}  // namespace
+
+TEST(CircleFit, OfArcsWhateverThePiecesAndThePlace) {
+    for (const double scale : {1.0, 1e-6, 1e6})
+        for (const double to : {2 * M_PI, 3.0, 0.8}) {
+            const Vector2d centre = scale * Vector2d(30, -20);
+            const Circle circle = fit_circle(arc(0.3, 0.3 + to, 2 * scale, centre, 400));
+            EXPECT_NEAR((circle.centre - centre).norm() / scale, 0, 2e-4) << to;
+            EXPECT_NEAR(circle.radius / scale, 2, 2e-4) << to;
+        }
+    // Cutting every piece in two changes nothing.
+    const auto coarse = arc(0, 2.5, 3, {1, 2}, 12);
+    PlaneSegments fine;
+    for (const auto& [a, b] : coarse) fine.emplace_back(a, a + 0.3 * (b - a)), fine.emplace_back(a + 0.3 * (b - a), b);
+    const Circle first = fit_circle(coarse), second = fit_circle(fine);
+    EXPECT_NEAR((first.centre - second.centre).norm(), 0, 1e-9);
+    EXPECT_NEAR(first.radius, second.radius, 1e-9);
+}
+
+TEST(CircleFit, IsTheLeastSquares) {
+    // No circle nearby does better, for a figure that is no circle.
+    const PlaneSegments egg{{{2, 0}, {0, 1.5}}, {{0, 1.5}, {-1.6, 0}}, {{-1.6, 0}, {0, -1.4}}, {{0, -1.4}, {2, 0}}};
+    const Circle best = fit_circle(egg);
+    const double least = circle_deviation(egg, best).square;
+    for (const Vector2d& step : {Vector2d(1e-3, 0), Vector2d(-1e-3, 0), Vector2d(0, 1e-3), Vector2d(0, -1e-3)})
+        EXPECT_GT(circle_deviation(egg, {best.centre + step, best.radius}).square, least);
+    for (const double r : {-1e-3, 1e-3}) EXPECT_GT(circle_deviation(egg, {best.centre, best.radius + r}).square, least);
+}
+
+TEST(CircleFit, OfLinesAndNothing) {
+    EXPECT_LT(fit_circle(PlaneSegments{}).radius, 0);
+    EXPECT_LT(fit_circle(PlaneSegments{{{0, 0}, {1, 1}}, {{1, 1}, {3, 3}}}).radius, 0);
+    EXPECT_LT(fit_circle(PlaneSegments{{{1, 2}, {1, 2}}}).radius, 0);
+    EXPECT_EQ(circle_deviation({}, {{0, 0}, 1}).absolute, 0);
+}
+
+TEST(CircleDeviation, AlongAStraightPieceThroughTheCircle) {
+    // From the centre outward: the mean of |t - 1| over 0 to 2 is 1/2, of its square 1/3.
+    const auto d = circle_deviation({{{0, 0}, {2, 0}}}, {{0, 0}, 1});
+    EXPECT_NEAR(d.absolute, 0.5, 1e-12);
+    EXPECT_NEAR(d.square, 1.0 / 3, 1e-12);
+    // Past the centre at a distance: sqrt(t^2 + h^2).
+    const double h = 0.01, l = 3, r = 5;
+    const double mean = (l * std::hypot(l, h) + h * h * std::asinh(l / h)) / (2 * l);
+    EXPECT_NEAR(circle_deviation({{{-l, h}, {l, h}}}, {{0, 0}, r}).absolute, r - mean, 1e-11);
+}
+
+TEST(Hull, OfPointsOnALineOnAGridAndOne) {
+    EXPECT_TRUE(convex_hull({}).empty());
+    EXPECT_EQ(convex_hull({{1, 1}, {1, 1}}).size(), 1U);
+    EXPECT_EQ(convex_hull({{0, 0}, {2, 2}, {1, 1}, {3, 3}}).size(), 2U);
+    std::vector<Vector2d> grid;
+    for (int i = 0; i < 7; ++i)
+        for (int j = 0; j < 5; ++j) grid.emplace_back(0.1 * i, 0.1 * j);
+    const auto hull = convex_hull(grid);
+    EXPECT_NEAR(polygon_moments(hull, {9, 9}).area, 0.24, 1e-12);
+    const auto box = smallest_rectangle(hull);
+    EXPECT_NEAR(box.length, 0.6, 1e-12);
+    EXPECT_NEAR(box.breadth, 0.4, 1e-12);
+    EXPECT_EQ(smallest_rectangle({}).area(), 0);
+    EXPECT_EQ(smallest_rectangle({{3, 4}}).centre, Vector2d(3, 4));
+    EXPECT_NEAR(smallest_rectangle({{0, 0}, {3, 4}}).length, 5, 1e-12);
+    EXPECT_NEAR(smallest_rectangle({{0, 0}, {3, 4}}).breadth, 0, 1e-12);
+}
+
+TEST(Rectangle, IsTheSmallestOfAllDirections) {
+    std::vector<Vector2d> points;
+    unsigned state = 7;
+    const auto next = [&] { return double((state = state * 1664525u + 1013904223u) >> 8) / (1 << 24); };
+    for (int i = 0; i < 200; ++i) points.emplace_back(3 * next() + next(), next());
+    const auto box = smallest_rectangle(convex_hull(points));
+    double least = 1e9;
+    for (int k = 0; k < 20000; ++k) {
+        const Vector2d a(std::cos(k * M_PI / 20000), std::sin(k * M_PI / 20000)), b(-a.y(), a.x());
+        double x0 = 1e9, x1 = -1e9, y0 = 1e9, y1 = -1e9;
+        for (const auto& p : points)
+            x0 = std::min(x0, a.dot(p)), x1 = std::max(x1, a.dot(p)), y0 = std::min(y0, b.dot(p)), y1 = std::max(y1, b.dot(p));
+        least = std::min(least, (x1 - x0) * (y1 - y0));
+    }
+    EXPECT_LE(box.area(), least * (1 + 1e-12));
+    EXPECT_NEAR(box.area(), least, 1e-3 * least);
+}
+
+TEST(LineFitTest, ThroughPointsWithWeights) {
+    const auto fit = fit_line({{0, 0, 1}, {1, 0, 1}, {2, 0, 1}, {1, 5, 1}}, {1, 1, 1, 0});
+    EXPECT_NEAR(std::abs(fit.direction.x()), 1, 1e-12);
+    EXPECT_NEAR(fit.rms, 0, 1e-9);
+    EXPECT_NEAR((fit.point - Eigen::Vector3d(1, 0, 1)).norm(), 0, 1e-12);
+}
