@@ -138,6 +138,30 @@ TEST(SliceMesh, ABoxThroughVerticesEdgesAndFaces) {
         }
 }
 
+TEST(SliceMesh, ThroughManyVerticesAtOnceIsTheLimitFromBelow) {
+    // Coordinates on a coarse grid: planes pass through vertices, edges and faces everywhere, and faces fold onto each other.
+    for (const double grid_size : {0.5, 0.25, 0.1})
+        for (TriangleSoup soup :
+             {octahedron_sphere(4), torus(40, 30), joined(torus(24, 16), moved(octahedron_sphere(3), 1.3, {0.5, 0, 0}))}) {
+            for (auto& p : soup.points)
+                for (double& x : p) x = grid_size * std::round(x / grid_size);
+            const Mesh mesh = build_mesh(soup);
+            for (const Vector& direction : {Vector(0, 0, 1), Vector(1, 0, 0), Vector(1, 1, 0), Vector(1, -1, 1)}) {
+                const SliceFrame frame = slice_frame({0, 0, 0}, direction);
+                const auto [low, high] = height_range(mesh, frame);
+                const double step = grid_size / std::sqrt(direction.squared_length()), below = 1e-8 * box_diagonal(mesh);
+                for (double k = std::ceil(low / step) + 1; k * step <= high; ++k) {
+                    const auto stack = slice_mesh(mesh, frame, {k * step, k * step - below});
+                    for (const auto& slice : stack.slices)
+                        for (const auto& contour : slice.contours) ASSERT_TRUE(contour.closed);
+                    EXPECT_NEAR(area(stack.slices[0]), area(stack.slices[1]), 1e-5);
+                }
+                const auto base = slice_mesh(mesh, frame, {low, low + below});
+                EXPECT_NEAR(area(base.slices[0]), area(base.slices[1]), 1e-5);
+            }
+        }
+}
+
 TEST(SliceMesh, FlatPlacesAboveTheBase) {
     // A step: the tread lies in the plane and counts as above, so that the slice is that of a plane just below.
     const Mesh step = build_mesh(joined(box(2), moved(box(2), 0.5, {3, 0, 0})));
