@@ -19,34 +19,13 @@ using proportions::Pair;
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t most_measures = 60;
 
-/// Standard deviation (n - 1), over the magnitude of the mean if `relative`.
-std::optional<double> deviation_of(const std::vector<double>& values, const std::vector<std::size_t>& chosen, bool relative) {
-    if (chosen.size() < 2) return std::nullopt;
-    const double n = static_cast<double>(chosen.size()), base = values[chosen.front()];
-    double sum = 0, square = 0;
-    for (const std::size_t i : chosen) sum += values[i] - base, square += (values[i] - base) * (values[i] - base);
-    const double deviation = std::sqrt(std::max(0.0, square - sum * sum / n) / (n - 1)), mean = std::abs(base + sum / n);
-    if (!relative) return deviation;
-    return mean > 0 ? std::optional(deviation / mean) : std::nullopt;
-}
-
 MeasureRow row_of(const std::string& name, const std::string& unit, const std::vector<double>& values,
                   const BootstrapOptions& bootstrap) {
     MeasureRow row{name, unit, std::nullopt, std::nullopt, std::nullopt, std::nullopt};
     if (values.empty()) return row;
     row.summary = summarise(values, name);
-    // In units of the largest, so that squares neither overflow nor vanish.
-    double largest = 0;
-    for (const double value : values) largest = std::max(largest, std::abs(value));
-    std::vector<double> scaled = values;
-    if (largest > 0)
-        for (double& value : scaled) value /= largest;
-    if (values.size() < 3) return row;
-    row.deviation_interval = bootstrap_interval(
-        values.size(), [&](const auto& chosen) { return deviation_of(scaled, chosen, false); }, bootstrap);
-    if (row.deviation_interval) row.deviation_interval->low *= largest, row.deviation_interval->high *= largest;
-    row.variation_interval = bootstrap_interval(
-        values.size(), [&](const auto& chosen) { return deviation_of(scaled, chosen, true); }, bootstrap);
+    row.deviation_interval = deviation_interval(values, false, bootstrap);
+    row.variation_interval = deviation_interval(values, true, bootstrap);
     return row;
 }
 

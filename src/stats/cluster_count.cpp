@@ -54,7 +54,7 @@ Eigen::MatrixXd reference(const Eigen::MatrixXd& turned, Random random) {
 
 }  // namespace
 
-std::vector<double> silhouettes(const Eigen::MatrixXd& samples, const std::vector<int>& labels) {
+std::vector<double> silhouettes_of_samples(const Eigen::MatrixXd& samples, const std::vector<int>& labels) {
     require_samples(samples, "silhouettes");
     const Eigen::MatrixXd columns = samples.transpose();
     return silhouettes_by(static_cast<std::size_t>(samples.rows()), labels, [&](std::size_t i, std::size_t j) {
@@ -97,7 +97,8 @@ ClusterCount propose_cluster_count(const Eigen::MatrixXd& samples, const Cluster
         row.clusters = k;
         row.cost = largest > 0 ? found.cost * largest * largest : 0;
         if (k > 1) {
-            for (const double s : silhouettes(centred, found.labels)) row.silhouette += s / static_cast<double>(samples.rows());
+            for (const double s : silhouettes_of_samples(centred, found.labels))
+                row.silhouette += s / static_cast<double>(samples.rows());
             if (row.silhouette > best) best = row.silhouette, result.by_silhouette = k;
         }
         std::vector<double> logs(static_cast<std::size_t>(options.references));

@@ -111,6 +111,58 @@ std::optional<Interval> bootstrap_interval(std::size_t count, const SampleStatis
     return Interval{limit(tail), limit(1 - tail)};
 }
 
+std::optional<Interval> studentised_interval(std::size_t count, const SampleEstimate& estimate, const BootstrapOptions& options) {
+    check_options(options, "bootstrap");
+    if (count < 2) return std::nullopt;
+    std::vector<std::size_t> all(count);
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    const std::optional<Estimate> observed = estimate(all);
+    if (!observed || !(observed->error > 0)) return std::nullopt;
+    const auto resamples = static_cast<std::size_t>(options.resamples);
+    std::vector<std::optional<Estimate>> drawn(resamples);
+    parallel_for(
+        resamples, [&](std::size_t b) { drawn[b] = estimate(Random(options.seed, b).resample(count)); }, 16);
+    std::vector<double> off;
+    for (const auto& one : drawn)
+        if (one && one->error > 0) off.push_back((one->value - observed->value) / one->error);
+    if (2 * off.size() < resamples) return std::nullopt;
+    require_finite(off, "bootstrap");
+    const double tail = (1 - options.confidence) / 2;
+    return Interval{observed->value - sample_quantile(off, 1 - tail) * observed->error,
+                    observed->value - sample_quantile(off, tail) * observed->error};
+}
+
+std::optional<Interval> deviation_interval(const std::vector<double>& values, bool relative, const BootstrapOptions& options) {
+    if (values.size() < 3) return std::nullopt;
+    const Summary summary = summarise(values);
+    if (!(*summary.deviation > 0) || (relative && summary.mean == 0)) return std::nullopt;
+    // In units of the deviation, about the mean.
+    std::vector<double> scaled;
+    for (const double value : values) scaled.push_back((value - summary.mean) / *summary.deviation);
+    const double mean = summary.mean / *summary.deviation;
+    const auto estimate = [&](const std::vector<std::size_t>& chosen) -> std::optional<Estimate> {
+        const double n = static_cast<double>(chosen.size());
+        double sum = 0, square = 0;
+        for (const std::size_t i : chosen) sum += scaled[i], square += scaled[i] * scaled[i];
+        const double shift = sum / n, variance = (square - sum * shift) / (n - 1), centre = mean + shift;
+        // A resample of one value over and over has no deviation.
+        if (!(variance > 1e-12) || (relative && centre == 0)) return std::nullopt;
+        // The influence function of log s is ((x - m)^2 / s^2 - 1) / 2, of log |m| it is (x - m) / m.
+        double error = 0;
+        for (const std::size_t i : chosen) {
+            const double d = scaled[i] - shift;
+            const double influence = (d * d / variance - 1) / 2 - (relative ? d / centre : 0);
+            error += influence * influence;
+        }
+        return Estimate{std::log(variance) / 2 - (relative ? std::log(std::abs(centre)) : 0), std::sqrt(error) / n};
+    };
+    std::optional<Interval> interval = studentised_interval(values.size(), estimate, options);
+    if (!interval) return std::nullopt;
+    // The coefficient of variation has no unit: the scale falls out.
+    const double unit = relative ? 1 : *summary.deviation;
+    return Interval{unit * std::exp(interval->low), unit * std::exp(interval->high)};
+}
+
 std::vector<ClusterStability> cluster_stability(const std::vector<int>& labels,
                                                 const std::function<std::vector<int>(const std::vector<std::size_t>&)>& cluster,
                                                 const StabilityOptions& options) {

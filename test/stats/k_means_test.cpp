@@ -148,7 +148,7 @@ TEST(Standardised, HasMeanZeroAndDeviationOne) {
 
 TEST(Silhouette, ByHand) {
     // 0 and 1 against 10: a = 1, b = 10 and 9; 10 is alone.
-    const std::vector<double> s = silhouettes(column({0, 1, 10}), {0, 0, 1});
+    const std::vector<double> s = silhouettes_of_samples(column({0, 1, 10}), {0, 0, 1});
     EXPECT_DOUBLE_EQ(s[0], 9.0 / 10);
     EXPECT_DOUBLE_EQ(s[1], 8.0 / 9);
     EXPECT_EQ(s[2], 0);
@@ -156,12 +156,12 @@ TEST(Silhouette, ByHand) {
     distances << 0, 1, 10, 1, 0, 9, 10, 9, 0;
     EXPECT_EQ(silhouettes_of_distances(distances, {0, 0, 1}), s);
     // Noise has none and counts for nobody.
-    const std::vector<double> with_noise = silhouettes(column({0, 1, 3, 10}), {0, 0, -1, 1});
+    const std::vector<double> with_noise = silhouettes_of_samples(column({0, 1, 3, 10}), {0, 0, -1, 1});
     EXPECT_EQ(with_noise[2], 0);
     EXPECT_DOUBLE_EQ(with_noise[0], 9.0 / 10);
-    EXPECT_EQ(silhouettes(column({1, 2}), {0, 0}), std::vector<double>(2, 0.0)) << "one cluster";
-    EXPECT_EQ(silhouettes(column({1, 1, 1}), {0, 0, 1}), std::vector<double>(3, 0.0)) << "identical samples";
-    EXPECT_THROW(silhouettes(column({1, 2}), {0}), Error);
+    EXPECT_EQ(silhouettes_of_samples(column({1, 2}), {0, 0}), std::vector<double>(2, 0.0)) << "one cluster";
+    EXPECT_EQ(silhouettes_of_samples(column({1, 1, 1}), {0, 0, 1}), std::vector<double>(3, 0.0)) << "identical samples";
+    EXPECT_THROW(silhouettes_of_samples(column({1, 2}), {0}), Error);
 }
 
 TEST(ClusterCount, FindsThePlantedNumber) {

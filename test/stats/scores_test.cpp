@@ -252,6 +252,41 @@ TEST(Bootstrap, CoversTheMeanAsOftenAsItSays) {
     EXPECT_LE(covered, 380);
 }
 
+TEST(Bootstrap, IntervalsOfDeviationsCover) {
+    int deviation = 0, variation = 0;
+    const int trials = 400;
+    for (int trial = 0; trial < trials; ++trial) {
+        Random random(200, static_cast<std::uint64_t>(trial));
+        std::vector<double> values(30);
+        for (double& v : values) v = random.normal(50, 4);
+        const auto d = deviation_interval(values, false, {.resamples = 400}),
+                   v = deviation_interval(values, true, {.resamples = 400});
+        ASSERT_TRUE(d && v);
+        deviation += d->low <= 4 && 4 <= d->high ? 1 : 0;
+        variation += v->low <= 0.08 && 0.08 <= v->high ? 1 : 0;
+    }
+    // 0.95 of 400 with a deviation of 4.4.
+    EXPECT_GE(deviation, 363);
+    EXPECT_GE(variation, 363);
+    EXPECT_LE(deviation, 396);
+}
+
+TEST(Bootstrap, IntervalsOfDeviationsHaveTheValuesUnit) {
+    const std::vector<double> values{1, 2, 4, 4, 5, 7, 9, 3};
+    const auto plain = deviation_interval(values, false), relative = deviation_interval(values, true);
+    for (const double unit : {1e-200, 1e200}) {
+        std::vector<double> scaled = values;
+        for (double& v : scaled) v *= unit;
+        EXPECT_NEAR(deviation_interval(scaled, false)->high / unit, plain->high, 1e-9);
+        EXPECT_NEAR(deviation_interval(scaled, true)->low, relative->low, 1e-9);
+    }
+    EXPECT_LT(plain->low, *summarise(values).deviation);
+    EXPECT_GT(plain->high, *summarise(values).deviation);
+    EXPECT_FALSE(deviation_interval({1, 2}, false));
+    EXPECT_FALSE(deviation_interval({3, 3, 3, 3}, false)) << "nothing varies";
+    EXPECT_FALSE(deviation_interval({-1, 0, 1}, true)) << "no mean to compare with";
+}
+
 TEST(Bootstrap, OfWhatIsNotDefined) {
     const auto nothing = [](const auto&) -> std::optional<double> { return std::nullopt; };
     const auto constant = [](const auto&) -> std::optional<double> { return 3.0; };

@@ -43,7 +43,7 @@ Eigen::MatrixXd standardised(const Eigen::MatrixXd& samples);
 /// Silhouettes (Rousseeuw 1987): (b - a) / max(a, b) of each sample, with a the mean distance to the others of its cluster and b
 /// that to the nearest other cluster; 0 for a sample alone in its cluster, for noise (labels below 0) and where there is one
 /// cluster only. Quadratic in the number of samples. Throws as above, and Error (usage) unless there is one label a sample.
-std::vector<double> silhouettes(const Eigen::MatrixXd& samples, const std::vector<int>& labels);
+std::vector<double> silhouettes_of_samples(const Eigen::MatrixXd& samples, const std::vector<int>& labels);
 /// The same from a symmetric matrix of distances.
 std::vector<double> silhouettes_of_distances(const Eigen::MatrixXd& distances, const std::vector<int>& labels);
 
