@@ -37,5 +37,8 @@ void add_study_landmarks(CLI::App& study, Session& session);           // study_
 void add_study_proportions(CLI::App& study, Session& session);         // study_proportions.cpp
 void add_study_moulds(CLI::App& study, Session& session);              // study_moulds.cpp
 void add_study_make_moulds(CLI::App& made, Session& session);          // study_make_moulds.cpp
+void add_study_make_technique(CLI::App& made, Session& session);       // study_make_technique.cpp
+void add_study_technique(CLI::App& study, Session& session);           // study_technique.cpp
+void add_study_segments(CLI::App& study, Session& session);            // study_segments.cpp
 
 }  // namespace ostraka::app

@@ -119,9 +119,9 @@ int MadeObject::part(const Vector3d& p) const {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < members.size(); ++i) {
         if (members[i].carves && members[i].stretches.empty()) continue;
-        Sample s = member_sample(i, p);
-        if (members[i].carves) s.value = std::abs(s.value);
-        if (s.value < least) least = s.value, nearest = i;
+        const double value = member_sample(i, p).value;
+        // A wall that a cut leaves lies inside what was there before.
+        if (members[i].carves ? -value > least : value < least) least = members[i].carves ? -value : value, nearest = i;
     }
     const Member& member = members[nearest];
     int label = member.stretches.back().part;

@@ -1,0 +1,135 @@
+// Generated populations of votive statuettes whose technique and sizes are known: bodies thrown on the wheel and bodies built by
+// hand, as a scanner sees them (after the terracottas of Ayia Irini; thesis, chapter 3).
+#pragma once
+
+#include "ostraka/core/options.h"
+#include "ostraka/shapes/made_object.h"
+#include "ostraka/shapes/make_mesh.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace ostraka {
+
+/// One statuette. Lengths are millimetres; z points up, the base stands at z = 0, the face looks along +x. "Tube" is the body
+/// between base and shoulders; its radius is 0.33 base diameters.
+struct StatuetteParameters {
+    std::string technique = "wheel";  ///< "wheel" or "hand"
+    double height = 200, base_diameter = 58, arm_length = 82, head_height = 44;
+    double ovality = 0;        ///< the tube's radius is r (1 + ovality cos 2(a - direction)): its longest is along `direction`
+    double ovality_drift = 0;  ///< degrees by which the direction turns from the base to the shoulders
+    double finger_marks = 0;   ///< root mean square of waves of 3 to 7 periods in a turn, relative to the radius
+    double sway = 0;           ///< root mean square of the centres' way off a straight axis, relative to the tube's radius
+    double grooves = 0;        ///< height of throwing grooves, mm
+    double wall = 5;           ///< mean thickness, mm; 0: solid
+    double wall_noise = 0;     ///< root mean square of the thickness's waves, relative to the wall
+    double off_centre = 0;     ///< of the cavity, relative to the wall
+    double cavity_seen = 1;    ///< share of the cavity's depth that the scanner saw
+    std::string interior = "closed";  ///< where the scanner's sight ends: "closed" by a flat wall, or "open": the mesh ends there
+    double scan_noise = 0;            ///< standard deviation of each vertex along its normal, mm
+    int holes = 0;                    ///< patches of the body that the scan misses
+    double hole_radius = 5;           ///< mm
+    std::string pose = "forward";     ///< of the arms: "forward", "offering" (the hands hold a bowl), "raised", "down"
+    std::string hat = "cone";         ///< "cone", "cap" or "none"
+    bool beard = false;
+    std::uint64_t seed = 1;  ///< of the waves' phases, the noise, the holes and the mesh's lattice
+    std::uint64_t vertices = 10000;
+
+    template <class Visitor>
+    void describe(Visitor& visit) {
+        visit("technique", technique, "wheel or hand", Choices{"wheel", "hand"});
+        visit("height", height, "from the base to the topmost point, mm", Range{100, 500});
+        visit("base-diameter", base_diameter, "mm", Range{20, 200});
+        visit("arm-length", arm_length, "from the joint along the outside to the end of the hand, mm", Range{30, 250});
+        visit("head-height", head_height, "from the joint at the back of the neck to the topmost point, mm", Range{20, 150});
+        visit("ovality", ovality, "of the body, relative to its radius", Range{0, 0.15});
+        visit("ovality-drift", ovality_drift, "degrees by which its direction turns", Range{0, 360});
+        visit("finger-marks", finger_marks, "root mean square, relative to the radius", Range{0, 0.05});
+        visit("sway", sway, "root mean square of the centres, relative to the tube's radius", Range{0, 0.2});
+        visit("grooves", grooves, "height of throwing grooves, mm", Range{0, 1});
+        visit("wall", wall, "mean thickness, mm; 0: solid", Range{0, 12});
+        visit("wall-noise", wall_noise, "root mean square, relative to the wall", Range{0, 0.25});
+        visit("off-centre", off_centre, "of the cavity, relative to the wall", Range{0, 0.4});
+        visit("cavity-seen", cavity_seen, "share of the cavity's depth", Range{0.1, 1});
+        visit("interior", interior, "what the mesh does where the scanner's sight ends", Choices{"closed", "open"});
+        visit("scan-noise", scan_noise, "standard deviation along the normal, mm", Range{0, 0.5});
+        visit("holes", holes, "patches that the scan misses", Range{0, 20});
+        visit("hole-radius", hole_radius, "mm", Range{1, 20});
+        visit("pose", pose, "of the arms", Choices{"forward", "offering", "raised", "down"});
+        visit("hat", hat, "on the head", Choices{"cone", "cap", "none"});
+        visit("beard", beard, "a piece of clay under the chin", Anything{});
+        visit("seed", seed, "of phases, noise, holes and lattice", Range{0, 9007199254740992.0});
+        visit("vertices", vertices, "of the whole mesh, before anything is missing", Range{4000, 5e6});
+    }
+};
+
+/// A named place on the surface.
+struct StatuetteLandmark {
+    std::string name;
+    Index vertex = no_index;                     ///< of the mesh, nearest to the place
+    Index face = no_index;                       ///< that holds the place
+    std::array<double, 3> barycentric{1, 0, 0};  ///< weights of corners(mesh, face)
+    Point place{0, 0, 0};
+};
+
+struct Statuette {
+    StatuetteParameters parameters;
+    std::vector<std::string> parts;
+    std::vector<std::array<std::uint8_t, 3>> part_colours;
+    Mesh mesh;                              ///< oriented, manifold, one piece; closed unless something is missing
+    std::vector<std::int32_t> face_labels;  ///< part of each face
+    /// "base right", "base left" (the ends of the longest diameter), "base centre" (open bases have none), "top of the head",
+    /// "head joint" (at the back of the neck), and for each arm "arm joint", "arm outside 1" to "arm outside 5", "hand end" with
+    /// " right" or " left". Those in a hole are left out.
+    std::vector<StatuetteLandmark> landmarks;
+};
+
+/// The implicit object alone: body, cavity (as deep as it is seen), head, arms. Throws Error (usage) for parameters out of range
+/// or that do not fit each other (a wall thicker than the body).
+std::unique_ptr<const MadeObject> statuette_object(const StatuetteParameters& parameters);
+
+/// The statuette as its scan. Throws Error as statuette_object and make_mesh do.
+Statuette generate_statuette(const StatuetteParameters& parameters);
+
+/// How far the two techniques lie apart: medians over a population, with the standard deviation of their logarithms.
+struct TechniqueLevel {
+    double ovality, ovality_drift, finger_marks, sway, wall_noise, off_centre;
+};
+struct StatuetteLevel {
+    TechniqueLevel wheel, hand;
+    double spread;  ///< standard deviation of the natural logarithm of each, drawn independently
+};
+/// Levels 1 (far apart) to 5 (nearly alike). Throws Error (usage) for others.
+StatuetteLevel statuette_level(int level);
+
+struct PopulationOptions {
+    int objects = 100;
+    int level = 1;
+    std::uint64_t seed = 1;
+    std::uint64_t vertices = 10000;
+    double scan_noise = 0.05;
+    std::string interior = "mixed";
+    double cavity_seen = 0.35;
+    int holes = 0;
+    double size_spread = 0.07;
+
+    template <class Visitor>
+    void describe(Visitor& visit) {
+        visit("objects", objects, "statuettes, half of them of each technique", Range{1, 100000});
+        visit("level", level, "difficulty: 1, the techniques far apart, to 5, nearly alike", Range{1, 5});
+        visit("seed", seed, "of the whole population", Range{0, 1e9});
+        visit("vertices", vertices, "of each mesh", Range{4000, 5e6});
+        visit("scan-noise", scan_noise, "standard deviation of each vertex along its normal, mm", Range{0, 0.5});
+        visit("interior", interior, "of hollow bodies, where the scanner's sight ends", Choices{"mixed", "closed", "open"});
+        visit("cavity-seen", cavity_seen, "least share of a cavity's depth that the scanner saw; the most is all", Range{0.1, 1});
+        visit("holes", holes, "most patches that a scan misses", Range{0, 20});
+        visit("size-spread", size_spread, "standard deviation of the logarithm of each size (height, base, arm, head)",
+              Range{0, 0.15});
+    }
+};
+
+/// Parameters of every statuette of a population; object i is the same whatever the number of objects.
+std::vector<StatuetteParameters> draw_population(const PopulationOptions& options);
+
+}  // namespace ostraka

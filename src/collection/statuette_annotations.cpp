@@ -1,0 +1,82 @@
+#include "ostraka/collection/statuette_annotations.h"
+
+#include "ostraka/annotation/label_file.h"
+#include "ostraka/measure/measure.h"
+
+namespace ostraka {
+
+namespace {
+
+const StatuetteLandmark* find_landmark(const Statuette& statuette, const std::string& name) {
+    for (const StatuetteLandmark& landmark : statuette.landmarks)
+        if (landmark.name == name) return &landmark;
+    return nullptr;
+}
+
+/// Nothing if a landmark is missing.
+void add_measure(const Statuette& statuette, Annotation& object, const std::string& name, const std::string& tool,
+                 const std::vector<std::string>& landmarks) {
+    Attribute attribute;
+    attribute.id = static_cast<int>(object.attributes.size());
+    attribute.name = name;
+    attribute.type = AttributeType::measure;
+    Measure& measure = attribute.measure;
+    measure.tool = tool;
+    measure.unit = "mm";
+    for (const std::string& each : landmarks) {
+        const StatuetteLandmark* landmark = find_landmark(statuette, each);
+        if (landmark == nullptr) return;
+        measure.points.push_back(landmark->vertex);
+        measure.locations.push_back({landmark->face, landmark->barycentric});
+    }
+    measure.exact = tool == "tape";
+    measure.value = evaluate(statuette.mesh, object, measure);
+    object.attributes.push_back(std::move(attribute));
+}
+
+}  // namespace
+
+AnnotationSet annotate_statuette(const Statuette& statuette) {
+    std::map<std::int32_t, std::string> names;
+    for (std::size_t part = 0; part < statuette.parts.size(); ++part)
+        names[static_cast<std::int32_t>(part)] = statuette.parts[part];
+    AnnotationSet set = regions_from_labels(statuette.mesh, statuette.face_labels, names);
+    set.object_class = "votive statuette";
+    set.unit = "mm";
+    set.up = {0, 0, 1};
+    for (Annotation& region : set.annotations) {
+        const auto& [red, green, blue] = statuette.part_colours[static_cast<std::size_t>(region.id)];
+        region.colour = {red, green, blue};
+    }
+    Annotation& object = ensure_root(set, statuette.mesh);
+    // The height is taken between the lowest and the topmost vertex: arms never reach above the head.
+    Attribute height;
+    height.name = "total height";
+    height.type = AttributeType::measure;
+    height.measure.tool = "bounding";
+    height.measure.direction = {0, 0, 1};
+    height.measure.unit = "mm";
+    for (const Index pin : extremes(statuette.mesh, object, *height.measure.direction)) height.measure.points.push_back(pin);
+    height.measure.value = evaluate(statuette.mesh, object, height.measure);
+    object.attributes.push_back(std::move(height));
+    add_measure(statuette, object, "base diameter", "ruler", {"base right", "base left"});
+    for (const std::string side : {"right", "left"}) {
+        std::vector<std::string> way{"arm joint " + side};
+        for (int i = 1; i <= 5; ++i) way.push_back("arm outside " + std::to_string(i) + " " + side);
+        way.push_back("hand end " + side);
+        add_measure(statuette, object, "arm length " + side, "tape", way);
+    }
+    add_measure(statuette, object, "head height", "ruler", {"head joint", "top of the head"});
+    for (const StatuetteLandmark& landmark : statuette.landmarks) {
+        Annotation point;
+        point.id = free_id(set);
+        point.tag = landmark.name;
+        point.colour = {30, 30, 30};
+        point.type = AnnotationType::point;
+        point.points = {landmark.vertex};
+        set.annotations.push_back(std::move(point));
+    }
+    return set;
+}
+
+}  // namespace ostraka
