@@ -28,11 +28,11 @@ struct StatuetteBody {
     double ragged;     ///< phase of the line where sight into the cavity ends
 };
 
-/// A rolled arm; its length along the outside, tip included, is the parameter's.
+/// A rolled arm; its length along the outside, to the tip where that is free, is the parameter's.
 class Arm {
 public:
     Arm(const StatuetteParameters& parameters, const StatuetteBody& body, double side);
-    /// Places along the outside, from the joint to the tip of the hand: pieces + 2.
+    /// Places along the outside, evenly spread from the joint to the hand, and the hand's tip unless it is in a bowl.
     [[nodiscard]] std::vector<Eigen::Vector3d> outside(int pieces) const;
     [[nodiscard]] double outside_length() const;
     [[nodiscard]] double side() const { return side_; }
@@ -40,6 +40,7 @@ public:
 
 private:
     double side_;
+    bool bare_;  ///< the hand's tip is free
 };
 /// Right (at negative y, for the face looks along x), left.
 std::array<Arm, 2> body_arms(const StatuetteParameters& parameters, const StatuetteBody& body);

@@ -154,7 +154,7 @@ std::vector<std::pair<std::string, Vector3d>> known_places(const MadeObject& obj
         const std::vector<Vector3d> outside = arm.outside(6);
         add("arm joint" + side, outside[0]);
         for (std::size_t i = 1; i <= 5; ++i) add("arm outside " + std::to_string(i) + side, outside[i]);
-        add("hand end" + side, outside[7]);
+        add("hand end" + side, outside.back());
     }
     return places;
 }

@@ -117,7 +117,9 @@ namespace {
 /// The outline with the flat foot below it and the stump in the head above.
 std::vector<Vector2d> body_profile(const StatuetteParameters& p, const StatuetteFrame& frame) {
     const double rim = frame.outline.front().x(), lift = frame.outline.front().y();
-    std::vector<Vector2d> profile{{0, 0}, {rim - lift, 0}};
+    std::vector<Vector2d> profile{{0, 0}, {0.5 * (rim - lift), 0}, {0.85 * (rim - lift), 0}, {rim - lift, 0}};
+    for (const double angle : {std::numbers::pi / 6, std::numbers::pi / 3})
+        profile.emplace_back(rim - lift * (1 - std::sin(angle)), lift * (1 - std::cos(angle)));
     for (const Vector2d& point : frame.outline) profile.push_back(point);
     profile.emplace_back(frame.neck_radius, frame.joint_height + 0.04 * p.head_height);
     profile.emplace_back(frame.neck_radius, frame.joint_height + 0.15 * p.head_height);
@@ -140,7 +142,7 @@ std::vector<Vector2d> cavity_profile(const StatuetteParameters& p, const Statuet
 
 }  // namespace
 
-Arm::Arm(const StatuetteParameters& p, const StatuetteBody& body, double side) : side_(side) {
+Arm::Arm(const StatuetteParameters& p, const StatuetteBody& body, double side) : side_(side), bare_(p.pose != "offering") {
     static const std::map<std::string, std::vector<Vector3d>> poses{
         {"forward", {{0, 0, 0}, {0.10, 0.22, -0.22}, {0.45, 0.24, -0.32}, {0.85, 0.14, -0.20}}},
         {"offering", {{0, 0, 0}, {0.08, 0.22, -0.26}, {0.42, 0.10, -0.38}, {0.74, -0.27, -0.30}}},
@@ -184,7 +186,7 @@ std::vector<Vector3d> Arm::outside(int pieces) const {
         while (piece + 2 < knots.size() && knots[piece + 1] < t) ++piece;
         const double share = (t - knots[piece]) / (knots[piece + 1] - knots[piece]);
         places.push_back(state.value + ((1 - share) * radii[piece] + share * radii[piece + 1]) * away);
-        if (i == pieces) places.push_back(state.value + radii.back() * along);
+        if (i == pieces && bare_) places.push_back(state.value + radii.back() * along);
     }
     return places;
 }
@@ -251,7 +253,7 @@ std::unique_ptr<MadeObject> build_statuette(const StatuetteParameters& p, const 
     const std::vector<Vector2d> profile = body_profile(p, frame);
     Member trunk;
     trunk.solid = make_warped(make_lathe({}, profile), body.outside);
-    trunk.stretches = {{chord_lengths(profile)[11], base}, {std::numeric_limits<double>::infinity(), tube}};
+    trunk.stretches = {{chord_lengths(profile)[15], base}, {std::numeric_limits<double>::infinity(), tube}};
     object->members.push_back(std::move(trunk));
     const double shoulders = 0.85 * frame.joint_height, r = frame.tube_radius;
     const Vector2d c = body.outside->centre(shoulders);

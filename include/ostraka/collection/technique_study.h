@@ -1,0 +1,104 @@
+// Which objects of a collection are wheel-made and which hand-made: answers learned from objects whose technique is known, or
+// found without any (thesis, section 3.2.1).
+#pragma once
+
+#include "ostraka/collection/technique.h"
+#include "ostraka/stats/inference.h"
+#include "ostraka/stats/scores.h"
+
+#include <optional>
+
+namespace ostraka {
+
+struct TechniqueObject {
+    std::string name;
+    std::string label;  ///< the known technique; empty where it is not known
+    TechniqueMeasures measures;
+};
+
+/// A rule that learns from labelled objects: one descriptor and the threshold with the best F1, or several (logarithms where they
+/// are positive, standardised) and Fisher's linear discriminant with equal weight for both labels.
+struct TechniqueClassifier {
+    std::string name;
+    std::vector<std::string> descriptors;
+};
+/// Those of the thesis: "roundness", "roundness variance", "roundness mean and variance", the same of "eccentricity", "both
+/// means", "both" (means and variances of both). Others: "equivalent roundness", "ovality", "marks", "coherence", "straightness",
+/// "upright straightness", "wall variation", "outside" (ovality, marks, coherence and straightness), "outside and wall".
+const std::vector<TechniqueClassifier>& technique_classifiers();
+
+struct TechniqueStudyOptions {
+    std::string positive;
+    std::string answer_by = "both";
+    int folds = 10, repeats = 10;
+    int resamples = 300;
+    int simulations = 999;
+    std::uint64_t seed = 1;
+
+    template <class Visitor>
+    void describe(Visitor& visit) {
+        visit("positive", positive, "the label that F1 is of; else the one whose bodies are rounder", Anything{});
+        visit("answer-by", answer_by, "the classifier that answers for each object (see the table of classifiers)", Anything{});
+        visit("folds", folds, "parts of the cross-validation", Range{2, 1000});
+        visit("repeats", repeats, "divisions into parts", Range{1, 1000});
+        visit("resamples", resamples, "resampled collections that each answer is asked of", Range{10, 100000});
+        visit("simulations", simulations, "collections of one group that a division into two is compared with",
+              Range{19, 100000});
+        visit("seed", seed, "seed of the random numbers", Range{0, 1e18});
+    }
+};
+
+struct ClassifierResult {
+    TechniqueClassifier classifier;
+    std::size_t objects = 0;  ///< labelled ones with all its descriptors
+    bool validated = false;   ///< false with fewer than two objects of a label: then nothing below is known
+    CrossValidation validation;
+    RocCurve roc;  ///< of one descriptor: its values; of several: scores of each object when it was left out
+    std::optional<Threshold> threshold;  ///< of one descriptor, learned from all; in its own unit
+};
+
+/// A division into two groups by one number alone: the one with the least variance within (Otsu 1979).
+struct TechniqueSplit {
+    std::string descriptor;              ///< or "first component": of all descriptors of the outside, logarithms, standardised
+    std::size_t objects = 0, lower = 0;  ///< in all, and in the group of the lower values
+    double threshold = 0;                ///< halfway between the groups
+    double share = 0;                    ///< of the variance (of logarithms, where positive) that lies between the groups
+    double p_value = 1;                  ///< share of simulated collections from one normal distribution that divide as well
+    std::vector<int> group;              ///< of each object of the study: 0 lower, 1 upper, -1 not known
+    std::optional<double> f1;            ///< the better of the two ways to name the groups, where labels are known
+};
+
+struct TechniqueAnswer {
+    std::string name, label;
+    std::string answer;  ///< empty if there is none
+    bool positive = false;
+    double score = 0;                   ///< above 0: positive; in standard deviations of the labelled objects' scores
+    double agreement = 0;               ///< share of the resampled collections without this object that give the same answer
+    int asked = 0;                      ///< their number
+    std::optional<Interval> roundness;  ///< 95 % of the mean roundness over resampled blocks of slices
+    std::string words;                  ///< why, in one sentence
+};
+
+struct TechniqueStudy {
+    std::string positive, negative;  ///< labels; of a study without labels "rounder" and "less round"
+    bool learned = false;            ///< from labels; else by a division
+    std::string answered_by;
+    std::vector<ClassifierResult> classifiers;  ///< empty without labels
+    std::vector<TechniqueSplit> splits;
+    bool separated = false;                ///< without labels: the division by `answered_by` has a p-value of at most 0.05
+    std::vector<TechniqueAnswer> answers;  ///< one an object, in their order
+};
+
+/// Learns, validates and answers. A labelled object is answered by what the others teach. Without labels the objects are divided
+/// by the first descriptor of `answer_by` (all of the outside: their first component), and no answers are given unless that
+/// division is better than those of one group (p at most 0.05). Throws Error (usage) for an unknown classifier or label; Error
+/// (input) without objects or with labels of more than two kinds.
+TechniqueStudy study_technique(const std::vector<TechniqueObject>& objects, const TechniqueStudyOptions& options = {});
+
+/// The division of `values` with the least variance within, its threshold and share between; share 0 if all are the same.
+struct TwoGroups {
+    double threshold = 0, share = 0;
+};
+TwoGroups divide_in_two(std::vector<double> values);
+
+}  // namespace ostraka

@@ -1,0 +1,75 @@
+#include "outline_harmonics.h"
+
+#include <Eigen/Dense>
+
+#include <cmath>
+#include <numbers>
+
+namespace ostraka {
+
+using Eigen::Vector2d;
+using std::numbers::pi;
+
+namespace {
+
+constexpr int directions = 360;
+
+/// Distance from the centre in each direction, 0 where the contour is not met.
+std::array<double, directions> radii_of(const Contour& contour, const Vector2d& centre) {
+    std::array<double, directions> radii{};
+    const std::size_t pieces = contour.closed ? contour.points.size() : contour.points.size() - 1;
+    for (std::size_t i = 0; i < pieces; ++i) {
+        const Vector2d a = contour.points[i] - centre, b = contour.points[(i + 1) % contour.points.size()] - centre;
+        const double from = std::atan2(a.y(), a.x());
+        const double turn = std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
+        // Directions (d + 1/2) of the full turn: none is that of an axis.
+        const double step = 2 * pi / directions;
+        const double low = std::min(from, from + turn) / step - 0.5, high = std::max(from, from + turn) / step - 0.5;
+        for (auto d = static_cast<int>(std::ceil(low)); d <= static_cast<int>(std::floor(high)); ++d) {
+            const double angle = (d + 0.5) * step;
+            const Vector2d way(std::cos(angle), std::sin(angle)), along = b - a;
+            const double across = way.x() * along.y() - way.y() * along.x();
+            if (across == 0) continue;
+            const double r = (a.x() * along.y() - a.y() * along.x()) / across;
+            double& radius = radii.at(static_cast<std::size_t>(((d % directions) + directions) % directions));
+            radius = std::max(radius, r);
+        }
+    }
+    return radii;
+}
+
+}  // namespace
+
+OutlineHarmonics outline_harmonics(const Contour& contour, const Vector2d& centre) {
+    OutlineHarmonics result;
+    if (contour.points.size() < 2) return result;
+    const auto radii = radii_of(contour, centre);
+    constexpr int columns = 1 + 2 * static_cast<int>(most_harmonics);
+    Eigen::Matrix<double, columns, columns> normal = Eigen::Matrix<double, columns, columns>::Zero();
+    Eigen::Matrix<double, columns, 1> right = Eigen::Matrix<double, columns, 1>::Zero(), row;
+    int met = 0;
+    for (int d = 0; d < directions; ++d) {
+        const double r = radii.at(static_cast<std::size_t>(d));
+        if (r <= 0) continue;
+        ++met;
+        const double angle = (d + 0.5) * 2 * pi / directions;
+        row[0] = 1;
+        for (int k = 1; k <= static_cast<int>(most_harmonics); ++k)
+            row[2 * k - 1] = std::cos(k * angle), row[2 * k] = std::sin(k * angle);
+        normal += row * row.transpose();
+        right += r * row;
+    }
+    result.turn = static_cast<double>(met) / directions;
+    if (met < columns) return result;
+    // With all directions the matrix is diagonal and the damping takes 1e-4 of each harmonic.
+    normal.diagonal().tail<columns - 1>().array() += 0.5e-4 * met;
+    const Eigen::Matrix<double, columns, 1> x = normal.ldlt().solve(right);
+    result.radius = x[0];
+    for (std::size_t k = 1; k <= most_harmonics; ++k) {
+        result.cosine.at(k) = x[static_cast<Eigen::Index>(2 * k - 1)];
+        result.sine.at(k) = x[static_cast<Eigen::Index>(2 * k)];
+    }
+    return result;
+}
+
+}  // namespace ostraka

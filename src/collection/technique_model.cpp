@@ -1,0 +1,89 @@
+#include "technique_model.h"
+
+#include <Eigen/Dense>
+
+#include <cmath>
+
+namespace ostraka {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+DescriptorTable descriptor_table(const std::vector<TechniqueObject>& objects, const std::vector<std::string>& descriptors) {
+    DescriptorTable table;
+    std::vector<bool> positive;
+    for (const auto& name : descriptors)
+        for (const DescriptorMeaning& meaning : technique_descriptors())
+            if (meaning.name == name) positive.push_back(meaning.positive);
+    if (positive.size() != descriptors.size()) throw std::logic_error("unknown descriptor of technique");
+    std::vector<VectorXd> rows;
+    const auto columns = static_cast<Eigen::Index>(descriptors.size());
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+        VectorXd row(columns);
+        for (Eigen::Index k = 0; k < columns; ++k) {
+            const double value = objects[i].measures.value(descriptors[static_cast<std::size_t>(k)]);
+            row[k] = positive[static_cast<std::size_t>(k)] ? std::log(std::max(value, least_positive)) : value;
+            if (std::isnan(value)) row[k] = value;
+        }
+        if (!row.allFinite()) continue;
+        rows.push_back(row);
+        table.objects.push_back(i);
+    }
+    table.values.resize(static_cast<Eigen::Index>(rows.size()), columns);
+    for (std::size_t i = 0; i < rows.size(); ++i) table.values.row(static_cast<Eigen::Index>(i)) = rows[i];
+    table.logarithm = positive.front();
+    return table;
+}
+
+namespace {
+
+struct Kinds {
+    VectorXd mean[2];
+    MatrixXd scatter;  ///< pooled covariance
+    std::size_t count[2] = {0, 0};
+};
+Kinds kinds_of(const MatrixXd& values, const std::vector<bool>& truth, const std::vector<std::size_t>& rows) {
+    Kinds kinds{{VectorXd::Zero(values.cols()), VectorXd::Zero(values.cols())}, MatrixXd::Zero(values.cols(), values.cols())};
+    for (const std::size_t row : rows) {
+        const int kind = truth[row] ? 1 : 0;
+        kinds.mean[kind] += values.row(static_cast<Eigen::Index>(row)).transpose();
+        ++kinds.count[kind];
+    }
+    for (int kind = 0; kind < 2; ++kind) kinds.mean[kind] /= static_cast<double>(std::max<std::size_t>(kinds.count[kind], 1));
+    for (const std::size_t row : rows) {
+        const VectorXd away = values.row(static_cast<Eigen::Index>(row)).transpose() - kinds.mean[truth[row] ? 1 : 0];
+        kinds.scatter += away * away.transpose();
+    }
+    kinds.scatter /= std::max(1.0, static_cast<double>(rows.size()) - 2);
+    return kinds;
+}
+
+}  // namespace
+
+TechniqueModel learn(const MatrixXd& values, const std::vector<bool>& truth, const std::vector<std::size_t>& rows) {
+    const Kinds kinds = kinds_of(values, truth, rows);
+    TechniqueModel model;
+    if (values.cols() == 1) {
+        std::vector<double> x;
+        std::vector<bool> known;
+        for (const std::size_t row : rows) x.push_back(values(static_cast<Eigen::Index>(row), 0)), known.push_back(truth[row]);
+        model.threshold = best_threshold(x, known, Side::either);
+        const double deviation = std::max(std::sqrt(kinds.scatter(0, 0)), 1e-300);
+        model.weights = VectorXd::Constant(1, (model.threshold->above ? 1 : -1) / deviation);
+        model.middle = VectorXd::Constant(1, model.threshold->value);
+        return model;
+    }
+    // Fisher's discriminant (1936) of standardised columns; a twentieth of the identity keeps columns that nearly agree from
+    // outweighing each other.
+    const VectorXd size = kinds.scatter.diagonal().cwiseSqrt().cwiseMax(1e-12);
+    const MatrixXd standard = size.cwiseInverse().asDiagonal() * kinds.scatter * size.cwiseInverse().asDiagonal();
+    const MatrixXd damped = standard + 0.05 * MatrixXd::Identity(values.cols(), values.cols());
+    const VectorXd apart = (kinds.mean[1] - kinds.mean[0]).cwiseQuotient(size);
+    model.weights = damped.ldlt().solve(apart).cwiseQuotient(size);
+    const double deviation = std::sqrt(std::max(model.weights.dot(kinds.scatter * model.weights), 0.0));
+    if (deviation > 1e-300) model.weights /= deviation;
+    model.middle = 0.5 * (kinds.mean[0] + kinds.mean[1]);
+    return model;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,352 @@
+#include "ostraka/collection/technique_study.h"
+
+#include "technique_model.h"
+#include "technique_words.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/stats/random.h"
+#include "ostraka/stats/summary.h"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+namespace ostraka {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+const std::vector<std::string>& outside() {
+    static const std::vector<std::string> list{"ovality", "marks", "coherence", "straightness"};
+    return list;
+}
+const std::string component_name = "first component";
+
+/// The label whose objects are rounder in the median.
+std::string rounder_label(const std::vector<TechniqueObject>& objects, const std::set<std::string>& labels) {
+    std::string best;
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& label : labels) {
+        std::vector<double> values;
+        for (const auto& object : objects)
+            if (object.label == label) values.push_back(object.measures.value("roundness mean"));
+        const double median = sample_quantile(values, 0.5, "roundness");
+        if (median < least) least = median, best = label;
+    }
+    return best;
+}
+
+/// Rows of a table whose objects are labelled, and their truth.
+struct Labelled {
+    std::vector<std::size_t> rows;
+    std::vector<bool> truth;  ///< of every row of the table; false where there is no label
+    [[nodiscard]] std::size_t positives() const {
+        return static_cast<std::size_t>(std::count_if(rows.begin(), rows.end(), [&](std::size_t row) { return truth[row]; }));
+    }
+    [[nodiscard]] bool enough() const { return positives() >= 2 && rows.size() - positives() >= 2; }
+};
+Labelled labelled(const std::vector<TechniqueObject>& objects, const DescriptorTable& table, const std::string& positive) {
+    Labelled result;
+    for (std::size_t row = 0; row < table.objects.size(); ++row) {
+        const std::string& label = objects[table.objects[row]].label;
+        result.truth.push_back(label == positive);
+        if (!label.empty()) result.rows.push_back(row);
+    }
+    return result;
+}
+
+ClassifierResult validate_classifier(const std::vector<TechniqueObject>& objects, const TechniqueClassifier& classifier,
+                                     const std::string& positive, const TechniqueStudyOptions& options) {
+    ClassifierResult result;
+    result.classifier = classifier;
+    const DescriptorTable table = descriptor_table(objects, classifier.descriptors);
+    const Labelled known = labelled(objects, table, positive);
+    result.objects = known.rows.size();
+    if (!known.enough()) return result;
+    result.validated = true;
+    const auto rows_of = [&](const std::vector<std::size_t>& samples) {
+        std::vector<std::size_t> rows;
+        for (const std::size_t sample : samples) rows.push_back(known.rows[sample]);
+        return rows;
+    };
+    std::vector<bool> truth;
+    for (const std::size_t row : known.rows) truth.push_back(known.truth[row]);
+    CrossValidationOptions folds;
+    folds.folds = options.folds;
+    folds.repeats = options.repeats;
+    folds.seed = options.seed;
+    result.validation = cross_validate(
+        truth,
+        [&](const std::vector<std::size_t>& taught, const std::vector<std::size_t>& asked) {
+            const TechniqueModel model = learn(table.values, known.truth, rows_of(taught));
+            std::vector<bool> answers;
+            for (const std::size_t row : rows_of(asked)) {
+                const double x = table.values(static_cast<Eigen::Index>(row), 0);
+                answers.push_back(model.threshold ? model.threshold->positive(x)
+                                                  : model.score(table.values.row(static_cast<Eigen::Index>(row))) > 0);
+            }
+            return answers;
+        },
+        folds);
+    std::vector<double> scores(known.rows.size());
+    const TechniqueModel all = learn(table.values, known.truth, known.rows);
+    parallel_for(
+        scores.size(),
+        [&](std::size_t i) {
+            if (all.threshold) {
+                scores[i] = (all.threshold->above ? 1 : -1) * table.values(static_cast<Eigen::Index>(known.rows[i]), 0);
+                return;
+            }
+            std::vector<std::size_t> others = known.rows;
+            others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+            scores[i] =
+                learn(table.values, known.truth, others).score(table.values.row(static_cast<Eigen::Index>(known.rows[i])));
+        },
+        8);
+    result.roc = roc_curve(scores, truth);
+    result.threshold = all.threshold;
+    if (result.threshold && table.logarithm) result.threshold->value = std::exp(result.threshold->value);
+    return result;
+}
+
+/// 95 % of the mean roundness when blocks of a tenth of the slices are drawn anew (moving blocks, Kuensch 1989: neighbouring
+/// slices are alike).
+std::optional<Interval> roundness_interval(const TechniqueMeasures& measures, std::uint64_t seed, std::size_t object) {
+    const std::size_t count = measures.slices.size(), block = std::max<std::size_t>(1, count / 10);
+    if (count < 2) return std::nullopt;
+    Random random(seed, 1000000 + object);
+    std::vector<double> means;
+    for (int i = 0; i < 400; ++i) {
+        double sum = 0;
+        for (std::size_t taken = 0; taken < count;) {
+            const std::size_t start = random.below(count - block + 1);
+            for (std::size_t k = 0; k < block && taken < count; ++k, ++taken) sum += measures.slices[start + k].roundness;
+        }
+        means.push_back(sum / static_cast<double>(count));
+    }
+    return Interval{sample_quantile(means, 0.025), sample_quantile(means, 0.975)};
+}
+
+/// Answers of the chosen classifier, each learned without the object itself.
+void answer_learned(TechniqueStudy& study, const std::vector<TechniqueObject>& objects, const ClassifierResult& chosen,
+                    const TechniqueStudyOptions& options) {
+    const DescriptorTable table = descriptor_table(objects, chosen.classifier.descriptors);
+    const Labelled known = labelled(objects, table, study.positive);
+    if (!known.enough()) return;
+    const std::size_t rows = table.objects.size();
+    std::vector<TechniqueModel> models(rows);
+    parallel_for(
+        rows,
+        [&](std::size_t row) {
+            std::vector<std::size_t> others = known.rows;
+            std::erase(others, row);
+            models[row] = learn(table.values, known.truth, others);
+        },
+        8);
+    // Resampled collections: each kind drawn with replacement as often as it is there.
+    std::vector<std::vector<std::int8_t>> votes(static_cast<std::size_t>(options.resamples));
+    std::vector<std::size_t> kinds[2];
+    for (const std::size_t row : known.rows) kinds[known.truth[row] ? 1 : 0].push_back(row);
+    parallel_for(
+        votes.size(),
+        [&](std::size_t i) {
+            Random random(options.seed, i);
+            std::vector<std::size_t> drawn;
+            std::vector<bool> taken(rows, false);
+            for (const auto& kind : kinds)
+                for (const std::size_t sample : random.resample(kind.size())) {
+                    drawn.push_back(kind[sample]);
+                    taken[kind[sample]] = true;
+                }
+            const TechniqueModel model = learn(table.values, known.truth, drawn);
+            votes[i].assign(rows, -1);
+            for (std::size_t row = 0; row < rows; ++row)
+                if (!taken[row]) votes[i][row] = model.score(table.values.row(static_cast<Eigen::Index>(row))) > 0 ? 1 : 0;
+        },
+        8);
+    for (std::size_t row = 0; row < rows; ++row) {
+        TechniqueAnswer& answer = study.answers[table.objects[row]];
+        answer.score = models[row].score(table.values.row(static_cast<Eigen::Index>(row)));
+        answer.positive = answer.score > 0;
+        answer.answer = answer.positive ? study.positive : study.negative;
+        int same = 0;
+        for (const auto& vote : votes) {
+            if (vote[row] < 0) continue;
+            ++answer.asked;
+            if ((vote[row] == 1) == answer.positive) ++same;
+        }
+        answer.agreement = answer.asked > 0 ? static_cast<double>(same) / answer.asked : 0;
+    }
+}
+
+/// First principal component of the outside's descriptors, standardised; larger for what is less round.
+std::vector<double> first_component(const DescriptorTable& table) {
+    const Eigen::Index n = table.values.rows();
+    if (n < 2) return std::vector<double>(static_cast<std::size_t>(n), 0);
+    MatrixXd X = table.values.rowwise() - table.values.colwise().mean();
+    for (Eigen::Index k = 0; k < X.cols(); ++k) {
+        const double size = X.col(k).norm() / std::sqrt(static_cast<double>(n - 1));
+        X.col(k) /= size > 1e-12 ? size : 1;
+    }
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> parts(X.transpose() * X);
+    VectorXd way = parts.eigenvectors().col(X.cols() - 1);
+    if (way[0] < 0) way = -way;  // of ovality
+    const VectorXd y = X * way;
+    return {y.data(), y.data() + y.size()};
+}
+
+TechniqueSplit split_by(const std::vector<TechniqueObject>& objects, const std::string& descriptor, const std::string& positive,
+                        const TechniqueStudyOptions& options) {
+    TechniqueSplit split;
+    split.descriptor = descriptor;
+    split.group.assign(objects.size(), -1);
+    const bool component = descriptor == component_name;
+    const DescriptorTable table = descriptor_table(objects, component ? outside() : std::vector<std::string>{descriptor});
+    split.objects = table.objects.size();
+    if (split.objects < 4) return split;
+    std::vector<double> values = component ? first_component(table) : std::vector<double>();
+    if (!component)
+        for (Eigen::Index i = 0; i < table.values.rows(); ++i) values.push_back(table.values(i, 0));
+    const TwoGroups groups = divide_in_two(values);
+    split.share = groups.share;
+    split.threshold = !component && table.logarithm ? std::exp(groups.threshold) : groups.threshold;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        split.group[table.objects[i]] = values[i] > groups.threshold ? 1 : 0;
+        if (values[i] <= groups.threshold) ++split.lower;
+    }
+    std::vector<double> chance(static_cast<std::size_t>(options.simulations));
+    parallel_for(
+        chance.size(),
+        [&](std::size_t i) {
+            Random random(options.seed, 2000000 + i);
+            std::vector<double> one(values.size());
+            for (double& value : one) value = random.normal();
+            chance[i] = divide_in_two(std::move(one)).share;
+        },
+        16);
+    split.p_value = split.share > 0 ? permutation_p_value(split.share, chance) : 1;
+    ConfusionScores as[2];
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+        if (split.group[i] < 0 || objects[i].label.empty()) continue;
+        for (int side = 0; side < 2; ++side) as[side].add(split.group[i] == side, objects[i].label == positive);
+    }
+    if (as[0].count() > 0) split.f1 = std::max(as[0].f1(), as[1].f1());
+    return split;
+}
+
+void answer_by_split(TechniqueStudy& study, const TechniqueSplit& split, const std::vector<TechniqueObject>& objects) {
+    study.separated = split.p_value <= 0.05;
+    if (!study.separated) return;
+    // The group whose roundness is less in the median is the rounder one.
+    std::vector<double> roundness[2];
+    for (std::size_t i = 0; i < objects.size(); ++i)
+        if (split.group[i] >= 0) roundness[split.group[i]].push_back(objects[i].measures.value("roundness mean"));
+    const int round = sample_quantile(roundness[0], 0.5) <= sample_quantile(roundness[1], 0.5) ? 0 : 1;
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+        if (split.group[i] < 0) continue;
+        TechniqueAnswer& answer = study.answers[i];
+        answer.positive = split.group[i] == round;
+        answer.answer = answer.positive ? study.positive : study.negative;
+    }
+}
+
+}  // namespace
+
+const std::vector<TechniqueClassifier>& technique_classifiers() {
+    static const std::vector<TechniqueClassifier> list{
+        {"roundness", {"roundness mean"}},
+        {"roundness variance", {"roundness variance"}},
+        {"roundness mean and variance", {"roundness mean", "roundness variance"}},
+        {"eccentricity", {"eccentricity mean"}},
+        {"eccentricity variance", {"eccentricity variance"}},
+        {"eccentricity mean and variance", {"eccentricity mean", "eccentricity variance"}},
+        {"both means", {"roundness mean", "eccentricity mean"}},
+        {"both", {"roundness mean", "roundness variance", "eccentricity mean", "eccentricity variance"}},
+        {"equivalent roundness", {"equivalent roundness mean"}},
+        {"ovality", {"ovality"}},
+        {"marks", {"marks"}},
+        {"coherence", {"coherence"}},
+        {"straightness", {"straightness"}},
+        {"upright straightness", {"upright straightness"}},
+        {"wall variation", {"wall variation"}},
+        {"outside", {"ovality", "marks", "coherence", "straightness"}},
+        {"outside and wall", {"ovality", "marks", "coherence", "straightness", "wall variation"}}};
+    return list;
+}
+
+TwoGroups divide_in_two(std::vector<double> values) {
+    TwoGroups best;
+    if (values.empty()) return best;
+    std::sort(values.begin(), values.end());
+    const double n = static_cast<double>(values.size());
+    const double mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
+    double total = 0, sum = 0;
+    for (const double value : values) total += (value - mean) * (value - mean);
+    best.threshold = values.back();
+    if (!(total > 0)) return best;
+    for (std::size_t i = 0; i + 1 < values.size(); ++i) {
+        sum += values[i] - mean;
+        if (values[i + 1] == values[i]) continue;
+        const double low = static_cast<double>(i + 1), high = n - low;
+        const double between = sum * sum * (1 / low + 1 / high);
+        if (between / total > best.share) best = {0.5 * (values[i] + values[i + 1]), between / total};
+    }
+    return best;
+}
+
+TechniqueStudy study_technique(const std::vector<TechniqueObject>& objects, const TechniqueStudyOptions& options) {
+    check_options(options, "study technique");
+    if (objects.empty()) fail_input("study technique", "no object is left to study");
+    const auto& classifiers = technique_classifiers();
+    const auto chosen =
+        std::find_if(classifiers.begin(), classifiers.end(), [&](const auto& each) { return each.name == options.answer_by; });
+    if (chosen == classifiers.end()) {
+        std::string all;
+        for (const auto& each : classifiers) all += (all.empty() ? "" : ", ") + each.name;
+        fail_usage("there is no classifier '" + options.answer_by + "'", "use one of: " + all);
+    }
+    std::set<std::string> labels;
+    for (const auto& object : objects)
+        if (!object.label.empty()) labels.insert(object.label);
+    if (labels.size() > 2)
+        fail_input("study technique", "the labels are of " + std::to_string(labels.size()) + " kinds",
+                   "give two, such as wheel and hand, and leave out the label of the others");
+    if (!options.positive.empty() && !labels.contains(options.positive))
+        fail_usage("no object has the label '" + options.positive + "'", "name one that the truth gives");
+
+    TechniqueStudy study;
+    study.learned = labels.size() == 2;
+    study.positive = !options.positive.empty() ? options.positive : study.learned ? rounder_label(objects, labels) : "rounder";
+    if (study.learned) study.negative = *labels.begin() == study.positive ? *labels.rbegin() : *labels.begin();
+    else study.negative = "less round";
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+        TechniqueAnswer& answer = study.answers.emplace_back();
+        answer.name = objects[i].name;
+        answer.label = objects[i].label;
+        answer.roundness = roundness_interval(objects[i].measures, options.seed, i);
+    }
+    study.answered_by = chosen->name;
+    std::vector<std::string> split_names{component_name};
+    for (const DescriptorMeaning& each : technique_descriptors()) split_names.push_back(each.name);
+    for (const auto& name : split_names) study.splits.push_back(split_by(objects, name, study.positive, options));
+    if (study.learned) {
+        for (const auto& classifier : classifiers)
+            study.classifiers.push_back(validate_classifier(objects, classifier, study.positive, options));
+        answer_learned(study, objects, study.classifiers[static_cast<std::size_t>(chosen - classifiers.begin())], options);
+    } else {
+        const std::string by = chosen->name.starts_with("outside") ? component_name : chosen->descriptors.front();
+        study.answered_by = by;
+        for (const TechniqueSplit& split : study.splits)
+            if (split.descriptor == by) answer_by_split(study, split, objects);
+    }
+    explain_answers(study, objects);
+    return study;
+}
+
+}  // namespace ostraka
