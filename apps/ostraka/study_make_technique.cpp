@@ -1,5 +1,5 @@
 // ostraka study make technique: a population of statuettes whose technique is known.
-#include "commands.h"
+#include "command.h"
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/collection/statuette_annotations.h"

@@ -221,7 +221,7 @@ void add_head(MadeObject& object, const StatuetteParameters& p, const StatuetteB
                    head, 0.04 * h);
     }
     if (p.beard)
-        add_member(object, make_tube({{at(0.28, 0, eyes - 0.30), 0.09 * h}, {at(0.36, 0, eyes - 0.46), 0.05 * h}}), head,
+        add_member(object, make_tube({{at(0.26, 0, eyes - 0.26), 0.09 * h}, {at(0.34, 0, eyes - 0.36), 0.055 * h}}), head,
                    0.1 * h);
     if (p.hat == "none") return;
     const int hat = add_part(object, "hat", {90, 110, 150});
