@@ -84,6 +84,15 @@ void structural_continuity(const SemanticOptions& options);
 void face_proportions(const SemanticOptions& options);
 void before_and_after(const SemanticOptions& options);
 
+/// Technique of generated statuettes, by level and by what scanners do.
+struct TechniqueExperiment {
+    std::string output;  ///< folder
+    int objects = 100, seeds = 2;
+    std::uint64_t vertices = 6000;
+    bool variants = false;
+};
+void technique(const TechniqueExperiment& options);
+
 /// The faces nearest to a seed vertex (by edge paths), up to a share of the mesh's area.
 std::vector<Index> disc(const Mesh& mesh, Vertex seed, double share);
 

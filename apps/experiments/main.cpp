@@ -124,6 +124,15 @@ int main(int argc, char** argv) {
         semantic_commands.emplace_back(command, run);
     }
 
+    experiments::TechniqueExperiment technique;
+    CLI::App* technique_command = tool.add_subcommand(
+        "technique", "wheel-made or hand-made: F1 on generated statuettes by level of difficulty (section 3.2.1)");
+    technique_command->add_option("output", technique.output, "folder for tables and plots")->required();
+    technique_command->add_option("--objects", technique.objects, "statuettes of a population")->check(CLI::Range(10, 100000));
+    technique_command->add_option("--seeds", technique.seeds, "populations of a level")->check(CLI::Range(1, 1000));
+    technique_command->add_option("--vertices", technique.vertices, "of each mesh")->capture_default_str();
+    technique_command->add_flag("--variants", technique.variants, "also scan noise, missing interior and holes, at level 3");
+
     try {
         tool.parse(argc, argv);
         set_threads(threads);
@@ -136,6 +145,7 @@ int main(int argc, char** argv) {
         if (cage_command->parsed()) experiments::cages(cages);
         if (label_command->parsed()) experiments::label_transfer(labels);
         if (fixed_command->parsed()) experiments::fixed_proportions(fixed);
+        if (technique_command->parsed()) experiments::technique(technique);
         for (const auto& [command, run] : semantic_commands)
             if (command->parsed()) run(semantic);
         return 0;

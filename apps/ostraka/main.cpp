@@ -68,6 +68,7 @@ int main(int argc, char** argv) {
     app::add_study_make_moulds(*made, session);
     app::add_study_make_technique(*made, session);
     app::add_study_technique(*study, session);
+    app::add_study_segments(*study, session);
     try {
         tool.parse(argc, argv);
         set_threads(session.threads);

@@ -15,7 +15,7 @@ namespace ostraka {
 
 struct TechniqueOptions {
     int slices = 100;
-    double from = 0, to = 0.4;
+    double from = 0.02, to = 0.4;
     double least_turn = 0.8;
     int least_slices = 20;
 
