@@ -1,0 +1,115 @@
+// `ostraka study technique` and `ostraka study segments` as people run them.
+#include "ostraka/annotation/annotation_file.h"
+#include "ostraka/core/csv.h"
+#include "ostraka/core/json.h"
+#include "ostraka/io/mesh_file.h"
+#include "ostraka/shapes/statuettes.h"
+#include "scratch.h"
+
+#include <gtest/gtest.h>
+
+namespace ostraka {
+namespace {
+using test::run_command;
+using test::Scratch;
+
+/// Eight statuettes of level 1, made once.
+const Path& population() {
+    static const Scratch scratch;
+    static const Path folder = [] {
+        const Path path = scratch / "population";
+        const auto made = run_command("study make technique " + path.string() + " --objects 8 --vertices 4000 --interior closed");
+        EXPECT_EQ(made.code, 0) << made.err;
+        return path;
+    }();
+    return folder;
+}
+
+TEST(StudyTechniqueCommand, AnswersWithTablesPlotsAndReasons) {
+    Scratch scratch;
+    const std::string out = (scratch / "out").string();
+    const auto result = run_command("study technique " + population().string() + " --truth " +
+                                    (population() / "truth.csv").string() + " --output " + out + " --answer-by roundness --json");
+    ASSERT_EQ(result.code, 0) << result.err;
+    const Json report = parse_json(result.out, "report");
+    const Json file = read_json(Path(out) / "technique.json");
+    validate(file, "technique", "technique.json");
+    EXPECT_STREQ(file["positive"].GetString(), "wheel");
+    ASSERT_EQ(file["objects"].Size(), 8U);
+    for (const auto& object : file["objects"].GetArray()) {
+        EXPECT_STREQ(object["answer"].GetString(), object["label"].GetString());
+        EXPECT_NE(std::string(object["words"].GetString()).find("threshold"), std::string::npos);
+    }
+    for (const char* name : {"descriptors.csv", "descriptors.md", "classifiers.csv", "divisions.csv", "answers.csv",
+                             "answers.tex", "roundness.svg", "eccentricity.svg", "ovality.svg", "classifiers.svg", "roc.svg"})
+        EXPECT_TRUE(std::filesystem::exists(Path(out) / name)) << name;
+    EXPECT_EQ(csv_rows(read_file(Path(out) / "answers.csv"), ',', "answers.csv").size(), 9U);
+}
+
+TEST(StudyTechniqueCommand, OneBadObjectStopsNothingAndARunIsResumed) {
+    Scratch scratch;
+    const Path folder = scratch / "mixed", out = scratch / "out";
+    std::filesystem::copy(population(), folder);
+    write_file(folder / "broken.ply", "ply\nnot a mesh");
+    write_file(folder / "flat.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    const std::string words = "study technique " + folder.string() + " --output " + out.string() + " --truth " +
+                              (folder / "truth.csv").string() + " --threads ";
+    const auto first = run_command(words + "1");
+    EXPECT_EQ(first.code, 0) << first.err;
+    EXPECT_NE(first.err.find("left out: broken"), std::string::npos) << first.err;
+    EXPECT_NE(first.err.find("left out: flat"), std::string::npos) << first.err;
+    EXPECT_NE(first.out.find("8 objects studied, 2 left out"), std::string::npos) << first.out;
+    const std::string report = read_file(out / "technique.json");
+    std::filesystem::remove(out / "objects" / "statuette-3.json");
+    std::filesystem::remove(out / "technique.json");
+    const auto again = run_command(words + "2");
+    EXPECT_EQ(again.code, 0) << again.err;
+    EXPECT_EQ(read_file(out / "technique.json"), report);
+}
+
+TEST(StudyTechniqueCommand, WithoutTruthItSaysWhetherThereAreTwoGroups) {
+    Scratch scratch;
+    const auto result = run_command("study technique " + population().string() + " --output " + (scratch / "out").string());
+    EXPECT_TRUE(result.code == 0 || result.code == 3) << result.err;
+    EXPECT_NE(result.out.find("no answers are known"), std::string::npos);
+    EXPECT_EQ(result.out.find("there are no two groups") != std::string::npos, result.code == 3);
+}
+
+TEST(StudyTechniqueCommand, RefusesWhatMakesNoSense) {
+    Scratch scratch;
+    const std::string start = "study technique " + population().string() + " --output " + (scratch / "out").string();
+    EXPECT_EQ(run_command(start + " --answer-by weight").code, 2);
+    EXPECT_EQ(run_command(start + " --from 0.5 --to 0.4").code, 2);
+    EXPECT_EQ(run_command(start + " --up 0,0,0").code, 2);
+    EXPECT_EQ(run_command(start + " --positive cast").code, 2);
+    EXPECT_EQ(run_command("study technique " + (scratch / "nowhere").string() + " --output " + (scratch / "o").string()).code, 1);
+    // Nothing can be used: all slices lie above the objects' lower parts.
+    EXPECT_EQ(run_command(start + " --least-slices 101").code, 1);
+}
+
+TEST(StudySegmentsCommand, WritesRegionsAndComparesThem) {
+    Scratch scratch;
+    const Path mesh = population() / "statuette-1.ply", out = scratch / "segments.ant.json", curve = scratch / "curve.svg";
+    const auto result = run_command("study segments " + mesh.string() + " " + out.string() + " --size --clusters 4 --curve " +
+                                    curve.string() + " --json");
+    ASSERT_EQ(result.code, 0) << result.err;
+    const Json report = parse_json(result.out, "report");
+    EXPECT_EQ(report["result"]["clusters"].GetInt(), 4);
+    EXPECT_LT(report["result"]["adjustedRandIndex"].GetDouble(), 1);
+    EXPECT_TRUE(std::filesystem::exists(curve));
+    const MeshFile file = read_mesh(mesh);
+    const AnnotationSet set = read_annotations(out, file.mesh);
+    std::size_t faces = 0;
+    for (const Annotation& region : set.annotations) faces += region.faces.size();
+    EXPECT_EQ(faces, file.mesh.number_of_faces());
+    // Against themselves.
+    const auto same = run_command("study segments " + mesh.string() + " " + (scratch / "again.ant.json").string() +
+                                  " --size --clusters 4 --json --compare " + out.string());
+    ASSERT_EQ(same.code, 0) << same.err;
+    EXPECT_DOUBLE_EQ(parse_json(same.out, "report")["result"]["adjustedRandIndex"].GetDouble(), 1);
+    EXPECT_EQ(run_command("study segments " + mesh.string() + " " + mesh.string()).code, 2);
+    EXPECT_EQ(run_command("study segments " + mesh.string() + " " + out.string() + " --clusters -1").code, 2);
+}
+
+}  // namespace
+}  // namespace ostraka
