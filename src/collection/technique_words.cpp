@@ -1,6 +1,5 @@
 #include "technique_words.h"
 
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
