@@ -56,7 +56,7 @@ struct StudySegments {
             if (gap) series.intervals.emplace_back(std::array<double, 2>{row.gap - row.gap_error, row.gap + row.gap_error});
         }
         plot.series.push_back(std::move(series));
-        plot.lines.push_back({static_cast<double>(segments.count.proposed), true, "proposed"});
+        plot.lines.push_back({static_cast<double>(segments.count.proposed), true, ""});
         write_plot(curve, plot);
     }
 
@@ -69,7 +69,9 @@ struct StudySegments {
         const MeshFile file = read_mesh(mesh);
         for (const auto& note : file.notes) session.note("note: " + note);
         const SliceSegments segments = in_file(mesh, [&] { return segment_by_slices(file.mesh, upward(file.mesh), options); });
-        const AnnotationSet set = annotate_segments(file.mesh, segments);
+        AnnotationSet set = annotate_segments(file.mesh, segments);
+        const Vector way = upward(file.mesh);
+        set.up = {way.x(), way.y(), way.z()};
         const std::optional<double> ari = agreement(file, segments);
         OutputTransaction transaction;
         write_annotations(output, set, file.mesh, mesh, provenance);
