@@ -101,6 +101,7 @@ private:
 
 }  // namespace
 
+inline namespace of_moulds {
 std::vector<double> silhouettes(const Eigen::MatrixXd& distances, const std::vector<int>& labels) {
     const auto n = static_cast<Eigen::Index>(labels.size());
     if (distances.rows() != n || distances.cols() != n) fail_usage("labels and distances are of different numbers of objects");
@@ -126,6 +127,7 @@ std::vector<double> silhouettes(const Eigen::MatrixXd& distances, const std::vec
     }
     return result;
 }
+}  // namespace of_moulds
 
 MouldGroups group_heads(const Eigen::MatrixXd& distances, const GroupOptions& options) {
     check_options(options, "groups");

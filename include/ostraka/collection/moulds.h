@@ -135,7 +135,9 @@ std::vector<ClusterStability> group_stability(const Eigen::MatrixXd& distances, 
 /// the smaller ones, as later generations of casts of casts are. 1 for who is alone.
 std::vector<double> relative_sizes(const MouldMatrices& matrices, const std::vector<int>& labels);
 
+inline namespace of_moulds {  // stats has another of this name, of samples
 /// Silhouettes (Rousseeuw 1987) of labels for distances; 0 for who is alone in a group and where there is one group only.
 std::vector<double> silhouettes(const Eigen::MatrixXd& distances, const std::vector<int>& labels);
+}  // namespace of_moulds
 
 }  // namespace ostraka
