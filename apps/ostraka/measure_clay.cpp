@@ -50,11 +50,14 @@ struct Clay {
         add_member(result, "unit", unit, allocator);
         if (session.json) session.print_report(provenance, document, result);
         else std::cout << table({"clay", ""}, rows);
-        if (std::isnan(clay.least)) session.note("no wall is seen, so there is no least: give one with --wall");
+        if (std::isnan(clay.least) && !std::isnan(clay.most))
+            session.note("no wall is seen, so there is no least: give one with --wall");
         if (clay.without_outline > 0)
             session.note(std::to_string(clay.without_outline) +
                          " slices have no closed outline: taken as between their neighbours");
-        return done;
+        if (std::isnan(clay.most))
+            session.note("no slice has a closed outline, so there is no volume: is the mesh open along its height?");
+        return std::isnan(clay.most) ? answer_is_no : done;
     }
 };
 

@@ -34,7 +34,7 @@ void check_name(const std::string& name, const std::string& where) {
 
 std::string text_of(const JsonValue& object, const char* member) {
     const JsonValue* value = find_member(object, member);
-    return value == nullptr ? std::string() : std::string(value->GetString(), value->GetStringLength());
+    return value == nullptr || !value->IsString() ? std::string() : std::string(value->GetString(), value->GetStringLength());
 }
 
 /// The contents of all files of an object; empty if one cannot be read.
@@ -223,7 +223,7 @@ std::optional<Json> ResultStore::find(const std::string& name, const std::string
         Json document = read_json(file);
         if (!document.IsObject() || text_of(document, "key") != key) return {};
         const JsonValue* result = find_member(document, "result");
-        if (result == nullptr) return {};
+        if (result == nullptr || text_of(document, "checksum") != sha256(to_text(*result))) return {};
         Json copy;
         copy.CopyFrom(*result, copy.GetAllocator());
         return copy;
@@ -241,8 +241,12 @@ void ResultStore::keep(const std::string& name, const std::string& key, const Js
     add_member(document, "format", "ostraka-study-result", allocator);
     add_member(document, "version", JsonValue(1), allocator);
     add_member(document, "key", key, allocator);
+    add_member(document, "checksum", sha256(to_text(result)), allocator);
     add_member(document, "result", JsonValue(result, allocator), allocator);
+    // There at once, whatever becomes of the outputs that the caller writes together.
+    OutputTransaction own;
     write_json(folder_ / (name + ".json"), document);
+    own.commit();
 }
 
 std::vector<ObjectResult> for_each_object(const Collection& collection, const ResultStore& store,

@@ -14,9 +14,9 @@ namespace {
 /// What is known of one layer.
 struct Layer {
     bool met = false, outlined = false, cavity = false;
-    double material = 0;  ///< area that may be clay
-    double outline = 0;   ///< area within outer contours
-    double wall = 0;      ///< mean, of those with a cavity
+    double material = 0;                          ///< area that may be clay
+    double outline = 0;                           ///< area within outer contours
+    double wall = 0, thinnest = 0, thickest = 0;  ///< of those with a cavity: mean, and over its outline
 };
 
 Layer layer_of(const Slice& slice, const SliceDescriptors& descriptors) {
@@ -27,7 +27,10 @@ Layer layer_of(const Slice& slice, const SliceDescriptors& descriptors) {
     layer.material = descriptors.area;
     layer.outline = descriptors.outline_area;
     layer.cavity = descriptors.holes > 0 && std::isfinite(descriptors.thickness_mean);
-    if (layer.cavity) layer.wall = descriptors.thickness_mean;
+    if (layer.cavity) {
+        layer.wall = descriptors.thickness_mean;
+        layer.thinnest = descriptors.thickness_least, layer.thickest = descriptors.thickness_most;
+    }
     return layer;
 }
 
@@ -43,10 +46,11 @@ double least_of(const Slice& slice, double wall) {
         const double area = std::abs(contour.area);
         if (contour.hole) {
             if (contour.parent >= 0) sum -= area;
-        } else if (holed[i] || wall >= 2 * area / contour.length) {
-            sum += area;
         } else {
-            sum += std::min(area, contour.length * wall - std::numbers::pi * wall * wall);
+            // What is left inside a wall of t, grown by t again, lies within: by Brunn and Minkowski its area is at most that
+            // of the circle of equal area with its radius less t.
+            const double inside = holed[i] ? 0 : std::max(0.0, std::sqrt(area / std::numbers::pi) - wall);
+            sum += area - std::numbers::pi * inside * inside;
         }
     }
     return std::max(0.0, sum);
@@ -88,11 +92,11 @@ ClayVolume clay_volume(const Mesh& mesh, const SliceFrame& frame, const ClayOpti
         ++result.slices;
         if (!layer.outlined) ++result.without_outline;
         if (!layer.cavity) continue;
-        if (result.with_cavity == 0) result.wall_least = result.wall_most = layer.wall, result.wall_mean = 0;
+        if (result.with_cavity == 0) result.wall_least = layer.thinnest, result.wall_most = layer.thickest, result.wall_mean = 0;
         ++result.with_cavity;
         result.wall_mean += layer.wall;
-        result.wall_least = std::min(result.wall_least, layer.wall);
-        result.wall_most = std::max(result.wall_most, layer.wall);
+        result.wall_least = std::min(result.wall_least, layer.thinnest);
+        result.wall_most = std::max(result.wall_most, layer.thickest);
     }
     if (result.with_cavity > 0) result.wall_mean /= result.with_cavity;
     result.wall = options.wall > 0 ? options.wall : result.wall_least;
@@ -102,7 +106,8 @@ ClayVolume clay_volume(const Mesh& mesh, const SliceFrame& frame, const ClayOpti
         result.most += height * layer.material;
         result.envelope += height * layer.outline;
     }
-    if (std::isnan(result.wall)) return result;
+    if (result.without_outline == result.slices) result.most = result.envelope = ClayVolume::unknown;
+    if (std::isnan(result.wall) || std::isnan(result.most)) return result;
     result.least = 0;
     for (const Slice& slice : stack.slices) result.least += height * least_of(slice, result.wall);
     result.least = std::min(result.least, result.most);

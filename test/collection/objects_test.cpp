@@ -147,6 +147,23 @@ TEST(ForEachObject, WhatIsDoneIsNotDoneAgain) {
     EXPECT_EQ(calls, 3);
 }
 
+TEST(ResultStore, KeepsAtOnceAndKnowsWhatWasChanged) {
+    const Scratch scratch;
+    const ResultStore store(scratch.path());
+    const Json result = parse_json(R"({"values": [1, 0.1, -0.0, 1e300, null, true, "x"]})", "test");
+    {
+        const OutputTransaction all_or_nothing;
+        store.keep("a", "key", result);
+    }
+    ASSERT_TRUE(store.find("a", "key"));
+    EXPECT_EQ(*store.find("a", "key"), result);
+    EXPECT_FALSE(store.find("a", "other"));
+    std::string text = read_file(scratch / "a.json");
+    text.replace(text.find("0.1"), 3, "0.2");
+    write_file(scratch / "a.json", text);
+    EXPECT_FALSE(store.find("a", "key"));
+}
+
 TEST(ForEachObject, FailuresAreTriedAgainAndUsageIsThrown) {
     const Scratch scratch;
     sphere_file(scratch, "a.ply");

@@ -44,7 +44,8 @@ std::map<std::string, std::string> read_labels(const Path& file, const std::stri
 void set_labels(Collection& collection, const std::map<std::string, std::string>& labels);
 
 /// Results in a folder, one JSON file each, under a name and a key of everything they depend on. Files are written atomically;
-/// one with another key, or that is damaged, counts as absent. Safe for several threads as long as they deal in different names.
+/// one with another key, or that is damaged (it has a checksum of its result), counts as absent. Kept at once, even while an
+/// OutputTransaction is open. Safe for several threads as long as they deal in different names.
 class ResultStore {
 public:
     /// Makes the folder when the first result is kept. Without a folder nothing is kept.

@@ -25,11 +25,11 @@ struct ClayOptions {
 /// Volumes in the mesh's unit cubed. NaN: not known.
 struct ClayVolume {
     static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-    double most = 0;         ///< what is not seen is clay
+    double most = 0;         ///< what is not seen is clay; unknown if no slice has an outline
     double least = unknown;  ///< what is not seen is hollow but for a wall; unknown if no wall is seen or given
     double envelope = 0;     ///< within the outer surface, cavities filled
     double wall = unknown;   ///< that `least` goes by, in the mesh's unit
-    /// The wall where both its sides are seen: mean over slices, their least and largest mean; the mesh's unit.
+    /// The wall where both its sides are seen: mean of the slices' means, the least and the largest distance of its sides.
     double wall_mean = unknown, wall_least = unknown, wall_most = unknown;
     int slices = 0;           ///< that meet the object
     int with_cavity = 0;      ///< of them, those with a hole all of whose outline is seen
@@ -38,10 +38,11 @@ struct ClayVolume {
 };
 
 /// Sums over slices (middles of layers of equal height). In a slice whose cavity is seen the material's area counts. Elsewhere
-/// each outer contour of area A and perimeter P may hide a cavity: between its A and min(A, P t - pi t^2) of clay, t the wall: by
-/// Steiner's formula no convex contour with a wall of t or more all around has less; A where t is not below 2 A / P. t is the
-/// least mean wall over slices with a cavity, if none is given. Contours within others and open ones count for nothing. Error of
-/// the sum: second order in the height of a layer, away from flat tops. Throws as `slice_mesh`, and Error (usage) for options.
+/// each outer contour of area A may hide a cavity: between its A and A - pi (r - t)^2 of clay, r the radius of the circle of area
+/// A and t the wall: by the inequality of Brunn and Minkowski no contour with a wall of t or more all around holds less, and a
+/// disc holds just that. t is the least distance of the sides of a wall that is seen, if none is given. Contours within others
+/// and open ones count for nothing. Error of the sum: second order in the height of a layer, away from flat tops. Throws as
+/// `slice_mesh`, and Error (usage) for options.
 ClayVolume clay_volume(const Mesh& mesh, const SliceFrame& frame, const ClayOptions& options = {});
 
 }  // namespace ostraka
