@@ -103,4 +103,14 @@ struct FixedProportionsOptions {
 };
 void fixed_proportions(const FixedProportionsOptions& options);
 
+/// Which similarity and epsilon find the moulds of made heads and of mixes of scanned faces.
+struct MouldExperimentOptions {
+    std::string output = "experiments-output/moulds";
+    std::vector<std::string> parts;  ///< of choices, wear, runs, scans; empty: all
+    std::vector<std::string> faces;  ///< meshes of faces in correspondence
+    int objects = 40, seeds = 3;
+    std::uint64_t vertices = 10000;
+};
+void moulds(const MouldExperimentOptions& options);
+
 }  // namespace ostraka::experiments

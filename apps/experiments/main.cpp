@@ -101,6 +101,21 @@ int main(int argc, char** argv) {
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();
 
+    experiments::MouldExperimentOptions heads;
+    CLI::App* mould_command = tool.add_subcommand("moulds", "moulds of made heads and of mixes of faces, found again");
+    mould_command->add_option("output", heads.output, "folder for tables and plots")->capture_default_str();
+    mould_command->add_option("--part", heads.parts, "choices, wear, runs, scans; all if not given")
+        ->delimiter(',')
+        ->check(CLI::IsMember({"choices", "wear", "runs", "scans"}));
+    mould_command->add_option("--face", heads.faces, "mesh files of faces with the same vertices, for scans");
+    mould_command->add_option("--objects", heads.objects, "casts of four moulds")
+        ->check(CLI::Range(8, 10000))
+        ->capture_default_str();
+    mould_command->add_option("--seeds", heads.seeds, "populations")->check(CLI::Range(1, 1000))->capture_default_str();
+    mould_command->add_option("--vertices", heads.vertices, "of a whole head")
+        ->check(CLI::Range(1500, 1000000))
+        ->capture_default_str();
+
     experiments::SemanticOptions semantic;
     std::vector<std::pair<CLI::App*, void (*)(const experiments::SemanticOptions&)>> semantic_commands;
     const struct {
@@ -146,6 +161,7 @@ int main(int argc, char** argv) {
         if (label_command->parsed()) experiments::label_transfer(labels);
         if (fixed_command->parsed()) experiments::fixed_proportions(fixed);
         if (technique_command->parsed()) experiments::technique(technique);
+        if (mould_command->parsed()) experiments::moulds(heads);
         for (const auto& [command, run] : semantic_commands)
             if (command->parsed()) run(semantic);
         return 0;

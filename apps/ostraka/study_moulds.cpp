@@ -215,7 +215,7 @@ TextTable choice_table(const MouldInput& input, const MouldAnswer& answer) {
     for (const auto& similarity : mould_similarities()) {
         const Eigen::MatrixXd distances = mould_distances(answer.matrices, similarity);
         for (const char* method : {"linkage", "dbscan", "embedding"}) {
-            for (const char* epsilon : {"0.1", "knn", "volume", "knee", "silhouette"}) {
+            for (const char* epsilon : {"0.1", "knn", "volume", "knee", "silhouette", "nested"}) {
                 GroupOptions options = input.group;
                 options.method = method;
                 options.epsilon = epsilon;

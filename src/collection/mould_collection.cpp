@@ -38,8 +38,6 @@ JsonValue to_json(const FeatureSet& set, JsonAllocator& allocator) {
         row.PushBack(JsonValue(feature.vertex), allocator).PushBack(JsonValue(feature.scale), allocator);
         for (const auto* v : {&feature.point, &feature.normal, &feature.direction})
             for (int k = 0; k < 3; ++k) row.PushBack(JsonValue((*v)[k]), allocator);
-        for (int k = 0; k < FeatureSet::discs; ++k)
-            row.PushBack(JsonValue(static_cast<double>(set.present(k, column))), allocator);
         for (int k = 0; k < FeatureSet::length; ++k)
             row.PushBack(JsonValue(static_cast<double>(set.descriptors(k, column))), allocator);
         list.PushBack(std::move(row), allocator);
@@ -55,7 +53,6 @@ FeatureSet from_json(const JsonValue& value) {
     const JsonValue& list = value["features"];
     set.features.resize(list.Size());
     set.descriptors.resize(FeatureSet::length, static_cast<Eigen::Index>(list.Size()));
-    set.present.resize(FeatureSet::discs, static_cast<Eigen::Index>(list.Size()));
     for (rapidjson::SizeType i = 0; i < list.Size(); ++i) {
         Feature& feature = set.features[i];
         rapidjson::SizeType at = 0;
@@ -64,7 +61,6 @@ FeatureSet from_json(const JsonValue& value) {
         feature.scale = next();
         for (auto* v : {&feature.point, &feature.normal, &feature.direction})
             for (int k = 0; k < 3; ++k) (*v)[k] = next();
-        for (int k = 0; k < FeatureSet::discs; ++k) set.present(k, i) = static_cast<float>(next());
         for (int k = 0; k < FeatureSet::length; ++k) set.descriptors(k, i) = static_cast<float>(next());
     }
     return set;

@@ -3,11 +3,13 @@
 #include "ostraka/core/error.h"
 #include "ostraka/stats/clustering.h"
 #include "ostraka/stats/embedding.h"
+#include "ostraka/stats/k_means.h"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 namespace ostraka {
 
@@ -79,17 +81,17 @@ public:
 
     [[nodiscard]] std::vector<int> at(double epsilon) const { return cut_at(tree_, epsilon); }
 
-    /// Halfway between the two merges between which the groups have the largest mean silhouette.
-    [[nodiscard]] double best_epsilon() const {
-        double best = -2, epsilon = 0;
+    /// Halfway between the two merges between which the groups have the largest mean silhouette, and that; the whole tree and -2
+    /// where there are no two.
+    [[nodiscard]] std::pair<double, double> best_epsilon() const {
+        std::pair<double, double> result{top(), -2};
         for (std::size_t i = 0; i + 1 < tree_.merges.size(); ++i) {
             const double low = tree_.merges[i].height, high = tree_.merges[i + 1].height;
             if (!(high > low)) continue;
-            const double value = mean(silhouettes(d_, at(low)));
-            if (value > best) best = value, epsilon = (low + high) / 2;
+            const double value = mean(silhouettes_of_distances(d_, at(low)));
+            if (value > result.second) result = {(low + high) / 2, value};
         }
-        if (best <= -2) epsilon = tree_.merges.empty() ? 0 : tree_.merges.back().height;
-        return epsilon;
+        return result;
     }
     [[nodiscard]] const Linkage& tree() const { return tree_; }
     [[nodiscard]] double top() const { return tree_.merges.empty() ? 0 : tree_.merges.back().height; }
@@ -99,35 +101,49 @@ private:
     Linkage tree_;
 };
 
-}  // namespace
-
-inline namespace of_moulds {
-std::vector<double> silhouettes(const Eigen::MatrixXd& distances, const std::vector<int>& labels) {
-    const auto n = static_cast<Eigen::Index>(labels.size());
-    if (distances.rows() != n || distances.cols() != n) fail_usage("labels and distances are of different numbers of objects");
-    const int groups = labels.empty() ? 0 : *std::max_element(labels.begin(), labels.end()) + 1;
-    std::vector<double> result(labels.size(), 0);
-    std::vector<double> sum(static_cast<std::size_t>(std::max(groups, 0)));
-    std::vector<int> size(sum.size());
-    for (const int label : labels)
-        if (label >= 0) ++size[static_cast<std::size_t>(label)];
-    for (Eigen::Index i = 0; i < n; ++i) {
-        const int own = labels[static_cast<std::size_t>(i)];
-        if (own < 0 || size[static_cast<std::size_t>(own)] < 2) continue;
-        std::fill(sum.begin(), sum.end(), 0);
+Eigen::MatrixXd part_of(const Eigen::MatrixXd& d, const std::vector<std::size_t>& heads) {
+    const auto n = static_cast<Eigen::Index>(heads.size());
+    Eigen::MatrixXd part(n, n);
+    for (Eigen::Index i = 0; i < n; ++i)
         for (Eigen::Index j = 0; j < n; ++j)
-            if (j != i && labels[static_cast<std::size_t>(j)] >= 0)
-                sum[static_cast<std::size_t>(labels[static_cast<std::size_t>(j)])] += distances(i, j);
-        const double inside = sum[static_cast<std::size_t>(own)] / (size[static_cast<std::size_t>(own)] - 1);
-        double outside = std::numeric_limits<double>::infinity();
-        for (std::size_t g = 0; g < sum.size(); ++g)
-            if (static_cast<int>(g) != own && size[g] > 0) outside = std::min(outside, sum[g] / size[g]);
-        const double larger = std::max(inside, outside);
-        if (std::isfinite(outside) && larger > 0) result[static_cast<std::size_t>(i)] = (outside - inside) / larger;
-    }
-    return result;
+            part(i, j) = d(static_cast<Eigen::Index>(heads[static_cast<std::size_t>(i)]),
+                           static_cast<Eigen::Index>(heads[static_cast<std::size_t>(j)]));
+    return part;
 }
-}  // namespace of_moulds
+
+/// What a silhouette must reach for groups to stand out. Made heads of one mould, or each of its own, stay below both
+/// (doc/moulds.md); an embedding makes more of what there is.
+constexpr double least_in_distances = 0.2, least_in_embedding = 0.7;
+
+/// Groups that stand out, and again within each of them; in an embedding, where the least differences can look large, they must
+/// also stand out by the distances it was made of. Gives the largest height at which a group hangs together.
+double nested_groups(const Eigen::MatrixXd& d, const Eigen::MatrixXd& distances, const GroupOptions& options,
+                     const std::vector<std::size_t>& heads, std::vector<int>& labels, int& next) {
+    const Eigen::MatrixXd own = part_of(d, heads);
+    const Grouping grouping(own, options);
+    const auto [epsilon, silhouette] = grouping.best_epsilon();
+    const bool embedded = options.method == "embedding";
+    const bool apart =
+        silhouette >= (embedded ? least_in_embedding : least_in_distances) &&
+        (!embedded || mean(silhouettes_of_distances(part_of(distances, heads), grouping.at(epsilon))) >= least_in_distances);
+    if (!apart) {
+        for (const std::size_t head : heads) labels[head] = next;
+        ++next;
+        return grouping.top();
+    }
+    const std::vector<int> parts = grouping.at(epsilon);
+    const int count = *std::max_element(parts.begin(), parts.end()) + 1;
+    double height = 0;
+    for (int part = 0; part < count; ++part) {
+        std::vector<std::size_t> members;
+        for (std::size_t i = 0; i < heads.size(); ++i)
+            if (parts[i] == part) members.push_back(heads[i]);
+        height = std::max(height, nested_groups(d, distances, options, members, labels, next));
+    }
+    return height;
+}
+
+}  // namespace
 
 MouldGroups group_heads(const Eigen::MatrixXd& distances, const GroupOptions& options) {
     check_options(options, "groups");
@@ -150,32 +166,32 @@ MouldGroups group_heads(const Eigen::MatrixXd& distances, const GroupOptions& op
     else if (options.epsilon == "knn") groups.epsilon = knn_epsilon(d, expected);
     else if (options.epsilon == "volume") groups.epsilon = volume_epsilon(groups.coordinates, 1);
     else if (options.epsilon == "knee") groups.epsilon = knee_epsilon(d);
-    else if (options.epsilon == "silhouette") groups.epsilon = grouping.best_epsilon();
-    else fail_usage("epsilon is '" + options.epsilon + "'", "give a number from 0 up, or knn, volume, knee or silhouette");
+    else if (options.epsilon == "silhouette" || options.epsilon == "nested") groups.epsilon = grouping.best_epsilon().first;
+    else
+        fail_usage("epsilon is '" + options.epsilon + "'", "give a number from 0 up, or knn, volume, knee, silhouette or nested");
     groups.tree = grouping.tree();
-    groups.labels = by_size(grouping.at(groups.epsilon));
-    groups.head_silhouettes = silhouettes(d, groups.labels);
-    groups.silhouette = mean(groups.head_silhouettes);
-    // Made heads of one mould, or each of its own, stay below both (doc/moulds.md); an embedding makes more of what there is.
-    groups.clear = groups.silhouette >= (options.method == "embedding" ? 0.7 : 0.2);
-    if (options.epsilon == "silhouette" && !groups.clear) {
+    std::vector<int> labels = grouping.at(groups.epsilon);
+    groups.silhouette = mean(silhouettes_of_distances(d, by_size(labels)));
+    groups.clear = groups.silhouette >= (options.method == "embedding" ? least_in_embedding : least_in_distances);
+    if (options.epsilon == "nested" && groups.clear) {
+        std::vector<std::size_t> all(labels.size());
+        std::iota(all.begin(), all.end(), std::size_t{0});
+        int next = 0;
+        groups.epsilon = nested_groups(d, distances, options, all, labels, next);
+        groups.silhouette = mean(silhouettes_of_distances(d, labels));
+    } else if ((options.epsilon == "silhouette" || options.epsilon == "nested") && !groups.clear) {
         groups.epsilon = grouping.top();
-        groups.labels.assign(groups.labels.size(), 0);
-        groups.head_silhouettes.assign(groups.labels.size(), 0);
+        labels.assign(labels.size(), 0);
     }
+    groups.labels = by_size(labels);
+    groups.head_silhouettes = silhouettes_of_distances(d, groups.labels);
     return groups;
 }
 
 std::vector<ClusterStability> group_stability(const Eigen::MatrixXd& distances, const MouldGroups& groups,
                                               const GroupOptions& options, const StabilityOptions& stability) {
     const auto again = [&](const std::vector<std::size_t>& heads) {
-        const auto n = static_cast<Eigen::Index>(heads.size());
-        Eigen::MatrixXd some(n, n);
-        for (Eigen::Index i = 0; i < n; ++i)
-            for (Eigen::Index j = 0; j < n; ++j)
-                some(i, j) = distances(static_cast<Eigen::Index>(heads[static_cast<std::size_t>(i)]),
-                                       static_cast<Eigen::Index>(heads[static_cast<std::size_t>(j)]));
-        return group_heads(some, options).labels;
+        return group_heads(part_of(distances, heads), options).labels;
     };
     return cluster_stability(groups.labels, again, stability);
 }

@@ -176,8 +176,7 @@ public:
         return directions;
     }
 
-    void describe(double direction, Feature& feature, Eigen::Ref<Eigen::VectorXf> descriptor,
-                  Eigen::Ref<Eigen::VectorXf> present) const {
+    void describe(double direction, Feature& feature, Eigen::Ref<Eigen::VectorXf> descriptor) const {
         const Vector2d x(std::cos(direction), std::sin(direction)), y(-x.y(), x.x());
         feature.vertex = vertex_;
         feature.scale = level_.sigma;
@@ -214,7 +213,6 @@ public:
         const double most = 1 / std::sqrt(static_cast<double>(FeatureSet::bins));
         for (int disc = 0; disc < FeatureSet::discs; ++disc) {
             const bool there = covered[disc] > 0.5 * pi * disc_radius * disc_radius;
-            present[disc] = there ? 1 : 0;
             for (int part = 0; part < 2; ++part) {
                 auto h = histograms.col(disc).segment<FeatureSet::bins>(part * FeatureSet::bins);
                 const double norm = h.norm();
@@ -256,7 +254,7 @@ FeatureSet mesh_sift(const Mesh& mesh, const SiftOptions& options) {
     const std::vector<Salient> salient = extrema(mesh, levels, border_distances(mesh), options);
 
     std::vector<std::vector<Feature>> features(salient.size());
-    std::vector<Eigen::MatrixXf> descriptors(salient.size()), present(salient.size());
+    std::vector<Eigen::MatrixXf> descriptors(salient.size());
     parallel_for(
         salient.size(),
         [&](std::size_t i) {
@@ -266,20 +264,17 @@ FeatureSet mesh_sift(const Mesh& mesh, const SiftOptions& options) {
             const std::vector<double> directions = describer.directions(options.second_direction);
             features[i].resize(directions.size());
             descriptors[i].resize(FeatureSet::length, static_cast<Eigen::Index>(directions.size()));
-            present[i].resize(FeatureSet::discs, static_cast<Eigen::Index>(directions.size()));
             for (std::size_t k = 0; k < directions.size(); ++k) {
                 const auto column = static_cast<Eigen::Index>(k);
-                describer.describe(directions[k], features[i][k], descriptors[i].col(column), present[i].col(column));
+                describer.describe(directions[k], features[i][k], descriptors[i].col(column));
             }
         },
         8);
     for (const auto& list : features) set.features.insert(set.features.end(), list.begin(), list.end());
     set.descriptors.resize(FeatureSet::length, static_cast<Eigen::Index>(set.features.size()));
-    set.present.resize(FeatureSet::discs, static_cast<Eigen::Index>(set.features.size()));
     Eigen::Index column = 0;
     for (std::size_t i = 0; i < salient.size(); ++i) {
         set.descriptors.middleCols(column, descriptors[i].cols()) = descriptors[i];
-        set.present.middleCols(column, present[i].cols()) = present[i];
         column += descriptors[i].cols();
     }
     return set;

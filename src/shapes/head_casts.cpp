@@ -60,6 +60,18 @@ private:
     std::array<Wave, 3> waves_;
 };
 
+/// Where two features all but touch, one lattice in a few sees a handle between them: then another one is taken.
+MadeMesh meshed(const MadeObject& head, MakeOptions options) {
+    constexpr int attempts = 4;
+    for (int attempt = 1;; ++attempt, options.seed += 1000003) {
+        try {
+            return make_mesh(head, options);
+        } catch (const Error& error) {
+            if (error.kind() != ErrorKind::failure || attempt == attempts) throw;
+        }
+    }
+}
+
 void wear_down(Mesh& mesh, double sigma, Random& draw) {
     const Waves waves(draw);
     const Eigen::MatrixXd before = positions(mesh);
@@ -101,7 +113,7 @@ HeadCast cast_head(const HeadShape& shape, const CastOptions& options) {
     MakeOptions make;
     make.vertices = options.vertices;
     make.seed = options.seed;
-    MadeMesh made = make_mesh(*head_object(shape, draw_hand_work(options, cast.beard)), make);
+    MadeMesh made = meshed(*head_object(shape, draw_hand_work(options, cast.beard)), make);
     Mesh& mesh = made.mesh;
 
     Random wear(options.seed, wear_stream), pressure(options.seed, pressure_stream), noise(options.seed, noise_stream);

@@ -110,8 +110,8 @@ private:
             add(make_ellipsoid(at({x - 1.9, y, z}, turn), {2.3, s_.eye_width * 0.92, s_.eye_opening * 1.1}), HeadPart::eyes, 0.6);
             for (const double way : {1.0, -1.0}) {
                 std::vector<Bead> beads;
-                for (int k = 0; k <= 4; ++k) {
-                    const double u = -1 + 0.5 * k;
+                for (int k = 0; k <= 8; ++k) {
+                    const double u = -1 + 0.25 * k;
                     const double rise = way * s_.eye_opening * (1 - u * u) * (way > 0 ? 1.15 : 0.85);
                     const Vector3d place =
                         turned(side * -s_.eye_tilt, Vector3d::UnitX()) * Vector3d(0, u * s_.eye_width * 1.1, rise);
@@ -126,8 +126,8 @@ private:
     void brows() {
         for (const double side : {1.0, -1.0}) {
             std::vector<Bead> beads;
-            for (int k = 0; k <= 4; ++k) {
-                const double u = k / 4.0, y = side * (1.6 + u * (s_.eye_apart + s_.eye_width - 0.6));
+            for (int k = 0; k <= 8; ++k) {
+                const double u = k / 8.0, y = side * (1.6 + u * (s_.eye_apart + s_.eye_width - 0.6));
                 const double z = s_.brow_height + side * s_.eye_skew + s_.brow_arch * (4 * u * (1 - u) - 0.9 * u);
                 beads.push_back({on(y, z, -0.35 * s_.brow_width), s_.brow_width * (1.1 - 0.35 * u)});
             }
@@ -152,10 +152,10 @@ private:
         const double z = s_.mouth_height, skew = s_.mouth_skew;
         for (const double way : {1.0, -1.0}) {
             std::vector<Bead> beads;
-            for (int k = 0; k <= 4; ++k) {
-                const double u = -1 + 0.5 * k, width = way > 0 ? s_.mouth_width : 0.8 * s_.mouth_width;
+            for (int k = 0; k <= 8; ++k) {
+                const double u = -1 + 0.25 * k, width = way > 0 ? s_.mouth_width : 0.8 * s_.mouth_width;
                 const double y = skew + u * width;
-                const double dip = way > 0 && k == 2 ? -0.25 : 0;
+                const double dip = way > 0 && k == 4 ? -0.25 : 0;
                 const double height = z + s_.smile * u * u * (way > 0 ? 1 : 0.7) + way * (1 - 0.8 * u * u) * s_.lip * 0.95 + dip;
                 beads.push_back({on(y, height, -0.2 * s_.lip), s_.lip * (1 - 0.45 * u * u) * (way > 0 ? 0.95 : 1.1)});
             }
@@ -203,9 +203,12 @@ private:
         add(make_tube(beads), HeadPart::hair, 0.6);
     }
 
+    /// Clear of the brows, also where the hat leans forward.
+    [[nodiscard]] double hat_rim() const { return std::max(s_.hair_line - 3, s_.brow_height + s_.brow_arch + 4.5); }
+
     void hat() {
         using Profile = std::vector<Eigen::Vector2d>;
-        const double r = s_.skull_width + s_.hair_thickness + 0.5, rim = s_.hair_line - 3;
+        const double r = s_.skull_width + s_.hair_thickness + 0.5, rim = hat_rim();
         Profile profile;
         if (s_.hat == HeadShape::Hat::pointed)
             profile = {{0, 0}, {r - 1, 0}, {r + 1.2, 2}, {r - 0.8, 5}, {0.62 * r, 16}, {0.3 * r, 26}, {0, 31}};
@@ -218,14 +221,19 @@ private:
     }
 
     void ears() {
+        const bool hat = s_.hat != HeadShape::Hat::none;
+        // A hat's rim stays clear of them.
+        const double height = hat ? std::min(s_.ear_height, hat_rim() - 2.5 - s_.ear_size) : s_.ear_height;
         for (const double side : {1.0, -1.0}) {
-            const double out = s_.long_hair ? 1.6 : 0.6;
-            const Vector3d centre(1.2, side * (s_.skull_width + out), s_.ear_height);
+            const double out = s_.long_hair ? 1.6 : 0.3;
+            const Vector3d centre(1.2, side * (s_.skull_width + out), height);
             const Eigen::Matrix3d turn = turned(side * 22, Vector3d::UnitZ()) * turned(-8, Vector3d::UnitY());
-            add(make_ellipsoid(at(centre, turn), {0.62 * s_.ear_size, 1.9, s_.ear_size}), HeadPart::ears, 1.2);
+            add(make_ellipsoid(at(centre, turn), {0.62 * s_.ear_size, 2.1, s_.ear_size}), HeadPart::ears, 1.4);
+            if (hat) continue;
+            // A shallow dish, never through the ear.
             shapes::carve(
                 *object_,
-                make_ellipsoid(at(centre + Vector3d(0.9, side * 1.7, 0.5), turn), {0.36 * s_.ear_size, 1.2, 0.55 * s_.ear_size}),
+                make_ellipsoid(at(centre + Vector3d(0.6, side * 2.1, 0.5), turn), {0.36 * s_.ear_size, 1.0, 0.5 * s_.ear_size}),
                 -1, 0.7);
         }
     }
@@ -290,7 +298,7 @@ HeadShape head_archetype(const ArchetypeOptions& options) {
     Random draw(options.seed, 71);
     HeadShape s;
     s.long_hair = options.long_hair;
-    const double spread = 0.08 * options.difference * (options.hand_made ? 2 : 1);
+    const double spread = 0.08 * options.difference * (options.hand_made ? 1.6 : 1);
     // Proportions stay within two and a half deviations, so that every head can be held.
     const auto vary = [&](double& value, double factor = 1) {
         value *= 1 + factor * spread * std::clamp(draw.normal(), -2.5, 2.5);

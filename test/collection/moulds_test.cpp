@@ -63,6 +63,18 @@ TEST(MouldGroups, AnEpsilonIsTakenAtItsWord) {
     }
 }
 
+TEST(MouldGroups, GroupsWithinGroupsAreFound) {
+    // Two moulds that are near to each other and a third that is far from both.
+    Eigen::MatrixXd d = blocks({6, 6, 6}, 0.3, 0.95);
+    for (Eigen::Index i = 0; i < 6; ++i)
+        for (Eigen::Index j = 6; j < 12; ++j) d(i, j) = d(j, i) = 0.5 + 0.01 * static_cast<double>((i + j) % 3);
+    GroupOptions options;
+    options.epsilon = "silhouette";
+    EXPECT_EQ(group_heads(d, options).labels, labels_of({12, 6}));
+    options.epsilon = "nested";
+    EXPECT_EQ(group_heads(d, options).labels, labels_of({6, 6, 6}));
+}
+
 TEST(MouldGroups, WhereNothingStandsOutThereIsOneGroupAndItSaysSo) {
     for (const std::vector<int>& sizes : {std::vector<int>{9}, std::vector<int>{1, 1, 1, 1, 1, 1}}) {
         const MouldGroups groups = group_heads(blocks(sizes));
@@ -75,15 +87,6 @@ TEST(MouldGroups, WhereNothingStandsOutThereIsOneGroupAndItSaysSo) {
     Eigen::MatrixXd skew = blocks({2, 2});
     skew(0, 1) = 0.9;
     EXPECT_THROW((void)group_heads(skew), Error);
-}
-
-TEST(MouldGroups, SilhouettesOfTwoPairs) {
-    // Within 1, between 4: (4 - 1) / 4.
-    Eigen::MatrixXd d(4, 4);
-    d << 0, 1, 4, 4, 1, 0, 4, 4, 4, 4, 0, 1, 4, 4, 1, 0;
-    for (const double s : silhouettes(d, {0, 0, 1, 1})) EXPECT_DOUBLE_EQ(s, 0.75);
-    EXPECT_DOUBLE_EQ(silhouettes(d, {0, 0, 0, 1})[3], 0);
-    EXPECT_DOUBLE_EQ(silhouettes(d, {0, 0, 0, 0})[0], 0);
 }
 
 TEST(MouldGroups, StabilityTellsFirmGroupsFromLooseOnes) {

@@ -90,7 +90,7 @@ Eigen::MatrixXd mould_distances(const MouldMatrices& matrices, const std::string
 
 struct GroupOptions {
     std::string method = "linkage";
-    std::string epsilon = "silhouette";
+    std::string epsilon = "nested";
     int expected_size = 0;  ///< heads of one mould that are expected, for knn; 0: the square root of the number of heads
     int dimensions = 3;     ///< of the embedding
 
@@ -105,7 +105,7 @@ struct GroupOptions {
             "epsilon", epsilon,
             "distance within groups: a number (shares of the largest distance for embedding), knn (mean distance to the nearest "
             "neighbours), volume (evenly spread points), knee (bend of the curve of nearest distances), silhouette (groups that "
-            "stand out best)",
+            "stand out best), nested (these, and again within each as long as parts stand out)",
             Anything{});
         visit("expected-size", expected_size, "heads of one mould that are expected, for knn; 0: the square root of their number",
               Range{0, 1e9});
@@ -134,10 +134,5 @@ std::vector<ClusterStability> group_stability(const Eigen::MatrixXd& distances, 
 /// Sizes of the heads against the mean of their group, by the scales of the registrations within it (mean logarithms): below 1
 /// the smaller ones, as later generations of casts of casts are. 1 for who is alone.
 std::vector<double> relative_sizes(const MouldMatrices& matrices, const std::vector<int>& labels);
-
-inline namespace of_moulds {  // stats has another of this name, of samples
-/// Silhouettes (Rousseeuw 1987) of labels for distances; 0 for who is alone in a group and where there is one group only.
-std::vector<double> silhouettes(const Eigen::MatrixXd& distances, const std::vector<int>& labels);
-}  // namespace of_moulds
 
 }  // namespace ostraka

@@ -48,12 +48,18 @@ struct FeatureSet {
     static constexpr int discs = 9, bins = 8, length = discs * 2 * bins;
     std::vector<Feature> features;
     Eigen::MatrixXf descriptors;  ///< 144 x features; a disc that is mostly beyond the border is zero
-    Eigen::MatrixXf present;      ///< 9 x features: 1 where a disc holds surface
     double size = 0;              ///< the length that scales referred to
 };
 
-/// MeshSIFT (Smeets, Keustermans, Vandermeulen and Suetens 2013) ... Throws Error (usage) for options out of range, Error (input)
-/// for a mesh without area.
+/// MeshSIFT (Smeets, Keustermans, Vandermeulen and Suetens, "meshSIFT: local surface features for 3D face recognition under
+/// expression variations and partial data", 2013). Levels are the surface smoothed by the heat equation; a vertex is salient
+/// where sigma (H' - H), the change of mean curvature from one level to the next, is larger or smaller than at its neighbours on
+/// its own level and the two beside. Directions are the peaks of the histogram of the normals' projections in the tangent plane
+/// (within 9 sigma, weighted by area, length and a Gaussian of 4.5 sigma). Discs have radius 3.75 sigma, one in the middle and
+/// eight around it at 4.5 sigma; shape index is weighted by curvedness, slant angle by the normal's projection; each histogram is
+/// brought to length 1 and cut off at 1 / sqrt(8). Places around a point are its tangent plane's, at their straight distances:
+/// heads are rigid, and so are the distances. Same result for any number of threads. Throws Error (usage) for options out of
+/// range, Error (input) for a mesh without area.
 FeatureSet mesh_sift(const Mesh& mesh, const SiftOptions& options = {});
 
 struct FeatureMatch {

@@ -42,7 +42,7 @@ struct HeadShape {
 
 struct ArchetypeOptions {
     bool long_hair = false;
-    bool hand_made = false;  ///< freely formed, with a hat: differs from the next one about three times as much
+    bool hand_made = false;  ///< freely formed, with a hat: proportions vary by 1.6 times as much
     double difference = 1;   ///< how far archetypes lie apart: 1 = proportions vary by about 8 % (standard deviation)
     std::uint64_t seed = 1;
 
