@@ -71,7 +71,12 @@ Outcome outcome_of(const PopulationOptions& options) {
     return outcome;
 }
 
-/// Mean over the seeds.
+/// Means over the seeds.
+double mean_area(const std::vector<Outcome>& outcomes, const std::string& classifier) {
+    double sum = 0;
+    for (const Outcome& each : outcomes) sum += each.classifiers.at(classifier).roc.area;
+    return sum / static_cast<double>(outcomes.size());
+}
 double mean_f1(const std::vector<Outcome>& outcomes, const std::string& classifier) {
     double sum = 0;
     for (const Outcome& each : outcomes) sum += each.classifiers.at(classifier).validation.mean_f1;
@@ -104,6 +109,13 @@ void add_rows(TextTable& table, const std::string& name, const std::vector<Outco
     table.add(cells);
 }
 
+/// Areas under the receiver operating characteristics.
+void add_areas(TextTable& table, const std::string& name, const std::vector<Outcome>& outcomes) {
+    std::vector<std::string> cells{name};
+    for (const auto& classifier : shown()) cells.push_back(fixed(mean_area(outcomes, classifier), 3));
+    table.add(cells);
+}
+
 std::vector<std::string> columns(const std::string& first) {
     std::vector<std::string> list{first, "objects", "left out", "slices used %"};
     for (const auto& classifier : shown()) list.push_back(classifier);
@@ -122,13 +134,16 @@ void technique(const TechniqueExperiment& options) {
         return outcome_of(population);
     };
     const Path folder(options.output);
-    TextTable levels(columns("level"));
+    std::vector<std::string> area_columns{"level"};
+    area_columns.insert(area_columns.end(), shown().begin(), shown().end());
+    TextTable levels(columns("level")), areas(area_columns);
     std::map<std::string, PlotSeries> curves;
-    const std::vector<std::string> drawn{"roundness", "eccentricity", "both", "outside", "outside and wall"};
+    const std::vector<std::string> drawn{"roundness", "eccentricity", "both", "outside"};
     for (int level = 1; level <= 5; ++level) {
         std::vector<Outcome> outcomes;
         for (int seed = 1; seed <= options.seeds; ++seed) outcomes.push_back(of({}, level, seed));
         add_rows(levels, std::to_string(level), outcomes);
+        add_areas(areas, std::to_string(level), outcomes);
         for (const auto& name : drawn) {
             curves[name].name = name;
             curves[name].points.push_back({static_cast<double>(level), mean_f1(outcomes, name)});
@@ -136,7 +151,8 @@ void technique(const TechniqueExperiment& options) {
         std::cerr << "level " << level << " done\n";
     }
     levels.write(folder, "levels", "F1 of wheel-made by level");
-    std::cout << levels.markdown() << "\n";
+    areas.write(folder, "areas", "Area under the ROC of wheel-made by level");
+    std::cout << levels.markdown() << "\n" << areas.markdown() << "\n";
     Plot plot;
     plot.title = "F1 under cross-validation, mean of " + std::to_string(options.seeds) + " populations of " +
                  std::to_string(options.objects);
@@ -145,7 +161,8 @@ void technique(const TechniqueExperiment& options) {
     plot.y = {"F1"};
     plot.y.minimum = 0.5, plot.y.maximum = 1;
     for (const auto& name : drawn) plot.series.push_back(curves[name]);
-    plot.lines = {{0.8167, false, "thesis: roundness 0.8167"}, {0.6993, false, "thesis: eccentricity 0.6993"}};
+    plot.lines = {
+        {0.8167, false, "thesis: roundness 0.8167"}, {0.6993, false, "thesis: eccentricity 0.6993"}, {2.0 / 3, false, ""}};
     write_plot(folder / "levels.svg", plot);
 
     if (!options.variants) return;

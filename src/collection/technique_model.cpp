@@ -83,6 +83,14 @@ TechniqueModel learn(const MatrixXd& values, const std::vector<bool>& truth, con
     const double deviation = std::sqrt(std::max(model.weights.dot(kinds.scatter * model.weights), 0.0));
     if (deviation > 1e-300) model.weights /= deviation;
     model.middle = 0.5 * (kinds.mean[0] + kinds.mean[1]);
+    // The limit, as that of one descriptor, is where F1 is best.
+    std::vector<double> scores;
+    std::vector<bool> known;
+    for (const std::size_t row : rows) {
+        scores.push_back(model.score(values.row(static_cast<Eigen::Index>(row))));
+        known.push_back(truth[row]);
+    }
+    model.limit = best_threshold(scores, known, Side::above).value;
     return model;
 }
 

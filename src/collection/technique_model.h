@@ -18,11 +18,12 @@ DescriptorTable descriptor_table(const std::vector<TechniqueObject>& objects, co
 /// Zero and less count as this: identical slices have no variance.
 inline constexpr double least_positive = 1e-12;
 
-/// Score of an object: weights . (x - middle), positive above 0.
+/// Score of an object: weights . (x - middle) - limit, positive from 0 up.
 struct TechniqueModel {
     Eigen::VectorXd weights, middle;
+    double limit = 0;
     std::optional<Threshold> threshold;  ///< of one column
-    [[nodiscard]] double score(const Eigen::VectorXd& x) const { return weights.dot(x - middle); }
+    [[nodiscard]] double score(const Eigen::VectorXd& x) const { return weights.dot(x - middle) - limit; }
 };
 /// Learns from the given rows; `truth` has one entry a row. Needs both kinds among them. Scores have standard deviation 1 over
 /// the rows about the means of their kinds.

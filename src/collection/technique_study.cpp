@@ -89,7 +89,7 @@ ClassifierResult validate_classifier(const std::vector<TechniqueObject>& objects
             for (const std::size_t row : rows_of(asked)) {
                 const double x = table.values(static_cast<Eigen::Index>(row), 0);
                 answers.push_back(model.threshold ? model.threshold->positive(x)
-                                                  : model.score(table.values.row(static_cast<Eigen::Index>(row))) > 0);
+                                                  : model.score(table.values.row(static_cast<Eigen::Index>(row))) >= 0);
             }
             return answers;
         },
@@ -105,8 +105,9 @@ ClassifierResult validate_classifier(const std::vector<TechniqueObject>& objects
             }
             std::vector<std::size_t> others = known.rows;
             others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-            scores[i] =
-                learn(table.values, known.truth, others).score(table.values.row(static_cast<Eigen::Index>(known.rows[i])));
+            // The weights of the others, but one zero for all: a limit learned without an object shifts against its label.
+            const VectorXd x = table.values.row(static_cast<Eigen::Index>(known.rows[i]));
+            scores[i] = learn(table.values, known.truth, others).weights.dot(x - all.middle);
         },
         8);
     result.roc = roc_curve(scores, truth);
@@ -167,13 +168,13 @@ void answer_learned(TechniqueStudy& study, const std::vector<TechniqueObject>& o
             const TechniqueModel model = learn(table.values, known.truth, drawn);
             votes[i].assign(rows, -1);
             for (std::size_t row = 0; row < rows; ++row)
-                if (!taken[row]) votes[i][row] = model.score(table.values.row(static_cast<Eigen::Index>(row))) > 0 ? 1 : 0;
+                if (!taken[row]) votes[i][row] = model.score(table.values.row(static_cast<Eigen::Index>(row))) >= 0 ? 1 : 0;
         },
         8);
     for (std::size_t row = 0; row < rows; ++row) {
         TechniqueAnswer& answer = study.answers[table.objects[row]];
         answer.score = models[row].score(table.values.row(static_cast<Eigen::Index>(row)));
-        answer.positive = answer.score > 0;
+        answer.positive = answer.score >= 0;
         answer.answer = answer.positive ? study.positive : study.negative;
         int same = 0;
         for (const auto& vote : votes) {

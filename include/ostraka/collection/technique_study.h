@@ -17,7 +17,7 @@ struct TechniqueObject {
 };
 
 /// A rule that learns from labelled objects: one descriptor and the threshold with the best F1, or several (logarithms where they
-/// are positive, standardised) and Fisher's linear discriminant with equal weight for both labels.
+/// are positive, standardised) and Fisher's linear discriminant, also with the limit of the best F1.
 struct TechniqueClassifier {
     std::string name;
     std::vector<std::string> descriptors;
@@ -72,7 +72,7 @@ struct TechniqueAnswer {
     std::string name, label;
     std::string answer;  ///< empty if there is none
     bool positive = false;
-    double score = 0;                   ///< above 0: positive; in standard deviations of the labelled objects' scores
+    double score = 0;                   ///< from 0 up: positive; in standard deviations of the labelled objects' scores
     double agreement = 0;               ///< share of the resampled collections without this object that give the same answer
     int asked = 0;                      ///< their number
     std::optional<Interval> roundness;  ///< 95 % of the mean roundness over resampled blocks of slices
