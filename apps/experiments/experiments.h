@@ -88,7 +88,7 @@ void before_and_after(const SemanticOptions& options);
 struct TechniqueExperiment {
     std::string output;  ///< folder
     int objects = 100, seeds = 2;
-    std::uint64_t vertices = 6000;
+    std::uint64_t vertices = 5000;
     bool variants = false;
 };
 void technique(const TechniqueExperiment& options);
