@@ -41,14 +41,13 @@ Found find(const MadeMeasuresOptions& options, const ProportionOptions& study) {
 std::vector<Found> over_seeds(const MadeMeasuresOptions& made, int seeds) {
     std::vector<Found> list(static_cast<std::size_t>(seeds));
     ProportionOptions study;
-    study.bootstrap.resamples = 20;  // intervals are not looked at
     parallel_for(
         list.size(),
         [&](std::size_t s) {
             MadeMeasuresOptions options = made;
             options.seed = s + 1;
             ProportionOptions seeded = study;
-            seeded.bootstrap.seed = s + 1;
+            seeded.seed = s + 1;
             list[s] = find(options, seeded);
         },
         1);
@@ -73,7 +72,7 @@ double coverage(int seeds, double deviation) {
             }
             table.units.assign(40, "mm");
             ProportionOptions study;
-            study.bootstrap.seed = s + 1;
+            study.seed = s + 1;
             const MeasureRow row = study_proportions(table, study).measures.front();
             inside[s] =
                 row.variation_interval && row.variation_interval->low <= truth && truth <= row.variation_interval->high ? 1 : 0;

@@ -33,6 +33,7 @@ void add_cage(CLI::App& cage, Session& session);                       // cage.c
 void add_cage_make(CLI::App& cage, Session& session);                  // cage_make.cpp: make, check, edit
 void add_deform(CLI::App& tool, Session& session);                     // deform.cpp
 void add_render(CLI::App& tool, Session& session);                     // render.cpp
+void add_study_make_proportions(CLI::App& made, Session& session);     // study_make_proportions.cpp
 void add_study_landmarks(CLI::App& study, Session& session);           // study_landmarks.cpp
 void add_study_proportions(CLI::App& study, Session& session);         // study_proportions.cpp
 void add_study_moulds(CLI::App& study, Session& session);              // study_moulds.cpp

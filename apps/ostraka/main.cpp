@@ -62,6 +62,7 @@ int main(int argc, char** argv) {
     app::add_cage(*cage, session);
     app::add_deform(tool, session);
     app::add_render(tool, session);
+    app::add_study_make_proportions(*made, session);
     app::add_study_landmarks(*study, session);
     app::add_study_proportions(*study, session);
     app::add_study_moulds(*study, session);

@@ -19,13 +19,12 @@ using proportions::Pair;
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t most_measures = 60;
 
-MeasureRow row_of(const std::string& name, const std::string& unit, const std::vector<double>& values,
-                  const BootstrapOptions& bootstrap) {
+MeasureRow row_of(const std::string& name, const std::string& unit, const std::vector<double>& values, double confidence) {
     MeasureRow row{name, unit, std::nullopt, std::nullopt, std::nullopt, std::nullopt};
     if (values.empty()) return row;
     row.summary = summarise(values, name);
-    row.deviation_interval = deviation_interval(values, false, bootstrap);
-    row.variation_interval = deviation_interval(values, true, bootstrap);
+    row.deviation_interval = deviation_interval(values, false, confidence);
+    row.variation_interval = deviation_interval(values, true, confidence);
     return row;
 }
 
@@ -112,7 +111,7 @@ std::vector<Candidate> ratios_of(const MeasureTable& table, const Kind& kind, co
             }
             candidate.count = values.size();
             ratio.row = row_of(table.measures[ratio.numerator].name + " / " + table.measures[ratio.denominator].name, "", values,
-                               options.bootstrap);
+                               options.confidence);
             if (values.empty()) return;
             ratio.log_deviation = std::sqrt(proportions::ratio_variance(centred, candidate.pair).value);
             ratio.low = sample_quantile(values, (1 - options.range) / 2);
@@ -211,7 +210,7 @@ ProportionStudy study_proportions(const MeasureTable& given, const ProportionOpt
             if (const double value = table.values(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
                 !std::isnan(value) && (table.measures[j].power == 0 || unified.comparable[i]))
                 values.push_back(value);
-        study.measures.push_back(row_of(table.measures[j].name, table.measures[j].unit, values, options.bootstrap));
+        study.measures.push_back(row_of(table.measures[j].name, table.measures[j].unit, values, options.confidence));
         if (values.empty()) study.notes.push_back("measure '" + table.measures[j].name + "' has no value in any object");
     }
 
@@ -227,7 +226,7 @@ ProportionStudy study_proportions(const MeasureTable& given, const ProportionOpt
     for (std::size_t k = 0; k < kinds.size(); ++k) {
         const Kind& kind = kinds[k];
         std::vector<Candidate> list = ratios_of(table, kind, options);
-        test(list, kind, options, permutations, options.bootstrap.seed + 1000003 * (k + 1));
+        test(list, kind, options, permutations, options.seed + 1000003 * (k + 1));
         const Eigen::MatrixXd centred = proportions::centred_columns(kind.logs);
         if (const auto own = proportions::own_deviations(centred)) {
             for (std::size_t c = 0; c < own->size(); ++c) study.measures[kind.measures[c]].own_deviation = (*own)[c];

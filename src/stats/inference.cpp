@@ -111,56 +111,36 @@ std::optional<Interval> bootstrap_interval(std::size_t count, const SampleStatis
     return Interval{limit(tail), limit(1 - tail)};
 }
 
-std::optional<Interval> studentised_interval(std::size_t count, const SampleEstimate& estimate, const BootstrapOptions& options) {
-    check_options(options, "bootstrap");
-    if (count < 2) return std::nullopt;
-    std::vector<std::size_t> all(count);
-    std::iota(all.begin(), all.end(), std::size_t{0});
-    const std::optional<Estimate> observed = estimate(all);
-    if (!observed || !(observed->error > 0)) return std::nullopt;
-    const auto resamples = static_cast<std::size_t>(options.resamples);
-    std::vector<std::optional<Estimate>> drawn(resamples);
-    parallel_for(
-        resamples, [&](std::size_t b) { drawn[b] = estimate(Random(options.seed, b).resample(count)); }, 16);
-    std::vector<double> off;
-    for (const auto& one : drawn)
-        if (one && one->error > 0) off.push_back((one->value - observed->value) / one->error);
-    if (2 * off.size() < resamples) return std::nullopt;
-    require_finite(off, "bootstrap");
-    const double tail = (1 - options.confidence) / 2;
-    return Interval{observed->value - sample_quantile(off, 1 - tail) * observed->error,
-                    observed->value - sample_quantile(off, tail) * observed->error};
-}
-
-std::optional<Interval> deviation_interval(const std::vector<double>& values, bool relative, const BootstrapOptions& options) {
-    if (values.size() < 3) return std::nullopt;
+std::optional<Interval> deviation_interval(const std::vector<double>& values, bool relative, double confidence) {
+    if (!(confidence > 0 && confidence < 1))
+        fail_usage("the confidence is " + std::to_string(confidence), "use one between 0 and 1");
+    const double n = static_cast<double>(values.size()), z = normal_quantile(0.5 + confidence / 2);
+    if (values.size() < 3 || !(n > z)) return std::nullopt;
     const Summary summary = summarise(values);
     if (!(*summary.deviation > 0) || (relative && summary.mean == 0)) return std::nullopt;
     // In units of the deviation, about the mean.
     std::vector<double> scaled;
     for (const double value : values) scaled.push_back((value - summary.mean) / *summary.deviation);
-    const double mean = summary.mean / *summary.deviation;
-    const auto estimate = [&](const std::vector<std::size_t>& chosen) -> std::optional<Estimate> {
-        const double n = static_cast<double>(chosen.size());
-        double sum = 0, square = 0;
-        for (const std::size_t i : chosen) sum += scaled[i], square += scaled[i] * scaled[i];
-        const double shift = sum / n, variance = (square - sum * shift) / (n - 1), centre = mean + shift;
-        // A resample of one value over and over has no deviation.
-        if (!(variance > 1e-12) || (relative && centre == 0)) return std::nullopt;
-        // The influence function of log s is ((x - m)^2 / s^2 - 1) / 2, of log |m| it is (x - m) / m.
-        double error = 0;
-        for (const std::size_t i : chosen) {
-            const double d = scaled[i] - shift;
-            const double influence = (d * d / variance - 1) / 2 - (relative ? d / centre : 0);
-            error += influence * influence;
-        }
-        return Estimate{std::log(variance) / 2 - (relative ? std::log(std::abs(centre)) : 0), std::sqrt(error) / n};
-    };
-    std::optional<Interval> interval = studentised_interval(values.size(), estimate, options);
-    if (!interval) return std::nullopt;
-    // The coefficient of variation has no unit: the scale falls out.
-    const double unit = relative ? 1 : *summary.deviation;
-    return Interval{unit * std::exp(interval->low), unit * std::exp(interval->high)};
+    std::sort(scaled.begin(), scaled.end());
+    // The mean without a share 1 / (2 sqrt(n - 4)) of the values at either end.
+    const double share = values.size() > 4 ? std::min(0.5, 1 / (2 * std::sqrt(n - 4))) : 0.5;
+    const auto cut = std::min(static_cast<std::size_t>(share * n), (values.size() - 1) / 2);
+    double middle = 0;
+    for (std::size_t i = cut; i < scaled.size() - cut; ++i) middle += scaled[i] / static_cast<double>(scaled.size() - 2 * cut);
+    double third = 0, fourth = 0;
+    for (const double x : scaled) third += x * x * x, fourth += std::pow(x - middle, 4);
+    // Bonett 2006, equation 4; the sum of squares is n - 1 in these units.
+    const double kurtosis = n * fourth / ((n - 1) * (n - 1)), factor = n / (n - z);
+    const double log_error = factor * std::sqrt((kurtosis - (n - 3) / n) / (n - 1)) / 2;
+    double error = log_error, variation = 1;
+    if (relative) {
+        variation = *summary.deviation / std::abs(summary.mean);
+        const double skewness = std::sqrt(n) * third / std::pow(n - 1, 1.5) * (summary.mean < 0 ? -1 : 1);
+        const double square = log_error * log_error + variation * variation / n - skewness * variation / n;
+        error = std::sqrt(std::max(square, log_error * log_error / 4));
+    }
+    const double centre = std::sqrt(factor) * (relative ? variation : *summary.deviation);
+    return Interval{centre * std::exp(-z * error), centre * std::exp(z * error)};
 }
 
 std::vector<ClusterStability> cluster_stability(const std::vector<int>& labels,

@@ -84,7 +84,7 @@ struct Boxes {
         made = make_measures(options);
         write_boxes(scratch, scratch / "boxes", made.table);
         command = "study proportions " + quoted(scratch / "boxes") + " --measures " + quoted(scratch / "boxes.measures.json") +
-                  " --output " + quoted(scratch / "out") + " --permutations 999 --resamples 100";
+                  " --output " + quoted(scratch / "out") + " --permutations 999";
     }
 };
 
@@ -111,7 +111,7 @@ TEST(StudyProportionsCommand, FindsPlantedProportionsOfAnnotatedMeshes) {
         EXPECT_TRUE(std::filesystem::exists(boxes.scratch / "out" / name)) << name;
     // The values are those of the table the boxes were made of, and the table by itself gives the same.
     const auto from_table = run_command("study proportions " + quoted(boxes.scratch / "out" / "values.csv") + " --output " +
-                                        quoted(boxes.scratch / "other") + " --permutations 999 --resamples 100 --json");
+                                        quoted(boxes.scratch / "other") + " --permutations 999 --json");
     ASSERT_EQ(from_table.code, 0) << from_table.err;
     const Json other = parse_json(from_table.out, "report");
     for (rapidjson::SizeType r = 0; r < other["result"]["ratios"].Size(); ++r)
@@ -159,6 +159,28 @@ TEST(StudyProportionsCommand, ProposesConstraintsForATemplate) {
     const auto check = run_command("relation check " + quoted(folder / "object 1.ply") + " " +
                                    quoted(boxes.scratch / "t.ant.json") + " " + quoted(boxes.scratch / "g.graph.json"));
     EXPECT_EQ(check.code, 0) << check.err << check.out;
+}
+
+TEST(StudyMakeProportionsCommand, ItsMeasuresAreThoseItDrew) {
+    const Scratch scratch;
+    const std::string make = "study make proportions --objects 3 --vertices 4000 --seed 5 ";
+    ASSERT_EQ(run_command(make + quoted(scratch / "made")).code, 0);
+    const auto study =
+        run_command("study proportions " + quoted(scratch / "made") + " --measures " +
+                    quoted(scratch / "made" / "statuettes.measures.json") + " --output " + quoted(scratch / "out"));
+    ASSERT_EQ(study.code, 3) << "three objects tell nothing: " << study.err;
+    const MeasureTable truth = read_measure_table(scratch / "made" / "truth.csv"),
+                       found = read_measure_table(scratch / "out" / "values.csv");
+    ASSERT_EQ(found.objects, truth.objects);
+    for (Eigen::Index i = 0; i < 3; ++i)
+        for (Eigen::Index j = 0; j < 5; ++j)
+            EXPECT_NEAR(found.values(i, j), truth.values(i, j), (j == 0 ? 0.02 : 0.1) * truth.values(i, j))
+                << truth.measures[static_cast<std::size_t>(j)].name;
+    ASSERT_EQ(run_command(make + quoted(scratch / "again") + " --threads 1").code, 0);
+    for (const char* name : {"truth.csv", "statuette-2.ply", "statuette-2.ant.json"})
+        EXPECT_EQ(read_file(scratch / "again" / name), read_file(scratch / "made" / name)) << name;
+    EXPECT_EQ(run_command(make + quoted(scratch / "x") + " --fixed 'arm length'").code, 2);
+    EXPECT_EQ(run_command(make + quoted(scratch / "x") + " --fixed 'nose,chin'").code, 2);
 }
 
 TEST(StudyProportionsCommand, SaysNoWhereNothingIsFixed) {

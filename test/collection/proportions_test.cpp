@@ -31,8 +31,7 @@ MeasureTable table_of(const std::vector<std::string>& names, const std::vector<s
 ProportionOptions quick(std::uint64_t seed = 1) {
     ProportionOptions options;
     options.permutations = 999;
-    options.bootstrap.resamples = 50;
-    options.bootstrap.seed = seed;
+    options.seed = seed;
     return options;
 }
 

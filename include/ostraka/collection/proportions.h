@@ -16,7 +16,8 @@ struct ProportionOptions {
     std::string correction = "bh";
     int permutations = 4999;
     double range = 0.9;
-    BootstrapOptions bootstrap = {};
+    double confidence = 0.95;
+    std::uint64_t seed = 1;
 
     template <class Visitor>
     void describe(Visitor& visit) {
@@ -28,7 +29,8 @@ struct ProportionOptions {
         visit("permutations", permutations, "random rearrangements of each test; more where the number of ratios asks for it",
               Range{99, 1000000});
         visit("range", range, "share of the observed ratios that a proposed range spans", Range{0.01, 1});
-        bootstrap.describe(visit);
+        visit("confidence", confidence, "confidence of intervals", Range{0.5, 0.999});
+        visit("seed", seed, "seed of the random numbers", Range{0, 1e18});
     }
 };
 
