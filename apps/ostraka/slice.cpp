@@ -356,6 +356,8 @@ private:
                 write_profile_drawing(path, find_profile(file.mesh, profile_axis(), turn), Path(mesh).filename().string(), unit);
             }
         }
+        for (const auto& name : outputs)
+            if (std::filesystem::is_directory(name)) replace_outputs(name, "slice");
         together.commit();
     }
 

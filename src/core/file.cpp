@@ -1,6 +1,7 @@
 #include "ostraka/core/file.h"
 
 #include "ostraka/core/error.h"
+#include "output_sweep.h"
 
 #include <fcntl.h>
 #include <openssl/evp.h>
@@ -156,12 +157,22 @@ OutputTransaction::~OutputTransaction() {
 }
 
 void OutputTransaction::commit() {
+    std::vector<OutputSweep> sweeps;
+    for (const auto& [folder, owner] : replaced_) sweeps.emplace_back(folder, owner, waiting_);
+    replaced_.clear();
+    for (const OutputSweep& sweep : sweeps) sweep.write_list();
     while (!waiting_.empty()) {
         const auto& [temporary, file] = waiting_.front();
         if (::rename(temporary.c_str(), file.c_str()) != 0)
             throw Error(ErrorKind::failure, file.string(), "cannot be written: " + reason(), "check the rights of its folder");
         waiting_.erase(waiting_.begin());
     }
+    for (OutputSweep& sweep : sweeps) sweep.remove_rest();
+}
+
+void replace_outputs(const Path& folder, const std::string& owner) {
+    if (open_transaction == nullptr) throw std::logic_error("no transaction is open");
+    open_transaction->replaced_.emplace_back(folder, owner);
 }
 
 void write_file(const Path& file, std::string_view bytes) {

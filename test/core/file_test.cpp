@@ -72,6 +72,87 @@ TEST(OutputTransaction, ShowsAllFilesOrNone) {
     EXPECT_EQ(test::count_files(scratch.path()), 2U);
 }
 
+namespace {
+
+void write_outputs(const Path& folder, const std::vector<std::pair<std::string, std::string>>& files,
+                   const std::string& owner = "test") {
+    OutputTransaction all;
+    replace_outputs(folder, owner);
+    for (const auto& [name, bytes] : files) write_file(folder / name, bytes);
+    all.commit();
+}
+
+}  // namespace
+
+TEST(ReplaceOutputs, LeavesWhatTheLastRunWroteAndWhatOthersWrote) {
+    const Scratch scratch;
+    (void)scratch.file("own.txt", "of the user");
+    write_outputs(scratch.path(), {{"a.svg", "1"}, {"b.svg", "2"}, {"edited.csv", "3"}, {"c.csv", "4"}, {"link.svg", "5"}});
+    write_outputs(scratch.path(), {{"other.csv", "6"}}, "another");
+    (void)scratch.file("edited.csv", "3, and a remark");
+    std::filesystem::remove(scratch / "link.svg");
+    std::filesystem::create_symlink(scratch / "own.txt", scratch / "link.svg");
+    write_outputs(scratch.path(), {{"a.png", "1"}, {"c.csv", "5"}});
+    for (const char* gone : {"a.svg", "b.svg"}) EXPECT_FALSE(std::filesystem::exists(scratch / gone)) << gone;
+    for (const char* there : {"own.txt", "edited.csv", "other.csv", "a.png", "c.csv", "link.svg"})
+        EXPECT_TRUE(std::filesystem::exists(scratch / there)) << there;
+    EXPECT_EQ(read_file(scratch / "c.csv"), "5");
+    EXPECT_EQ(read_file(scratch / ".test.outputs"), sha256("1") + "  a.png\n" + sha256("5") + "  c.csv\n");
+    // What was changed once is the user's from then on.
+    write_outputs(scratch.path(), {});
+    EXPECT_TRUE(std::filesystem::exists(scratch / "edited.csv"));
+    EXPECT_FALSE(std::filesystem::exists(scratch / "a.png"));
+}
+
+TEST(ReplaceOutputs, RemovesNothingBeforeAllIsThere) {
+    const Scratch scratch;
+    write_outputs(scratch.path(), {{"a.svg", "1"}});
+    {
+        const OutputTransaction broken;
+        replace_outputs(scratch.path(), "test");
+        write_file(scratch / "b.svg", "2");
+    }
+    EXPECT_EQ(read_file(scratch / "a.svg"), "1");
+    EXPECT_FALSE(std::filesystem::exists(scratch / "b.svg"));
+    // A run that was killed between the two is made good by the next one.
+    (void)scratch.file("b.svg", "2");
+    (void)scratch.file(".test.outputs", sha256("2") + "  b.svg\n" + sha256("1") + "  a.svg\n");
+    write_outputs(scratch.path(), {{"b.svg", "2"}});
+    EXPECT_FALSE(std::filesystem::exists(scratch / "a.svg"));
+    EXPECT_THROW(replace_outputs(scratch.path(), "test"), std::logic_error);
+}
+
+TEST(ReplaceOutputs, AListFromOutsideReachesNoOtherFolder) {
+    const Scratch scratch;
+    std::filesystem::create_directories(scratch / "out" / "sub");
+    const Path outside = scratch.file("outside.txt", "x"), within = scratch.file("out/sub/within.txt", "x");
+    const std::string sum = sha256("x");
+    (void)scratch.file("out/.test.outputs", sum + "  ../outside.txt\n" + sum + "  sub/within.txt\n" + sum + "  " +
+                                                outside.string() + "\nnonsense\n" + sum + "  ..\n" + sum + "\n");
+    write_outputs(scratch / "out", {{"a.csv", "1"}});
+    EXPECT_TRUE(std::filesystem::exists(outside));
+    EXPECT_TRUE(std::filesystem::exists(within));
+}
+
+TEST(RemoveStaleTemporaries, TakesOldOnesOnly) {
+    const Scratch scratch;
+    const auto now = std::filesystem::file_time_type::clock::now();
+    const auto file = [&](const std::string& name, int hours) {
+        (void)scratch.file(name, "x");
+        std::filesystem::last_write_time(scratch / name, now - std::chrono::hours(hours));
+    };
+    file(".ostraka-AbC123", 30);
+    file(".ostraka-young1", 2);
+    file(".ostraka-longer7", 30);
+    file("ostraka-AbC123", 30);
+    file("kept.json", 30);
+    std::filesystem::create_directory(scratch / ".ostraka-folder");
+    EXPECT_EQ(remove_stale_temporaries(scratch.path()), 1U);
+    EXPECT_FALSE(std::filesystem::exists(scratch / ".ostraka-AbC123"));
+    EXPECT_EQ(test::count_files(scratch.path()), 5U);
+    EXPECT_EQ(remove_stale_temporaries(scratch / "nowhere"), 0U);
+}
+
 TEST(AtomicFile, RefusesFoldersAndMissingFolders) {
     const Scratch scratch;
     EXPECT_THROW(write_file(scratch.path(), "x"), Error);

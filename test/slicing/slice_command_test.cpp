@@ -30,7 +30,7 @@ TEST(SliceCommand, EverythingIntoAFolder) {
     const auto result = run_command("slice " + vase + "--count 12 --medial-axis 0.02,0.1 --output " + folder);
     ASSERT_EQ(result.code, 0) << result.err;
     EXPECT_NE(result.out.find("mean of barycentres"), std::string::npos);
-    EXPECT_EQ(count_files(folder), 5U);
+    EXPECT_EQ(count_files(folder), 6U) << "five, and the list of them";
     const Json json = read_json(Path(folder) / "slices.json");
     validate(json, "slices", "slices.json");
     ASSERT_EQ(json["slices"].Size(), 12U);
@@ -56,6 +56,18 @@ TEST(SliceCommand, EverythingIntoAFolder) {
     for (const char* name : {"slices.json", "slices.csv", "slices.svg", "slices.ply", "profile.svg"})
         EXPECT_TRUE(read_file(Path(folder) / name) == read_file(Path(again) / name))
             << name;  // EXPECT_EQ would tell megabytes apart
+}
+
+TEST(SliceCommand, AFolderHoldsWhatTheLastRunWrote) {
+    const Scratch scratch;
+    const std::string folder = (scratch / "cut").string();
+    ASSERT_EQ(run_command("slice " + vase + "--count 3 --output " + folder).code, 0);
+    EXPECT_TRUE(std::filesystem::exists(Path(folder) / "profile.svg"));
+    write_file(Path(folder) / "remarks.txt", "mine");
+    ASSERT_EQ(run_command("slice " + vase + "--plane 0,0,100,0,0,1 --output " + folder).code, 0);
+    EXPECT_FALSE(std::filesystem::exists(Path(folder) / "profile.svg")) << "one slice has no profile";
+    EXPECT_TRUE(std::filesystem::exists(Path(folder) / "slices.svg"));
+    EXPECT_TRUE(std::filesystem::exists(Path(folder) / "remarks.txt"));
 }
 
 TEST(SliceCommand, DirectionsHeightsAndReports) {
@@ -103,7 +115,7 @@ TEST(SliceCommand, DirectionsHeightsAndReports) {
         EXPECT_NEAR(d["equivalent_radius"].GetDouble(), 1, 0.02) << i;
         EXPECT_GT(d["eccentricity"].GetDouble(), 0.97) << i;
     }
-    EXPECT_EQ(count_files(scratch / "bent"), 4U);  // no profile
+    EXPECT_EQ(count_files(scratch / "bent"), 5U);  // no profile
 }
 
 TEST(SliceCommand, OpenScansAndPartsAreSaidToBeOpen) {

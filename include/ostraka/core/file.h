@@ -48,9 +48,20 @@ public:
 
 private:
     friend class AtomicFile;
-    std::vector<std::pair<Path, Path>> waiting_;  ///< temporary name, name
+    friend void replace_outputs(const Path&, const std::string&);
+    std::vector<std::pair<Path, Path>> waiting_;          ///< temporary name, name
+    std::vector<std::pair<Path, std::string>> replaced_;  ///< folder, owner
     OutputTransaction* outer_;
 };
+
+/// For a folder that one command fills: the innermost open transaction, when it commits, also removes what an earlier one of the
+/// same `owner` wrote directly into `folder` and this one did not. A list in the folder (`.OWNER.outputs`, as sha256sum writes
+/// it) remembers what was written; what is not on it, or was changed since, stays. Throws std::logic_error where none is open.
+void replace_outputs(const Path& folder, const std::string& owner);
+
+/// Removes the temporary files that AtomicFile left in `folder` when its process was killed: regular files named as it names
+/// them, and not touched for a day (a younger one may be another process's). Returns how many.
+std::size_t remove_stale_temporaries(const Path& folder);
 
 /// Writes `bytes` atomically to `file`.
 void write_file(const Path& file, std::string_view bytes);

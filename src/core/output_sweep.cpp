@@ -1,0 +1,106 @@
+#include "output_sweep.h"
+
+#include "ostraka/core/error.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace ostraka {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::size_t sum_length = 64;
+constexpr std::string_view temporary_beginning = ".ostraka-";
+constexpr std::size_t temporary_length = temporary_beginning.size() + 6;
+
+/// A name that stands on a line of its own, and in no other folder.
+bool plain(const std::string& name) {
+    return !name.empty() && name != "." && name != ".." && name.find_first_of(std::string("/\\\n\0", 4)) == std::string::npos;
+}
+
+/// Lines "SHA-256, two blanks, name"; others are passed over.
+std::map<std::string, std::string> read_list(const Path& list) {
+    std::map<std::string, std::string> entries;
+    std::error_code code;
+    if (!fs::is_regular_file(list, code)) return entries;
+    std::string text;
+    try {
+        text = read_file(list);
+    } catch (const Error&) {
+        return entries;
+    }
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t end = std::min(text.find('\n', at), text.size());
+        const std::string line = text.substr(at, end - at);
+        at = end + 1;
+        if (line.size() > sum_length + 2 && line.compare(sum_length, 2, "  ") == 0 && plain(line.substr(sum_length + 2)))
+            entries[line.substr(sum_length + 2)] = line.substr(0, sum_length);
+    }
+    return entries;
+}
+
+bool is_unchanged(const Path& file, const std::string& sum) {
+    std::error_code code;
+    if (fs::symlink_status(file, code).type() != fs::file_type::regular) return false;
+    try {
+        return sha256_of_file(file) == sum;
+    } catch (const Error&) {
+        return false;
+    }
+}
+
+}  // namespace
+
+OutputSweep::OutputSweep(const Path& folder, const std::string& owner, const std::vector<std::pair<Path, Path>>& waiting)
+    : folder_(folder), list_(folder / ("." + owner + ".outputs")) {
+    std::error_code code;
+    for (const auto& [temporary, file] : waiting) {
+        const Path parent = file.has_parent_path() ? file.parent_path() : Path(".");
+        const std::string name = file.filename().string();
+        if (plain(name) && fs::equivalent(parent, folder_, code)) now_[name] = sha256_of_file(temporary);
+    }
+    for (const auto& [name, sum] : read_list(list_))
+        if (!now_.contains(name) && is_unchanged(folder_ / name, sum)) rest_[name] = sum;
+}
+
+std::string OutputSweep::text() const {
+    std::string text;
+    for (const auto* list : {&now_, &rest_})
+        for (const auto& [name, sum] : *list) text += sum + "  " + name + "\n";
+    return text;
+}
+
+void OutputSweep::write_list() const {
+    std::error_code code;
+    if (!now_.empty() || fs::exists(list_, code)) write_file(list_, text());
+}
+
+void OutputSweep::remove_rest() {
+    if (rest_.empty()) return;
+    std::error_code code;
+    for (const auto& [name, sum] : rest_) fs::remove(folder_ / name, code);
+    rest_.clear();
+    OutputTransaction own;
+    write_file(list_, text());
+    own.commit();
+}
+
+std::size_t remove_stale_temporaries(const Path& folder) {
+    using namespace std::chrono_literals;
+    std::error_code code;
+    std::size_t count = 0;
+    const auto now = fs::file_time_type::clock::now();
+    for (fs::directory_iterator it(folder, code), end; !code && it != end; it.increment(code)) {
+        const std::string name = it->path().filename().string();
+        if (name.size() != temporary_length || !name.starts_with(temporary_beginning)) continue;
+        std::error_code own;
+        if (it->symlink_status(own).type() != fs::file_type::regular) continue;
+        const auto touched = it->last_write_time(own);
+        if (!own && now - touched > 24h && fs::remove(it->path(), own)) ++count;
+    }
+    return count;
+}
+
+}  // namespace ostraka
