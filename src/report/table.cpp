@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <map>
 #include <stdexcept>
 
@@ -28,12 +29,55 @@ std::size_t characters(const std::string& text) {
 
 }  // namespace
 
-void TextTable::add(std::vector<std::string> cells) {
+namespace {
+
+TableCell finite_cell(const std::optional<double>& value, const std::function<std::string(double)>& shown) {
+    if (!value || !std::isfinite(*value)) return {"-", {""}};
+    return {shown(*value), {digits(*value)}};
+}
+
+}  // namespace
+
+TableCell number_cell(const std::optional<double>& value, int digits) {
+    return finite_cell(value, [&](double x) { return significant(x, digits); });
+}
+
+TableCell fixed_cell(const std::optional<double>& value, int after_point) {
+    return finite_cell(value, [&](double x) { return fixed(x, after_point); });
+}
+
+TableCell percent_cell(const std::optional<double>& share, int after_point) {
+    return finite_cell(share, [&](double x) { return percent(x, after_point); });
+}
+
+TextTable::TextTable(const std::vector<TableColumn>& columns) {
+    for (const TableColumn& column : columns) {
+        columns_.push_back(column.name);
+        csv_widths_.push_back(column.csv.size());
+        csv_columns_.insert(csv_columns_.end(), column.csv.begin(), column.csv.end());
+    }
+}
+
+TextTable::TextTable(const std::vector<std::string>& columns)
+    : TextTable(std::vector<TableColumn>(columns.begin(), columns.end())) {}
+
+void TextTable::add(const std::vector<TableCell>& cells) {
     if (cells.size() != columns_.size())
         throw std::logic_error("a row of " + std::to_string(cells.size()) + " cells in a table of " +
                                std::to_string(columns_.size()) + " columns");
-    rows_.push_back(std::move(cells));
+    std::vector<std::string> row, values;
+    for (std::size_t j = 0; j < cells.size(); ++j) {
+        if (cells[j].csv.size() != csv_widths_[j])
+            throw std::logic_error(std::to_string(cells[j].csv.size()) + " values under '" + columns_[j] + "', which has " +
+                                   std::to_string(csv_widths_[j]) + " columns in the CSV");
+        row.push_back(cells[j].text);
+        values.insert(values.end(), cells[j].csv.begin(), cells[j].csv.end());
+    }
+    rows_.push_back(std::move(row));
+    csv_rows_.push_back(std::move(values));
 }
+
+void TextTable::add(const std::vector<std::string>& cells) { add(std::vector<TableCell>(cells.begin(), cells.end())); }
 
 std::vector<bool> TextTable::numeric() const {
     std::vector<bool> result(columns_.size(), !rows_.empty());
@@ -50,8 +94,8 @@ std::vector<bool> TextTable::numeric() const {
 }
 
 std::string TextTable::csv() const {
-    std::string text = csv_row(columns_);
-    for (const auto& row : rows_) text += csv_row(row);
+    std::string text = csv_row(csv_columns_);
+    for (const auto& row : csv_rows_) text += csv_row(row);
     return text;
 }
 

@@ -54,6 +54,23 @@ TEST(TextTable, TextFromOutsideStaysText) {
         EXPECT_EQ(latex.find(bare), std::string::npos) << bare;
 }
 
+TEST(TextTable, NumbersAreWholeInTheCsvAndWhatIsMissingIsEmpty) {
+    TextTable t({"name", "mean", "cv", {"interval", {"low", "high"}}});
+    t.add({"a", number_cell(1.0 / 3, 4), percent_cell(0.1234567), {"1 to 2", {"1.25", "2"}}});
+    t.add({"-", number_cell(std::nullopt, 4), percent_cell(std::nan("")), {"-", {"", ""}}});
+    t.add({"c", fixed_cell(-2.0 / 3, 1), percent_cell(-0.5, 0), {"-", {"", ""}}});
+    EXPECT_EQ(t.markdown(),
+              "| name | mean | cv | interval |\n|---|---:|---:|---|\n| a | 0.3333 | 12.3% | 1 to 2 |\n| - | - | - | - |\n"
+              "| c | -0.7 | -50% | - |\n");
+    const auto rows = csv_rows(t.csv(), ',', "table");
+    EXPECT_EQ(rows[0].cells, (std::vector<std::string>{"name", "mean", "cv", "low", "high"}));
+    EXPECT_EQ(rows[1].cells, (std::vector<std::string>{"a", "0.3333333333333333", "0.1234567", "1.25", "2"}));
+    EXPECT_EQ(rows[2].cells, (std::vector<std::string>{"'-", "", "", "", ""})) << "a name stays one";
+    EXPECT_EQ(std::stod(rows[3].cells[1]), -2.0 / 3);
+    EXPECT_EQ(rows[3].cells[2], "-0.5");
+    EXPECT_THROW(t.add({"d", "1", "1", "1"}), std::logic_error);
+}
+
 TEST(TextTable, IsWrittenInThreeFormats) {
     const test::Scratch scratch;
     table().write(scratch.path(), "t", "caption");

@@ -9,12 +9,42 @@
 
 namespace ostraka {
 
+/// A cell: what people read, and what stands in the CSV, where numbers have all their digits and nothing stands for what is
+/// missing.
+struct TableCell {
+    std::string text;
+    std::vector<std::string> csv;  ///< a value for each column of the CSV that the table's column has
+
+    TableCell(std::string both) : text(std::move(both)), csv{text} {}
+    TableCell(const char* both) : TableCell(std::string(both)) {}
+    TableCell(std::string shown, std::vector<std::string> values) : text(std::move(shown)), csv(std::move(values)) {}
+};
+/// Numbers for people as `significant`, `fixed` and `percent` write them, "-" where there is none or it is not finite. A
+/// percentage is a share in the CSV.
+TableCell number_cell(const std::optional<double>& value, int digits);
+TableCell fixed_cell(const std::optional<double>& value, int after_point);
+TableCell percent_cell(const std::optional<double>& share, int after_point = 1);
+
+/// A column, which may be several in the CSV, such as the two ends of an interval.
+struct TableColumn {
+    std::string name;
+    std::vector<std::string> csv;
+
+    TableColumn(std::string both) : name(std::move(both)), csv{name} {}
+    TableColumn(const char* both) : TableColumn(std::string(both)) {}
+    TableColumn(std::string shown, std::vector<std::string> names) : name(std::move(shown)), csv(std::move(names)) {}
+};
+
 /// Cells are plain text, names from outside among them: whatever they hold, they stay text in each format.
 class TextTable {
 public:
-    explicit TextTable(std::vector<std::string> columns) : columns_(std::move(columns)) {}
-    /// Throws std::logic_error unless there is a cell a column.
-    void add(std::vector<std::string> cells);
+    explicit TextTable(std::initializer_list<TableColumn> columns) : TextTable(std::vector<TableColumn>(columns)) {}
+    explicit TextTable(const std::vector<TableColumn>& columns);
+    explicit TextTable(const std::vector<std::string>& columns);
+    /// Throws std::logic_error unless there is a cell a column, with a value for each of its columns in the CSV.
+    void add(std::initializer_list<TableCell> cells) { add(std::vector<TableCell>(cells)); }
+    void add(const std::vector<TableCell>& cells);
+    void add(const std::vector<std::string>& cells);
 
     [[nodiscard]] std::size_t size() const { return rows_.size(); }
     [[nodiscard]] const std::vector<std::string>& columns() const { return columns_; }
@@ -35,8 +65,9 @@ public:
 private:
     [[nodiscard]] std::vector<bool> numeric() const;
 
-    std::vector<std::string> columns_;
-    std::vector<std::vector<std::string>> rows_;
+    std::vector<std::string> columns_, csv_columns_;
+    std::vector<std::size_t> csv_widths_;  ///< a column: its columns in the CSV
+    std::vector<std::vector<std::string>> rows_, csv_rows_;
 };
 
 /// Text that LaTeX sets as it stands.
