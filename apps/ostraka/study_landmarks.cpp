@@ -48,7 +48,6 @@ struct Shapes {
 
 struct StudyLandmarks {
     StudyFiles files;
-    std::string plots = "svg";
     int components = 5;
     ProcrustesOptions options;
 
@@ -72,6 +71,7 @@ struct StudyLandmarks {
         write(shapes, shape, principal, provenance);
         const Summary sizes = summarise(shape.centroid_sizes, "centroid sizes");
         add_member(result, "objects", JsonValue(static_cast<std::uint64_t>(shapes.objects.size())), allocator);
+        KnownAnswers(shapes.labels).add_to(result, allocator);
         add_member(result, "landmarks", JsonValue(static_cast<std::uint64_t>(shapes.names.size())), allocator);
         add_member(result, "meanCentroidSize", JsonValue(sizes.mean), allocator);
         add_member(result, "meanNorm", JsonValue(shape.mean.norm()), allocator);
@@ -166,9 +166,9 @@ private:
         std::map<std::string, PlotSeries> classes;
         for (std::size_t i = 0; i < shapes.objects.size(); ++i) {
             const auto row = static_cast<Eigen::Index>(i);
-            std::vector<std::string> cells{shapes.objects[i], significant(shape.centroid_sizes[i], 12),
-                                           significant(std::sqrt(shape.maps[i].sum_of_squares), 10)};
-            for (int c = 0; c < count; ++c) cells.push_back(significant(principal.scores(row, c), 10));
+            std::vector<TableCell> cells{shapes.objects[i], number_cell(shape.centroid_sizes[i], 12),
+                                         number_cell(std::sqrt(shape.maps[i].sum_of_squares), 10)};
+            for (int c = 0; c < count; ++c) cells.push_back(number_cell(principal.scores(row, c), 10));
             table.add(cells);
             PlotSeries& series = classes[shapes.labels[i]];
             series.points.push_back({principal.scores(row, 0), count > 1 ? principal.scores(row, 1) : 0});
@@ -186,7 +186,7 @@ private:
             plot.series.push_back(series);
         }
         plot.equal = true;
-        write_plot(files.in("components." + plots), plot);
+        write_plot(files.plot("components"), plot);
     }
 };
 
@@ -201,9 +201,6 @@ void add_study_landmarks(CLI::App& study, Session& session) {
     add_study_files(command, work->files, true);
     command->add_option("--components", work->components, "principal components to write")
         ->check(CLI::Range(1, 1000))
-        ->capture_default_str();
-    command->add_option("--plots", work->plots, "format of the plots")
-        ->check(CLI::IsMember({"svg", "png"}))
         ->capture_default_str();
     add_flags(command, work->options);
 }

@@ -1,11 +1,10 @@
-#include "command.h"
+#include "study.h"
 
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/shapes/head_casts.h"
 
-#include <filesystem>
 #include <iostream>
 #include <memory>
 
@@ -22,9 +21,7 @@ struct MakeHeads {
 int make(const MakeHeads& input, const Session& session) {
     const std::vector<PlannedHead> plan = plan_heads(input.population, input.cast);
     const Path folder(input.folder);
-    std::error_code code;
-    std::filesystem::create_directories(folder, code);
-    if (code) throw Error(ErrorKind::failure, input.folder, "the folder cannot be made: " + code.message(), "name another one");
+    make_collection_folder(input.folder);
 
     Provenance provenance;
     provenance.command = "study make moulds";

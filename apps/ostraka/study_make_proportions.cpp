@@ -1,5 +1,6 @@
 // ostraka study make proportions: a population of statuettes some of whose proportions are fixed.
 #include "commands.h"
+#include "study.h"
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/collection/statuette_annotations.h"
@@ -19,8 +20,6 @@
 namespace ostraka::app {
 
 namespace {
-
-namespace fs = std::filesystem;
 
 /// The measures that `study proportions` takes on these statuettes. The two arms of each are equally long.
 constexpr const char* measures_file = R"({
@@ -115,9 +114,7 @@ struct MakeProportions {
             truth +=
                 csv_row({names.back(), digits(drawn[0]), digits(drawn[1]), digits(drawn[2]), digits(drawn[2]), digits(drawn[3])});
         }
-        std::error_code code;
-        fs::create_directories(folder, code);
-        if (code) throw Error(ErrorKind::failure, folder, "the folder cannot be made: " + code.message(), "name another one");
+        make_collection_folder(folder);
         Progress progress("statuettes", list.size());
         parallel_for(
             list.size(),

@@ -1,5 +1,5 @@
 // ostraka study make technique: a population of statuettes whose technique is known.
-#include "command.h"
+#include "study.h"
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/collection/statuette_annotations.h"
@@ -15,8 +15,6 @@
 namespace ostraka::app {
 
 namespace {
-
-namespace fs = std::filesystem;
 
 struct MakePopulation {
     std::string folder;
@@ -55,9 +53,7 @@ struct MakePopulation {
 
     int run(const Session& session) const {
         const std::vector<StatuetteParameters> population = draw_population(options);
-        std::error_code code;
-        fs::create_directories(folder, code);
-        if (code) throw Error(ErrorKind::failure, folder, "the folder cannot be made: " + code.message(), "name another one");
+        make_collection_folder(folder);
         const std::size_t digits = std::to_string(population.size()).size();
         std::vector<std::vector<std::string>> rows(population.size());
         Progress progress("statuettes", population.size());

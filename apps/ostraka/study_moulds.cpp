@@ -35,9 +35,7 @@ struct MouldAnswer {
     std::vector<ClusterStability> stability;
     std::vector<double> sizes;
     std::vector<std::string> labels;  ///< known answers, empty where there is none
-    [[nodiscard]] bool has_truth() const {
-        return std::any_of(labels.begin(), labels.end(), [](const auto& label) { return !label.empty(); });
-    }
+    [[nodiscard]] KnownAnswers known() const { return KnownAnswers(labels); }
     [[nodiscard]] int group_count() const {
         return groups.labels.empty() ? 0 : *std::max_element(groups.labels.begin(), groups.labels.end()) + 1;
     }
@@ -84,15 +82,15 @@ void write_matrix(const StudyFiles& files, const std::string& name, const std::v
     columns.insert(columns.end(), names.begin(), names.end());
     TextTable table(columns);
     for (Eigen::Index i = 0; i < m.rows(); ++i) {
-        std::vector<std::string> cells{names[static_cast<std::size_t>(i)]};
-        for (Eigen::Index j = 0; j < m.cols(); ++j) cells.push_back(significant(m(i, j), 8));
+        std::vector<TableCell> cells{names[static_cast<std::size_t>(i)]};
+        for (Eigen::Index j = 0; j < m.cols(); ++j) cells.push_back(number_cell(m(i, j), 8));
         table.add(cells);
     }
     write_file(files.in(name + ".csv"), table.csv());
 }
 
 std::vector<std::string> truth_of(const MouldAnswer& answer) {
-    return answer.has_truth() ? answer.labels : std::vector<std::string>{};
+    return answer.known().labelled > 0 ? answer.labels : std::vector<std::string>{};
 }
 
 void draw(const MouldInput& input, const MouldAnswer& answer) {
@@ -112,7 +110,7 @@ void draw(const MouldInput& input, const MouldAnswer& answer) {
             map.values(i, j) = answer.distances(order[static_cast<std::size_t>(i)], order[static_cast<std::size_t>(j)]);
     }
     map.columns = map.rows;
-    write_plot(input.files.in("distances.svg"), map);
+    write_plot(input.files.plot("distances"), map);
 
     Dendrogram tree;
     tree.title = input.group.method == "linkage" ? "Average linkage of the distances" : "Single linkage, which DBSCAN goes by";
@@ -120,7 +118,7 @@ void draw(const MouldInput& input, const MouldAnswer& answer) {
     tree.names = names;
     tree.cut = answer.groups.epsilon;
     tree.classes = truth_of(answer);
-    write_plot(input.files.in("dendrogram.svg"), tree);
+    write_plot(input.files.plot("dendrogram"), tree);
 
     const auto& places = answer.groups.coordinates;
     for (int second = 1; second < std::min<int>(static_cast<int>(places.cols()), 3); ++second) {
@@ -142,7 +140,7 @@ void draw(const MouldInput& input, const MouldAnswer& answer) {
             }
             plot.series.push_back(std::move(series));
         }
-        write_plot(input.files.in("embedding-" + std::string(second == 1 ? "1-2" : "2-3") + ".svg"), plot);
+        write_plot(input.files.plot("embedding-" + std::string(second == 1 ? "1-2" : "2-3")), plot);
     }
 }
 
@@ -176,11 +174,13 @@ TextTable group_table(const MouldAnswer& answer) {
             if (nearest < 0 || to[g] < to[static_cast<std::size_t>(nearest)]) nearest = static_cast<int>(g);
         }
         const auto& stability = answer.stability[static_cast<std::size_t>(group)];
-        table.add({std::to_string(group + 1), std::to_string(size), pairs > 0 ? significant(within / pairs, 3) : "",
-                   nearest < 0 ? "" : std::to_string(nearest + 1),
-                   nearest < 0 ? "" : significant(to[static_cast<std::size_t>(nearest)], 3), significant(silhouette / size, 3),
-                   stability.resamples > 0 ? significant(stability.jaccard, 3) : "",
-                   stability.resamples > 0 ? percent(stability.dissolved, 0) : "", members});
+        const auto if_known = [](bool known, double value) { return known ? std::optional(value) : std::nullopt; };
+        const bool alone = nearest<0, resampled = stability.resamples> 0;
+        table.add({std::to_string(group + 1), std::to_string(size), number_cell(if_known(pairs > 0, within / pairs), 3),
+                   number_cell(if_known(!alone, nearest + 1), 6),
+                   number_cell(if_known(!alone, alone ? 0 : to[static_cast<std::size_t>(nearest)]), 3),
+                   number_cell(silhouette / size, 3), number_cell(if_known(resampled, stability.jaccard), 3),
+                   percent_cell(if_known(resampled, stability.dissolved), 0), members});
     }
     return table;
 }
@@ -189,19 +189,18 @@ TextTable group_table(const MouldAnswer& answer) {
 TextTable head_table(const MouldAnswer& answer, bool sizes) {
     std::vector<std::string> columns{"head", "group", "silhouette", "second group", "distance to own", "distance to second"};
     if (sizes) columns.emplace_back("relative size");
-    if (answer.has_truth()) columns.emplace_back("truth");
+    if (answer.known().labelled > 0) columns.emplace_back("truth");
     TextTable table(columns);
     for (std::size_t i = 0; i < answer.labels.size(); ++i) {
         const auto [second, distance] = answer.second_group(i);
         const double own = answer.mean_distance(i, answer.groups.labels[i]);
-        std::vector<std::string> cells{answer.matrices.names[i],
-                                       std::to_string(answer.groups.labels[i] + 1),
-                                       significant(answer.groups.head_silhouettes[i], 3),
-                                       second < 0 ? "" : std::to_string(second + 1),
-                                       std::isnan(own) ? "" : significant(own, 3),
-                                       second < 0 ? "" : significant(distance, 3)};
-        if (sizes) cells.push_back(significant(answer.sizes[i], 4));
-        if (answer.has_truth()) cells.push_back(answer.labels[i]);
+        std::vector<TableCell> cells{answer.matrices.names[i], std::to_string(answer.groups.labels[i] + 1),
+                                     number_cell(answer.groups.head_silhouettes[i], 3)};
+        cells.push_back(number_cell(second < 0 ? std::nullopt : std::optional<double>(second + 1), 6));
+        cells.push_back(number_cell(own, 3));
+        cells.push_back(number_cell(second < 0 ? std::nullopt : std::optional(distance), 3));
+        if (sizes) cells.push_back(number_cell(answer.sizes[i], 4));
+        if (answer.known().labelled > 0) cells.emplace_back(answer.labels[i]);
         table.add(cells);
     }
     return table;
@@ -210,7 +209,7 @@ TextTable head_table(const MouldAnswer& answer, bool sizes) {
 /// Every similarity, method and epsilon.
 TextTable choice_table(const MouldInput& input, const MouldAnswer& answer) {
     std::vector<std::string> columns{"similarity", "method", "epsilon", "value", "groups", "silhouette"};
-    if (answer.has_truth()) columns.emplace_back("adjusted Rand index");
+    if (answer.known().scorable()) columns.emplace_back("adjusted Rand index");
     TextTable table(columns);
     for (const auto& similarity : mould_similarities()) {
         const Eigen::MatrixXd distances = mould_distances(answer.matrices, similarity);
@@ -221,13 +220,14 @@ TextTable choice_table(const MouldInput& input, const MouldAnswer& answer) {
                 options.epsilon = epsilon;
                 if (options.epsilon == "volume" && options.method != "embedding") continue;
                 const MouldGroups groups = group_heads(distances, options);
-                std::vector<std::string> cells{similarity,
-                                               method,
-                                               epsilon,
-                                               significant(groups.epsilon, 3),
-                                               std::to_string(*std::max_element(groups.labels.begin(), groups.labels.end()) + 1),
-                                               significant(groups.silhouette, 3)};
-                if (answer.has_truth()) cells.push_back(fixed(answer.agreement(groups.labels), 3));
+                const int count = *std::max_element(groups.labels.begin(), groups.labels.end()) + 1;
+                std::vector<TableCell> cells{similarity,
+                                             method,
+                                             epsilon,
+                                             number_cell(groups.epsilon, 3),
+                                             std::to_string(count),
+                                             number_cell(groups.silhouette, 3)};
+                if (answer.known().scorable()) cells.push_back(fixed_cell(answer.agreement(groups.labels), 3));
                 table.add(cells);
             }
         }
@@ -244,7 +244,9 @@ JsonValue report_of(const MouldInput& input, const MouldAnswer& answer, double s
     add_member(result, "featureSize", JsonValue(size), allocator);
     add_member(result, "silhouette", JsonValue(answer.groups.silhouette), allocator);
     add_member(result, "clear", JsonValue(answer.groups.clear), allocator);
-    if (answer.has_truth()) add_member(result, "adjustedRandIndex", JsonValue(answer.agreement(answer.groups.labels)), allocator);
+    answer.known().add_to(result, allocator);
+    if (answer.known().scorable())
+        add_member(result, "adjustedRandIndex", JsonValue(answer.agreement(answer.groups.labels)), allocator);
     for (int group = 0; group < answer.group_count(); ++group) {
         JsonValue entry(rapidjson::kObjectType), members(rapidjson::kArrayType);
         add_member(entry, "group", JsonValue(group + 1), allocator);
@@ -310,10 +312,10 @@ int run(const MouldInput& input, const Session& session) {
     write_matrix(input.files, "distances", names, answer.distances);
     const bool sizes = input.compare.consistent.shrinkage > 0;
     const TextTable groups = group_table(answer), heads = head_table(answer, sizes);
-    groups.write(input.files.in(""), "groups", "Groups of heads by " + input.similarity);
-    heads.write(input.files.in(""), "heads", "Heads and their groups");
+    groups.write(input.files.output, "groups", "Groups of heads by " + input.similarity);
+    heads.write(input.files.output, "heads", "Heads and their groups");
     draw(input, answer);
-    if (input.choices) choice_table(input, answer).write(input.files.in(""), "choices", "Groups by every similarity and epsilon");
+    if (input.choices) choice_table(input, answer).write(input.files.output, "choices", "Groups by every similarity and epsilon");
 
     JsonValue result = report_of(input, answer, prepared.options.features.size, allocator);
     add_member(result, "failed", std::move(failures["failed"]), allocator);
@@ -330,8 +332,8 @@ int run(const MouldInput& input, const Session& session) {
     } else {
         std::cout << groups.plain() << answer.group_count() << " groups of " << names.size() << " heads at epsilon "
                   << number(answer.groups.epsilon, 3) << ", mean silhouette " << number(answer.groups.silhouette, 3);
-        if (answer.has_truth()) std::cout << ", adjusted Rand index " << number(answer.agreement(answer.groups.labels), 4);
-        std::cout << "\n";
+        if (answer.known().scorable()) std::cout << ", adjusted Rand index " << number(answer.agreement(answer.groups.labels), 4);
+        std::cout << "\n" << answer.known().words();
         if (!answer.groups.clear) std::cout << "the groups do not stand out: one mould, or each head its own\n";
         if (failed > 0) std::cout << failed << " objects were left out\n";
     }

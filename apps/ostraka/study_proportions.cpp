@@ -4,6 +4,7 @@
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/collection/proportion_graph.h"
+#include "ostraka/core/text.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/report/dendrogram.h"
 #include "ostraka/report/heat_map.h"
@@ -19,26 +20,43 @@ namespace ostraka::app {
 
 namespace {
 
-std::string interval_text(const std::optional<Interval>& interval, double factor, int digits) {
-    return interval ? significant(factor * interval->low, digits) + " to " + significant(factor * interval->high, digits) : "-";
+/// "low to high", two columns in the CSV.
+TableCell interval_cell(const std::optional<Interval>& interval, double factor, int digits_shown) {
+    if (!interval) return {"-", {"", ""}};
+    const double low = factor * interval->low, high = factor * interval->high;
+    return {significant(low, digits_shown) + " to " + significant(high, digits_shown), {digits(low), digits(high)}};
 }
+/// The same of shares, which are percentages for people.
+TableCell share_interval_cell(const std::optional<Interval>& interval) {
+    if (!interval) return {"-", {"", ""}};
+    return {fixed(100 * interval->low, 1) + " to " + percent(interval->high), {digits(interval->low), digits(interval->high)}};
+}
+TableColumn variation_interval_column() { return {"cv interval", {"cv low", "cv high"}}; }
 
 /// Table 3.1: measures, then ratios in per cent, each with its uncertainty.
 TextTable table_3_1(const ProportionStudy& study) {
-    TextTable table(
-        {"measure", "unit", "objects", "average", "min", "max", "median", "st. deviation", "95 % interval", "cv", "cv interval"});
+    TextTable table({"measure",
+                     "unit",
+                     "objects",
+                     "average",
+                     "min",
+                     "max",
+                     "median",
+                     "st. deviation",
+                     {"95 % interval", {"st. deviation low", "st. deviation high"}},
+                     "cv",
+                     variation_interval_column()});
     const auto add = [&](const MeasureRow& row, double factor, const std::string& unit) {
-        if (!row.summary) {
-            table.add({row.name, unit, "0", "-", "-", "-", "-", "-", "-", "-", "-"});
-            return;
-        }
-        const Summary& s = *row.summary;
-        const auto number = [&](double value) { return significant(factor * value, 4); };
-        table.add(
-            {row.name, unit, std::to_string(s.count), number(s.mean), number(s.min), number(s.max), number(s.median),
-             s.deviation ? number(*s.deviation) : "-", interval_text(row.deviation_interval, factor, 3), percent(s.variation),
-             row.variation_interval ? fixed(100 * row.variation_interval->low, 1) + " to " + percent(row.variation_interval->high)
-                                    : "-"});
+        const std::optional<Summary>& s = row.summary;
+        std::vector<TableCell> cells{row.name, unit, std::to_string(s ? s->count : 0)};
+        for (const auto& value : {s ? std::optional(s->mean) : std::nullopt, s ? std::optional(s->min) : std::nullopt,
+                                  s ? std::optional(s->max) : std::nullopt, s ? std::optional(s->median) : std::nullopt,
+                                  s ? s->deviation : std::nullopt})
+            cells.push_back(number_cell(value ? std::optional(factor * *value) : std::nullopt, 4));
+        cells.push_back(interval_cell(row.deviation_interval, factor, 3));
+        cells.push_back(percent_cell(s ? s->variation : std::nullopt));
+        cells.push_back(share_interval_cell(row.variation_interval));
+        table.add(cells);
     };
     for (const MeasureRow& row : study.measures) add(row, 1, row.unit);
     for (const RatioRow& ratio : study.ratios) add(ratio.row, 100, "%");
@@ -54,15 +72,14 @@ std::vector<const RatioRow*> by_deviation(const ProportionStudy& study) {
 }
 
 TextTable verdicts(const ProportionStudy& study) {
-    TextTable table({"ratio", "objects", "average", "cv", "cv interval", "p pairing", "p others", "p size", "q", "verdict"});
+    TextTable table(
+        {"ratio", "objects", "average", "cv", variation_interval_column(), "p pairing", "p others", "p size", "q", "verdict"});
     for (const RatioRow* ratio : by_deviation(study)) {
         const Summary& s = *ratio->row.summary;
-        table.add({ratio->row.name, std::to_string(s.count), significant(s.mean, 4), percent(s.variation),
-                   ratio->row.variation_interval ? fixed(100 * ratio->row.variation_interval->low, 1) + " to " +
-                                                       percent(ratio->row.variation_interval->high)
-                                                 : "-",
-                   significant(ratio->p_pairing, 2), significant(ratio->p_others, 2), significant(ratio->p_size, 2),
-                   significant(ratio->q, 2), to_string(ratio->fixedness)});
+        table.add({ratio->row.name, std::to_string(s.count), number_cell(s.mean, 4), percent_cell(s.variation),
+                   share_interval_cell(ratio->row.variation_interval), number_cell(ratio->p_pairing, 2),
+                   number_cell(ratio->p_others, 2), number_cell(ratio->p_size, 2), number_cell(ratio->q, 2),
+                   to_string(ratio->fixedness)});
     }
     return table;
 }
@@ -126,7 +143,7 @@ JsonValue strings_json(const std::vector<std::string>& list, JsonAllocator& allo
 
 struct StudyProportions {
     StudyFiles files;
-    std::string measures, mesh, annotations, graph, graph_in, annotations_out, plots = "svg";
+    std::string measures, mesh, annotations, graph, graph_in, annotations_out;
     ProportionOptions options;
     ProposalOptions proposals;
 
@@ -143,7 +160,9 @@ struct StudyProportions {
         std::size_t failures = 0;
         if (from_table) {
             provenance.add_input(files.collection);
+            files.check();
             table = read_measure_table(files.collection);
+            files.open(provenance);
             add_member(result, "failed", JsonValue(rapidjson::kArrayType), allocator);
         } else {
             provenance.add_input(measures);
@@ -183,13 +202,7 @@ struct StudyProportions {
         add_member(result, "sizeDeviation", optional_json(study.size_deviation), allocator);
         if (!graph.empty()) propose(session, provenance, definitions, study, result, allocator, notes);
         add_member(result, "notes", strings_json(notes, allocator), allocator);
-        Json kept(rapidjson::kObjectType);
-        add_member(kept, "format", "ostraka-proportions", kept.GetAllocator());
-        add_member(kept, "version", JsonValue(1), kept.GetAllocator());
-        for (const auto& member : result.GetObject())
-            add_member(kept, member.name.GetString(), JsonValue(member.value, kept.GetAllocator()), kept.GetAllocator());
-        add_member(kept, "provenance", provenance.to_json(kept.GetAllocator()), kept.GetAllocator());
-        write_json(files.in("proportions.json"), kept);
+        write_study_report(files.in("proportions.json"), "proportions", result, provenance);
 
         if (session.json) {
             session.print_report(provenance, document, result);
@@ -232,7 +245,7 @@ private:
             if (objects.back())
                 for (const auto& note : objects.back()->notes) notes.push_back(names.back() + ": " + note);
         }
-        if (failures == taken.size())
+        if (std::none_of(taken.begin(), taken.end(), [](const ObjectResult& each) { return each.problem.empty(); }))
             throw Error(ErrorKind::input, files.collection, "not one object could be measured",
                         "the first: " + taken.front().problem);
         return measure_table(names, objects, definitions, notes);
@@ -241,7 +254,7 @@ private:
     void draw(const ProportionStudy& study, const MeasureTable& table) const {
         const auto m = static_cast<Eigen::Index>(table.measures.size());
         if (by_deviation(study).empty()) return;
-        write_plot(files.in("variation." + plots), variation_plot(study, "How much each ratio varies, with 95 % intervals"));
+        write_plot(files.plot("variation"), variation_plot(study, "How much each ratio varies, with 95 % intervals"));
         HeatMap map{"Standard deviation of the logarithm of each ratio", {}, {}, {}, "standard deviation"};
         map.values.setConstant(m, m, std::numeric_limits<double>::quiet_NaN());
         bool complete = true;
@@ -253,11 +266,11 @@ private:
         map.columns = map.rows;
         map.numbers = true;
         map.minimum = 0;
-        write_plot(files.in("deviations." + plots), map);
+        write_plot(files.plot("deviations"), map);
         for (Eigen::Index j = 0; j < m; ++j) map.values(j, j) = 0;
         complete = map.values.allFinite();
         if (complete && m > 1)
-            write_plot(files.in("measures." + plots),
+            write_plot(files.plot("measures"),
                        Dendrogram{"Measures by how fixed their ratios are (average linkage)", average_linkage(map.values),
                                   map.rows, "standard deviation of the logarithm of ratios"});
     }
@@ -301,9 +314,6 @@ void add_study_proportions(CLI::App& study, Session& session) {
     command->add_option("--graph", work->graph, "graph to write: fixed proportions as constraints on the template");
     command->add_option("--annotations-out", work->annotations_out,
                         "the template's annotations, with the measures that the constraints name");
-    command->add_option("--plots", work->plots, "format of the plots")
-        ->check(CLI::IsMember({"svg", "png"}))
-        ->capture_default_str();
     add_flags(command, work->options);
     add_flags(command, work->proposals);
 }

@@ -59,7 +59,7 @@ struct StudyTechnique {
                         "see the notes above for each of them");
         const TechniqueStudy study = study_technique(objects, options);
         add_technique_result(result, study, objects, allocator);
-        validate_and_write(files.in("technique.json"), result, provenance);
+        write_study_report(files.in("technique.json"), "technique", result, provenance);
         write_technique_tables(files, study, objects);
         draw_technique(files, study, objects);
         if (session.json) {

@@ -13,8 +13,6 @@ namespace {
 JsonValue number_or_null(double value) { return std::isfinite(value) ? JsonValue(value) : JsonValue(rapidjson::kNullType); }
 JsonValue whole(std::size_t value) { return JsonValue(static_cast<std::uint64_t>(value)); }
 
-std::string shown(double value) { return std::isfinite(value) ? significant(value, 4) : ""; }
-
 JsonValue classifier_entry(const ClassifierResult& each, JsonAllocator& allocator) {
     JsonValue entry(rapidjson::kObjectType), descriptors(rapidjson::kArrayType);
     add_member(entry, "name", each.classifier.name, allocator);
@@ -91,6 +89,7 @@ void add_technique_result(JsonValue& result, const TechniqueStudy& study, const 
     add_member(result, "positive", study.positive, allocator);
     add_member(result, "negative", study.negative, allocator);
     add_member(result, "learned", JsonValue(study.learned), allocator);
+    known_answers(objects).add_to(result, allocator);
     add_member(result, "answeredBy", study.answered_by, allocator);
     if (!study.learned) add_member(result, "separated", JsonValue(study.separated), allocator);
     for (const auto& each : study.classifiers) classifiers.PushBack(classifier_entry(each, allocator), allocator);
@@ -102,41 +101,28 @@ void add_technique_result(JsonValue& result, const TechniqueStudy& study, const 
     add_member(result, "objects", std::move(answers), allocator);
 }
 
-void validate_and_write(const Path& file, const JsonValue& result, const Provenance& provenance) {
-    Json document(rapidjson::kObjectType);
-    auto& allocator = document.GetAllocator();
-    add_member(document, "format", "ostraka-technique", allocator);
-    add_member(document, "version", JsonValue(1), allocator);
-    for (const auto& member : result.GetObject())
-        add_member(document, std::string_view(member.name.GetString(), member.name.GetStringLength()),
-                   JsonValue(member.value, allocator), allocator);
-    add_member(document, "provenance", provenance.to_json(allocator), allocator);
-    validate(document, "technique", file.string());
-    write_json(file, document);
-}
-
 void write_technique_tables(const StudyFiles& files, const TechniqueStudy& study, const std::vector<TechniqueObject>& objects) {
     std::vector<std::string> columns{"name", "label", "slices"};
     for (const DescriptorMeaning& each : technique_descriptors()) columns.push_back(each.name);
     TextTable descriptors(columns);
     for (const TechniqueObject& object : objects) {
-        std::vector<std::string> cells{object.name, object.label, std::to_string(object.measures.slices.size())};
-        for (const TechniqueDescriptor& d : object.measures.descriptors) cells.push_back(shown(d.value));
+        std::vector<TableCell> cells{object.name, object.label, std::to_string(object.measures.slices.size())};
+        for (const TechniqueDescriptor& d : object.measures.descriptors) cells.push_back(number_cell(d.value, 4));
         descriptors.add(cells);
     }
-    const Path folder = files.in("descriptors.md").parent_path();
+    const Path folder = files.output;
     descriptors.write(folder, "descriptors", "Descriptors of technique");
 
     if (study.learned) {
-        TextTable classifiers({"classifier", "objects", "F1", "deviation", "precision", "recall", "ROC area", "threshold"});
+        TextTable classifiers(
+            {"classifier", "objects", "F1", "deviation", "precision", "recall", "ROC area", "positive", "threshold"});
         for (const ClassifierResult& each : study.classifiers) {
-            std::vector<std::string> cells{each.classifier.name, std::to_string(each.objects)};
-            if (each.validated)
-                for (const double value : {each.validation.mean_f1, each.validation.deviation, each.validation.first.precision(),
-                                           each.validation.first.recall(), each.roc.area})
-                    cells.push_back(fixed(value, 3));
-            cells.resize(7);
-            cells.push_back(each.threshold ? (each.threshold->above ? "from " : "to ") + shown(each.threshold->value) : "");
+            std::vector<TableCell> cells{each.classifier.name, std::to_string(each.objects)};
+            for (const double value : {each.validation.mean_f1, each.validation.deviation, each.validation.first.precision(),
+                                       each.validation.first.recall(), each.roc.area})
+                cells.push_back(fixed_cell(each.validated ? std::optional(value) : std::nullopt, 3));
+            cells.emplace_back(!each.threshold ? "" : each.threshold->above ? "from" : "up to");
+            cells.push_back(number_cell(each.threshold ? std::optional(each.threshold->value) : std::nullopt, 4));
             classifiers.add(cells);
         }
         classifiers.write(folder, "classifiers", "F1 of " + study.positive + " under cross-validation");
@@ -144,15 +130,15 @@ void write_technique_tables(const StudyFiles& files, const TechniqueStudy& study
     TextTable divisions({"descriptor", "objects", "lower", "upper", "threshold", "share between", "p", "F1"});
     for (const TechniqueSplit& each : study.splits)
         divisions.add({each.descriptor, std::to_string(each.objects), std::to_string(each.lower),
-                       std::to_string(each.objects - each.lower), shown(each.threshold), fixed(each.share, 3),
-                       significant(each.p_value, 2), each.f1 ? fixed(*each.f1, 3) : ""});
+                       std::to_string(each.objects - each.lower), number_cell(each.threshold, 4), fixed_cell(each.share, 3),
+                       number_cell(each.p_value, 2), fixed_cell(each.f1, 3)});
     divisions.write(folder, "divisions", "Divisions into two groups without known answers");
 
     TextTable answers({"name", "label", "answer", "score", "agreement", "why"});
     for (const TechniqueAnswer& each : study.answers) {
         const bool told = study.learned && !each.answer.empty();
-        answers.add({each.name, each.label, each.answer, told ? fixed(each.score, 2) : "", told ? fixed(each.agreement, 2) : "",
-                     each.words});
+        const auto value = [&](double x) { return fixed_cell(told ? std::optional(x) : std::nullopt, 2); };
+        answers.add({each.name, each.label, each.answer, value(each.score), value(each.agreement), each.words});
     }
     answers.write(folder, "answers", "Answers by " + study.answered_by);
 }
@@ -187,18 +173,17 @@ void draw_scatter(const StudyFiles& files, const TechniqueStudy& study, const st
         if (each.classifier.descriptors.front() == x) plot.lines.push_back({each.threshold->value, true, "threshold"});
         if (each.classifier.descriptors.front() == y) plot.lines.push_back({each.threshold->value, false, "threshold"});
     }
-    write_plot(files.in(file), plot);
+    write_plot(files.plot(file), plot);
 }
 
 }  // namespace
 
 void draw_technique(const StudyFiles& files, const TechniqueStudy& study, const std::vector<TechniqueObject>& objects) {
-    draw_scatter(files, study, objects, "roundness.svg", "Roundness over the lower slices, relative to the radius",
-                 "roundness mean", "roundness variance", true);
-    draw_scatter(files, study, objects, "eccentricity.svg", "Eccentricity over the lower slices", "eccentricity mean",
+    draw_scatter(files, study, objects, "roundness", "Roundness over the lower slices, relative to the radius", "roundness mean",
+                 "roundness variance", true);
+    draw_scatter(files, study, objects, "eccentricity", "Eccentricity over the lower slices", "eccentricity mean",
                  "eccentricity variance", false);
-    draw_scatter(files, study, objects, "ovality.svg", "Ovality and finger marks, relative to the radius", "ovality", "marks",
-                 true);
+    draw_scatter(files, study, objects, "ovality", "Ovality and finger marks, relative to the radius", "ovality", "marks", true);
     if (!study.learned) return;
     Plot bars;
     bars.title = "F1 of " + study.positive + " under cross-validation";
@@ -219,7 +204,7 @@ void draw_technique(const StudyFiles& files, const TechniqueStudy& study, const 
     }
     if (series.points.empty()) return;
     bars.series.push_back(std::move(series));
-    write_plot(files.in("classifiers.svg"), bars);
+    write_plot(files.plot("classifiers"), bars);
 
     Plot roc;
     roc.title = "Receiver operating characteristics";
@@ -241,11 +226,19 @@ void draw_technique(const StudyFiles& files, const TechniqueStudy& study, const 
             curve.points.push_back({point.false_positive_rate, point.true_positive_rate});
         roc.series.push_back(std::move(curve));
     }
-    if (!roc.series.empty()) write_plot(files.in("roc.svg"), roc);
+    if (!roc.series.empty()) write_plot(files.plot("roc"), roc);
+}
+
+KnownAnswers known_answers(const std::vector<TechniqueObject>& objects) {
+    std::vector<std::string> labels;
+    for (const TechniqueObject& object : objects) labels.push_back(object.label);
+    return KnownAnswers(labels);
 }
 
 std::string technique_summary(const TechniqueStudy& study, const std::vector<TechniqueObject>& objects, std::size_t left_out) {
-    std::string text = std::to_string(objects.size()) + " objects studied, " + std::to_string(left_out) + " left out\n";
+    const KnownAnswers known = known_answers(objects);
+    std::string text =
+        std::to_string(objects.size()) + " objects studied, " + std::to_string(left_out) + " left out\n" + known.words();
     std::vector<std::vector<std::string>> rows;
     if (study.learned) {
         for (const ClassifierResult& each : study.classifiers) {
@@ -264,7 +257,7 @@ std::string technique_summary(const TechniqueStudy& study, const std::vector<Tec
             rows.push_back({each.descriptor, std::to_string(each.objects),
                             std::to_string(each.lower) + " + " + std::to_string(each.objects - each.lower), fixed(each.share, 3),
                             significant(each.p_value, 2)});
-        text += "no answers are known: divided into two groups\n" +
+        text += (known.labelled == 0 ? "no answers are known: " : "") + std::string("divided into two groups\n") +
                 table({"descriptor", "objects", "groups", "share between", "p"}, rows);
         if (!study.separated) text += "by " + study.answered_by + " there are no two groups\n";
     }

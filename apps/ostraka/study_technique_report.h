@@ -9,11 +9,10 @@ namespace ostraka::app {
 
 void add_technique_result(JsonValue& result, const TechniqueStudy& study, const std::vector<TechniqueObject>& objects,
                           JsonAllocator& allocator);
-/// {"format": "ostraka-technique", "version", members of `result`, "provenance"}, checked against its schema.
-void validate_and_write(const Path& file, const JsonValue& result, const Provenance& provenance);
+KnownAnswers known_answers(const std::vector<TechniqueObject>& objects);
 /// descriptors, classifiers, divisions, answers: .md, .csv, .tex
 void write_technique_tables(const StudyFiles& files, const TechniqueStudy& study, const std::vector<TechniqueObject>& objects);
-/// roundness.svg, eccentricity.svg, outside.svg; with known answers classifiers.svg and roc.svg.
+/// Plots roundness, eccentricity and ovality; with known answers classifiers and roc.
 void draw_technique(const StudyFiles& files, const TechniqueStudy& study, const std::vector<TechniqueObject>& objects);
 /// For the terminal.
 std::string technique_summary(const TechniqueStudy& study, const std::vector<TechniqueObject>& objects, std::size_t left_out);

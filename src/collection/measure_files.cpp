@@ -135,6 +135,9 @@ MeasureTable read_measure_table(const Path& file) {
             continue;
         }
         if (name.empty()) fail_input(at, "column " + std::to_string(c + 1) + " has no heading", "name its measure");
+        if (number_of(name))
+            fail_input(at, "the first line holds the number " + name + " where the name of a measure should stand",
+                       "write a line of headings first: 'name', then the name of each measure");
         const Heading heading = heading_of(name);
         if (!known.insert(heading.column.name).second)
             fail_input(at, "the measure '" + heading.column.name + "' has two columns", "give each a name of its own");

@@ -84,11 +84,12 @@ PreparedCollection prepare_collection(const Collection& collection, const Compar
     prepared.options = options;
     double& size = prepared.options.features.size;
     if (!(size > 0)) {
-        const auto areas = for_each_object(collection, store, {"mould size", left_out}, [&](const CollectionObject& object) {
-            Json result;
-            result.SetDouble(std::sqrt(surface_area(read_head(object, leave_out))));
-            return result;
-        });
+        const auto areas =
+            for_each_object(collection, store.part("sizes"), {"mould size", left_out}, [&](const CollectionObject& object) {
+                Json result;
+                result.SetDouble(std::sqrt(surface_area(read_head(object, leave_out))));
+                return result;
+            });
         std::vector<double> sizes;
         for (const auto& area : areas)
             if (area.problem.empty() && area.result.GetDouble() > 0) sizes.push_back(area.result.GetDouble());

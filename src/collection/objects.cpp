@@ -4,14 +4,11 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/inside.h"
 #include "ostraka/core/parallel.h"
-#include "ostraka/core/progress.h"
-#include "ostraka/core/provenance.h"
 #include "ostraka/core/text.h"
 
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <new>
 #include <set>
 
 namespace ostraka {
@@ -23,13 +20,37 @@ namespace {
 constexpr std::array<const char*, 4> mesh_endings{".obj", ".ply", ".off", ".stl"};
 constexpr const char* markup_ending = ".mrk.json";
 
-/// Names become names of files: no folders, nothing hidden, nothing a terminal would act on.
-void check_name(const std::string& name, const std::string& where) {
-    const bool good = !name.empty() && name.size() <= 200 && name.front() != '.' && name.find('/') == std::string::npos &&
-                      name.find('\\') == std::string::npos && without_controls(name, "") == name;
-    if (!good)
-        fail_input(where, "'" + without_controls(name.substr(0, 60), "?") + "' cannot be the name of an object",
-                   "use at most 200 characters without / and \\ that do not begin with a full stop");
+/// Names become names of files and stand in JSON: no folders, nothing hidden, nothing a terminal would act on, UTF-8.
+bool is_name(const std::string& name) {
+    for (std::size_t at = 0; at < name.size();) {
+        const Character here = character_at(name, at);
+        if (is_control(here.code) || (here.code == 0xFFFD && here.length == 1)) return false;
+        at += here.length;
+    }
+    return !name.empty() && name.size() <= 200 && name.front() != '.' && name.find_first_of("/\\") == std::string::npos;
+}
+constexpr const char* name_rule =
+    "use at most 200 bytes of UTF-8 without / \\ and control characters, not beginning with a full stop";
+
+/// As it can be shown, its first characters.
+std::string shown(const std::string& name) {
+    std::string text;
+    for (std::size_t at = 0, count = 0; at < name.size(); ++count) {
+        if (count == 60) return text + "...";
+        const Character here = character_at(name, at);
+        const bool odd = is_control(here.code) || (here.code == 0xFFFD && here.length == 1);
+        text += odd ? "?" : name.substr(at, here.length);
+        at += here.length;
+    }
+    return text;
+}
+
+/// "a, b, c and 4 more"
+std::string some_of(const std::vector<std::string>& names) {
+    std::string text;
+    for (std::size_t i = 0; i < std::min<std::size_t>(names.size(), 3); ++i)
+        text += (i == 0 ? "'" : ", '") + shown(names[i]) + "'";
+    return names.size() <= 3 ? text : text + " and " + std::to_string(names.size() - 3) + " more";
 }
 
 std::string text_of(const JsonValue& object, const char* member) {
@@ -66,7 +87,11 @@ Collection from_folder(const Path& folder) {
     }
     Collection collection;
     const auto add = [&](const std::string& name, const std::string& stem, const Path& mesh) {
-        check_name(name, folder.string());
+        if (!is_name(name)) {
+            collection.left_out.emplace_back(shown(name),
+                                             std::string("its name cannot be that of an object (") + name_rule + ")");
+            return;
+        }
         CollectionObject object;
         object.name = name;
         object.mesh = mesh;
@@ -107,7 +132,8 @@ Collection from_file(const Path& file) {
             fail_input(file.string(), "at " + at + ": neither a mesh nor landmarks", "give one of both");
         object.name = text_of(objects[i], "name");
         if (object.name.empty()) object.name = (object.mesh.empty() ? object.landmarks : object.mesh).stem().string();
-        check_name(object.name, file.string() + ", at " + at);
+        if (!is_name(object.name))
+            fail_input(file.string() + ", at " + at, "'" + shown(object.name) + "' cannot be the name of an object", name_rule);
         collection.objects.push_back(std::move(object));
     }
     return collection;
@@ -130,6 +156,12 @@ void note_copies(Collection& collection) {
 
 }  // namespace
 
+bool is_object_file(const Path& file) {
+    const std::string name = file.filename().string();
+    return name.front() != '.' && (name.ends_with(markup_ending) || name.ends_with(".ant.json") ||
+                                   std::find(mesh_endings.begin(), mesh_endings.end(), extension(file)) != mesh_endings.end());
+}
+
 Collection read_collection(const Path& folder_or_file) {
     const std::string where = folder_or_file.string();
     std::error_code code;
@@ -138,6 +170,9 @@ Collection read_collection(const Path& folder_or_file) {
     if (!folder && extension(folder_or_file) != ".json")
         fail_input(where, "is no collection", "name a folder of meshes, or a file *.study.json");
     Collection collection = folder ? from_folder(folder_or_file) : from_file(folder_or_file);
+    if (collection.objects.empty() && !collection.left_out.empty())
+        fail_input(where, "not one of its files can be an object",
+                   "the first, '" + collection.left_out.front().first + "': " + collection.left_out.front().second);
     if (collection.objects.empty())
         fail_input(
             where, "there is no object in it",
@@ -160,19 +195,17 @@ std::map<std::string, std::string> read_labels(const Path& file, const std::stri
     if (rows.size() < 2)
         fail_input(where, "there are no labels in it", "write a row with the columns' names, then a row an object");
     const auto& names = rows.front().cells;
-    const auto find = [&](const std::string& name, std::size_t otherwise) {
-        for (std::size_t i = 0; i < names.size(); ++i)
-            if (trimmed(names[i]) == name) return i;
-        return otherwise;
+    const auto column_of = [&](const std::string& wanted) {
+        std::string there;
+        for (std::size_t i = 0; i < names.size(); ++i) {
+            if (trimmed(names[i]) == wanted) return i;
+            there += (i == 0 ? "'" : ", '") + shown(names[i]) + "'";
+        }
+        fail_input(
+            where + ", line " + std::to_string(rows.front().line), "there is no column '" + shown(wanted) + "' among " + there,
+            "the first row names the columns: 'name' for the objects, 'label' (or that of --truth-column) for the answers");
     };
-    const std::size_t name_column = find("name", 0);
-    const std::size_t none = names.size();
-    const std::size_t label_column =
-        column.empty() ? find("label", name_column == 0 ? std::size_t{1} : std::size_t{0}) : find(column, none);
-    if (label_column >= names.size())
-        fail_input(where + ", line " + std::to_string(rows.front().line),
-                   column.empty() ? "there is one column only" : "there is no column '" + without_controls(column, "?") + "'",
-                   "name the columns in the first row, and the one meant");
+    const std::size_t name_column = column_of("name"), label_column = column_of(column.empty() ? "label" : column);
     std::map<std::string, std::string> labels;
     for (std::size_t i = 1; i < rows.size(); ++i) {
         const auto& cells = rows[i].cells;
@@ -185,7 +218,7 @@ std::map<std::string, std::string> read_labels(const Path& file, const std::stri
     return labels;
 }
 
-void set_labels(Collection& collection, const std::map<std::string, std::string>& labels) {
+void set_labels(Collection& collection, const std::map<std::string, std::string>& labels, const std::string& where) {
     std::set<std::string> met;
     std::size_t without = 0;
     for (auto& object : collection.objects) {
@@ -194,96 +227,20 @@ void set_labels(Collection& collection, const std::map<std::string, std::string>
         if (it != labels.end()) met.insert(it->first);
         if (object.label.empty()) ++without;
     }
+    if (without == collection.objects.size()) {
+        std::vector<std::string> labelled, objects;
+        for (const auto& [name, label] : labels) labelled.push_back(name);
+        for (const auto& object : collection.objects) objects.push_back(object.name);
+        fail_input(where,
+                   met.empty() ? "no label is of an object: there are labels of " + some_of(labelled) + ", and objects " +
+                                     some_of(objects)
+                               : "the labels of all objects are empty (" + some_of(objects) + ")",
+                   "name the objects as their files are named, without the ending");
+    }
     if (without > 0) collection.notes.push_back(std::to_string(without) + " objects have no label");
     for (const auto& [name, label] : labels)
         if (!met.contains(name))
             collection.notes.push_back("there is a label for '" + without_controls(name, "?") + "', but no such object");
-}
-
-ResultStore::ResultStore(Path folder) : folder_(std::move(folder)) {}
-
-std::string ResultStore::key(const std::vector<std::string>& parts) {
-    Sha256 hash;
-    const auto add = [&](const std::string& text) {
-        const std::string length = std::to_string(text.size()) + ":";
-        hash.update(length.data(), length.size());
-        hash.update(text.data(), text.size());
-    };
-    add(version());
-    for (const auto& part : parts) add(part);
-    return hash.hexadecimal();
-}
-
-std::optional<Json> ResultStore::find(const std::string& name, const std::string& key) const {
-    if (folder_.empty()) return {};
-    const Path file = folder_ / (name + ".json");
-    std::error_code code;
-    if (!fs::exists(file, code)) return {};
-    try {
-        Json document = read_json(file);
-        if (!document.IsObject() || text_of(document, "key") != key) return {};
-        const JsonValue* result = find_member(document, "result");
-        if (result == nullptr || text_of(document, "checksum") != sha256(to_text(*result))) return {};
-        Json copy;
-        copy.CopyFrom(*result, copy.GetAllocator());
-        return copy;
-    } catch (const Error&) {
-        return {};
-    }
-}
-
-void ResultStore::keep(const std::string& name, const std::string& key, const JsonValue& result) const {
-    if (folder_.empty()) return;
-    std::error_code code;
-    fs::create_directories(folder_, code);
-    Json document(rapidjson::kObjectType);
-    auto& allocator = document.GetAllocator();
-    add_member(document, "format", "ostraka-study-result", allocator);
-    add_member(document, "version", JsonValue(1), allocator);
-    add_member(document, "key", key, allocator);
-    add_member(document, "checksum", sha256(to_text(result)), allocator);
-    add_member(document, "result", JsonValue(result, allocator), allocator);
-    // There at once, whatever becomes of the outputs that the caller writes together.
-    OutputTransaction own;
-    write_json(folder_ / (name + ".json"), document);
-    own.commit();
-}
-
-std::vector<ObjectResult> for_each_object(const Collection& collection, const ResultStore& store,
-                                          const std::vector<std::string>& what,
-                                          const std::function<Json(const CollectionObject&)>& work) {
-    std::vector<ObjectResult> results(collection.objects.size());
-    Progress progress("objects", results.size());
-    parallel_for(
-        results.size(),
-        [&](std::size_t i) {
-            const CollectionObject& object = collection.objects[i];
-            ObjectResult& mine = results[i];
-            std::vector<std::string> parts = what;
-            parts.insert(parts.end(), {object.name, object.checksum, object.unit});
-            const std::string key = ResultStore::key(parts);
-            try {
-                if (!object.checksum.empty())
-                    if (auto kept = store.find(object.name, key)) {
-                        mine.result = std::move(*kept);
-                        mine.resumed = true;
-                    }
-                if (!mine.resumed) {
-                    mine.result = work(object);
-                    if (!object.checksum.empty()) store.keep(object.name, key, mine.result);
-                }
-            } catch (const Error& error) {
-                if (error.kind() == ErrorKind::usage) throw;
-                mine.result.SetNull();
-                mine.problem = error.what();
-            } catch (const std::bad_alloc&) {
-                mine.result.SetNull();
-                mine.problem = object.name + ": out of memory (use a smaller mesh or --threads 1)";
-            }
-            progress.advance();
-        },
-        1);
-    return results;
 }
 
 }  // namespace ostraka

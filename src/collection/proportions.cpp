@@ -2,6 +2,7 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/core/text.h"
 #include "ratio_tests.h"
 
 #include <algorithm>
@@ -74,10 +75,25 @@ struct Candidate {
     RatioRow ratio;
     Pair pair;
     std::size_t count = 0;
+    bool constant = false;  ///< the same in four objects or more, which do not all have the same measures
 };
 
+/// The same number, but for the rounding of a division.
+bool all_same(double least, double most) { return most - least <= 1e-12 * std::abs(most); }
+
+/// Whether each measure is the same in all objects that have it.
+bool are_identical(const MeasureTable& table) {
+    for (Eigen::Index j = 0; j < table.values.cols(); ++j) {
+        double least = std::numeric_limits<double>::infinity(), most = -least;
+        for (const double value : table.values.col(j))
+            if (!std::isnan(value)) least = std::min(least, value), most = std::max(most, value);
+        if (least < most && !all_same(least, most)) return false;
+    }
+    return true;
+}
+
 /// Rows and p-values of the ratios of one kind.
-std::vector<Candidate> ratios_of(const MeasureTable& table, const Kind& kind, const ProportionOptions& options) {
+std::vector<Candidate> ratios_of(const MeasureTable& table, const Kind& kind, bool identical, const ProportionOptions& options) {
     std::vector<Candidate> list;
     const auto m = static_cast<Eigen::Index>(kind.measures.size());
     std::vector<double> medians;
@@ -110,6 +126,9 @@ std::vector<Candidate> ratios_of(const MeasureTable& table, const Kind& kind, co
                 if (std::isfinite(value) && value > 0) values.push_back(value);
             }
             candidate.count = values.size();
+            candidate.constant =
+                !identical && values.size() >= 4 &&
+                all_same(*std::min_element(values.begin(), values.end()), *std::max_element(values.begin(), values.end()));
             ratio.row = row_of(table.measures[ratio.numerator].name + " / " + table.measures[ratio.denominator].name, "", values,
                                options.confidence);
             if (values.empty()) return;
@@ -127,11 +146,13 @@ void test(std::vector<Candidate>& list, const Kind& kind, const ProportionOption
     const Eigen::MatrixXd centred = proportions::centred_columns(kind.logs);
     std::vector<Pair> pairs;
     for (const Candidate& candidate : list) pairs.push_back(candidate.pair);
-    const std::vector<double> pairing = proportions::pairing_test(centred, pairs, permutations, seed);
+    std::vector<double> pairing = proportions::pairing_test(centred, pairs, permutations, seed);
     // With two measures of a kind there is no other ratio to compare with.
-    const std::vector<double> others = kind.measures.size() < 3
-                                           ? std::vector<double>(list.size(), 1.0)
-                                           : proportions::others_test(centred, pairs, permutations, seed + 1);
+    std::vector<double> others = kind.measures.size() < 3 ? std::vector<double>(list.size(), 1.0)
+                                                          : proportions::others_test(centred, pairs, permutations, seed + 1);
+    // What does not vary at all is no chance of measures that do: as small as a test of so many rearrangements can say.
+    for (std::size_t r = 0; r < list.size(); ++r)
+        if (list[r].constant) pairing[r] = others[r] = 1 / (1 + static_cast<double>(permutations));
     const std::vector<double> q = corrected(others, options.correction);
     std::vector<Pair> joined;
     for (std::size_t r = 0; r < list.size(); ++r) {
@@ -141,14 +162,14 @@ void test(std::vector<Candidate>& list, const Kind& kind, const ProportionOption
     }
     const std::vector<int> groups = components(kind.measures.size(), joined);
     for (std::size_t r = 0; r < list.size(); ++r)
-        if (q[r] <= options.false_discoveries)
+        if (q[r] <= options.false_discoveries && !list[r].constant)
             list[r].ratio.p_size = proportions::size_test(centred, pairs[r], groups, permutations, seed + 2 + r);
 }
 
-Fixedness verdict(const Candidate& candidate, double alpha, double q_others) {
+Fixedness verdict(const Candidate& candidate, bool identical, double alpha, double q_others) {
     const RatioRow& ratio = candidate.ratio;
-    if (candidate.count < 4) return Fixedness::unknown;
-    if (ratio.q <= alpha) return Fixedness::fixed;
+    if (candidate.count < 4 || identical) return Fixedness::unknown;
+    if (ratio.q <= alpha || candidate.constant) return Fixedness::fixed;
     if (q_others <= alpha) return Fixedness::stable;
     return ratio.q_pairing <= alpha ? Fixedness::with_size : Fixedness::free;
 }
@@ -178,6 +199,27 @@ void check(const MeasureTable& table, std::vector<std::string>& notes) {
         notes.push_back("values that are not above zero: " + std::to_string(not_positive) + "; ratios with them are left out");
 }
 
+/// Values so large or small that their fourth powers, or those of ratios, are no numbers become missing.
+MeasureTable without_extremes(MeasureTable table, std::vector<std::string>& notes) {
+    constexpr double largest = 1e35;
+    std::size_t count = 0;
+    std::string first;
+    for (Eigen::Index i = 0; i < table.values.rows(); ++i)
+        for (Eigen::Index j = 0; j < table.values.cols(); ++j) {
+            double& value = table.values(i, j);
+            const double size = std::abs(value);
+            if (!std::isfinite(value) || value == 0 || (size <= largest && size >= 1 / largest)) continue;
+            if (count++ == 0)
+                first = "'" + table.measures[static_cast<std::size_t>(j)].name + "' of '" +
+                        table.objects[static_cast<std::size_t>(i)] + "' is " + digits(value);
+            value = none;
+        }
+    if (count > 0)
+        notes.push_back("values left out as too large or too small to compute with: " + std::to_string(count) +
+                        " (the first: " + first + ")");
+    return table;
+}
+
 }  // namespace
 
 std::string to_string(Fixedness fixedness) {
@@ -198,10 +240,13 @@ std::string to_string(Fixedness fixedness) {
 
 ProportionStudy study_proportions(const MeasureTable& given, const ProportionOptions& options) {
     check_options(options, "proportions");
-    UnifiedMeasures unified = unify_units(given);
-    const MeasureTable& table = unified.table;
     ProportionStudy study;
+    const UnifiedMeasures unified = unify_units(without_extremes(given, study.notes));
+    const MeasureTable& table = unified.table;
     check(table, study.notes);
+    const bool identical = table.objects.size() > 1 && are_identical(table);
+    if (identical)
+        study.notes.emplace_back("the objects are identical in all measures: nothing varies, so nothing can be said of ratios");
     study.notes.insert(study.notes.end(), unified.notes.begin(), unified.notes.end());
 
     for (std::size_t j = 0; j < table.measures.size(); ++j) {
@@ -225,7 +270,7 @@ ProportionStudy study_proportions(const MeasureTable& given, const ProportionOpt
         std::max(options.permutations, static_cast<int>(std::ceil(2 * static_cast<double>(ratios) / options.false_discoveries)));
     for (std::size_t k = 0; k < kinds.size(); ++k) {
         const Kind& kind = kinds[k];
-        std::vector<Candidate> list = ratios_of(table, kind, options);
+        std::vector<Candidate> list = ratios_of(table, kind, identical, options);
         test(list, kind, options, permutations, options.seed + 1000003 * (k + 1));
         const Eigen::MatrixXd centred = proportions::centred_columns(kind.logs);
         if (const auto own = proportions::own_deviations(centred)) {
@@ -257,16 +302,19 @@ ProportionStudy study_proportions(const MeasureTable& given, const ProportionOpt
     }
     const std::vector<double> q = corrected(joint, options.correction), q_others = corrected(others, options.correction),
                               q_pairing = corrected(pairing, options.correction);
-    std::size_t few = 0;
+    std::size_t few = 0, constant = 0;
     for (std::size_t r = 0; r < all.size(); ++r) {
         all[r].ratio.q = q[r];
         all[r].ratio.q_pairing = q_pairing[r];
-        all[r].ratio.fixedness = verdict(all[r], options.false_discoveries, q_others[r]);
+        all[r].ratio.fixedness = verdict(all[r], identical, options.false_discoveries, q_others[r]);
         few += all[r].count < 4 ? 1 : 0;
+        constant += all[r].constant ? 1 : 0;
         study.ratios.push_back(std::move(all[r].ratio));
     }
     if (few > 0)
         study.notes.push_back("ratios known of fewer than four objects, of which nothing can be said: " + std::to_string(few));
+    if (constant > 0)
+        study.notes.push_back("ratios that are the same in all objects, to the last digit: " + std::to_string(constant));
     if (study.ratios.empty()) study.notes.push_back("there are no two measures of one kind: no ratios");
     for (const Kind& kind : kinds)
         if (kind.measures.size() == 2)

@@ -237,7 +237,8 @@ TechniqueSplit split_by(const std::vector<TechniqueObject>& objects, const std::
         if (split.group[i] < 0 || objects[i].label.empty()) continue;
         for (int side = 0; side < 2; ++side) as[side].add(split.group[i] == side, objects[i].label == positive);
     }
-    if (as[0].count() > 0) split.f1 = std::max(as[0].f1(), as[1].f1());
+    const std::size_t positives = as[0].true_positive + as[0].false_negative;
+    if (positives > 0 && positives < as[0].count()) split.f1 = std::max(as[0].f1(), as[1].f1());
     return split;
 }
 

@@ -207,6 +207,56 @@ TEST_F(MouldStudy, SameForAnyNumberOfThreadsAndAfterAnInterruption) {
     set_threads(0);
 }
 
+/// When each file of a folder, and of those in it, was written.
+std::map<std::string, std::filesystem::file_time_type> times(const Path& folder) {
+    std::map<std::string, std::filesystem::file_time_type> result;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+        if (entry.is_regular_file()) result[entry.path().string()] = entry.last_write_time();
+    return result;
+}
+
+TEST_F(MouldStudy, ASecondRunTakesAllFromTheStore) {
+    Collection collection = read_collection(*scratch / "heads");
+    collection.objects.resize(4);
+    const ResultStore features(*scratch / "again" / "features"), pairs(*scratch / "again" / "pairs");
+    // The size is not given: it is measured, and kept as well.
+    const MouldMatrices first = compare(prepare_collection(collection, {}, {}, features), pairs);
+    const auto before = times(*scratch / "again");
+    EXPECT_EQ(before.size(), 12U) << "sizes, features and pairs of four heads";
+    const auto prepared = prepare_collection(collection, {}, {}, features);
+    for (const auto& result : prepared.results) EXPECT_TRUE(result.resumed);
+    EXPECT_EQ(compare(prepared, pairs).registration, first.registration);
+    EXPECT_EQ(times(*scratch / "again"), before);
+}
+
+TEST_F(MouldStudy, AFurtherHeadCostsItsOwnPairsOnly) {
+    const Collection all = read_collection(*scratch / "heads");
+    Collection some = all, more = all;
+    some.objects.resize(4);
+    some.objects.erase(some.objects.begin() + 1);
+    more.objects.resize(4);
+    CompareOptions options;
+    options.features.size = 66;
+    const ResultStore pairs(*scratch / "planted");
+    const auto prepared = prepare_collection(some, options, {}, ResultStore());
+    (void)compare(prepared, pairs);
+    // Distances that no registration gives are put into the store: pairs that show them were not compared again.
+    for (const auto& name : prepared.names) {
+        Json document = read_json(*scratch / "planted" / (name + ".json"));
+        for (auto& pair : document["result"].GetObject()) pair.value[4].SetDouble(77);
+        pairs.keep(name, document["key"].GetString(), document["result"]);
+    }
+    const auto with_another = prepare_collection(more, options, {}, ResultStore());
+    ASSERT_EQ(with_another.names.size(), 4U);
+    const MouldMatrices found = compare(with_another, pairs);
+    for (Eigen::Index i = 0; i < 4; ++i)
+        for (Eigen::Index j = 0; j < 4; ++j) {
+            if (i == j) continue;
+            const bool is_new = i == 1 || j == 1;
+            EXPECT_EQ(found.registration(i, j) == 77, !is_new) << i << " " << j;
+        }
+}
+
 TEST_F(MouldStudy, WhatCannotBeComparedIsLeftOut) {
     const Path folder = *scratch / "odd";
     std::filesystem::create_directories(folder);
@@ -248,6 +298,31 @@ TEST_F(MouldStudy, TheCommandWritesAllItPromises) {
     const auto again = test::run_command(call + " --threads 1");
     ASSERT_EQ(again.code, 0) << again.err;
     EXPECT_EQ(read_file(out / "moulds.json"), before);
+    EXPECT_EQ(report["result"]["truth"]["labelled"].GetInt(), 9);
+
+    // With answers of a part, or of one kind only, the report says of how many, and scores where there is something to score.
+    const std::string mould = moulds.begin()->second;
+    std::string some = "name,label\n", one = some;
+    for (const auto& [name, label] : moulds) {
+        if (some.size() < 60) some += name + "," + label + "\n";
+        if (label == mould) one += name + "," + label + "\n";
+    }
+    const auto study = [&](const std::string& answers, const std::string& more) {
+        return test::run_command("study moulds " + (*scratch / "heads").string() + " --output " + out.string() + " --truth " +
+                                 scratch->file("part.csv", answers).string() + more);
+    };
+    const auto part = study(some, "");
+    EXPECT_NE(part.out.find("of 9 objects"), std::string::npos) << part.out;
+    EXPECT_FALSE(std::filesystem::exists(out / "choices.csv")) << "of the run before";
+    const Json of_one = parse_json(study(one, " --json --plots png").out, "report");
+    EXPECT_EQ(of_one["result"]["truth"]["kinds"].GetInt(), 1);
+    EXPECT_FALSE(of_one["result"].HasMember("adjustedRandIndex"));
+    EXPECT_FALSE(std::filesystem::exists(out / "dendrogram.svg"));
+    EXPECT_TRUE(std::filesystem::exists(out / "dendrogram.png"));
+    const auto none = study("name,label\nanother,1\n", "");
+    EXPECT_EQ(none.code, 1);
+    EXPECT_NE(none.err.find("'another'"), std::string::npos) << none.err;
+    EXPECT_TRUE(std::filesystem::exists(out / "dendrogram.png")) << "a run that fails replaces nothing";
 }
 
 TEST(MouldCommand, SaysWhatIsWrong) {

@@ -8,6 +8,7 @@
 #include "ostraka/io/mesh_file.h"
 
 #include <atomic>
+#include <chrono>
 
 namespace ostraka {
 namespace {
@@ -107,6 +108,49 @@ TEST(Collection, LabelsComeFromATable) {
     EXPECT_EQ(collection.notes.size(), 2U);
 }
 
+TEST(Collection, LabelsNeedTheirColumnsAndAnObject) {
+    const Scratch scratch;
+    sphere_file(scratch, "a.ply");
+    sphere_file(scratch, "b.ply", 2);
+    const auto problem = [](const auto& work) {
+        try {
+            work();
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::input);
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    const Path unnamed = scratch.file("unnamed.csv", "object,label\na,wheel\n"),
+               other = scratch.file("o.csv", "name,mould\na,1\n");
+    EXPECT_NE(problem([&] { read_labels(unnamed); }).find("no column 'name' among 'object', 'label'"), std::string::npos);
+    EXPECT_NE(problem([&] { read_labels(other); }).find("no column 'label' among 'name', 'mould'"), std::string::npos);
+    EXPECT_EQ(read_labels(other, "mould").at("a"), "1");
+    Collection collection = read_collection(scratch.path());
+    const std::string none = problem([&] { set_labels(collection, {{"x.ply", "wheel"}, {"y.ply", "hand"}}, "truth.csv"); });
+    for (const char* word : {"truth.csv", "'x.ply', 'y.ply'", "'a', 'b'", "without the ending"})
+        EXPECT_NE(none.find(word), std::string::npos) << none;
+    EXPECT_NE(problem([&] { set_labels(collection, {{"a", ""}}); }).find("empty"), std::string::npos);
+    EXPECT_EQ(problem([&] { set_labels(collection, {{"a", "x"}}); }), "");
+}
+
+TEST(Collection, NamesThatNoResultCanBeKeptUnderAreLeftOut) {
+    const Scratch scratch;
+    sphere_file(scratch, "a.ply");
+    for (const std::string name : {"new\nline", "back\\slash", "escape\x1b[31m", "no utf-8 \xff", "turned \xE2\x80\xAE round"})
+        std::filesystem::copy_file(scratch / "a.ply", scratch / (name + ".ply"));
+    std::filesystem::copy_file(scratch / "a.ply", scratch / (std::string(201, 'x') + ".ply"));
+    const Collection collection = read_collection(scratch.path());
+    EXPECT_EQ(names_of(collection), (std::vector<std::string>{"a"}));
+    ASSERT_EQ(collection.left_out.size(), 6U);
+    for (const auto& [name, why] : collection.left_out) {
+        EXPECT_EQ(name.find_first_of("\n\x1b\xff"), std::string::npos) << name;
+        EXPECT_NE(why.find("its name"), std::string::npos) << why;
+    }
+    std::filesystem::remove(scratch / "a.ply");
+    EXPECT_THROW(read_collection(scratch.path()), Error) << "no object is left";
+}
+
 TEST(ForEachObject, OneThatFailsDoesNotStopTheOthers) {
     const Scratch scratch;
     sphere_file(scratch, "a.ply");
@@ -162,6 +206,30 @@ TEST(ResultStore, KeepsAtOnceAndKnowsWhatWasChanged) {
     text.replace(text.find("0.1"), 3, "0.2");
     write_file(scratch / "a.json", text);
     EXPECT_FALSE(store.find("a", "key"));
+}
+
+TEST(ResultStore, RemovesWhatKilledRunsLeft) {
+    const Scratch scratch;
+    const auto now = std::filesystem::file_time_type::clock::now();
+    for (const auto& [name, hours] : {std::pair{".ostraka-old000", 30}, {".ostraka-young0", 1}}) {
+        (void)scratch.file(name, "half");
+        std::filesystem::last_write_time(scratch / name, now - std::chrono::hours(hours));
+    }
+    const ResultStore store(scratch.path());
+    EXPECT_FALSE(std::filesystem::exists(scratch / ".ostraka-old000"));
+    EXPECT_TRUE(std::filesystem::exists(scratch / ".ostraka-young0")) << "another process may be writing it";
+}
+
+TEST(ResultStore, PartsKeepOneNameApart) {
+    const Scratch scratch;
+    const ResultStore store(scratch.path());
+    const Json one = parse_json("1", "test"), two = parse_json("2", "test");
+    store.keep("a", "key", one);
+    store.part("sizes").keep("a", "other", two);
+    ASSERT_TRUE(store.find("a", "key"));
+    EXPECT_EQ(*store.find("a", "key"), one);
+    EXPECT_EQ(*store.part("sizes").find("a", "other"), two);
+    EXPECT_FALSE(ResultStore().part("sizes").find("a", "other"));
 }
 
 TEST(ForEachObject, FailuresAreTriedAgainAndUsageIsThrown) {

@@ -5,7 +5,9 @@
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/collection/measure_definitions.h"
 #include "ostraka/collection/measure_table.h"
+#include "ostraka/core/csv.h"
 #include "ostraka/core/json.h"
+#include "ostraka/core/text.h"
 #include "ostraka/io/mesh_file.h"
 
 #include <gtest/gtest.h>
@@ -145,6 +147,31 @@ TEST(StudyProportionsCommand, ObjectsThatFailAreToldAndTheRestStands) {
     EXPECT_NE(result.err.find("left out: bare"), std::string::npos);
 }
 
+TEST(StudyProportionsCommand, LeavesItsOwnOutputsOnly) {
+    const Boxes boxes;
+    ASSERT_EQ(run_command(boxes.command).code, 0);
+    (void)boxes.scratch.file("out/remarks.txt", "mine");
+    ASSERT_EQ(run_command(boxes.command + " --plots png").code, 0);
+    for (const char* name : {"variation", "deviations", "measures"}) {
+        EXPECT_FALSE(std::filesystem::exists(boxes.scratch / "out" / (std::string(name) + ".svg"))) << name;
+        EXPECT_TRUE(std::filesystem::exists(boxes.scratch / "out" / (std::string(name) + ".png"))) << name;
+    }
+    EXPECT_TRUE(std::filesystem::exists(boxes.scratch / "out" / "remarks.txt"));
+    EXPECT_EQ(count_files(boxes.scratch / "out" / "objects"), 24U);
+}
+
+TEST(StudyProportionsCommand, ANameThatCannotBeKeptStopsNothing) {
+    const Boxes boxes;
+    for (const std::string name : {"new\nline", "back\\slash", "no utf-8 \xff"})
+        std::filesystem::copy_file(boxes.scratch / "boxes" / "object 1.ply", boxes.scratch / "boxes" / (name + ".ply"));
+    const auto result = run_command(boxes.command + " --json");
+    ASSERT_EQ(result.code, 0) << result.err;
+    const Json report = parse_json(result.out, "report");
+    EXPECT_EQ(report["result"]["failed"].Size(), 3U);
+    EXPECT_EQ(report["result"]["objects"].GetInt(), 24);
+    EXPECT_NE(result.err.find("left out: new?line"), std::string::npos) << result.err;
+}
+
 TEST(StudyProportionsCommand, ProposesConstraintsForATemplate) {
     const Boxes boxes;
     const Path folder = boxes.scratch / "boxes";
@@ -192,6 +219,52 @@ TEST(StudyProportionsCommand, SaysNoWhereNothingIsFixed) {
         EXPECT_EQ(result.code, 3) << result.err;
         EXPECT_NE(result.out.find("0 of "), std::string::npos);
     }
+}
+
+TEST(StudyProportionsCommand, TablesForMachinesHoldPlainNumbers) {
+    const Scratch scratch;
+    const Path file = scratch.file("t.csv",
+                                   "name,arm [cm],height [cm],base [cm],hat [cm]\na,8,20,5,\nb,9,21,6,\nc,7,19,5,3\nd,8,22,6,\n"
+                                   "e,8,21,7,1e308\n");
+    const auto result = run_command("study proportions " + quoted(file) + " --output " + quoted(scratch / "out"));
+    ASSERT_NE(result.code, 1) << result.err;
+    EXPECT_NE(result.err.find("1e+308"), std::string::npos) << result.err;
+    for (const std::string name : {"table-3-1", "ratios"}) {
+        const std::string text = read_file(scratch / "out" / (name + ".csv"));
+        const auto rows = csv_rows(text, ',', name);
+        ASSERT_GT(rows.size(), 3U);
+        const std::size_t first = name == "ratios" ? 1 : 2, last = rows[0].cells.size() - (name == "ratios" ? 1 : 0);
+        std::size_t empty = 0, full = 0;
+        for (std::size_t r = 1; r < rows.size(); ++r)
+            for (std::size_t c = first; c < last; ++c) {
+                const std::string& cell = rows[r].cells.at(c);
+                empty += cell.empty() ? 1 : 0;
+                full += cell.size() > 12 ? 1 : 0;
+                EXPECT_TRUE(cell.empty() || number_of(cell)) << name << " " << rows[0].cells[c] << " " << cell;
+            }
+        EXPECT_GT(full, 0U) << name;
+        if (name == "table-3-1") {
+            EXPECT_GT(empty, 0U);
+        }
+        EXPECT_NE(read_file(scratch / "out" / (name + ".md")).find("%"), std::string::npos);
+        for (const char* ending : {".csv", ".md", ".tex"}) {
+            const std::string written = read_file(scratch / "out" / (name + ending));
+            EXPECT_EQ(written.find("inf"), std::string::npos);
+            EXPECT_EQ(written.find("nan"), std::string::npos);
+        }
+    }
+    EXPECT_EQ(read_file(scratch / "out" / "proportions.json").find("null,null"), std::string::npos);
+}
+
+TEST(StudyProportionsCommand, ATableNeedsItsHeadings) {
+    const Scratch scratch;
+    const Path bare = scratch.file("bare.csv", "a,8,20\nb,9,21\nc,7,19\n");
+    const auto result = run_command("study proportions " + quoted(bare) + " --output " + quoted(scratch / "out"));
+    EXPECT_EQ(result.code, 1);
+    EXPECT_NE(result.err.find("line 1: the first line holds the number 8"), std::string::npos) << result.err;
+    EXPECT_FALSE(std::filesystem::exists(scratch / "out"));
+    // The folder of the table is not written to: its own values.csv might be the table.
+    EXPECT_EQ(run_command("study proportions " + quoted(bare) + " --output " + quoted(scratch.path())).code, 2);
 }
 
 TEST(StudyProportionsCommand, RefusesWrongUsage) {

@@ -28,6 +28,12 @@ MeasureTable table_of(const std::vector<std::string>& names, const std::vector<s
     return table;
 }
 
+std::string all_notes(const ProportionStudy& study) {
+    std::string text;
+    for (const auto& note : study.notes) text += note + '\n';
+    return text;
+}
+
 ProportionOptions quick(std::uint64_t seed = 1) {
     ProportionOptions options;
     options.permutations = 999;
@@ -192,12 +198,65 @@ TEST(Proportions, OfOneObjectAndOfIdenticalOnes) {
     }
     EXPECT_FALSE(one.notes.empty());
     const std::vector<std::vector<double>> same(10, {1, 2, 3, 5});
-    for (const RatioRow& ratio : study_proportions(table_of({"a", "b", "c", "d"}, same), quick()).ratios) {
+    const ProportionStudy identical = study_proportions(table_of({"a", "b", "c", "d"}, same), quick());
+    for (const RatioRow& ratio : identical.ratios) {
         EXPECT_EQ(*ratio.row.summary->deviation, 0);
-        EXPECT_EQ(ratio.fixedness, Fixedness::free) << "nothing varies: nothing can be more stable";
+        EXPECT_EQ(ratio.fixedness, Fixedness::unknown) << "nothing varies: nothing can be more stable";
         EXPECT_EQ(ratio.p_others, 1);
         EXPECT_EQ(ratio.p_pairing, 1);
     }
+    EXPECT_NE(all_notes(identical).find("the objects are identical"), std::string::npos);
+}
+
+TEST(Proportions, ARatioThatIsTheSameInAllObjectsIsFixed) {
+    // Two measures only, few objects, two sizes: no permutation would tell it.
+    const ProportionStudy two = study_proportions(table_of({"a", "b"}, {{1, 3}, {1, 3}, {7, 21}, {7, 21}, {1, 3}}), quick());
+    EXPECT_EQ(two.ratios.at(0).fixedness, Fixedness::fixed);
+    EXPECT_EQ(two.ratios[0].p_others, 1.0 / 1000);
+    EXPECT_NE(all_notes(two).find("the same in all objects, to the last digit: 1"), std::string::npos);
+    // Scaled copies: decimal factors, so that quotients are rounded.
+    std::vector<std::vector<double>> scaled;
+    for (int i = 0; i < 6; ++i) scaled.push_back({0.1 * (i + 1), 0.3 * (i + 1), 0.7 * (i + 1)});
+    for (const RatioRow& ratio : study_proportions(table_of({"a", "b", "c"}, scaled), quick()).ratios)
+        EXPECT_EQ(ratio.fixedness, Fixedness::fixed) << ratio.row.name;
+    // One that differs in the sixth digit is a matter of the tests again, and three objects tell nothing.
+    scaled[2][0] *= 1 + 1e-6;
+    EXPECT_EQ(all_notes(study_proportions(table_of({"a", "b", "c"}, scaled), quick())).find("digit: 3"), std::string::npos);
+    scaled.resize(3);
+    scaled[2][0] = 0.3;
+    for (const RatioRow& ratio : study_proportions(table_of({"a", "b", "c"}, scaled), quick()).ratios)
+        EXPECT_EQ(ratio.fixedness, Fixedness::unknown);
+}
+
+TEST(Proportions, ValuesBeyondComputingAreLeftOutWithANote) {
+    MeasureTable table = make_measures().table;
+    table.values(3, 1) = 1e308;
+    table.values(4, 1) = 1e-300;
+    table.values(5, 0) = -1e200;
+    table.units.assign(table.objects.size(), "km");
+    table.units[3] = "mm";
+    const ProportionStudy study = study_proportions(table, quick());
+    EXPECT_NE(all_notes(study).find("too small to compute with: 3 (the first: 'measure 2' of"), std::string::npos)
+        << all_notes(study);
+    EXPECT_EQ(study.measures[1].summary->count, 38U);
+    const auto finite = [](const MeasureRow& row) {
+        const Summary& s = *row.summary;
+        return std::isfinite(s.mean) && std::isfinite(*s.deviation) && std::isfinite(*s.variation) &&
+               std::isfinite(row.variation_interval->low) && std::isfinite(row.variation_interval->high) &&
+               std::isfinite(row.deviation_interval->high);
+    };
+    for (const MeasureRow& row : study.measures) EXPECT_TRUE(finite(row)) << row.name;
+    for (const RatioRow& ratio : study.ratios) {
+        EXPECT_TRUE(finite(ratio.row)) << ratio.row.name;
+        EXPECT_TRUE(std::isfinite(ratio.log_deviation) && std::isfinite(ratio.low) && std::isfinite(ratio.high));
+    }
+    // As far as is computed with, nothing overflows.
+    MeasureTable far = make_measures().table;
+    far.values.col(0) *= 1e33 / far.values.col(0).maxCoeff();
+    far.values.col(1) *= 1e-33 / far.values.col(1).minCoeff();
+    const ProportionStudy wide = study_proportions(far, quick());
+    for (const RatioRow& ratio : wide.ratios) EXPECT_TRUE(finite(ratio.row)) << ratio.row.name;
+    EXPECT_EQ(all_notes(wide), "");
 }
 
 TEST(Proportions, AnExactProportionAmongOthersIsFixed) {

@@ -66,5 +66,25 @@ TEST(MakeTechniqueCommand, RefusesWhatMakesNoSense) {
     EXPECT_EQ(run_command("study make technique " + file.string() + " --objects 1").code, 1);
 }
 
+TEST(MakeCollections, DoNotMixWithWhatIsThere) {
+    Scratch scratch;
+    for (const char* name : {"old.ply", "old.OBJ", "old.ant.json", "truth.csv"}) {
+        const Path folder = scratch / (std::string("with ") + name);
+        std::filesystem::create_directories(folder);
+        write_file(folder / name, "x");
+        write_file(folder / "notes.txt", "x");
+        for (const std::string kind : {"technique", "proportions", "moulds"}) {
+            const auto result = run_command("study make " + kind + " '" + folder.string() + "' --objects 2");
+            EXPECT_EQ(result.code, 1) << kind << name;
+            EXPECT_NE(result.err.find(name), std::string::npos) << result.err;
+            EXPECT_NE(result.err.find("new or empty"), std::string::npos) << result.err;
+            EXPECT_EQ(test::count_files(folder), 2U) << kind << name;
+        }
+    }
+    std::filesystem::create_directories(scratch / "other");
+    write_file(scratch / "other" / "notes.txt", "x");
+    EXPECT_EQ(run_command("study make technique " + (scratch / "other").string() + " --objects 1 --vertices 4000").code, 0);
+}
+
 }  // namespace
 }  // namespace ostraka

@@ -75,6 +75,36 @@ TEST(StudyTechniqueCommand, WithoutTruthItSaysWhetherThereAreTwoGroups) {
     EXPECT_EQ(result.out.find("there are no two groups") != std::string::npos, result.code == 3);
 }
 
+TEST(StudyTechniqueCommand, SaysOfHowManyAnswersAreKnown) {
+    Scratch scratch;
+    const std::string start =
+        "study technique " + population().string() + " --output " + (scratch / "out").string() + " --json --truth ";
+    const auto report = [&](const std::string& table) {
+        const auto result = run_command(start + scratch.file("truth.csv", "name,label\n" + table).string());
+        EXPECT_TRUE(result.code == 0 || result.code == 3) << result.err;
+        Json document = parse_json(result.out, "report");
+        validate(read_json(scratch / "out" / "technique.json"), "technique", "technique.json");
+        return document;
+    };
+    const auto scored = [](const Json& document) {
+        bool any = false;
+        for (const char* list : {"classifiers", "divisions"})
+            for (const auto& each : document["result"][list].GetArray()) any = any || each.HasMember("f1");
+        return any;
+    };
+    const Json one = report("statuette-1,wheel\nstatuette-3,wheel\nstatuette-5,wheel\n");
+    EXPECT_EQ(one["result"]["truth"]["labelled"].GetInt(), 3);
+    EXPECT_EQ(one["result"]["truth"]["objects"].GetInt(), 8);
+    EXPECT_FALSE(scored(one)) << "answers of one kind";
+    EXPECT_TRUE(scored(report("statuette-1,wheel\nstatuette-2,hand\nstatuette-3,wheel\nstatuette-4,hand\n")));
+    const auto text = run_command("study technique " + population().string() + " --output " + (scratch / "out").string() +
+                                  " --truth " + scratch.file("two.csv", "name,label\nstatuette-1,wheel\n").string());
+    EXPECT_NE(text.out.find("answers are known of 1 of 8 objects: too few"), std::string::npos) << text.out;
+    const auto none = run_command(start + scratch.file("none.csv", "name,label\nstatuette-1.ply,wheel\n").string());
+    EXPECT_EQ(none.code, 1);
+    EXPECT_NE(none.err.find("'statuette-1.ply'"), std::string::npos) << none.err;
+}
+
 TEST(StudyTechniqueCommand, RefusesWhatMakesNoSense) {
     Scratch scratch;
     const std::string start = "study technique " + population().string() + " --output " + (scratch / "out").string();

@@ -75,7 +75,7 @@ MeasureTable measure_table(const std::vector<std::string>& names, const std::vec
 /// A table from a CSV file: first the column of names, then a column a measure, headed "arm length" or "arm length [mm]"; empty
 /// cells and "-" are missing. A column "unit" gives the unit of each object's lengths. Brackets of the powers of a length
 /// ([cm^2]) make areas and volumes; other brackets and [-] make values without a length. Throws Error (input) naming line and
-/// column.
+/// column, also for a first line with numbers in it: a table without headings.
 MeasureTable read_measure_table(const Path& file);
 /// The same as CSV, to be read back.
 std::string measure_table_to_csv(const MeasureTable& table);

@@ -76,7 +76,7 @@ struct PreparedCollection {
 
 /// Reads the meshes, without the faces that bear one of the labels `leave_out` (of what is left, the largest piece), and finds
 /// their features. Without a size in the options it is the median of the square roots of the areas, to the nearest power of 1.1,
-/// so that another head seldom changes it. Features are kept in `store`. Throws as `for_each_object`.
+/// so that another head seldom changes it. Features are kept in `store`, sizes in its part "sizes". Throws as `for_each_object`.
 PreparedCollection prepare_collection(const Collection& collection, const CompareOptions& options,
                                       const std::vector<int>& leave_out, const ResultStore& store);
 

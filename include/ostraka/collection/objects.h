@@ -25,31 +25,40 @@ struct CollectionObject {
 };
 
 struct Collection {
-    std::vector<CollectionObject> objects;  ///< by name
-    std::vector<std::string> notes;         ///< what was left out, what is there twice, in words
+    std::vector<CollectionObject> objects;                      ///< by name
+    std::vector<std::pair<std::string, std::string>> left_out;  ///< files that can be no object: name as it can be shown, why
+    std::vector<std::string> notes;                             ///< what is there twice, which labels are missing, in words
 };
+
+/// Whether `read_collection` of its folder would take the file for an object's: by its ending a mesh, annotations or markups.
+bool is_object_file(const Path& file);
 
 /// A folder: every OBJ, PLY, OFF or STL file directly in it is an object, named as the file without its ending (with it, where
 /// two files differ in the ending only); NAME.ant.json and NAME.mrk.json beside it belong to it; markups without a mesh are
-/// objects of landmarks. A file *.study.json (doc/schema/study.schema.json): the objects that it lists, with their files relative
-/// to it. Throws Error (input) for what is neither, a collection without objects, two objects of one name, or a name that no file
-/// can have. A file that is missing or damaged is found out only by the work on that object.
+/// objects of landmarks; names that results cannot be kept under (longer than 200 bytes, with control characters or a backslash,
+/// no UTF-8) are left out. A file *.study.json (doc/schema/study.schema.json): the objects that it lists, with their files
+/// relative to it; such a name in it is an error. Throws Error (input) for what is neither, a collection without objects, or two
+/// objects of one name. A file that is missing or damaged is found out only by the work on that object.
 Collection read_collection(const Path& folder_or_file);
 
-/// Labels of objects from a CSV file whose first row names the columns: the column "name" (else the first one) and `column` (by
-/// default "label", else the second one). Throws Error (input) for a missing column, a name that comes twice or an empty table.
+/// Labels of objects from a CSV file whose first row names the columns: "name" and `column` (by default "label"). Throws Error
+/// (input) for a missing column, a name that comes twice or an empty table.
 std::map<std::string, std::string> read_labels(const Path& file, const std::string& column = {});
 
-/// Sets the labels of the objects; notes say which objects have none and which labels no object.
-void set_labels(Collection& collection, const std::map<std::string, std::string>& labels);
+/// Sets the labels of the objects; notes say how many objects have none and which labels no object. Throws Error (input) where no
+/// object gets a label, naming some of both; `where` is what the labels were read from.
+void set_labels(Collection& collection, const std::map<std::string, std::string>& labels, const std::string& where = "labels");
 
 /// Results in a folder, one JSON file each, under a name and a key of everything they depend on. Files are written atomically;
 /// one with another key, or that is damaged (it has a checksum of its result), counts as absent. Kept at once, even while an
 /// OutputTransaction is open. Safe for several threads as long as they deal in different names.
 class ResultStore {
 public:
-    /// Makes the folder when the first result is kept. Without a folder nothing is kept.
+    /// Makes the folder when the first result is kept. Without a folder nothing is kept. Temporary files that killed runs left in
+    /// the folder are removed (core/file.h: after a day).
     explicit ResultStore(Path folder = {});
+    /// A store in a folder within this one, for another kind of result under the same names.
+    [[nodiscard]] ResultStore part(const std::string& kind) const;
     /// SHA-256 of texts one after the other; the toolkit's version goes in as well.
     static std::string key(const std::vector<std::string>& parts);
 

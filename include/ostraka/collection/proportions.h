@@ -46,7 +46,7 @@ struct MeasureRow {
 };
 
 enum class Fixedness {
-    unknown,    ///< too few objects to say anything
+    unknown,    ///< too few objects to say anything, or identical ones
     free,       ///< the two measures have nothing to do with each other
     with_size,  ///< both follow the size of the object; the ratio is no more stable than others
     stable,     ///< more stable than other ratios, but only as far as both measures follow the size closely
@@ -78,9 +78,11 @@ struct ProportionStudy {
 /// deviations from its size are dealt out anew among its measures, and (b), where at least two measures, or groups of them that
 /// go together by (a), are left to tell the size by, the two deviate from that size together: their deviations from the mean of
 /// the others, less what the error of that mean adds, are correlated more than when all deviations are shuffled over the objects.
-/// The two p-values are joined as their larger one and corrected for the number of ratios. Values that are not above zero count
-/// as missing. Throws Error (input) for no measure or no object, Error (usage) for more than 60 measures or options out of range.
-/// Results are the same for any number of threads. doc/proportions.md explains.
+/// The two p-values are joined as their larger one and corrected for the number of ratios. A ratio that is the same in all of
+/// four objects or more, but for rounding, is fixed, with the smallest p-values that the permutations allow; where all measures
+/// of all objects are the same, nothing is known. Values that are not above zero count as missing, and so do, with a note, those
+/// beyond 1e35 or within 1e-35. Throws Error (input) for no measure or no object, Error (usage) for more than 60 measures or
+/// options out of range. Results are the same for any number of threads. doc/proportions.md explains.
 ProportionStudy study_proportions(const MeasureTable& table, const ProportionOptions& options = {});
 
 }  // namespace ostraka

@@ -65,7 +65,7 @@ struct TechniqueSplit {
     double share = 0;                    ///< of the variance (of logarithms, where positive) that lies between the groups
     double p_value = 1;                  ///< share of simulated collections from one normal distribution that divide as well
     std::vector<int> group;              ///< of each object of the study: 0 lower, 1 upper, -1 not known
-    std::optional<double> f1;            ///< the better of the two ways to name the groups, where labels are known
+    std::optional<double> f1;            ///< the better of the two ways to name the groups, where labels of both kinds are
 };
 
 struct TechniqueAnswer {

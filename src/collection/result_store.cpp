@@ -1,0 +1,116 @@
+#include "ostraka/collection/objects.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/core/progress.h"
+#include "ostraka/core/provenance.h"
+
+#include <filesystem>
+#include <new>
+
+namespace ostraka {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string text_of(const JsonValue& object, const char* member) {
+    const JsonValue* value = find_member(object, member);
+    return value == nullptr || !value->IsString() ? std::string() : std::string(value->GetString(), value->GetStringLength());
+}
+
+}  // namespace
+
+ResultStore::ResultStore(Path folder) : folder_(std::move(folder)) {
+    if (!folder_.empty()) remove_stale_temporaries(folder_);
+}
+
+ResultStore ResultStore::part(const std::string& kind) const {
+    return folder_.empty() ? ResultStore() : ResultStore(folder_ / kind);
+}
+
+std::string ResultStore::key(const std::vector<std::string>& parts) {
+    Sha256 hash;
+    const auto add = [&](const std::string& text) {
+        const std::string length = std::to_string(text.size()) + ":";
+        hash.update(length.data(), length.size());
+        hash.update(text.data(), text.size());
+    };
+    add(version());
+    for (const auto& part : parts) add(part);
+    return hash.hexadecimal();
+}
+
+std::optional<Json> ResultStore::find(const std::string& name, const std::string& key) const {
+    if (folder_.empty()) return {};
+    const Path file = folder_ / (name + ".json");
+    std::error_code code;
+    if (!fs::exists(file, code)) return {};
+    try {
+        Json document = read_json(file);
+        if (!document.IsObject() || text_of(document, "key") != key) return {};
+        const JsonValue* result = find_member(document, "result");
+        if (result == nullptr || text_of(document, "checksum") != sha256(to_text(*result))) return {};
+        Json copy;
+        copy.CopyFrom(*result, copy.GetAllocator());
+        return copy;
+    } catch (const Error&) {
+        return {};
+    }
+}
+
+void ResultStore::keep(const std::string& name, const std::string& key, const JsonValue& result) const {
+    if (folder_.empty()) return;
+    std::error_code code;
+    fs::create_directories(folder_, code);
+    Json document(rapidjson::kObjectType);
+    auto& allocator = document.GetAllocator();
+    add_member(document, "format", "ostraka-study-result", allocator);
+    add_member(document, "version", JsonValue(1), allocator);
+    add_member(document, "key", key, allocator);
+    add_member(document, "checksum", sha256(to_text(result)), allocator);
+    add_member(document, "result", JsonValue(result, allocator), allocator);
+    // There at once, whatever becomes of the outputs that the caller writes together.
+    OutputTransaction own;
+    write_json(folder_ / (name + ".json"), document);
+    own.commit();
+}
+
+std::vector<ObjectResult> for_each_object(const Collection& collection, const ResultStore& store,
+                                          const std::vector<std::string>& what,
+                                          const std::function<Json(const CollectionObject&)>& work) {
+    std::vector<ObjectResult> results(collection.objects.size());
+    Progress progress("objects", results.size());
+    parallel_for(
+        results.size(),
+        [&](std::size_t i) {
+            const CollectionObject& object = collection.objects[i];
+            ObjectResult& mine = results[i];
+            std::vector<std::string> parts = what;
+            parts.insert(parts.end(), {object.name, object.checksum, object.unit});
+            const std::string key = ResultStore::key(parts);
+            try {
+                if (!object.checksum.empty())
+                    if (auto kept = store.find(object.name, key)) {
+                        mine.result = std::move(*kept);
+                        mine.resumed = true;
+                    }
+                if (!mine.resumed) {
+                    mine.result = work(object);
+                    if (!object.checksum.empty()) store.keep(object.name, key, mine.result);
+                }
+            } catch (const Error& error) {
+                if (error.kind() == ErrorKind::usage) throw;
+                mine.result.SetNull();
+                mine.problem = error.what();
+            } catch (const std::bad_alloc&) {
+                mine.result.SetNull();
+                mine.problem = object.name + ": out of memory (use a smaller mesh or --threads 1)";
+            }
+            progress.advance();
+        },
+        1);
+    return results;
+}
+
+}  // namespace ostraka
