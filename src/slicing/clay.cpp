@@ -13,7 +13,7 @@ namespace {
 
 /// What is known of one layer.
 struct Layer {
-    bool met = false, outlined = false, cavity = false;
+    bool met = false, outlined = false, cavity = false, crossing = false;
     double material = 0;                          ///< area that may be clay
     double outline = 0;                           ///< area within outer contours
     double wall = 0, thinnest = 0, thickest = 0;  ///< of those with a cavity: mean, and over its outline
@@ -22,6 +22,7 @@ struct Layer {
 Layer layer_of(const Slice& slice, const SliceDescriptors& descriptors) {
     Layer layer;
     layer.met = !slice.contours.empty();
+    layer.crossing = !slice.completeness.has_areas();
     if (std::isnan(descriptors.area)) return layer;
     layer.outlined = true;
     layer.material = descriptors.area;
@@ -87,10 +88,13 @@ ClayVolume clay_volume(const Mesh& mesh, const SliceFrame& frame, const ClayOpti
     std::vector<Layer> layers(stack.slices.size());
     for (std::size_t i = 0; i < layers.size(); ++i) layers[i] = layer_of(stack.slices[i], descriptors[i]);
     ClayVolume result;
+    result.reversed = stack.reversed;
+    for (const Slice& slice : stack.slices) result.turned += slice.completeness.turned > 0 ? 1 : 0;
     for (const Layer& layer : layers) {
         if (!layer.met) continue;
         ++result.slices;
-        if (!layer.outlined) ++result.without_outline;
+        if (!layer.outlined && !layer.crossing) ++result.without_outline;
+        if (layer.crossing) ++result.crossing;
         if (!layer.cavity) continue;
         if (result.with_cavity == 0) result.wall_least = layer.thinnest, result.wall_most = layer.thickest, result.wall_mean = 0;
         ++result.with_cavity;
@@ -106,10 +110,11 @@ ClayVolume clay_volume(const Mesh& mesh, const SliceFrame& frame, const ClayOpti
         result.most += height * layer.material;
         result.envelope += height * layer.outline;
     }
-    if (result.without_outline == result.slices) result.most = result.envelope = ClayVolume::unknown;
+    if (result.without_outline + result.crossing == result.slices) result.most = result.envelope = ClayVolume::unknown;
     if (std::isnan(result.wall) || std::isnan(result.most)) return result;
     result.least = 0;
-    for (const Slice& slice : stack.slices) result.least += height * least_of(slice, result.wall);
+    for (const Slice& slice : stack.slices)
+        if (slice.completeness.has_areas()) result.least += height * least_of(slice, result.wall);
     result.least = std::min(result.least, result.most);
     return result;
 }

@@ -43,6 +43,7 @@ Completeness completeness(const std::vector<Contour>& contours) {
     for (const auto& contour : contours) {
         length += contour.length, gaps += contour.gap;
         if (contour.closed) closed += contour.length;
+        result.crossing += contour.crosses ? 1 : 0, result.turned += contour.turned ? 1 : 0;
         for (std::size_t i = 0; i < contour.faces.size(); ++i) {
             const Vector2d &a = contour.points[i], &b = contour.points[(i + 1) % contour.points.size()];
             centre += (b - a).norm() * (a + b) / 2;

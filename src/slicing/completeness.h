@@ -5,6 +5,7 @@
 
 namespace ostraka::detail {
 
+/// All but `doubtful`.
 Completeness completeness(const std::vector<Contour>& contours);
 
 /// What the contours cover of the full turn around `centre`, in radians.

@@ -2,9 +2,13 @@
 #include "ostraka/slicing/curve_slices.h"
 
 #include "completeness.h"
+#include "joining.h"
+#include "plane_search.h"
+#include "settling.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/limits.h"
+#include "ostraka/core/parallel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -60,12 +64,36 @@ Slice nearest_part(const Slice& slice) {
         if (const double d = distance_from(contour); d < least) least = d, kept.contours = {contour};
     }
     kept.completeness = detail::completeness(kept.contours);
+    if (kept.completeness.crossing > 0) kept.completeness.doubtful = slice.completeness.doubtful;
     return kept;
+}
+
+/// As `slice_mesh` at height 0.
+std::vector<Contour> cut(const Mesh& mesh, const detail::PlaneSearch& search, const SliceFrame& frame, double tolerance) {
+    const auto height = [&](Vertex v) { return frame.height(mesh.point(v)); };
+    std::vector<Index> faces = search.near(frame, 2 * tolerance);
+    const auto reaches_below = [&](Index f) {
+        const auto c = corners(mesh, Face(f));
+        return std::any_of(c.begin(), c.end(), [&](Vertex v) { return height(v) < -tolerance; });
+    };
+    // On the lowest plane, ON counts as below.
+    const bool base = std::none_of(faces.begin(), faces.end(), reaches_below) && !(search.lowest(frame) < -tolerance);
+    const double threshold = base ? std::nextafter(tolerance, std::numeric_limits<double>::infinity()) : -tolerance;
+    const auto above = [&](Vertex v) { return height(v) >= threshold; };
+    std::erase_if(faces, [&](Index f) {
+        const auto c = corners(mesh, Face(f));
+        return above(c[0]) == above(c[1]) && above(c[1]) == above(c[2]);
+    });
+    return detail::join(mesh, faces.begin(), faces.end(), above,
+                        [&](Halfedge h) { return detail::crossing(mesh, frame, h, 0, tolerance, height); });
 }
 
 }  // namespace
 
 CurveSlices slice_along(const Mesh& mesh, const std::vector<Point>& curve, int count, const std::vector<Index>& faces) {
+    detail::check_faces(mesh, faces);
+    for (const Point& p : curve)
+        if (!is_place(p)) fail_usage("the curve to cut across has a point that is not a place", "give finite coordinates");
     if (count < 1 || count > 1000000) fail_usage("the number of slices is " + std::to_string(count), "use 1 to a million");
     if (curve.size() < 2) fail_usage("the curve to cut across has fewer than two points", "give a longer one");
     const Walk walk(curve);
@@ -84,11 +112,17 @@ CurveSlices slice_along(const Mesh& mesh, const std::vector<Point>& curve, int c
                 frame.v = CGAL::cross_product(frame.normal, frame.u);
             }
         }
-        Slice slice = nearest_part(slice_mesh(mesh, frame, {0}, faces).slices[0]);
-        slice.height = at;
         result.frames.push_back(frame);
-        result.slices.push_back(std::move(slice));
+        result.slices.push_back({at, {}, {}});
     }
+    const detail::PlaneSearch search(mesh, faces);
+    const double tolerance = on_plane_share * box_diagonal(mesh);
+    parallel_for(
+        result.slices.size(), [&](std::size_t i) { result.slices[i].contours = cut(mesh, search, result.frames[i], tolerance); },
+        1);
+    result.reversed = detail::settle(result.slices, mesh, faces.empty());
+    parallel_for(
+        result.slices.size(), [&](std::size_t i) { result.slices[i] = nearest_part(result.slices[i]); }, 1);
     return result;
 }
 

@@ -197,7 +197,7 @@ MedialAxis medial_axis(const Slice& slice, const std::vector<double>& residues, 
     double size = 0;
     for (const Slice& part : components(slice))
         for (const auto& contour : part.contours) contours.push_back(contour), size = std::max(size, contour.length);
-    if (contours.empty()) {
+    if (contours.empty() || !slice.completeness.has_areas()) {
         for (const double residue : residues) axis.levels.push_back({residue, 0, {}});
         return axis;
     }

@@ -1,8 +1,8 @@
 // Faces sorted into the planes that cross them, joined by their halfedges.
 #include "ostraka/slicing/slice.h"
 
-#include "completeness.h"
-#include "nesting.h"
+#include "joining.h"
+#include "settling.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/limits.h"
@@ -12,8 +12,6 @@
 #include <numeric>
 
 namespace ostraka {
-
-using Eigen::Vector2d;
 
 namespace {
 
@@ -26,9 +24,7 @@ void check(const Mesh& mesh, const SliceFrame& frame, const std::vector<double>&
     for (const double height : heights)
         if (!(std::abs(height) <= largest_coordinate))
             fail_usage("a slice is asked for at height " + std::to_string(height), "give finite heights");
-    if (mesh.number_of_faces() == 0) fail_input("mesh", "has no faces to cut", "choose another mesh");
-    for (const Index f : faces)
-        if (f >= mesh.num_faces()) fail_usage("face " + std::to_string(f) + " is not in the mesh", "give faces of this mesh");
+    detail::check_faces(mesh, faces);
 }
 
 /// A plane and what counts as above it: heights of at least `threshold`.
@@ -64,16 +60,6 @@ private:
             low = std::min(low, level_[v.idx()]), high = std::max(high, level_[v.idx()]);
         }
         return {low, high};
-    }
-    /// Where the plane meets the edge: at the vertex that lies on it, or between.
-    [[nodiscard]] Vector2d crossing(Halfedge h, double height) const {
-        Vertex a = mesh_.source(h), b = mesh_.target(h);
-        if (b < a) std::swap(a, b);  // both faces of the edge shall come to the same bits
-        const double s = height_[a.idx()] - height, t = height_[b.idx()] - height;
-        if (std::abs(s) <= tolerance_) return frame_.place(mesh_.point(a));
-        if (std::abs(t) <= tolerance_) return frame_.place(mesh_.point(b));
-        const Vector2d from = frame_.place(mesh_.point(a)), to = frame_.place(mesh_.point(b));
-        return from + s / (s - t) * (to - from);
     }
 
     const Mesh& mesh_;
@@ -159,112 +145,15 @@ void Sweep::sort_faces() {
         1);
 }
 
-/// Takes pieces without length out, and pieces that run there and back along one another. False if nothing is left.
-bool clean(Contour& contour) {
-    const std::vector<Vector2d> raw = std::move(contour.points);
-    const std::vector<Index> faces = std::move(contour.faces);
-    std::vector<Vector2d> points{raw.front()};
-    std::vector<Index> kept;
-    for (std::size_t i = 0; i < faces.size(); ++i) {
-        const Vector2d& next = raw[(i + 1) % raw.size()];
-        if (next == points.back()) continue;
-        if (points.size() >= 2 && points[points.size() - 2] == next) {
-            points.pop_back(), kept.pop_back();
-            continue;
-        }
-        points.push_back(next), kept.push_back(faces[i]);
-    }
-    std::size_t begin = 0, end = points.size();
-    if (contour.closed) {
-        // The last point repeats the first: it stands for the piece that closes the contour.
-        --end;
-        while (end - begin >= 3 && points[begin + 1] == points[end - 1]) ++begin, --end;
-        if (end - begin < 3) return false;
-    }
-    if (end - begin < 2) return false;
-    contour.points.assign(points.begin() + static_cast<long>(begin), points.begin() + static_cast<long>(end));
-    contour.faces.assign(kept.begin() + static_cast<long>(begin),
-                         kept.begin() + static_cast<long>(contour.closed ? end : end - 1));
-    return true;
-}
-
-void measure(Contour& contour) {
-    const auto& points = contour.points;
-    double twice = 0;
-    for (std::size_t i = 0; i < contour.faces.size(); ++i) {
-        const Vector2d a = points[i] - points[0], b = points[(i + 1) % points.size()] - points[0];
-        contour.length += (b - a).norm();
-        twice += a.x() * b.y() - a.y() * b.x();
-    }
-    if (contour.closed) contour.area = twice / 2, contour.hole = contour.area < 0;
-    else contour.gap = (points.back() - points.front()).norm();
-}
-
 std::vector<Contour> Sweep::contours(std::size_t plane) const {
     const auto begin = crossed_.begin() + static_cast<long>(first_[plane]),
                end = crossed_.begin() + static_cast<long>(first_[plane + 1]);
-    const auto count = static_cast<std::size_t>(end - begin);
-    // The material lies to the left of the pieces if each runs from the halfedge that goes down to the one that goes up.
-    std::vector<Index> next(count, no_index);
-    std::vector<Halfedge> down(count), up(count);
-    std::vector<bool> follows(count, false);
-    for (std::size_t i = 0; i < count; ++i) {
-        for (const Halfedge h : CGAL::halfedges_around_face(mesh_.halfedge(Face(begin[static_cast<long>(i)])), mesh_)) {
-            const bool from = level_[mesh_.source(h).idx()] > plane, to = level_[mesh_.target(h).idx()] > plane;
-            if (from && !to) down[i] = h;
-            if (to && !from) up[i] = h;
-        }
-        const Face other = mesh_.face(mesh_.opposite(up[i]));
-        if (!other.is_valid()) continue;
-        const auto at = std::lower_bound(begin, end, other.idx());
-        if (at == end || *at != other.idx()) continue;  // not of the part
-        next[i] = static_cast<Index>(at - begin);
-        follows[next[i]] = true;
-    }
-    std::vector<Contour> contours;
-    std::vector<bool> used(count, false);
-    const auto follow = [&](std::size_t start, bool closed) {
-        Contour contour;
-        contour.closed = closed;
-        std::size_t i = start;
-        while (true) {
-            used[i] = true;
-            contour.points.push_back(crossing(down[i], planes_[plane].height));
-            contour.faces.push_back(begin[static_cast<long>(i)]);
-            if (next[i] == no_index || used[next[i]]) break;
-            i = next[i];
-        }
-        if (!closed) contour.points.push_back(crossing(up[i], planes_[plane].height));
-        if (!clean(contour)) return;
-        measure(contour);
-        contours.push_back(std::move(contour));
-    };
-    for (std::size_t i = 0; i < count; ++i)
-        if (!follows[i]) follow(i, false);
-    for (std::size_t i = 0; i < count; ++i)
-        if (!used[i]) follow(i, true);
-    return contours;
-}
-
-void turn_around(Contour& contour) {
-    std::reverse(contour.points.begin(), contour.points.end());
-    std::reverse(contour.faces.begin(), contour.faces.end());
-    if (contour.closed) std::rotate(contour.faces.begin(), contour.faces.begin() + 1, contour.faces.end());
-    contour.area = -contour.area;
-    contour.hole = contour.closed && contour.area < 0;
-}
-
-/// Whether the mesh is closed and holds a negative volume.
-bool is_inside_out(const Mesh& mesh) {
-    for (const Edge e : mesh.edges())
-        if (mesh.is_border(e)) return false;
-    const Point o = mesh.point(*mesh.vertices().begin());
-    double volume = 0;
-    for (const Face f : mesh.faces()) {
-        const auto [a, b, c] = corners(mesh, f);
-        volume += CGAL::cross_product(mesh.point(a) - o, mesh.point(b) - o) * (mesh.point(c) - o);
-    }
-    return volume < 0;
+    return detail::join(
+        mesh_, begin, end, [&](Vertex v) { return level_[v.idx()] > plane; },
+        [&](Halfedge h) {
+            return detail::crossing(mesh_, frame_, h, planes_[plane].height, tolerance_,
+                                    [&](Vertex v) { return height_[v.idx()]; });
+        });
 }
 
 }  // namespace
@@ -282,25 +171,7 @@ SliceStack slice_mesh(const Mesh& mesh, const SliceFrame& frame, const std::vect
             slice.contours = sweep.contours(plane);
         },
         1);
-    const auto negative = [](const Slice& slice) {
-        double area = 0;
-        for (const auto& contour : slice.contours) area += contour.area;
-        return area < 0;
-    };
-    if (std::any_of(stack.slices.begin(), stack.slices.end(), negative)) stack.reversed = is_inside_out(mesh);
-    parallel_for(
-        heights.size(),
-        [&](std::size_t i) {
-            auto& contours = stack.slices[i].contours;
-            if (stack.reversed) std::for_each(contours.begin(), contours.end(), turn_around);
-            std::stable_sort(contours.begin(), contours.end(), [](const Contour& a, const Contour& b) {
-                if (a.closed != b.closed) return a.closed;
-                return a.closed ? std::abs(a.area) > std::abs(b.area) : a.length > b.length;
-            });
-            detail::nest(contours);
-            stack.slices[i].completeness = detail::completeness(contours);
-        },
-        1);
+    stack.reversed = detail::settle(stack.slices, mesh, faces.empty());
     return stack;
 }
 

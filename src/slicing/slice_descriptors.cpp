@@ -98,6 +98,7 @@ void describe_outline(SliceDescriptors& d, const PlaneSegments& outline, const s
     d.box_length = box.length, d.box_breadth = box.breadth;
     d.eccentricity = box.breadth / box.length;
     d.elongation = 1 - d.eccentricity;
+    if (!d.counted) return;
     d.solidity = d.area / polygon_moments(hull, hull[0]).area;
     d.rectangular_variance = rectangle_deviation(outline, box) / (box.area() / pi);
 }
@@ -131,9 +132,23 @@ PlaneSegments outer_arc(const Contour& contour) {
     return circle.radius > 0 && turned > 0 ? pieces : PlaneSegments{};
 }
 
+/// What is known of contours that cross: the hull is that of all.
+SliceDescriptors describe_crossing(const Slice& slice) {
+    SliceDescriptors d;
+    d.counted = false;
+    std::vector<Vector2d> corners;
+    for (const Contour& contour : slice.contours) {
+        (contour.closed ? d.closed_length : d.open_length) += contour.length;
+        if (contour.closed) corners.insert(corners.end(), contour.points.begin(), contour.points.end());
+    }
+    describe_outline(d, {}, corners);
+    return d;
+}
+
 }  // namespace
 
 SliceDescriptors describe_slice(const Slice& slice) {
+    if (!slice.completeness.has_areas()) return describe_crossing(slice);
     SliceDescriptors d;
     PlaneSegments outline, fitted;
     const Contour* main = nullptr;
@@ -201,6 +216,7 @@ SliceDescriptors describe_slice(const Slice& slice) {
 }
 
 std::vector<NamedDescriptor> list_descriptors(const SliceDescriptors& d) {
+    const auto counted = [&](int number) { return d.counted ? double(number) : SliceDescriptors::absent; };
     return {{"area", "area", d.area},
             {"perimeter", "length", d.perimeter},
             {"hole_area", "area", d.hole_area},
@@ -218,9 +234,9 @@ std::vector<NamedDescriptor> list_descriptors(const SliceDescriptors& d) {
             {"compactness", "", d.compactness},
             {"circular_variance", "", d.circular_variance},
             {"rectangular_variance", "", d.rectangular_variance},
-            {"components", "", double(d.components)},
-            {"holes", "", double(d.holes)},
-            {"euler_number", "", double(d.euler_number)},
+            {"components", "", counted(d.components)},
+            {"holes", "", counted(d.holes)},
+            {"euler_number", "", counted(d.euler_number)},
             {"hole_area_ratio", "", d.hole_area_ratio},
             {"equivalent_radius", "length", d.equivalent_radius},
             {"roundness_equivalent", "length", d.roundness_equivalent},
@@ -248,6 +264,7 @@ std::vector<SliceDescriptors> describe_slices(const std::vector<Slice>& slices) 
 std::vector<double> thickness_profile(const Slice& slice, int directions) {
     if (directions < 1 || directions > 1000000)
         fail_usage("the profile has " + std::to_string(directions) + " directions", "use 1 to a million");
+    if (!slice.completeness.has_areas()) return {};
     // Components and their holes come larger ones first.
     const auto parts = components(slice);
     if (parts.empty() || parts[0].contours.size() < 2) return {};

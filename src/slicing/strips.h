@@ -11,12 +11,19 @@ namespace ostraka::detail {
 /// Edges of all closed contours, sorted into horizontal strips.
 class Strips {
 public:
+    struct Edge {
+        Eigen::Vector2d a, b;
+        int contour;
+        std::size_t place;  ///< of `a` in its contour
+        bool last;          ///< it closes the contour
+    };
+
     explicit Strips(const std::vector<Contour>& contours) {
         double variation = 0;
         for (std::size_t c = 0; c < contours.size() && contours[c].closed; ++c) {
             const auto& points = contours[c].points;
             for (std::size_t i = 0; i < points.size(); ++i) {
-                edges_.push_back({points[i], points[(i + 1) % points.size()], static_cast<int>(c)});
+                edges_.push_back({points[i], points[(i + 1) % points.size()], static_cast<int>(c), i, i + 1 == points.size()});
                 variation += std::abs(edges_.back().b.y() - edges_.back().a.y());
             }
         }
@@ -79,11 +86,38 @@ public:
         crossed.resize(kept);
     }
 
+    /// Calls visit(edge, edge) once for every two edges whose boxes overlap, or nearly, but for neighbours in a contour.
+    template <class Visit>
+    void overlapping(double tolerance, const Visit& visit) const {
+        std::vector<std::pair<double, Index>> sorted;  // left end, edge
+        for (std::size_t s = 0; s < strips_; ++s) {
+            sorted.clear();
+            for (std::size_t k = first_[s]; k < first_[s + 1]; ++k) {
+                const Edge& edge = edges_[entries_[k]];
+                sorted.emplace_back(std::min(edge.a.x(), edge.b.x()), entries_[k]);
+            }
+            std::sort(sorted.begin(), sorted.end());
+            for (std::size_t i = 0; i < sorted.size(); ++i) {
+                const Edge& e = edges_[sorted[i].second];
+                const double right = std::max(e.a.x(), e.b.x()) + tolerance;
+                const auto [low, high] = std::minmax(e.a.y(), e.b.y());
+                for (std::size_t k = i + 1; k < sorted.size() && sorted[k].first <= right; ++k) {
+                    const Edge& f = edges_[sorted[k].second];
+                    const auto [least, most] = std::minmax(f.a.y(), f.b.y());
+                    if (least > high + tolerance || most < low - tolerance || are_neighbours(e, f)) continue;
+                    // Only in the lowest strip that both lie in.
+                    if (std::max(range(e).first, range(f).first) == s) visit(e, f);
+                }
+            }
+        }
+    }
+
 private:
-    struct Edge {
-        Eigen::Vector2d a, b;
-        int contour;
-    };
+    static bool are_neighbours(const Edge& e, const Edge& f) {
+        if (e.contour != f.contour) return false;
+        const auto [low, high] = std::minmax(e.place, f.place);
+        return high == low + 1 || (low == 0 && (e.place == high ? e : f).last);
+    }
     [[nodiscard]] std::size_t strip(double y) const {
         if (!(high_ > low_)) return 0;
         const double at = (y - low_) / (high_ - low_) * double(strips_);

@@ -35,6 +35,9 @@ struct ClayVolume {
     int with_cavity = 0;      ///< of them, those with a hole all of whose outline is seen
     int without_outline = 0;  ///< of them, those whose outer contours are all open: taken as between their neighbours for `most`
                               ///< and `envelope`, as nothing for `least`
+    int crossing = 0;         ///< of them, those whose contours cross so that they have no area: taken likewise
+    int turned = 0;           ///< of them, those with contours that were read against their orientation
+    bool reversed = false;    ///< the mesh is closed and inside out, and was read the other way round
 };
 
 /// Sums over slices (middles of layers of equal height). In a slice whose cavity is seen the material's area counts. Elsewhere

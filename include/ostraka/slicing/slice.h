@@ -39,17 +39,28 @@ struct Contour {
     int depth = 0;             ///< number of closed contours that contain it
     std::vector<Index> faces;  ///< faces[i] holds the piece from points[i] to the next point
     double length = 0;
-    double area = 0;  ///< closed: signed, positive counter-clockwise; 0 for open ones
-    double gap = 0;   ///< open: the straight distance between its ends
+    double area = 0;       ///< closed: signed, positive counter-clockwise; 0 for open ones
+    double gap = 0;        ///< open: the straight distance between its ends
+    bool crosses = false;  ///< closed: it crosses another closed one, or itself
+    bool turned = false;   ///< closed: it ran the other way round, against its nesting (a shell that is oriented wrongly)
 };
 
-/// How much of its outline a slice has.
+/// Contours that cross by more than this share of the area have no area: a fold of a scan has less.
+inline constexpr double most_doubtful = 1e-3;
+
+/// How much of its outline a slice has, and how sound that is.
 struct Completeness {
     double closed_share = 1;               ///< length of closed contours / length of all contours
     double share = 1;                      ///< length of all contours / (that + the straight gaps of the open ones)
     double angle = 2 * 3.141592653589793;  ///< what the contours cover of the full turn around the circle that fits them best,
                                            ///< radians; all closed: the full turn
+    int crossing = 0;                      ///< closed contours that cross others or themselves: the mesh passes through itself
+    int turned = 0;                        ///< closed contours that were turned around, since their nesting says otherwise
+    double doubtful = 0;  ///< area that may count twice or not at all through crossings, at most, over that of the outer contours
+
     [[nodiscard]] bool complete() const { return closed_share == 1; }
+    /// Whether areas mean what they say.
+    [[nodiscard]] bool has_areas() const { return doubtful <= most_doubtful; }
 };
 
 /// The contours at one height: closed ones first, larger areas first, then open ones, longer ones first.
@@ -69,8 +80,10 @@ struct SliceStack {
 /// them and joined by their shared edges, no coordinates are compared: O(faces log heights + output log output), in parallel, the
 /// same for any number of threads. A plane that misses has a slice without contours. Meshes that are open or pass through
 /// themselves are cut as well: contours may be open, or cross; a contour that crosses another one lies in it if most of five of
-/// its points do. Throws Error (usage) for a frame that is not right-handed with unit vectors, a height that is not finite, or a
-/// face that is not in the mesh; Error (input) for a mesh (or part) without faces.
+/// its points do. Shells most of whose contours run against their nesting (the way their parent does; or an
+/// outermost hole of a closed mesh) are turned around. Throws
+/// Error (usage) for a frame that is not right-handed with unit vectors, a height that is not finite, or a face that is not in
+/// the mesh; Error (input) for a mesh (or part) without faces.
 SliceStack slice_mesh(const Mesh& mesh, const SliceFrame& frame, const std::vector<double>& heights,
                       const std::vector<Index>& faces = {});
 

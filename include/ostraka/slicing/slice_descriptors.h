@@ -4,8 +4,9 @@
 // is absent (NaN) in a slice without a closed outer contour; where open contours are there besides, `Completeness` says how much
 // is missing. Only the fitted circle may be one of open contours. The shape is the material: outer contours without their holes.
 // Its outline are the outermost contours, with what is in them filled; circles are compared with the largest of these, the main
-// outline, so that handles and arms beside the body do not count. Where outer contours overlap (a mesh that passes through
-// itself), areas count twice. Integrals along contours go by length, so that cutting their pieces in two changes nothing.
+// outline, so that handles and arms beside the body do not count. Where contours cross (a mesh that passes through itself) by
+// more than `most_doubtful`, only the hull and what is made of it, and the lengths of closed and open contours, are there.
+// Integrals along contours go by length, so that cutting their pieces in two changes nothing.
 #pragma once
 
 #include "ostraka/slicing/slice.h"
@@ -35,6 +36,7 @@ struct SliceDescriptors {
         absent;  ///< mean of (|p - c| - r)^2 over the main outline / r^2; c its barycentre, pi r^2 its area
     double rectangular_variance = absent;  ///< mean squared distance of the outline to the rectangle's sides / (M m / pi)
 
+    bool counted = true;  ///< whether the next three are known; they are 0 where contours cross
     int components = 0, holes = 0;
     int euler_number = 0;             ///< components - holes
     double hole_area_ratio = absent;  ///< A_H / (A + A_H)

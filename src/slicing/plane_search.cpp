@@ -1,0 +1,105 @@
+// The faces near a plane.
+#include "plane_search.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace ostraka::detail {
+
+using Eigen::Vector3d;
+
+namespace {
+
+Vector3d eigen(const Vector& v) { return {v.x(), v.y(), v.z()}; }
+Vector3d eigen(const Point& p) { return {p.x(), p.y(), p.z()}; }
+
+/// The bits of 21-bit numbers spread out to every third place.
+std::uint64_t spread(std::uint64_t x) {
+    x = (x | x << 32) & 0x1f00000000ffff;
+    x = (x | x << 16) & 0x1f0000ff0000ff;
+    x = (x | x << 8) & 0x100f00f00f00f00f;
+    x = (x | x << 4) & 0x10c30c30c30c30c3;
+    return (x | x << 2) & 0x1249249249249249;
+}
+
+/// The least and largest height of a box.
+std::pair<double, double> heights(const Eigen::AlignedBox3d& box, const SliceFrame& frame) {
+    const double middle = eigen(frame.normal).dot(box.center() - eigen(frame.origin));
+    const double half = eigen(frame.normal).cwiseAbs().dot(box.sizes()) / 2;
+    return {middle - half, middle + half};
+}
+
+}  // namespace
+
+PlaneSearch::Box PlaneSearch::box_of(const Mesh& mesh, Index face) {
+    Box box;
+    for (const Vertex v : corners(mesh, Face(face))) box.extend(eigen(mesh.point(v)));
+    return box;
+}
+
+PlaneSearch::PlaneSearch(const Mesh& mesh, const std::vector<Index>& faces) : mesh_(mesh), faces_(faces) {
+    std::sort(faces_.begin(), faces_.end());
+    faces_.erase(std::unique(faces_.begin(), faces_.end()), faces_.end());
+    if (faces.empty())
+        for (const Face f : mesh.faces()) faces_.push_back(f.idx());
+    Box whole;
+    for (const Index f : faces_) whole.extend(box_of(mesh, f));
+    const double scale = 2097151 / std::max(whole.sizes().maxCoeff(), std::numeric_limits<double>::min());
+    std::vector<std::pair<std::uint64_t, Index>> order;  // along Morton's curve
+    for (const Index f : faces_) {
+        const Vector3d at = scale * (box_of(mesh, f).center() - whole.min());
+        std::uint64_t code = 0;
+        for (int k = 0; k < 3; ++k) code |= spread(static_cast<std::uint64_t>(std::clamp(at[k], 0.0, 2097151.0))) << k;
+        order.emplace_back(code, f);
+    }
+    std::sort(order.begin(), order.end());
+    std::transform(order.begin(), order.end(), faces_.begin(), [](const auto& entry) { return entry.second; });
+    while (leaves_ * leaf < faces_.size()) leaves_ *= 2;
+    boxes_.resize(2 * leaves_);
+    for (std::size_t i = 0; i < faces_.size(); ++i) boxes_[leaves_ + i / leaf].extend(box_of(mesh, faces_[i]));
+    for (std::size_t n = leaves_ - 1; n > 0; --n) boxes_[n] = boxes_[2 * n].merged(boxes_[2 * n + 1]);
+}
+
+std::vector<Index> PlaneSearch::near(const SliceFrame& frame, double reach) const {
+    std::vector<Index> found;
+    const auto meets = [&](const Box& box) {
+        if (box.isEmpty()) return false;
+        const auto [low, high] = heights(box, frame);
+        return low <= reach && high >= -reach;
+    };
+    std::vector<std::size_t> stack{1};
+    while (!stack.empty()) {
+        const std::size_t node = stack.back();
+        stack.pop_back();
+        if (!meets(boxes_[node])) continue;
+        if (node < leaves_) {
+            stack.push_back(2 * node), stack.push_back(2 * node + 1);
+            continue;
+        }
+        const std::size_t first = (node - leaves_) * leaf;
+        for (std::size_t i = first; i < std::min(first + leaf, faces_.size()); ++i)
+            if (meets(box_of(mesh_, faces_[i]))) found.push_back(faces_[i]);
+    }
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
+double PlaneSearch::lowest(const SliceFrame& frame) const {
+    double least = std::numeric_limits<double>::infinity();
+    std::vector<std::size_t> stack{1};
+    while (!stack.empty()) {
+        const std::size_t node = stack.back();
+        stack.pop_back();
+        if (boxes_[node].isEmpty() || !(heights(boxes_[node], frame).first < least)) continue;
+        if (node < leaves_) {
+            stack.push_back(2 * node), stack.push_back(2 * node + 1);
+            continue;
+        }
+        const std::size_t first = (node - leaves_) * leaf;
+        for (std::size_t i = first; i < std::min(first + leaf, faces_.size()); ++i)
+            for (const Vertex v : corners(mesh_, Face(faces_[i]))) least = std::min(least, frame.height(mesh_.point(v)));
+    }
+    return least;
+}
+
+}  // namespace ostraka::detail

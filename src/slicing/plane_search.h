@@ -1,0 +1,32 @@
+// The faces near a plane.
+#pragma once
+
+#include "ostraka/slicing/slice.h"
+
+#include <Eigen/Geometry>
+
+namespace ostraka::detail {
+
+/// A binary tree of boxes over faces in the order of a curve through space, built once for many planes.
+class PlaneSearch {
+public:
+    /// Over the given faces, or all. O(n log n).
+    PlaneSearch(const Mesh& mesh, const std::vector<Index>& faces);
+
+    /// Faces, ascending, whose boxes have heights within `reach` of the frame's origin.
+    [[nodiscard]] std::vector<Index> near(const SliceFrame& frame, double reach) const;
+    /// The lowest height of all faces.
+    [[nodiscard]] double lowest(const SliceFrame& frame) const;
+
+private:
+    using Box = Eigen::AlignedBox3d;
+    static constexpr std::size_t leaf = 8;
+    [[nodiscard]] static Box box_of(const Mesh& mesh, Index face);
+
+    const Mesh& mesh_;
+    std::vector<Index> faces_;
+    std::size_t leaves_ = 1;
+    std::vector<Box> boxes_;
+};
+
+}  // namespace ostraka::detail

@@ -1,0 +1,157 @@
+// Order, orientation and soundness of contours.
+#include "settling.h"
+
+#include "completeness.h"
+#include "crossings.h"
+#include "joining.h"
+#include "nesting.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+
+#include <algorithm>
+#include <optional>
+
+namespace ostraka::detail {
+
+namespace {
+
+struct Sense {
+    bool closed = true;
+    bool inside_out = false;  ///< closed, and holds a negative volume
+};
+
+Sense sense_of(const Mesh& mesh) {
+    Sense sense;
+    for (const Edge e : mesh.edges())
+        if (mesh.is_border(e)) return {false, false};
+    const Point o = mesh.point(*mesh.vertices().begin());
+    double volume = 0;
+    for (const Face f : mesh.faces()) {
+        const auto [a, b, c] = corners(mesh, f);
+        volume += CGAL::cross_product(mesh.point(a) - o, mesh.point(b) - o) * (mesh.point(c) - o);
+    }
+    sense.inside_out = volume < 0;
+    return sense;
+}
+
+void sort_and_nest(std::vector<Contour>& contours) {
+    std::stable_sort(contours.begin(), contours.end(), [](const Contour& a, const Contour& b) {
+        if (a.closed != b.closed) return a.closed;
+        return a.closed ? std::abs(a.area) > std::abs(b.area) : a.length > b.length;
+    });
+    nest(contours);
+}
+
+bool has_negative_area(const Slice& slice) {
+    double area = 0;
+    for (const auto& contour : slice.contours) area += contour.area;
+    return area < 0;
+}
+
+bool has_outermost_hole(const Slice& slice) {
+    return std::any_of(slice.contours.begin(), slice.contours.end(), [](const Contour& c) { return c.hole && c.parent < 0; });
+}
+
+/// Whether each contour runs against its nesting: material and what is none take turns from the outside in. An outermost hole is
+/// wrong where the whole mesh is closed; else its outer contour may be open, or not seen. What crosses, or lies along another
+/// contour, says nothing: 0 right, 1 wrong, 2 in doubt.
+std::vector<char> against_nesting(const std::vector<Contour>& contours, const Crossings& crossings, bool closed) {
+    std::vector<char> wrong(contours.size(), 2);
+    for (std::size_t c = 0; c < contours.size() && contours[c].closed; ++c) {
+        const Contour& contour = contours[c];
+        if (contour.crosses || crossings.cancelled[c]) continue;
+        if (contour.parent < 0) {
+            wrong[c] = contour.hole && closed ? 1 : 0;
+            continue;
+        }
+        const auto parent = static_cast<std::size_t>(contour.parent);
+        if (wrong[parent] == 2) continue;
+        wrong[c] = (contour.hole == contours[parent].hole) != (wrong[parent] == 1) ? 1 : 0;
+    }
+    return wrong;
+}
+
+/// Which faces belong to shells most of whose contours, by length, are wrong: a number that is true for them.
+class WrongShells {
+public:
+    WrongShells(const Mesh& mesh, const std::vector<Slice>& slices, const std::vector<std::vector<char>>& wrong)
+        : shell_(mesh.num_faces(), no_index) {
+        std::vector<Face> queue;
+        for (const Face seed : mesh.faces()) {
+            if (shell_[seed] != no_index) continue;
+            const auto number = static_cast<Index>(balance_.size());
+            balance_.push_back(0);
+            shell_[seed] = number;
+            queue.assign({seed});
+            while (!queue.empty()) {
+                const Face f = queue.back();
+                queue.pop_back();
+                for (const Face g : mesh.faces_around_face(mesh.halfedge(f)))
+                    if (g.is_valid() && shell_[g] == no_index) shell_[g] = number, queue.push_back(g);
+            }
+        }
+        for (std::size_t i = 0; i < slices.size(); ++i)
+            for (std::size_t c = 0; c < slices[i].contours.size(); ++c) {
+                const Contour& contour = slices[i].contours[c];
+                if (wrong[i][c] < 2) balance_[shell_[contour.faces[0]]] += wrong[i][c] == 1 ? contour.length : -contour.length;
+            }
+    }
+    [[nodiscard]] bool holds(const Contour& contour) const { return balance_[shell_[contour.faces[0]]] > 0; }
+
+private:
+    std::vector<Index> shell_;  ///< of each face
+    std::vector<double> balance_;
+};
+
+}  // namespace
+
+void check_faces(const Mesh& mesh, const std::vector<Index>& faces) {
+    if (mesh.number_of_faces() == 0) fail_input("mesh", "has no faces to cut", "choose another mesh");
+    for (const Index f : faces)
+        if (f >= mesh.num_faces()) fail_usage("face " + std::to_string(f) + " is not in the mesh", "give faces of this mesh");
+}
+
+bool settle(std::vector<Slice>& slices, const Mesh& mesh, bool whole) {
+    std::optional<Sense> known;
+    const auto sense = [&] {
+        if (!known) known = sense_of(mesh);
+        return *known;
+    };
+    const bool reversed = std::any_of(slices.begin(), slices.end(), has_negative_area) && sense().inside_out;
+    parallel_for(
+        slices.size(),
+        [&](std::size_t i) {
+            auto& contours = slices[i].contours;
+            if (reversed) std::for_each(contours.begin(), contours.end(), turn_around);
+            sort_and_nest(contours);
+        },
+        1);
+    const bool closed = whole && std::any_of(slices.begin(), slices.end(), has_outermost_hole) && sense().closed;
+    const double tolerance = on_plane_share * box_diagonal(mesh);
+    std::vector<std::vector<char>> wrong(slices.size());
+    parallel_for(
+        slices.size(),
+        [&](std::size_t i) {
+            const Crossings crossings = find_crossings(slices[i].contours, tolerance);
+            wrong[i] = against_nesting(slices[i].contours, crossings, closed);
+            slices[i].completeness.doubtful = crossings.doubtful;
+        },
+        1);
+    const auto has_wrong = [](const std::vector<char>& list) { return std::find(list.begin(), list.end(), 1) != list.end(); };
+    std::optional<WrongShells> shells;
+    if (std::any_of(wrong.begin(), wrong.end(), has_wrong)) shells.emplace(mesh, slices, wrong);
+    parallel_for(
+        slices.size(),
+        [&](std::size_t i) {
+            for (Contour& contour : slices[i].contours)
+                if (shells && shells->holds(contour)) turn_around(contour), contour.turned = true;
+            const double doubtful = slices[i].completeness.doubtful;
+            slices[i].completeness = completeness(slices[i].contours);
+            slices[i].completeness.doubtful = doubtful;
+        },
+        1);
+    return reversed;
+}
+
+}  // namespace ostraka::detail

@@ -1,0 +1,234 @@
+// Meshes that pass through themselves, or whose shells are not oriented alike: what is said of them, and what is left unsaid.
+#include "ostraka/slicing/clay.h"
+#include "ostraka/slicing/curve_slices.h"
+#include "ostraka/slicing/medial_axis.h"
+#include "ostraka/slicing/slice_descriptors.h"
+
+#include "meshes.h"
+#include "prisms.h"
+
+#include "ostraka/core/parallel.h"
+
+#include <gtest/gtest.h>
+
+using namespace ostraka;
+using namespace ostraka::test;
+
+namespace {
+
+TriangleSoup inside_out(TriangleSoup soup) {
+    for (auto& t : soup.triangles) std::swap(t[1], t[2]);
+    return soup;
+}
+Slice cut(const Mesh& mesh, double height, const Vector& normal = {0, 0, 1}) {
+    return slice_mesh(mesh, slice_frame({0, 0, 0}, normal), {height}).slices.at(0);
+}
+double area(const Slice& slice) { return describe_slice(slice).area; }
+
+TriangleSoup turned(TriangleSoup soup, double angle, double scale, const std::array<double, 3>& by) {
+    for (auto& p : soup.points) {
+        const double x = std::cos(angle) * p[0] - std::sin(angle) * p[1], y = std::sin(angle) * p[0] + std::cos(angle) * p[1];
+        p = {scale * (x + by[0]), scale * (y + by[1]), scale * (p[2] + by[2])};
+    }
+    return soup;
+}
+
+}  // namespace
+
+TEST(SliceSoundness, ShellsThatCrossHaveNoAreas) {
+    for (const double scale : {1e-6, 1.0, 1e6})
+        for (const double away : {0.0, 1e4}) {
+            const Mesh mesh = build_mesh(turned(joined(octahedron_sphere(4), moved(octahedron_sphere(4), 0.9, {1, 0.1, 0.05})),
+                                                0.3, scale, {away, -away, 0}));
+            const Slice slice = cut(mesh, 0.1 * scale);
+            ASSERT_EQ(slice.contours.size(), 2U);
+            EXPECT_EQ(slice.completeness.crossing, 2);
+            EXPECT_EQ(slice.completeness.turned, 0);
+            EXPECT_GT(slice.completeness.doubtful, 0.1);
+            EXPECT_FALSE(slice.completeness.has_areas());
+            EXPECT_TRUE(slice.completeness.complete());
+            const SliceDescriptors d = describe_slice(slice);
+            for (const double value : {d.area, d.perimeter, d.solidity, d.compactness, d.barycentre.x(), d.outline_area,
+                                       d.hole_area_ratio, d.equivalent_radius, d.fitted_radius, d.thickness_mean})
+                EXPECT_TRUE(std::isnan(value));
+            // The hull is that of both.
+            EXPECT_NEAR(d.box_length / scale, 1 + 0.9 + std::hypot(1, 0.1), 0.05);
+            EXPECT_FALSE(d.counted);
+            EXPECT_GT(d.closed_length, 0);
+            EXPECT_TRUE(thickness_profile(slice).empty());
+            for (const auto& level : medial_axis(slice).levels) EXPECT_TRUE(level.branches.empty());
+        }
+}
+
+TEST(SliceSoundness, AFoldTooSmallToMatterLeavesAreas) {
+    // A crumb that crosses the surface: known to be there, and to count at most its own area twice.
+    const Mesh mesh = build_mesh(joined(octahedron_sphere(5), moved(octahedron_sphere(2), 0.01, {1, 0.003, 0.002})));
+    const Slice slice = cut(mesh, 0.001);
+    EXPECT_EQ(slice.completeness.crossing, 2);
+    EXPECT_GT(slice.completeness.doubtful, 0);
+    EXPECT_LE(slice.completeness.doubtful, 1.001e-4);
+    EXPECT_NEAR(area(slice), M_PI, 0.01);
+}
+
+TEST(SliceSoundness, AContourThatCrossesItself) {
+    // A bow tie has no area at all.
+    const Slice bow = cut(walls({{{0, 0}, {4, 0.1}, {4, 2}, {0, 2.2}, {2.9, -1}}}), 0.5);
+    ASSERT_EQ(bow.contours.size(), 1U);
+    EXPECT_EQ(bow.completeness.crossing, 1);
+    EXPECT_FALSE(bow.completeness.has_areas());
+    const Slice plain = cut(walls({{{0, 0}, {4, 0.1}, {4, 2}, {0, 2.2}, {-1, 1}}}), 0.5);
+    EXPECT_EQ(plain.completeness.crossing, 0);
+    EXPECT_EQ(plain.completeness.doubtful, 0);
+}
+
+TEST(SliceSoundness, CrossingThroughVerticesAndWithoutThem) {
+    // Bars of a cross, whose sides meet at vertices of both, and plain ones whose corners are all outside the other.
+    const auto cross = [](int pieces) {
+        return cut(walls({refined(rectangle(3, 1), pieces), refined(rectangle(1, 3), pieces)}), 0.5);
+    };
+    const Polygon across{{-1.5, -0.5}, {-0.5, -0.5}, {0.5, -0.5}, {1.5, -0.5}, {1.5, 0.5}, {0.5, 0.5}, {-0.5, 0.5}, {-1.5, 0.5}};
+    Polygon along;
+    for (const auto& p : across) along.push_back({-p.y(), p.x()});
+    for (const Slice& slice : {cross(1), cross(3), cut(walls({across, along}), 0.5)}) {
+        EXPECT_EQ(slice.completeness.crossing, 2);
+        EXPECT_FALSE(slice.completeness.has_areas());
+    }
+    // The same shell twice counts twice; there and back it counts for nothing.
+    const Polygon round = ellipse(90, 3, 2);
+    EXPECT_FALSE(cut(walls({round, round}), 0.5).completeness.has_areas());
+    const Slice sheet = cut(walls({round, reversed(round)}), 0.5);
+    EXPECT_EQ(sheet.completeness.crossing, 0);
+    EXPECT_EQ(sheet.completeness.turned, 0);
+}
+
+TEST(SliceSoundness, WhatTouchesDoesNotCross) {
+    for (const double angle : {0.0, 0.1, 1.0, 2.5})
+        for (const double scale : {1e-5, 1.0, 1e5}) {
+            const auto at = [&](const Polygon& polygon) { return transformed(polygon, scale, angle, {7 * scale, -3 * scale}); };
+            const Polygon outer = rectangle(4, 4);
+            for (const Polygon& other :
+                 {rectangle(2, 2, {3, 3}), rectangle(2, 2, {3, 0}), refined(rectangle(2, 2, {3, 0.3}), 5),
+                  reversed(rectangle(2, 2, {1, 0})), reversed(refined(rectangle(2, 2, {1, 0.1}), 3)), rectangle(2, 9, {3, 0})}) {
+                const Slice slice = cut(walls({at(outer), at(other)}), 0.5);
+                EXPECT_EQ(slice.completeness.crossing, 0);
+                EXPECT_EQ(slice.completeness.turned, 0);
+                EXPECT_EQ(slice.completeness.doubtful, 0);
+            }
+        }
+    // Boxes side by side, at any turn.
+    for (const double angle : {0.0, 0.7}) {
+        const Mesh mesh = build_mesh(turned(joined(box(5), moved(box(3), 1, {1, 0, 0})), angle, 1, {0, 0, 0}));
+        EXPECT_EQ(cut(mesh, 0.41).completeness.crossing, 0);
+        EXPECT_NEAR(area(cut(mesh, 0.41)), 2, 1e-9);
+    }
+}
+
+TEST(SliceSoundness, AShellWithinAnotherIsReadByItsNesting) {
+    const double outer = area(cut(build_mesh(octahedron_sphere(4)), 0.1)),
+                 inner = area(cut(build_mesh(moved(octahedron_sphere(4), 0.5, {0, 0, 0})), 0.1));
+    const TriangleSoup big = octahedron_sphere(4), small = moved(octahedron_sphere(4), 0.5, {0, 0, 0});
+    struct Case {
+        TriangleSoup soup;
+        int turned;
+        bool reversed;
+    };
+    for (const Case& each :
+         {Case{joined(big, inside_out(small)), 0, false}, Case{joined(big, small), 1, false},
+          Case{joined(inside_out(big), small), 0, true}, Case{joined(inside_out(big), inside_out(small)), 1, true}}) {
+        const Mesh mesh = build_mesh(each.soup);
+        const SliceStack stack = slice_mesh(mesh, slice_frame({0, 0, 0}, {0, 0, 1}), {0.1, 0.7});
+        const Slice& slice = stack.slices[0];
+        EXPECT_EQ(stack.reversed, each.reversed);
+        EXPECT_EQ(slice.completeness.turned, each.turned);
+        EXPECT_EQ(slice.completeness.crossing, 0);
+        ASSERT_EQ(slice.contours.size(), 2U);
+        EXPECT_FALSE(slice.contours[0].hole);
+        EXPECT_TRUE(slice.contours[1].hole);
+        const SliceDescriptors d = describe_slice(slice);
+        EXPECT_NEAR(d.area, outer - inner, 1e-12);
+        EXPECT_NEAR(d.hole_area, inner, 1e-12);
+        EXPECT_LE(d.solidity, 1);
+        EXPECT_EQ(d.euler_number, 0);
+        EXPECT_NEAR(d.thickness_least, std::sqrt(0.99) - std::sqrt(0.24), 0.02);
+    }
+    // A body beside another, inside out: it is as large as the other way round.
+    const Mesh pair = build_mesh(joined(big, inside_out(moved(small, 1, {4, 0, 0}))));
+    EXPECT_NEAR(area(cut(pair, 0.1)), outer + inner, 1e-12);
+    EXPECT_EQ(cut(pair, 0.1).completeness.turned, 1);
+    // What is open is not judged by what may be missing.
+    EXPECT_EQ(cut(walls({reversed(rectangle(2, 2))}), 0.5).completeness.turned, 0);
+    EXPECT_TRUE(std::isnan(area(cut(walls({reversed(rectangle(2, 2))}), 0.5))));
+}
+
+TEST(SliceSoundness, TheSameBitsForAnyNumberOfThreads) {
+    const Mesh mesh = build_mesh(joined(joined(octahedron_sphere(4), moved(octahedron_sphere(4), 1, {0.9, 0.1, 0.05})),
+                                        moved(octahedron_sphere(3), 0.2, {-0.5, 0, 0})));
+    const auto heights = slice_heights(-1, 1, 31);
+    set_threads(1);
+    const SliceStack one = slice_mesh(mesh, slice_frame({0, 0, 0}, {0, 0, 1}), heights);
+    set_threads(3);
+    const SliceStack three = slice_mesh(mesh, slice_frame({0, 0, 0}, {0, 0, 1}), heights);
+    set_threads(0);
+    for (std::size_t i = 0; i < heights.size(); ++i) {
+        EXPECT_EQ(one.slices[i].completeness.doubtful, three.slices[i].completeness.doubtful);
+        EXPECT_EQ(one.slices[i].completeness.turned, three.slices[i].completeness.turned);
+        ASSERT_EQ(one.slices[i].contours.size(), three.slices[i].contours.size());
+        for (std::size_t c = 0; c < one.slices[i].contours.size(); ++c)
+            EXPECT_EQ(one.slices[i].contours[c].points, three.slices[i].contours[c].points);
+    }
+}
+
+TEST(SliceSoundness, ACurveIsCutAsPlanesAre) {
+    // Along a straight curve the planes are those of slice_mesh; the ends are faces of a box, one of them its lowest place.
+    const Mesh mesh = build_mesh(joined(box(6), moved(box(4), 0.4, {0.3, 0.3, 0.3})));
+    for (const std::vector<Index>& part :
+         {std::vector<Index>{}, std::vector<Index>{0, 1, 2, 30, 31, 32, 70, 71, 100, 101, 150}}) {
+        const CurveSlices across = slice_along(mesh, {{0.5, 0.5, 0}, {0.5, 0.5, 0.4}, {0.5, 0.5, 1}}, 12, part);
+        ASSERT_EQ(across.slices.size(), 12U);
+        for (std::size_t i = 0; i < across.slices.size(); ++i) {
+            const Slice plain = slice_mesh(mesh, across.frames[i], {0}, part).slices[0];
+            std::vector<std::vector<Eigen::Vector2d>> all;
+            for (const auto& contour : plain.contours) all.push_back(contour.points);
+            for (const auto& contour : across.slices[i].contours)
+                EXPECT_NE(std::find(all.begin(), all.end(), contour.points), all.end()) << i;
+            EXPECT_EQ(across.slices[i].contours.empty(), plain.contours.empty()) << i;
+        }
+    }
+    // On the lowest plane the base counts; a plane below meets nothing.
+    const CurveSlices base = slice_along(mesh, {{0.5, 0.5, -0.5}, {0.5, 0.5, 0.5}}, 1);
+    ASSERT_EQ(base.slices[0].contours.size(), 1U);
+    EXPECT_NEAR(area(base.slices[0]), 1, 1e-12);
+    EXPECT_TRUE(slice_along(mesh, {{0.5, 0.5, -3}, {0.5, 0.5, -2}}, 1).slices[0].contours.empty());
+    // Inside out it is the same.
+    const CurveSlices reversed = slice_along(build_mesh(inside_out(box(6))), {{0.5, 0.5, 0}, {0.5, 0.5, 1}}, 5);
+    EXPECT_TRUE(reversed.reversed);
+    for (const Slice& slice : reversed.slices) EXPECT_NEAR(area(slice), 1, 1e-12);
+}
+
+TEST(ClaySoundness, CrossingShellsAreNotCountedTwice) {
+    const SliceFrame upright = slice_frame({0, 0, 0}, {0, 0, 1});
+    // Two balls that cross around their middles, on poles that do not.
+    const Mesh mesh = build_mesh(joined(octahedron_sphere(5), moved(octahedron_sphere(5), 1, {1.9, 0, 0})));
+    const ClayVolume clay = clay_volume(mesh, upright);
+    EXPECT_GT(clay.crossing, 0);
+    EXPECT_LT(clay.crossing, clay.slices);
+    EXPECT_LE(clay.most, clay.envelope * (1 + 1e-12));
+    EXPECT_LT(clay.most, 8 * M_PI / 3);
+    const ClayVolume all = clay_volume(build_mesh(joined(tube(40, 5), moved(tube(40, 5), 1, {0.5, 0, 0}))), upright);
+    EXPECT_EQ(all.crossing, all.slices);
+    EXPECT_TRUE(std::isnan(all.most));
+    EXPECT_TRUE(std::isnan(all.envelope));
+    // A cavity oriented outwards, and all of it inside out.
+    const TriangleSoup big = octahedron_sphere(4), small = moved(octahedron_sphere(4), 0.5, {0, 0, 0});
+    const ClayVolume right = clay_volume(build_mesh(joined(big, inside_out(small))), upright);
+    for (const TriangleSoup& soup : {joined(big, small), joined(inside_out(big), small)}) {
+        const ClayVolume wrong = clay_volume(build_mesh(soup), upright);
+        EXPECT_NEAR(wrong.most, right.most, 1e-12);
+        EXPECT_NEAR(wrong.least, right.least, 1e-12);
+        EXPECT_NEAR(wrong.envelope, right.envelope, 1e-12);
+        EXPECT_TRUE(wrong.reversed || wrong.turned > 0);
+    }
+    EXPECT_FALSE(right.reversed);
+    EXPECT_EQ(right.turned, 0);
+    EXPECT_EQ(right.crossing, 0);
+}
