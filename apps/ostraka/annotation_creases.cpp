@@ -45,12 +45,13 @@ struct Creases {
                             number(crease.width), number(crease.mean_curvature), number(crease.strength, 3)});
             set.annotations.push_back(std::move(annotation));
         }
-        write_annotations(output, set, file.mesh, mesh, provenance);
+        if (!creases.empty()) write_annotations(output, set, file.mesh, mesh, provenance);
         add_member(result, "creases", std::move(list), allocator);
         if (session.json) session.print_report(provenance, document, result);
         else std::cout << table({"id", "tag", "closed", "length", "width", "mean curvature", "strength"}, rows);
         if (creases.empty())
-            session.note("nothing stands out at this scale: try another --scale, or a lower --weak and --strong");
+            session.note("nothing stands out at this scale, so " + printable(output) +
+                         " is not written: try another --scale, or a lower --weak and --strong");
         return creases.empty() ? answer_is_no : done;
     }
 

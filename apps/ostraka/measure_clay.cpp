@@ -38,7 +38,9 @@ struct Clay {
             {"wall seen, most", clay.wall_most, unit},
             {"slices", clay.slices, ""},
             {"slices with a cavity seen", clay.with_cavity, ""},
-            {"slices without an outline", clay.without_outline, ""}};
+            {"slices without an outline", clay.without_outline, ""},
+            {"slices whose contours cross", clay.crossing, ""},
+            {"slices read against their orientation", clay.reversed ? clay.slices : clay.turned, ""}};
         Json document(rapidjson::kObjectType);
         auto& allocator = document.GetAllocator();
         JsonValue result(rapidjson::kObjectType);
@@ -55,8 +57,22 @@ struct Clay {
         if (clay.without_outline > 0)
             session.note(std::to_string(clay.without_outline) +
                          " slices have no closed outline: taken as between their neighbours");
-        if (std::isnan(clay.most))
-            session.note("no slice has a closed outline, so there is no volume: is the mesh open along its height?");
+        if (clay.crossing > 0)
+            session.note(std::to_string(clay.crossing) +
+                         " slices have contours that cross, since parts of the mesh pass through each other: the most is a bound "
+                         "that may count "
+                         "them twice, the least takes them as nothing (ostraka mesh repair --wrap makes one surface of them)");
+        if (clay.turned > 0)
+            session.note(
+                std::to_string(clay.turned) +
+                " slices have contours that ran against their nesting, as a cavity does that is oriented outwards: read by "
+                "their nesting");
+        if (clay.reversed) session.note("the mesh is inside out: read the other way round (ostraka mesh repair mends it)");
+        if (clay.slices == 0) session.note("no slice meets the mesh: it has no height along this direction; give another --up");
+        else if (std::isnan(clay.most))
+            session.note(
+                "no slice has a closed outline, so there is no volume: is the mesh open along its "
+                "height, or inside out?");
         return std::isnan(clay.most) ? answer_is_no : done;
     }
 };

@@ -9,6 +9,7 @@
 #include "ostraka/axis/axis.h"
 #include "ostraka/core/limits.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/core/text.h"
 #include "ostraka/report/slice_drawing.h"
 #include "ostraka/report/table.h"
 #include "ostraka/slicing/curve_slices.h"
@@ -41,6 +42,7 @@ struct SliceCommand {
     CutObject cut;
     std::vector<Point> curve;  ///< what was cut across, if not parallel
     double lowest = 0, highest = 0;
+    std::pair<double, double> over_plane{0, 0};  ///< heights of the mesh over --plane
 
     int run(const Session& session) {
         check_words();
@@ -88,7 +90,8 @@ struct SliceCommand {
         write(files, result, provenance, session);
         if (session.json) session.print_report(provenance, document, result);
         else print(found, tube, thickness);
-        for (const auto& note : remarks()) session.note("note: " + note);
+        for (const auto& note : remarks_of(cut, plane.empty() ? std::pair(0.0, highest) : over_plane, !plane.empty()))
+            session.note("note: " + note);
         const bool met = std::any_of(cut.slices.begin(), cut.slices.end(), [](const Slice& s) { return !s.contours.empty(); });
         return met ? done : answer_is_no;
     }
@@ -104,11 +107,28 @@ private:
         if (direction == "skeleton" && (spacing > 0 || !heights.empty()))
             fail_usage("--spacing and --heights with --direction skeleton", "give --count");
         if (annotations.empty() && !names.empty())
-            fail_usage("there are no annotations", "give an annotation file with --annotation");
+            fail_usage("--annotation '" + printable(names[0], 60) + "' names a part of " + printable(mesh, 60) +
+                           ", but no annotation file is given",
+                       "put it behind the mesh: ostraka slice MESH ANNOTATIONS --annotation ...");
+        if (!angle.empty()) static_cast<void>(turn_of_profile());
+        for (const double residue : medial.empty() ? std::vector<double>{} : numbers_of<double>(medial, "--medial-axis"))
+            if (!(residue >= 0.001 && residue <= 1))
+                fail_usage("--medial-axis has a residue of " + number(residue), "use 0.001 to 1");
+        for (const double height : heights.empty() ? std::vector<double>{} : numbers_of<double>(heights, "--heights"))
+            if (!(std::abs(height) <= largest_coordinate))
+                fail_usage("--heights has " + number(height), "give heights over the lowest place, in the mesh's unit");
         if (direction == "skeleton" && !profile.empty())
             fail_usage("--profile with --direction skeleton", "a profile has a straight axis");
         if (!plane.empty() && !profile.empty())
             fail_usage("--profile with --plane", "a profile is cut along an axis: --direction, --profile-angle");
+    }
+
+    /// In radians.
+    [[nodiscard]] double turn_of_profile() const {
+        const auto degrees = numbers_of<double>(angle, "--profile-angle");
+        if (degrees.size() != 1 || !(std::abs(degrees[0]) <= 360))
+            fail_usage("--profile-angle is '" + printable(angle, 60) + "'", "give one angle from -360 to 360 degrees");
+        return degrees[0] * M_PI / 180;
     }
 
     [[nodiscard]] std::vector<std::pair<std::string, std::string>> words() const {
@@ -127,6 +147,24 @@ private:
         return list;
     }
 
+    /// Whether the name is that of a folder, there or not.
+    static bool is_folder(const std::string& name, const std::string& ending) {
+        std::error_code code;
+        if (std::filesystem::is_directory(name, code)) return true;
+        if (ending.empty() && std::filesystem::exists(name, code))
+            fail_usage("output '" + printable(name, 60) + "' is no folder",
+                       "give a folder, or a name that ends in .json, .csv, .svg, .png or .ply");
+        return ending.empty();
+    }
+
+    static void make_folder(const Path& folder) {
+        std::error_code code;
+        std::filesystem::create_directories(folder, code);
+        if (code || !std::filesystem::is_directory(folder, code))
+            throw Error(ErrorKind::failure, folder.string(), "cannot be made" + (code ? ": " + code.message() : ""),
+                        "check that the folder it is to be in may be written to");
+    }
+
     /// A name without a known ending is a folder that gets everything.
     [[nodiscard]] std::vector<std::pair<Kind, Path>> output_files() const {
         std::vector<std::pair<Kind, Path>> files;
@@ -136,7 +174,7 @@ private:
             else if (ending == ".csv") files.emplace_back(Kind::csv, name);
             else if (ending == ".svg" || ending == ".png") files.emplace_back(Kind::sheet, name);
             else if (ending == ".ply") files.emplace_back(Kind::ply, name);
-            else if (ending.empty() || std::filesystem::is_directory(name)) {
+            else if (is_folder(name, ending)) {
                 const Path folder(name);
                 files.emplace_back(Kind::json, folder / "slices.json");
                 files.emplace_back(Kind::csv, folder / "slices.csv");
@@ -184,21 +222,48 @@ private:
         return find_axis(file.mesh, all_faces(), options);
     }
 
+    /// The axis to slice along; an error says so in the words of this command.
+    [[nodiscard]] Axis axis_of_direction() const {
+        try {
+            return axis_by(direction);
+        } catch (const Error& error) {
+            if (error.kind() != ErrorKind::input) throw;
+            fail_input(mesh, "no " + direction + " axis to slice along: the mesh (or part) " + error.problem(),
+                       "repair or simplify it (ostraka mesh), or slice along another --direction, such as up or 0,0,1");
+        }
+    }
+
+    [[nodiscard]] SliceFrame asked_plane() const {
+        const auto numbers = numbers_of<double>(plane, "--plane");
+        const std::string what = "--plane is '" + printable(plane, 60) + "'";
+        if (numbers.size() != 6) fail_usage(what, "give six numbers: a point and the normal");
+        if (!is_place(numbers[0], numbers[1], numbers[2]))
+            fail_usage(what + ": its point is no place", "give finite coordinates, within those of the mesh");
+        const Vector normal(numbers[3], numbers[4], numbers[5]);
+        if (unit_vector(normal) == CGAL::NULL_VECTOR)
+            fail_usage(what + ": its normal has no direction", "give finite numbers that are not all 0");
+        return slice_frame({numbers[0], numbers[1], numbers[2]}, normal);
+    }
+
     /// Fills `cut`; or says why there is nothing to cut by.
     std::string cut_mesh() {
+        const auto all = all_faces();
+        if (std::none_of(all.begin(), all.end(), [&](Index f) { return face_area(file.mesh, Face(f)) > 0; }))
+            fail_input(mesh, "nothing to slice: all its " + std::to_string(all.size()) + " triangles are lines or points",
+                       "use a mesh with a surface");
         if (!plane.empty()) {
-            const auto numbers = numbers_of<double>(plane, "--plane");
-            if (numbers.size() != 6)
-                fail_usage("--plane is '" + printable(plane, 60) + "'", "give six numbers: a point and the normal");
-            set_parallel(slice_frame({numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5]}), {0});
+            const SliceFrame frame = asked_plane();
+            over_plane = height_range(file.mesh, frame, faces);
+            set_parallel(frame, {0});
             return {};
         }
         Vector along(upward[0], upward[1], upward[2]);
         const auto box = bounding_box(file.mesh);
         Point through((box.xmin() + box.xmax()) / 2, (box.ymin() + box.ymax()) / 2, (box.zmin() + box.zmax()) / 2);
         if (direction == "principal" || direction == "rotation" || direction == "skeleton") {
-            const Axis axis = axis_by(direction);
-            if (!axis.found) return "no " + direction + " axis to slice along: " + axis.reason;
+            const Axis axis = axis_of_direction();
+            if (!axis.found)
+                return "no " + direction + " axis to slice along: " + axis.reason + " (slice along another --direction)";
             if (direction == "skeleton") {
                 curve = axis.lines.at(0);
                 set_along();
@@ -242,6 +307,7 @@ private:
         cut.parallel = false;
         cut.frames = std::move(slices.frames);
         cut.slices = std::move(slices.slices);
+        cut.reversed = slices.reversed;
         highest = slices.length;
         describe();
     }
@@ -330,7 +396,7 @@ private:
                const Session& session) const {
         OutputTransaction together;
         for (const auto& [kind, path] : files) {
-            if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path());
+            if (path.has_parent_path()) make_folder(path.parent_path());
             if (kind == Kind::json) {
                 Json document(rapidjson::kObjectType);
                 auto& allocator = document.GetAllocator();
@@ -351,8 +417,7 @@ private:
             } else if (kind == Kind::sheet) {
                 if (drawable(path, session)) write_slice_sheet(path, sheet());
             } else if (drawable(path, session)) {
-                const double turn = angle.empty() ? std::numeric_limits<double>::quiet_NaN()
-                                                  : numbers_of<double>(angle, "--profile-angle").at(0) * M_PI / 180;
+                const double turn = angle.empty() ? std::numeric_limits<double>::quiet_NaN() : turn_of_profile();
                 write_profile_drawing(path, find_profile(file.mesh, profile_axis(), turn), Path(mesh).filename().string(), unit);
             }
         }
@@ -369,32 +434,6 @@ private:
         return false;
     }
 
-    [[nodiscard]] std::vector<std::string> remarks() const {
-        std::size_t met = 0, closed = 0, open = 0;
-        for (const auto& slice : cut.slices) {
-            met += slice.contours.empty() ? 0 : 1;
-            closed += !slice.contours.empty() && slice.contours[0].closed ? 1 : 0;
-            open += slice.completeness.complete() ? 0 : 1;
-        }
-        std::vector<std::string> list;
-        const std::string all = std::to_string(cut.slices.size());
-        if (met == 0) {
-            list.push_back(plane.empty() ? "no plane meets the mesh: its heights go from 0 to " + number(highest)
-                                         : "the plane misses the mesh");
-        } else if (met < cut.slices.size()) {
-            list.push_back(std::to_string(cut.slices.size() - met) + " of " + all +
-                           " planes miss the mesh, whose heights go from 0 to " + number(highest));
-        }
-        if (met > 0 && closed == 0)
-            list.emplace_back(
-                "no slice has a closed contour: areas, and what is made of them, are absent (is the mesh an open scan?)");
-        else if (open > 0)
-            list.push_back(std::to_string(open) + " of " + all +
-                           " slices have open contours; their descriptors are of the closed ones only");
-        if (cut.reversed) list.emplace_back("the mesh is inside out: contours were turned around (ostraka mesh repair mends it)");
-        return list;
-    }
-
     void print(const std::vector<NamedAxis>& found, const Tube& tube, const ThicknessHomogeneity& thickness) const {
         std::vector<std::vector<std::string>> rows;
         const auto cell = [](double value, int digits = 4) {
@@ -405,7 +444,7 @@ private:
             rows.push_back({std::to_string(i + 1), number(cut.slices[i].height), std::to_string(cut.slices[i].contours.size()),
                             cell(d.area), cell(d.perimeter), cell(d.eccentricity, 3), cell(d.solidity, 3), cell(d.compactness, 3),
                             cell(100 * d.roundness_fitted_relative, 3), cell(d.hole_area_ratio, 3), cell(d.thickness_mean, 3),
-                            number(100 * cut.slices[i].completeness.share, 3)});
+                            cut.slices[i].contours.empty() ? "empty" : number(100 * cut.slices[i].completeness.share, 3)});
         }
         std::cout << table({"slice", "height", "contours", "area", "perimeter", "m/M", "solidity", "compactness", "off circle %",
                             "hole ratio", "thickness", "complete %"},
@@ -442,6 +481,7 @@ void add_slice(CLI::App& tool, Session& session) {
     CLI::App* command =
         session.add(tool, "slice", "cut an object into slices, describe and draw them; exit code 3 if no plane meets it",
                     [&session, slice] { return slice->run(session); });
+    const auto given = [](const std::string& text) { return text.empty() ? std::string("is empty: leave it out") : ""; };
     command->add_option("mesh", slice->mesh, "mesh file")->required();
     command->add_option("annotations", slice->annotations, "its annotations (.ant.json): unit, upward direction, parts");
     command->add_option("--annotation", slice->names, "id or tag of a region: slice that part only; more than one: all together");
@@ -453,15 +493,21 @@ void add_slice(CLI::App& tool, Session& session) {
     command->add_option("--count", slice->count, "number of slices, in the middles of as many layers (default 50)")
         ->check(CLI::Range(1, 1000000));
     command->add_option("--spacing", slice->spacing, "distance of the slices, in the mesh's unit, from the lowest place up")
-        ->check(CLI::PositiveNumber);
+        ->check([](const std::string& text) {
+            const auto value = number_of(text);
+            const bool sound = value && *value > 0 && *value <= largest_coordinate;
+            return sound ? std::string() : "'" + printable(text, 60) + "' is no length above 0";
+        });
     command->add_option("--heights", slice->heights, "heights over the lowest place, with commas between them");
     command->add_option("--range", slice->range, "shares of the height between which to cut, for --count and --spacing")
         ->capture_default_str();
     command->add_option("--plane", slice->plane, "one slice: a point and the normal, x,y,z,nx,ny,nz");
-    command->add_option("--output", slice->outputs,
-                        "a folder for everything, or .json (all), .csv (descriptors), .svg, .png (drawing), .ply (slices on the "
-                        "mesh); repeatable");
-    command->add_option("--profile", slice->profile, "write a profile drawing (.svg, .png)");
+    command
+        ->add_option("--output", slice->outputs,
+                     "a folder for everything, or .json (all), .csv (descriptors), .svg, .png (drawing), .ply (slices on the "
+                     "mesh); repeatable")
+        ->check(given);
+    command->add_option("--profile", slice->profile, "write a profile drawing (.svg, .png)")->check(given);
     command->add_option("--profile-angle", slice->angle, "direction of the section of the profile, degrees; else a typical one");
     command->add_option("--drawn", slice->drawn, "most slices on the drawing")
         ->check(CLI::Range(1, 10000))

@@ -53,6 +53,8 @@ JsonValue json_of(const Contour& contour, JsonAllocator& allocator) {
         add_member(object, "parent", JsonValue(contour.parent), allocator);
         add_member(object, "depth", JsonValue(contour.depth), allocator);
         add_member(object, "area", JsonValue(contour.area), allocator);
+        if (contour.crosses) add_member(object, "crosses", JsonValue(true), allocator);
+        if (contour.turned) add_member(object, "turned", JsonValue(true), allocator);
     } else {
         add_member(object, "gap", JsonValue(contour.gap), allocator);
         add_member(object, "share", JsonValue(contour.length / (contour.length + contour.gap)), allocator);
@@ -99,13 +101,21 @@ JsonValue json_of(const CutObject& cut, JsonAllocator& allocator) {
             contours(rapidjson::kArrayType);
         add_member(object, "height", JsonValue(slice.height), allocator);
         add_member(object, "frame", json_of(cut.frames[i], allocator), allocator);
-        add_member(completeness, "complete", JsonValue(slice.completeness.complete()), allocator);
-        add_member(completeness, "closed_share", JsonValue(slice.completeness.closed_share), allocator);
-        add_member(completeness, "share", JsonValue(slice.completeness.share), allocator);
-        add_member(completeness, "angle_degrees", JsonValue(slice.completeness.angle / degree), allocator);
+        const bool empty = slice.contours.empty();
+        add_member(completeness, "empty", JsonValue(empty), allocator);
+        add_member(completeness, "complete", JsonValue(!empty && slice.completeness.complete()), allocator);
+        if (!empty) {
+            add_member(completeness, "closed_share", JsonValue(slice.completeness.closed_share), allocator);
+            add_member(completeness, "share", JsonValue(slice.completeness.share), allocator);
+            add_member(completeness, "angle_degrees", JsonValue(slice.completeness.angle / degree), allocator);
+            add_member(completeness, "crossing_contours", JsonValue(slice.completeness.crossing), allocator);
+            add_member(completeness, "turned_contours", JsonValue(slice.completeness.turned), allocator);
+            add_member(completeness, "doubtful_share", JsonValue(slice.completeness.doubtful), allocator);
+        }
         add_member(object, "completeness", std::move(completeness), allocator);
         for (const auto& [name, unit, value] : list_descriptors(cut.descriptors[i])) {
-            if (is_count(name)) add_member(descriptors, name, JsonValue(static_cast<int>(value)), allocator);
+            if (is_count(name) && std::isfinite(value))
+                add_member(descriptors, name, JsonValue(static_cast<int>(value)), allocator);
             else add_number(descriptors, name, value, allocator);
         }
         add_member(object, "descriptors", std::move(descriptors), allocator);
@@ -181,8 +191,9 @@ JsonValue json_of(const Tube& tube, const CutObject& cut, JsonAllocator& allocat
 }
 
 std::string csv_of(const CutObject& cut, const std::string& unit) {
-    std::vector<std::string> header{"slice",         "unit",         "height", "contours",
-                                    "open_contours", "closed_share", "share",  "angle_degrees"};
+    std::vector<std::string> header{"slice",         "unit",  "height",        "contours",          "open_contours",
+                                    "closed_share",  "share", "angle_degrees", "crossing_contours", "turned_contours",
+                                    "doubtful_share"};
     for (const auto& entry : list_descriptors({})) header.emplace_back(entry.name);
     std::string text = csv_row(header);
     const auto cell = [](double value) {
@@ -193,14 +204,18 @@ std::string csv_of(const CutObject& cut, const std::string& unit) {
     for (std::size_t i = 0; i < cut.slices.size(); ++i) {
         const Slice& slice = cut.slices[i];
         const auto open = std::count_if(slice.contours.begin(), slice.contours.end(), [](const Contour& c) { return !c.closed; });
+        const auto known = [&](double value) { return slice.contours.empty() ? std::string() : cell(value); };
         std::vector<std::string> row{std::to_string(i + 1),
                                      unit,
                                      cell(slice.height),
                                      std::to_string(slice.contours.size()),
                                      std::to_string(open),
-                                     cell(slice.completeness.closed_share),
-                                     cell(slice.completeness.share),
-                                     cell(slice.completeness.angle / degree)};
+                                     known(slice.completeness.closed_share),
+                                     known(slice.completeness.share),
+                                     known(slice.completeness.angle / degree),
+                                     known(slice.completeness.crossing),
+                                     known(slice.completeness.turned),
+                                     known(slice.completeness.doubtful)};
         for (const auto& entry : list_descriptors(cut.descriptors[i])) row.push_back(cell(entry.value));
         text += csv_row(row);
     }

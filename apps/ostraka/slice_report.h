@@ -43,4 +43,8 @@ std::string csv_of(const CutObject& cut, const std::string& unit);
 /// within half the distance to the next slice, or no value.
 std::vector<Colour> slice_colours(const Mesh& mesh, const CutObject& cut, const std::string& name);
 
+/// What a reader has to know of the slices: planes that miss, open contours, parts that cross or are oriented wrongly, and at
+/// which heights. `extent`: heights of the mesh over the planes' origin; `one_plane`: it was given as such.
+std::vector<std::string> remarks_of(const CutObject& cut, const std::pair<double, double>& extent, bool one_plane);
+
 }  // namespace ostraka::app

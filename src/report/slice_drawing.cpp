@@ -80,6 +80,8 @@ std::string second_line(const DrawnSlice& drawn) {
     if (std::isfinite(d.roundness_fitted_relative))
         text += (text.empty() ? "" : ", ") + std::string("off ") + fixed(100 * d.roundness_fitted_relative, 1) + " %";
     if (!drawn.slice->completeness.complete()) text = "open, " + fixed(100 * drawn.slice->completeness.share, 0) + " %";
+    if (!drawn.slice->completeness.has_areas()) text = "contours cross";
+    if (drawn.slice->contours.empty()) text = "empty";
     return text;
 }
 

@@ -10,6 +10,7 @@
 #include <limits>
 #include <queue>
 #include <set>
+#include <sstream>
 
 namespace ostraka {
 
@@ -31,8 +32,30 @@ double robust_deviation(const Mesh& mesh, const std::vector<double>& values) {
     return 1.4826 * quantile(sizes, areas, 0.5, "creases");
 }
 
-Response respond(const Mesh& mesh, const CreaseOptions& options) {
+std::string text(double value) {
+    std::ostringstream stream;
+    stream.precision(3);
+    stream << value;
+    return stream.str();
+}
+
+void check(const Mesh& mesh, const CreaseOptions& options) {
     check_options(options, "creases");
+    if (options.weak > options.strong)
+        fail_usage("creases begin at a response of " + text(options.weak) + " (weak), but need to reach " + text(options.strong) +
+                       " (strong) only",
+                   "let --weak be at most --strong");
+    const double edge = mean_edge_length(mesh), radius = options.scale * box_diagonal(mesh);
+    // Within a ball smaller than an edge there is nothing to average over.
+    if (radius < edge)
+        fail_usage("a scale of " + text(options.scale) + " of the diagonal is a radius of " + text(radius) +
+                       ", but the mesh's edges are " + text(edge) + " long in the mean: it is too coarse for that",
+                   "use --scale " + text(std::ceil(1000 * edge / box_diagonal(mesh)) / 1000) +
+                       " or more, or refine the mesh (ostraka mesh refine)");
+}
+
+Response respond(const Mesh& mesh, const CreaseOptions& options) {
+    check(mesh, options);
     const double radius = options.scale * box_diagonal(mesh);
     Response response;
     response.curvature = curvature(mesh, {options.scale}).mean;

@@ -1,5 +1,6 @@
 #include "ostraka/slicing/clay.h"
 
+#include "ostraka/geom/planar.h"
 #include "ostraka/slicing/slice_descriptors.h"
 
 #include <algorithm>
@@ -19,10 +20,28 @@ struct Layer {
     double wall = 0, thinnest = 0, thickest = 0;  ///< of those with a cavity: mean, and over its outline
 };
 
+/// No more than contours that cross enclose together: neither more than all of them one by one, nor than their convex hull.
+double most_of(const Slice& slice) {
+    double sum = 0;
+    std::vector<Eigen::Vector2d> points;
+    for (const Contour& contour : slice.contours) {
+        if (!contour.closed) continue;
+        points.insert(points.end(), contour.points.begin(), contour.points.end());
+        sum += contour.hole ? 0 : contour.area;
+    }
+    const auto hull = convex_hull(points);
+    return std::min(sum, polygon_moments(hull, hull[0]).area);
+}
+
 Layer layer_of(const Slice& slice, const SliceDescriptors& descriptors) {
     Layer layer;
     layer.met = !slice.contours.empty();
     layer.crossing = !slice.completeness.has_areas();
+    if (layer.crossing) {
+        layer.outlined = true;
+        layer.material = most_of(slice), layer.outline = ClayVolume::unknown;
+        return layer;
+    }
     if (std::isnan(descriptors.area)) return layer;
     layer.outlined = true;
     layer.material = descriptors.area;
@@ -93,7 +112,7 @@ ClayVolume clay_volume(const Mesh& mesh, const SliceFrame& frame, const ClayOpti
     for (const Layer& layer : layers) {
         if (!layer.met) continue;
         ++result.slices;
-        if (!layer.outlined && !layer.crossing) ++result.without_outline;
+        if (!layer.outlined) ++result.without_outline;
         if (layer.crossing) ++result.crossing;
         if (!layer.cavity) continue;
         if (result.with_cavity == 0) result.wall_least = layer.thinnest, result.wall_most = layer.thickest, result.wall_mean = 0;
@@ -110,7 +129,7 @@ ClayVolume clay_volume(const Mesh& mesh, const SliceFrame& frame, const ClayOpti
         result.most += height * layer.material;
         result.envelope += height * layer.outline;
     }
-    if (result.without_outline + result.crossing == result.slices) result.most = result.envelope = ClayVolume::unknown;
+    if (result.without_outline == result.slices) result.most = result.envelope = ClayVolume::unknown;
     if (std::isnan(result.wall) || std::isnan(result.most)) return result;
     result.least = 0;
     for (const Slice& slice : stack.slices)

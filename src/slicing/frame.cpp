@@ -4,16 +4,24 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/limits.h"
 
+#include <sstream>
+
 namespace ostraka {
 
 namespace {
 
-constexpr double most_planes = 1e7;
+constexpr double most_planes = 1e6;
+
+std::string text(double value) {
+    std::ostringstream stream;
+    stream.precision(4);
+    stream << value;
+    return stream.str();
+}
 
 void check_range(double lowest, double highest) {
     if (!(lowest <= highest) || !std::isfinite(highest - lowest))
-        fail_usage("there is no range of heights from " + std::to_string(lowest) + " to " + std::to_string(highest),
-                   "give the lower height first");
+        fail_usage("there is no range of heights from " + text(lowest) + " to " + text(highest), "give the lower height first");
 }
 
 }  // namespace
@@ -47,7 +55,7 @@ std::pair<double, double> height_range(const Mesh& mesh, const SliceFrame& frame
 
 std::vector<double> slice_heights(double lowest, double highest, int count) {
     check_range(lowest, highest);
-    if (count < 1 || count > most_planes) fail_usage("the number of slices is " + std::to_string(count), "use 1 to ten million");
+    if (count < 1 || count > most_planes) fail_usage("the number of slices is " + std::to_string(count), "use 1 to a million");
     std::vector<double> heights;
     for (int i = 0; i < count; ++i) heights.push_back(lowest + (highest - lowest) * ((i + 0.5) / count));
     return heights;
@@ -55,9 +63,13 @@ std::vector<double> slice_heights(double lowest, double highest, int count) {
 
 std::vector<double> slice_heights_spaced(double lowest, double highest, double spacing) {
     check_range(lowest, highest);
-    if (!(spacing > 0) || !((highest - lowest) / spacing < most_planes))
-        fail_usage("the spacing of the slices is " + std::to_string(spacing),
-                   "use a length above 0 that gives at most ten million slices");
+    if (!(spacing > 0 && spacing <= largest_coordinate))
+        fail_usage("the spacing of the slices is " + text(spacing), "use a length above 0");
+    if (const double height = highest - lowest; !(height / spacing < most_planes))
+        fail_usage(
+            "a spacing of " + text(spacing) + " gives " + text(height / spacing) + " slices over a height of " + text(height),
+            "use at least " + text(1.001 * height / most_planes) + " for the most there may be, a million; " +
+                text(height / 200) + " gives two hundred");
     // The last one may be missed by rounding only.
     const double steps = std::floor((highest - lowest) / spacing * (1 + 1e-12));
     std::vector<double> heights;

@@ -5,6 +5,7 @@
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/file.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/shapes/make_mesh.h"
 
@@ -146,7 +147,7 @@ TEST(Creases, OptionsOutOfRangeAreRefused) {
 TEST(CreasesCommand, WritesAnnotationsOrSaysThatThereIsNothing) {
     const test::Scratch scratch;
     write_mesh(scratch / "tube.ply", build_mesh(ringed_tube(1)));
-    write_mesh(scratch / "ball.ply", build_mesh(test::octahedron_sphere(4)));
+    write_mesh(scratch / "ball.ply", build_mesh(test::octahedron_sphere(6)));
     const auto run = [&](const std::string& mesh, const std::string& flags) {
         return test::run_command("annotation creases " + (scratch / mesh).string() + " " + (scratch / "out.ant.json").string() +
                                  flags);
@@ -159,8 +160,22 @@ TEST(CreasesCommand, WritesAnnotationsOrSaysThatThereIsNothing) {
         ASSERT_EQ(set.annotations.size(), 1U);
         EXPECT_EQ(set.annotations[0].tag, "ridge 1");
     }
+    // What stood in the file stays.
+    const std::string before = read_file(scratch / "out.ant.json");
     const auto none = run("ball.ply", "");
     EXPECT_EQ(none.code, 3);
+    EXPECT_EQ(read_file(scratch / "out.ant.json"), before);
+    EXPECT_NE(none.err.find("is not written"), std::string::npos) << none.err;
+    const auto fine = run("tube.ply", " --scale 0.0001");
+    EXPECT_EQ(fine.code, 2);
+    EXPECT_NE(fine.err.find("too coarse"), std::string::npos) << fine.err;
+    // With the scale that it names it works.
+    const auto at = fine.err.find("use --scale ");
+    ASSERT_NE(at, std::string::npos) << fine.err;
+    EXPECT_NE(run("tube.ply", " --scale " + fine.err.substr(at + 12, fine.err.find(' ', at + 12) - at - 12)).code, 2);
+    const auto above = run("tube.ply", " --weak 7");
+    EXPECT_EQ(above.code, 2);
+    EXPECT_NE(above.err.find("--weak"), std::string::npos) << above.err;
     EXPECT_NE(none.err.find("--scale"), std::string::npos);
     EXPECT_EQ(run("tube.ply", " --scale 0").code, 2);
     EXPECT_EQ(run("gone.ply", "").code, 1);

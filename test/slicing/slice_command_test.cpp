@@ -169,10 +169,124 @@ TEST(SliceCommand, BadInputIsSaidAndWritesNothing) {
     expect_fails("slice " + vase + "--colour-by beauty --output " + (scratch / "o.ply").string(), 2, "beauty");
     expect_fails("slice " + vase + "--output " + (scratch / "o.txt").string(), 2, "end its name in");
     expect_fails("slice " + vase + "--profile " + (scratch / "o.pdf").string(), 2, "no drawing");
-    expect_fails("slice " + data + "vase.ply --annotation 1", 2, "there are no annotations");
+    expect_fails("slice " + data + "vase.ply --annotation foo", 2, "no annotation file is given");
     expect_fails("slice " + data + "vase.ply --output " + data + "vase.ply", 2, "vase.ply");
     const std::string ball = (scratch / "ball.ply").string();
     ASSERT_EQ(run_command("mesh make sphere " + ball + " --vertices 500").code, 0);
     expect_fails("slice " + ball + " --direction principal", 3, "no principal axis");
     EXPECT_EQ(count_files(scratch.path()), 1U);
+}
+
+TEST(SliceCommand, NumbersThatMakeNoSenseAreNamed) {
+    const auto fails = [](const std::string& flags, const std::string& words) {
+        expect_fails("slice " + vase + flags, 2, words);
+    };
+    fails("--plane 1e300,0,0,0,0,1", "its point is no place");
+    fails("--plane nan,0,0,0,0,1", "its point is no place");
+    fails("--plane 0,0,0,0,0,0", "its normal has no direction");
+    fails("--plane 0,0,0,inf,0,0", "its normal has no direction");
+    for (const char* angle : {"nan", "inf", "1e300", "3,4", "x"})
+        fails(std::string("--profile-angle ") + angle, "--profile-angle");
+    for (const char* spacing : {"nan", "inf", "0", "-1", "1e300", "x"}) fails(std::string("--spacing ") + spacing, "--spacing");
+    // How many it would be, and what is reasonable.
+    const auto many = run_command("slice " + vase + "--spacing 1e-9");
+    EXPECT_EQ(many.code, 2);
+    EXPECT_NE(many.err.find("2.589e+11 slices"), std::string::npos) << many.err;
+    EXPECT_NE(many.err.find("use at least 0.000259"), std::string::npos) << many.err;
+    EXPECT_EQ(many.err.find("0.000000"), std::string::npos) << many.err;
+    for (const char* heights : {"nan", "1e300", "10,inf"}) {
+        const auto result = run_command("slice " + vase + "--heights " + heights);
+        EXPECT_EQ(result.code, 2);
+        EXPECT_NE(result.err.find("--heights has "), std::string::npos) << result.err;
+        EXPECT_LT(result.err.size(), 200U);  // not three hundred digits
+    }
+    fails("--range nan,1", "--range");
+    fails("--count 0", "--count");
+    fails("--drawn 0", "--drawn");
+    fails("--medial-axis 0.1,nan,0.2", "--medial-axis has a residue of nan");
+    fails("--similarity nan", "similarity");
+    // A plane that misses says where the mesh is.
+    const auto missed = run_command("slice " + vase + "--plane 0,0,1000,0,0,1");
+    EXPECT_EQ(missed.code, 3);
+    EXPECT_NE(missed.err.find("heights over it go from -1000 to -741.1"), std::string::npos) << missed.err;
+}
+
+TEST(SliceCommand, OutputsThatCannotBe) {
+    expect_fails("slice " + vase + "--count 3 --output ''", 2, "--output");
+    expect_fails("slice " + vase + "--count 3 --profile ''", 2, "--profile");
+    expect_fails("slice " + vase + "--count 3 --output /dev/full", 2, "is no folder");
+    const Scratch scratch;
+    write_file(scratch / "taken", "text");
+    expect_fails("slice " + vase + "--count 3 --output " + (scratch / "taken").string(), 2, "is no folder");
+    expect_fails("slice " + vase + "--count 3 --output " + (scratch / "taken" / "within").string(), 1, "cannot be made");
+    std::filesystem::create_symlink("/dev/full", scratch / "full.csv");
+    expect_fails("slice " + vase + "--count 3 --output " + (scratch / "full.csv").string(), 1, "cannot be written");
+    EXPECT_EQ(read_file(scratch / "taken"), "text");
+}
+
+TEST(SliceCommand, SlicesOfNothingAreEmpty) {
+    const Scratch scratch;
+    const std::string folder = (scratch / "cut").string();
+    const auto result = run_command("slice " + vase + "--heights 100,1000 --output " + folder);
+    ASSERT_EQ(result.code, 0) << result.err;
+    EXPECT_NE(result.out.find("empty"), std::string::npos);
+    const Json json = read_json(Path(folder) / "slices.json");
+    validate(json, "slices", "slices.json");
+    EXPECT_TRUE(json["slices"][0]["completeness"]["complete"].GetBool());
+    EXPECT_FALSE(json["slices"][0]["completeness"]["empty"].GetBool());
+    EXPECT_FALSE(json["slices"][1]["completeness"]["complete"].GetBool());
+    EXPECT_TRUE(json["slices"][1]["completeness"]["empty"].GetBool());
+    EXPECT_FALSE(json["slices"][1]["completeness"].HasMember("share"));
+    EXPECT_NE(read_file(Path(folder) / "slices.csv").find("\n2,mm,1000,0,0,,,,,,,"), std::string::npos);
+    EXPECT_NE(read_file(Path(folder) / "slices.svg").find("empty"), std::string::npos);
+}
+
+TEST(SliceCommand, PartsThatCrossOrAreTurnedAreSaid) {
+    const Scratch scratch;
+    const auto run = [&](const std::string& name, const TriangleSoup& soup) {
+        const std::string mesh = (scratch / (name + ".ply")).string();
+        write_triangles(mesh, soup);
+        auto result = run_command("slice --count 20 " + mesh + " --output " + (scratch / name).string());
+        EXPECT_EQ(result.code, 0) << result.err;
+        return result;
+    };
+    const TriangleSoup ball = octahedron_sphere(4);
+    const auto crossing = run("crossing", joined(ball, moved(ball, 1, {1.5, 0, 0})));
+    EXPECT_NE(crossing.err.find("of 20 slices, at height 0.35 to 1.65, have contours that cross"), std::string::npos)
+        << crossing.err;
+    EXPECT_NE(crossing.err.find("mesh repair --wrap"), std::string::npos);
+    const Json json = read_json(scratch / "crossing" / "slices.json");
+    validate(json, "slices", "slices.json");
+    const auto& middle = json["slices"][10];
+    EXPECT_EQ(middle["completeness"]["crossing_contours"].GetInt(), 2);
+    EXPECT_GT(middle["completeness"]["doubtful_share"].GetDouble(), 1e-3);
+    EXPECT_TRUE(middle["contours"][0]["crosses"].GetBool());
+    EXPECT_FALSE(middle["descriptors"].HasMember("area"));
+    EXPECT_FALSE(middle["descriptors"].HasMember("components"));
+    EXPECT_TRUE(middle["descriptors"].HasMember("box_length"));
+    EXPECT_TRUE(json["slices"][0]["descriptors"].HasMember("area"));
+    const auto cavity = run("cavity", joined(ball, moved(ball, 0.5, {0, 0, 0})));
+    EXPECT_NE(cavity.err.find("ran against their nesting"), std::string::npos) << cavity.err;
+    const Json nested = read_json(scratch / "cavity" / "slices.json");
+    validate(nested, "slices", "slices.json");
+    EXPECT_EQ(nested["slices"][10]["descriptors"]["holes"].GetInt(), 1);
+    EXPECT_EQ(nested["slices"][10]["completeness"]["turned_contours"].GetInt(), 1);
+    const auto clay = run_command("measure clay " + (scratch / "crossing.ply").string());
+    EXPECT_EQ(clay.code, 0);
+    EXPECT_NE(clay.err.find("contours that cross"), std::string::npos) << clay.err;
+    const auto turned = run_command("measure clay " + (scratch / "cavity.ply").string());
+    EXPECT_NE(turned.err.find("against their nesting"), std::string::npos) << turned.err;
+}
+
+TEST(SliceCommand, MeshesWithoutSurfaceOrSkeleton) {
+    const Scratch scratch;
+    const std::string line = (scratch / "line.ply").string(), flat = (scratch / "flat.ply").string(),
+                      pinched = (scratch / "pinched.ply").string();
+    write_triangles(line, {{{0, 0, 0}, {0, 0, 1}, {0, 0, 2}}, {{0, 1, 2}}});
+    for (const char* flags : {"", " --direction skeleton", " --direction principal"})
+        expect_fails("slice " + line + flags, 1, "triangles are lines or points");
+    write_triangles(flat, {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}});
+    expect_fails("slice " + flat, 3, "flat across this direction");
+    expect_fails("measure clay " + flat, 3, "no height along this direction");
+    expect_fails("slice " + flat + " --direction skeleton", 3, "slice along another --direction");
 }

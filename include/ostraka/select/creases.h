@@ -52,7 +52,8 @@ struct Crease {
 /// crease (hysteresis), unless one of the other sign within the wide radius is over three times as strong (its echo). Its line is
 /// the path that keeps to the crest between the two ends farthest apart, or, where the crease is a ring, the shortest such loop
 /// around it (found on its double cover). Longest strongest first. Border vertices have no response. Time as for curvature, and n
-/// log n in each crease. Throws Error (usage) for options out of range.
+/// log n in each crease. Throws Error (usage) for options out of range, `weak` above `strong`, or a scale below the mean
+/// length of the edges.
 std::vector<Crease> find_creases(const Mesh& mesh, const CreaseOptions& options = {});
 
 /// The response of every vertex, a number without unit.

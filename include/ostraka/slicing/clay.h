@@ -27,7 +27,7 @@ struct ClayVolume {
     static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     double most = 0;         ///< what is not seen is clay; unknown if no slice has an outline
     double least = unknown;  ///< what is not seen is hollow but for a wall; unknown if no wall is seen or given
-    double envelope = 0;     ///< within the outer surface, cavities filled
+    double envelope = 0;     ///< within the outer surface, cavities filled; unknown where contours cross
     double wall = unknown;   ///< that `least` goes by, in the mesh's unit
     /// The wall where both its sides are seen: mean of the slices' means, the least and the largest distance of its sides.
     double wall_mean = unknown, wall_least = unknown, wall_most = unknown;
@@ -35,9 +35,10 @@ struct ClayVolume {
     int with_cavity = 0;      ///< of them, those with a hole all of whose outline is seen
     int without_outline = 0;  ///< of them, those whose outer contours are all open: taken as between their neighbours for `most`
                               ///< and `envelope`, as nothing for `least`
-    int crossing = 0;         ///< of them, those whose contours cross so that they have no area: taken likewise
-    int turned = 0;           ///< of them, those with contours that were read against their orientation
-    bool reversed = false;    ///< the mesh is closed and inside out, and was read the other way round
+    int crossing = 0;  ///< of them, those whose contours cross so that they have no area: `most` takes all of them one by one,
+                       ///< or their convex hull if that is less; nothing for `least`
+    int turned = 0;    ///< of them, those with contours that were read against their orientation
+    bool reversed = false;  ///< the mesh is closed and inside out, and was read the other way round
 };
 
 /// Sums over slices (middles of layers of equal height). In a slice whose cavity is seen the material's area counts. Elsewhere

@@ -94,9 +94,9 @@ SliceFrame slice_frame(const Point& origin, const Vector& direction);
 /// Lowest and highest height of the faces (of all, if none are given) over the frame's origin.
 std::pair<double, double> height_range(const Mesh& mesh, const SliceFrame& frame, const std::vector<Index>& faces = {});
 
-/// The middles of `count` equal layers between `lowest` and `highest`. Throws Error (usage) below 1 or above ten million.
+/// The middles of `count` equal layers between `lowest` and `highest`. Throws Error (usage) below 1 or above a million.
 std::vector<double> slice_heights(double lowest, double highest, int count);
-/// lowest, lowest + spacing, ... up to `highest`. Throws Error (usage) for a spacing that is not positive or gives over ten
+/// lowest, lowest + spacing, ... up to `highest`. Throws Error (usage) for a spacing that is not positive or gives over a
 /// million.
 std::vector<double> slice_heights_spaced(double lowest, double highest, double spacing);
 
