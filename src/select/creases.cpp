@@ -47,11 +47,12 @@ void check(const Mesh& mesh, const CreaseOptions& options) {
                    "let --weak be at most --strong");
     const double edge = mean_edge_length(mesh), radius = options.scale * box_diagonal(mesh);
     // Within a ball smaller than an edge there is nothing to average over.
-    if (radius < edge)
-        fail_usage("a scale of " + text(options.scale) + " of the diagonal is a radius of " + text(radius) +
-                       ", but the mesh's edges are " + text(edge) + " long in the mean: it is too coarse for that",
-                   "use --scale " + text(std::ceil(1000 * edge / box_diagonal(mesh)) / 1000) +
-                       " or more, or refine the mesh (ostraka mesh refine)");
+    if (radius >= edge) return;
+    const double least = std::ceil(1000 * edge / box_diagonal(mesh)) / 1000;
+    fail_usage("a scale of " + text(options.scale) + " of the diagonal is a radius of " + text(radius) +
+                   ", but the mesh's edges are " + text(edge) + " long in the mean: it is too coarse for that",
+               (least <= 0.5 ? "use --scale " + text(least) + " or more, or refine" : std::string("refine")) +
+                   " the mesh (ostraka mesh refine)");
 }
 
 Response respond(const Mesh& mesh, const CreaseOptions& options) {
