@@ -2,6 +2,8 @@
 
 #include "ostraka/core/error.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <set>
@@ -25,6 +27,9 @@ void StudyFiles::open(const Provenance& provenance) const {
     std::error_code code;
     fs::create_directories(output, code);
     if (code) throw Error(ErrorKind::failure, output, "the folder cannot be made: " + code.message(), "name another --output");
+    // Known before the work, not after the first object of many hours.
+    if (::access(output.c_str(), W_OK | X_OK) != 0)
+        throw Error(ErrorKind::failure, output, "the folder cannot be written to", "check its rights, or name another --output");
     remove_stale_temporaries(output);
     std::string owner = provenance.command;
     std::replace(owner.begin(), owner.end(), ' ', '-');
@@ -64,7 +69,7 @@ std::size_t report_failures(const Session& session, const Collection& collection
                             JsonValue& report, JsonAllocator& allocator) {
     JsonValue list(rapidjson::kArrayType);
     const auto add = [&](const std::string& name, const std::string& problem) {
-        session.note("left out: " + name + ": " + problem);
+        session.note("left out: " + (problem.starts_with(name + ": ") ? "" : name + ": ") + problem);
         JsonValue entry(rapidjson::kObjectType);
         add_member(entry, "name", name, allocator);
         add_member(entry, "problem", problem, allocator);

@@ -330,8 +330,9 @@ int run(const MouldInput& input, const Session& session) {
     if (session.json) {
         session.print_report(provenance, document, result);
     } else {
-        std::cout << groups.plain() << answer.group_count() << " groups of " << names.size() << " heads at epsilon "
-                  << number(answer.groups.epsilon, 3) << ", mean silhouette " << number(answer.groups.silhouette, 3);
+        std::cout << groups.plain() << answer.group_count() << (answer.group_count() == 1 ? " group of " : " groups of ")
+                  << names.size() << " heads at epsilon " << number(answer.groups.epsilon, 3) << ", mean silhouette "
+                  << number(answer.groups.silhouette, 3);
         if (answer.known().scorable()) std::cout << ", adjusted Rand index " << number(answer.agreement(answer.groups.labels), 4);
         std::cout << "\n" << answer.known().words();
         if (!answer.groups.clear) std::cout << "the groups do not stand out: one mould, or each head its own\n";

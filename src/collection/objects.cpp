@@ -76,16 +76,27 @@ Collection from_folder(const Path& folder) {
     std::map<std::string, std::vector<Path>> meshes;
     std::map<std::string, Path> markups;
     std::set<std::string> annotations;
-    for (const auto& entry : fs::directory_iterator(folder)) {
+    Collection collection;
+    std::error_code code;
+    fs::directory_iterator entries(folder, code);
+    for (const fs::directory_iterator end; !code && entries != end; entries.increment(code)) {
+        const fs::directory_entry& entry = *entries;
         const std::string name = entry.path().filename().string();
-        if (!entry.is_regular_file() || name.front() == '.') continue;
+        std::error_code own;
+        const fs::file_status status = entry.status(own);
+        if (name.front() == '.' || fs::is_directory(status)) continue;
+        if (!fs::is_regular_file(status)) {
+            if (is_object_file(entry.path()))
+                collection.left_out.emplace_back(shown(name), "is no file that can be read (is it a link to nothing?)");
+            continue;
+        }
         if (name.ends_with(markup_ending))
             markups[name.substr(0, name.size() - std::string(markup_ending).size())] = entry.path();
         else if (name.ends_with(".ant.json")) annotations.insert(name);
         else if (std::find(mesh_endings.begin(), mesh_endings.end(), extension(entry.path())) != mesh_endings.end())
             meshes[entry.path().stem().string()].push_back(entry.path());
     }
-    Collection collection;
+    if (code) fail_input(folder.string(), "the folder cannot be read: " + code.message(), "check its rights");
     const auto add = [&](const std::string& name, const std::string& stem, const Path& mesh) {
         if (!is_name(name)) {
             collection.left_out.emplace_back(shown(name),
@@ -105,6 +116,7 @@ Collection from_folder(const Path& folder) {
     }
     for (const auto& [stem, file] : markups)
         if (!meshes.contains(stem)) add(stem, stem, {});
+    std::sort(collection.left_out.begin(), collection.left_out.end());
     return collection;
 }
 

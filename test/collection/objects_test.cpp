@@ -151,6 +151,20 @@ TEST(Collection, NamesThatNoResultCanBeKeptUnderAreLeftOut) {
     EXPECT_THROW(read_collection(scratch.path()), Error) << "no object is left";
 }
 
+TEST(Collection, LinksThatLeadNowhereAreLeftOut) {
+    const Scratch scratch;
+    sphere_file(scratch, "a.ply");
+    std::filesystem::create_symlink("gone", scratch / "gone.ply");
+    std::filesystem::create_symlink("loop.ply", scratch / "loop.ply");
+    std::filesystem::create_symlink("gone", scratch / "notes.txt");
+    std::filesystem::create_directory(scratch / "folder.ply");
+    const Collection collection = read_collection(scratch.path());
+    EXPECT_EQ(names_of(collection), (std::vector<std::string>{"a"}));
+    ASSERT_EQ(collection.left_out.size(), 2U);
+    EXPECT_EQ(collection.left_out[0].first, "gone.ply");
+    EXPECT_EQ(collection.left_out[1].first, "loop.ply");
+}
+
 TEST(ForEachObject, OneThatFailsDoesNotStopTheOthers) {
     const Scratch scratch;
     sphere_file(scratch, "a.ply");
