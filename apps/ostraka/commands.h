@@ -10,6 +10,7 @@ void add_mesh_info(CLI::App& mesh, Session& session);                  // mesh_i
 void add_mesh_convert(CLI::App& mesh, Session& session);               // mesh_convert.cpp
 void add_mesh_repair(CLI::App& mesh, Session& session);                // mesh_repair.cpp
 void add_mesh_resize(CLI::App& mesh, Session& session);                // mesh_resize.cpp: simplify, refine, remesh
+void add_mesh_break(CLI::App& mesh, Session& session);                 // mesh_break.cpp
 void add_mesh_make(CLI::App& mesh, Session& session);                  // mesh_make.cpp
 void add_annotation(CLI::App& annotation, Session& session);           // annotation.cpp: apply, list, check
 void add_annotation_select(CLI::App& annotation, Session& session);    // annotation_select.cpp
@@ -32,6 +33,7 @@ void add_vocabulary(CLI::App& vocabulary, Session& session);           // vocabu
 void add_cage(CLI::App& cage, Session& session);                       // cage.cpp: weights, influence
 void add_cage_make(CLI::App& cage, Session& session);                  // cage_make.cpp: make, check, edit
 void add_deform(CLI::App& tool, Session& session);                     // deform.cpp
+void add_fit(CLI::App& tool, Session& session);                        // fit.cpp
 void add_render(CLI::App& tool, Session& session);                     // render.cpp
 void add_study_make_proportions(CLI::App& made, Session& session);     // study_make_proportions.cpp
 void add_study_landmarks(CLI::App& study, Session& session);           // study_landmarks.cpp

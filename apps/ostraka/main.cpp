@@ -39,6 +39,7 @@ int main(int argc, char** argv) {
     app::add_mesh_convert(*mesh, session);
     app::add_mesh_repair(*mesh, session);
     app::add_mesh_resize(*mesh, session);
+    app::add_mesh_break(*mesh, session);
     app::add_mesh_make(*mesh, session);
     app::add_annotation(*annotation, session);
     app::add_annotation_select(*annotation, session);
@@ -61,6 +62,7 @@ int main(int argc, char** argv) {
     app::add_cage_make(*cage, session);
     app::add_cage(*cage, session);
     app::add_deform(tool, session);
+    app::add_fit(tool, session);
     app::add_render(tool, session);
     app::add_study_make_proportions(*made, session);
     app::add_study_landmarks(*study, session);

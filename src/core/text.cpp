@@ -5,6 +5,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 
 namespace ostraka {
 
@@ -38,6 +39,12 @@ std::string digits(double value) {
     std::array<char, 32> buffer{};
     const auto [end, code] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
     return {buffer.data(), end};
+}
+
+std::string digits(double value, int significant) {
+    std::array<char, 64> buffer{};
+    std::snprintf(buffer.data(), buffer.size(), "%.*g", significant, value);
+    return buffer.data();
 }
 
 std::string_view trimmed(std::string_view text) {

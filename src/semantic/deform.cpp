@@ -61,7 +61,7 @@ public:
           graph_where_(graph_where),
           rest_(columns_of(space.mesh)) {}
 
-    DeformResult run(const JsonValue& edit) {
+    DeformResult follow(const JsonValue& edit) {
         DeformResult result;
         last_.handles = points_of(space_.cage != nullptr ? *space_.cage : space_.mesh);
         last_.touched.assign(last_.handles.size(), false);
@@ -70,6 +70,19 @@ public:
             result.selected.push_back(last_.selected.size());
         }
         result.edited = space_.cage != nullptr ? deformed(*space_.coordinates, *space_.cage, last_.handles) : last_.handles;
+        return finish(std::move(result));
+    }
+
+    DeformResult restore(const std::vector<Point>& points, const std::vector<bool>& held) {
+        last_.handles = points;
+        last_.touched = held;
+        DeformResult result;
+        result.edited = points;
+        return finish(std::move(result));
+    }
+
+private:
+    DeformResult finish(DeformResult result) {
         edited_ = columns_of(result.edited);
         if (!edited_.allFinite() || edited_.cwiseAbs().maxCoeff() > 1e60)
             throw Error(ErrorKind::input, where_, "leads to points beyond what can be computed with (1e60)",
@@ -89,7 +102,6 @@ public:
         return result;
     }
 
-private:
     void understand(DeformResult& result) {
         const semantic::Shape shape{space_.mesh, space_.set, rest_};
         std::map<Index, int> seated;  // by which feature
@@ -387,7 +399,21 @@ DeformResult deform(const HandleSpace& space, const RelationGraph& graph, const 
     if (options.space == "cage" && space.cage == nullptr)
         throw Error(ErrorKind::usage, "space", "is the cage's, and there is none",
                     "give --cage and --weights, or use --space mesh");
-    return Deformer(space, graph, options, tolerances, edit_name, graph_name).run(edit);
+    return Deformer(space, graph, options, tolerances, edit_name, graph_name).follow(edit);
+}
+
+DeformResult restore_constraints(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
+                                 const std::vector<Point>& points, const std::vector<bool>& held, const DeformOptions& options,
+                                 const RelationOptions& tolerances, const std::string& graph_name) {
+    check_options(options, "deform");
+    check_options(tolerances, "deform");
+    if (options.space == "cage") fail_usage("there is no cage here", "solve over the mesh's points: space mesh");
+    if (points.size() != mesh.number_of_vertices() || held.size() != points.size())
+        fail_usage("positions are given for " + std::to_string(points.size()) + " vertices and flags for " +
+                       std::to_string(held.size()) + ", and the mesh has " + std::to_string(mesh.number_of_vertices()),
+                   "give one of each for every vertex");
+    const HandleSpace space{mesh, set};
+    return Deformer(space, graph, options, tolerances, "the fitted shape", graph_name).restore(points, held);
 }
 
 void check_constraint(const Mesh& mesh, const AnnotationSet& set, const Relationship& relationship, const std::string& where) {

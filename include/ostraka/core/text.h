@@ -24,6 +24,8 @@ std::string without_controls(std::string_view text, std::string_view instead);
 
 /// The shortest digits that read back to the same double.
 std::string digits(double value);
+/// At most so many significant digits, for people.
+std::string digits(double value, int significant);
 /// The whole of `text`, blanks around it apart, as a finite number.
 std::optional<double> number_of(std::string_view text);
 std::optional<int> whole_of(std::string_view text);

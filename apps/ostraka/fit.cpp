@@ -1,0 +1,192 @@
+// ostraka fit: from fragments to the whole object.
+#include "command.h"
+
+#include "ostraka/annotation/annotation_file.h"
+#include "ostraka/bundle/template.h"
+#include "ostraka/fitting/assembly.h"
+#include "ostraka/geom/eigen.h"
+#include "ostraka/io/mesh_file.h"
+#include "ostraka/measure/measure.h"
+
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <set>
+
+namespace ostraka::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Fit {
+    std::vector<std::string> files;
+    std::string output, assembly;
+    ReconstructOptions options;
+    bool placed = false;
+
+    int run(const Session& session) {
+        check_options(options, "fit");
+        if (files.size() < 2) fail_usage("there is no fragment", "give TEMPLATE FRAGMENT ...");
+        if (output.empty()) fail_usage("there is no folder to write to", "give --output FOLDER");
+        const TemplateFile bundle = read_template(files[0]);
+        Provenance provenance{"fit", list_options(options), {}};
+        provenance.add_input(files[0]);
+        for (const TemplatePart& part : bundle.parts) provenance.add_input(part.file);
+        Template loaded = load_template(bundle);
+        for (const Finding& finding : loaded.findings)
+            if (finding.defect) fail_input(files[0] + ", " + finding.where, finding.text, "mend it: 'template check' tells all");
+        if (!loaded.mesh) fail_input(files[0], "has no mesh", "pack one");
+        if (!loaded.annotations) fail_input(files[0], "has no annotations", "pack them: what is common is found by them");
+        const Json said = assembly.empty() ? Json() : read_json(assembly);
+        if (!assembly.empty()) {
+            validate(said, "assembly", assembly);
+            provenance.add_input(assembly);
+        }
+
+        AssemblyNames names{Path(files[0]).filename().string(), {}};
+        std::vector<Fragment> fragments(files.size() - 1);
+        std::vector<const Fragment*> pointers;
+        std::vector<std::vector<StatedMatch>> stated;
+        std::set<std::string> taken;
+        for (std::size_t k = 0; k < fragments.size(); ++k) {
+            read_fragment(files[k + 1], fragments[k], provenance);
+            if (!taken.insert(fragments[k].name).second)
+                fail_usage("two fragments are called '" + printable(fragments[k].name) + "'", "rename one of the files");
+            names.fragments.push_back(fragments[k].name);
+            pointers.push_back(&fragments[k]);
+            stated.push_back(assembly.empty() ? std::vector<StatedMatch>() : stated_matches(said, fragments[k].name));
+        }
+        const RelationGraph graph = loaded.graph ? std::move(*loaded.graph) : RelationGraph();
+        const Reconstruction result = reconstruct(loaded.mesh->mesh, *loaded.annotations, graph, pointers, options, stated);
+        write(*loaded.mesh, *loaded.annotations, fragments, names, result, provenance, session);
+        print(session, provenance, names, result);
+        return result.verdict == Compatibility::compatible ? done : answer_is_no;
+    }
+
+private:
+    static void read_fragment(const std::string& file, Fragment& fragment, Provenance& provenance) {
+        fragment.name = Path(file).stem().string();
+        MeshFile mesh = read_mesh(file);
+        provenance.add_input(file);
+        fragment.mesh = std::move(mesh.mesh);
+        const Path annotations = Path(file).parent_path() / (fragment.name + ".ant.json");
+        if (!fs::exists(annotations)) return;
+        AnnotationSet set = read_annotations(annotations, fragment.mesh);
+        provenance.add_input(annotations);
+        fragment.facets = in_file(annotations.string(), [&] { return facets_of(fragment.mesh, set); });
+        std::swap(fragment.annotations.annotations, set.annotations);
+        fragment.annotations.unit = set.unit;
+    }
+
+    [[nodiscard]] Path in(const std::string& name) const { return Path(output) / name; }
+
+    void write(const MeshFile& file, AnnotationSet& set, const std::vector<Fragment>& fragments, const AssemblyNames& names,
+               const Reconstruction& result, const Provenance& provenance, const Session& session) const {
+        std::error_code code;
+        fs::create_directories(output, code);
+        if (code) throw Error(ErrorKind::failure, output, "the folder cannot be made: " + code.message(), "name another one");
+        OutputTransaction transaction;
+        Json document(rapidjson::kObjectType);
+        JsonValue report = assembly_to_json(result, names, document.GetAllocator());
+        add_member(report, "provenance", provenance.to_json(document.GetAllocator()), document.GetAllocator());
+        write_json(in("fit.assembly.json"), report);
+        if (!result.points.empty()) {
+            Mesh mesh = file.mesh;
+            for (const Vertex v : mesh.vertices()) mesh.point(v) = result.points[v];
+            MeshExtras extras;
+            for (const Origin origin : result.origin) {
+                extras.face_labels.push_back(static_cast<std::int32_t>(origin));
+                extras.face_colours.push_back(origin == Origin::observed       ? Colour{186, 120, 82, 255}
+                                              : origin == Origin::interpolated ? Colour{214, 180, 120, 255}
+                                                                               : Colour{200, 205, 210, 255});
+            }
+            WriteOptions how;
+            how.comment = provenance.to_line();
+            write_mesh(in("completed.ply"), mesh, extras, how);
+            for (const auto& note : refresh_measures(mesh, set).notes) session.note("note: " + note);
+            write_annotations(in("completed.ant.json"), set, mesh, "completed.ply", provenance);
+        }
+        if (placed)
+            for (std::size_t k = 0; k < fragments.size(); ++k)
+                if (result.placement.fragments[k].problem.empty())
+                    write_mesh(in(fragments[k].name + ".placed.ply"),
+                               moved(fragments[k].mesh, result.placement.fragments[k].pose));
+        transaction.commit();
+    }
+
+    static void print(const Session& session, const Provenance& provenance, const AssemblyNames& names,
+                      const Reconstruction& result) {
+        if (session.json) {
+            Json document(rapidjson::kObjectType);
+            JsonValue report = assembly_to_json(result, names, document.GetAllocator()), run(rapidjson::kObjectType),
+                      seconds(rapidjson::kObjectType);
+            for (const auto& [phase, time] : result.seconds) add_member(seconds, phase, JsonValue(time), document.GetAllocator());
+            add_member(run, "seconds", std::move(seconds), document.GetAllocator());
+            session.print_report(provenance, document, report, &run);
+            return;
+        }
+        std::vector<std::vector<std::string>> rows;
+        for (std::size_t k = 0; k < names.fragments.size(); ++k) {
+            const FragmentPlacement& one = result.placement.fragments[k];
+            std::size_t used = 0;
+            std::string wrong;
+            for (const LandmarkResidual& landmark : one.landmarks) {
+                used += landmark.used ? 1 : 0;
+                if (!landmark.used && one.problem.empty()) wrong += (wrong.empty() ? "" : ", ") + printable(landmark.name);
+            }
+            rows.push_back({printable(names.fragments[k]), one.problem.empty() ? "placed" : "left out",
+                            std::to_string(used) + " of " + std::to_string(one.landmarks.size()),
+                            one.problem.empty() ? number(one.residual, 3) : "-",
+                            one.own_scale > 0 ? number(one.own_scale, 4) : "-", wrong});
+        }
+        std::cout << table({"fragment", "", "landmarks", "residual", "own scale", "wrong landmarks"}, rows);
+        std::cout << "scale of the template " << number(result.placement.scale, 4) << "; observed "
+                  << number(100 * result.observed_share, 3) << " % of the surface\n";
+        std::vector<std::vector<std::string>> constraints;
+        for (const ConstraintReport& constraint : result.constraints) {
+            std::string words = constraint.text;
+            for (std::size_t i = 0; i < constraint.deviations.size(); ++i) {
+                const Deviation& d = constraint.deviations[i];
+                words += (words.empty() ? "" : "; ") + d.quantity + " " + number(d.value.value_or(0), 4) + " (was " +
+                         number(i < constraint.before_values.size() ? constraint.before_values[i] : 0, 4) + ", at most " +
+                         number(d.tolerance.value_or(0), 4) + ")" + (d.unit.empty() ? "" : " " + d.unit);
+            }
+            constraints.push_back({std::to_string(constraint.id), constraint.type,
+                                   constraint.used ? to_string(constraint.verdict) : "left out", words});
+        }
+        if (!constraints.empty()) std::cout << table({"id", "constraint", "verdict", "how well"}, constraints);
+        for (const Objection& objection : result.objections)
+            std::cout << (objection.fragment >= 0
+                              ? "against " + printable(names.fragments[static_cast<std::size_t>(objection.fragment)]) + ": "
+                              : "constraint " + std::to_string(objection.constraint) + ": ")
+                      << printable(objection.text) << '\n';
+        std::cout << to_string(result.verdict) << (result.undecided.empty() ? "" : ": cannot decide, because " + result.undecided)
+                  << '\n';
+    }
+};
+
+}  // namespace
+
+void add_fit(CLI::App& tool, Session& session) {
+    const auto fit = std::make_shared<Fit>();
+    CLI::App* command = session.add(
+        tool, "fit",
+        "complete an object from fragments by a template of its class, and say whether they go together (exit code 3: they do "
+        "not, or it cannot be told)",
+        [&session, fit] { return fit->run(session); });
+    command
+        ->add_option(
+            "files", fit->files,
+            "the template (.template.json), then a mesh file for each fragment; NAME.ant.json beside it are its "
+            "annotations: points with the template's tags are landmarks, regions \"outer\", \"inner\", \"fracture\" its facets")
+        ->required()
+        ->expected(-1);
+    command->add_option("--output", fit->output,
+                        "folder for completed.ply, completed.ant.json and fit.assembly.json; made if it is missing");
+    command->add_option("--assembly", fit->assembly, "an assembly: its matches of annotations with \"stated\": true hold");
+    command->add_flag("--placed", fit->placed, "also write each fragment where it lies: NAME.placed.ply");
+    add_flags(command, fit->options);
+}
+
+}  // namespace ostraka::app

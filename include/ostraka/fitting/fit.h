@@ -1,0 +1,77 @@
+// A template deformed to fragments that lie on it (thesis, equation 5.2, as an optimal-step non-rigid registration).
+#pragma once
+
+#include "ostraka/core/options.h"
+#include "ostraka/fitting/annotation_matches.h"
+#include "ostraka/fitting/fragment.h"
+
+#include <vector>
+
+namespace ostraka {
+
+struct NonRigidOptions {
+    double start = 0.3;  ///< smoothing length of the first level, as a share of the template's diagonal
+    double end = 0.01;   ///< of the last
+    int levels = 6;
+    int steps = 3;       ///< matches and solutions in each level, at most
+    double stay = 0.5;   ///< length over which the deformation fades where nothing is observed
+    double reach = 0.1;  ///< farthest match in the first level, as a share of the diagonal
+    double last_reach = 0.02;
+    double angle = 60;  ///< of normals of matches, degrees
+    double guides = 1;  ///< weight of outlines and landmarks of matched annotations
+
+    template <class Visitor>
+    void describe(Visitor& visit) {
+        visit("smoothing", start, "length below which the first level fits no detail, as a share of the template's diagonal",
+              Range{1e-3, 10});
+        visit("detail", end, "the same of the last level", Range{1e-4, 10});
+        visit("levels", levels, "levels of stiffness", Range{1, 100});
+        visit("steps", steps, "matches and solutions in each level, at most", Range{1, 1000});
+        visit("transition", stay, "length over which the deformation fades where nothing is observed, as a share of the diagonal",
+              Range{1e-3, 1e3});
+        visit("reach", reach, "farthest match in the first level, as a share of the diagonal", Range{0, 10});
+        visit("last-reach", last_reach, "farthest match in the last level", Range{0, 10});
+        visit("match-angle", angle, "normals of matches differ by at most this, degrees", Range{0, 180});
+        visit("guides", guides, "weight of matched outlines and landmarks against that of the surface", Range{0, 1e6});
+    }
+};
+
+/// A fragment on the template, and what it is matched with.
+struct PlacedFragment {
+    Mesh mesh;                                   ///< moved to where the template is
+    const AnnotationSet* annotations = nullptr;  ///< outlives it
+    std::vector<Facet> facets;
+    std::vector<AnnotationMatch> matches;
+};
+
+/// Where a template vertex was found on a fragment.
+struct VertexMatch {
+    int fragment = -1;      ///< none: not observed
+    Index face = no_index;  ///< of the fragment
+    Eigen::Vector3d place = Eigen::Vector3d::Zero();
+    double distance = 0;  ///< from the deformed vertex
+};
+
+struct NonRigidFit {
+    std::vector<Point> points;         ///< of the template's vertices
+    std::vector<VertexMatch> matches;  ///< of each vertex after the last level
+    struct Level {
+        double smoothing = 0;  ///< length, in the mesh's unit
+        std::size_t matched = 0;
+        double residual = 0;  ///< root mean square of the matches' distances after it
+        int steps = 0;
+    };
+    std::vector<Level> levels;
+    double seconds_matching = 0, seconds_solving = 0;
+};
+
+/// Minimises  sum over vertices of A_i (w_i |x_i - q_i|^2 + (1 / t^4) |x_i - p_i|^2 s^4 + s^4 |Delta x_i - R_i Delta p_i|^2):
+/// the three costs of equation 5.2 (match, stay, Laplacian displacement) with areas A_i, so that the result does not depend on
+/// the resolution: s is the smoothing length of a level, t the length of transition. R_i follows the turn of each vertex's
+/// surroundings. Matches are the closest points of the fragments' outer facets with a like normal, within the same matched
+/// annotations on either side (the smallest one that holds the vertex), never at a border. `scaled` is the template at the scale
+/// of the placement.
+NonRigidFit fit_template(const Mesh& scaled, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments,
+                         const NonRigidOptions& options = {});
+
+}  // namespace ostraka

@@ -1,0 +1,79 @@
+// From fragments to the whole object: placement, non-rigid fit, constraints, completion, verdict (thesis, section 5.3.1).
+#pragma once
+
+#include "ostraka/fitting/fit.h"
+#include "ostraka/fitting/placement.h"
+#include "ostraka/semantic/deform.h"
+
+#include <map>
+
+namespace ostraka {
+
+struct ReconstructOptions {
+    PlacementOptions placement;
+    AnnotationMatchOptions annotations;
+    NonRigidOptions fit;
+    double observed = 0.02;       ///< farthest that an observed vertex lies from its match, as a share of the diagonal
+    double scale_tolerance = 10;  ///< per cent by which a fragment's own scale may differ from that of all
+    double residual = 0.25;       ///< of landmarks, as a share of the spread of a fragment's landmarks: more is rejected
+    bool restore = true;          ///< constraints are solved for what was not observed
+
+    template <class Visitor>
+    void describe(Visitor& visit) {
+        placement.describe(visit);
+        annotations.describe(visit);
+        fit.describe(visit);
+        visit("observed", observed, "vertices farther from the fragments than this share of the diagonal are not observed",
+              Range{0, 1});
+        visit("scale-tolerance", scale_tolerance,
+              "per cent by which the template's scale as one fragment alone has it may differ from that of all", Range{0, 1000});
+        visit("residual", residual,
+              "root mean square of a fragment's landmarks, as a share of their spread, above which it does not fit",
+              Range{0, 10});
+        visit("restore", restore, "constraints of the graph are solved for what was not observed", Anything{});
+    }
+};
+
+/// Whether a face of the completed object was seen.
+enum class Origin : std::uint8_t { observed, interpolated, hypothesis };
+std::string to_string(Origin origin);
+
+/// A finding that speaks against a fragment, or against all of them together.
+struct Objection {
+    int fragment = -1;    ///< -1: none by itself
+    int constraint = -1;  ///< id of a relationship of the graph; -1: geometry
+    std::string text;
+};
+
+enum class Compatibility { compatible, incompatible, undecided };
+std::string to_string(Compatibility compatibility);
+
+struct Reconstruction {
+    Placement placement;
+    std::vector<std::vector<AnnotationMatch>> annotations;  ///< of each fragment
+    std::vector<std::vector<std::string>> notes;            ///< of each fragment
+    NonRigidFit fit;
+    std::vector<Point> points;       ///< of the completed template, in the unit of the fragments
+    std::vector<Origin> origin;      ///< of each of its faces
+    std::vector<int> fragment;       ///< whose it is, -1: none
+    std::vector<double> distance;    ///< of each vertex from its fragment; none where it was not observed: -1
+    std::vector<double> confidence;  ///< of each face, 0 to 1
+    double observed_share = 0;       ///< of the area
+    std::vector<ConstraintReport> constraints;
+    std::vector<ConstraintConflict> conflicts;
+    Compatibility verdict = Compatibility::undecided;
+    std::vector<Objection> objections;
+    std::string undecided;                  ///< why
+    std::map<std::string, double> seconds;  ///< by phase
+};
+
+/// Places every fragment by the landmarks it has in common with the template matches
+/// annotations, deforms the scaled template to all fragments placed, holds what was observed, and solves the graph's
+/// constraints for the rest. Fragments that cannot be placed are left out and said. The verdict: incompatible where a
+/// constraint fails, a fragment's own scale or its landmarks contradict the others; undecided where no fragment is placed, or
+/// there is but one and no constraint. Throws Error (input) for a template that does not fit its annotations.
+Reconstruction reconstruct(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
+                           const std::vector<const Fragment*>& fragments, const ReconstructOptions& options = {},
+                           const std::vector<std::vector<StatedMatch>>& stated = {});
+
+}  // namespace ostraka

@@ -1,0 +1,139 @@
+#include "ostraka/fitting/assembly.h"
+
+#include "ostraka/core/error.h"
+
+namespace ostraka {
+
+namespace {
+
+JsonValue numbers(const Eigen::Matrix4d& matrix, JsonAllocator& allocator) {
+    JsonValue rows(rapidjson::kArrayType);
+    for (int i = 0; i < 4; ++i) {
+        JsonValue row(rapidjson::kArrayType);
+        for (int j = 0; j < 4; ++j) row.PushBack(matrix(i, j), allocator);
+        rows.PushBack(row, allocator);
+    }
+    return rows;
+}
+
+JsonValue placement_of(const FragmentPlacement& one, JsonAllocator& allocator) {
+    JsonValue entry(rapidjson::kObjectType), landmarks(rapidjson::kArrayType);
+    if (!one.problem.empty()) {
+        add_member(entry, "problem", one.problem, allocator);
+    } else {
+        Eigen::Matrix4d pose = Eigen::Matrix4d::Identity();
+        pose.topLeftCorner<3, 3>() = one.pose.turn;
+        pose.topRightCorner<3, 1>() = one.pose.shift;
+        add_member(entry, "pose", numbers(pose, allocator), allocator);
+        add_member(entry, "residual", JsonValue(one.residual), allocator);
+    }
+    if (one.own_scale > 0) add_member(entry, "ownScale", JsonValue(one.own_scale), allocator);
+    for (const LandmarkResidual& landmark : one.landmarks) {
+        JsonValue item(rapidjson::kObjectType);
+        add_member(item, "name", landmark.name, allocator);
+        add_member(item, "distance", JsonValue(landmark.distance), allocator);
+        add_member(item, "used", JsonValue(landmark.used), allocator);
+        landmarks.PushBack(item, allocator);
+    }
+    add_member(entry, "landmarks", std::move(landmarks), allocator);
+    return entry;
+}
+
+JsonValue constraint_of(const ConstraintReport& constraint, JsonAllocator& allocator) {
+    JsonValue entry(rapidjson::kObjectType), deviations(rapidjson::kArrayType);
+    add_member(entry, "id", JsonValue(constraint.id), allocator);
+    add_member(entry, "type", constraint.type, allocator);
+    add_member(entry, "used", JsonValue(constraint.used), allocator);
+    add_member(entry, "before", to_string(constraint.before), allocator);
+    add_member(entry, "verdict", to_string(constraint.verdict), allocator);
+    add_member(entry, "text", constraint.text, allocator);
+    for (std::size_t i = 0; i < constraint.deviations.size(); ++i) {
+        const Deviation& d = constraint.deviations[i];
+        JsonValue item(rapidjson::kObjectType);
+        add_member(item, "quantity", d.quantity, allocator);
+        if (i < constraint.before_values.size()) add_member(item, "before", JsonValue(constraint.before_values[i]), allocator);
+        if (d.value) add_member(item, "value", JsonValue(*d.value), allocator);
+        if (d.tolerance) add_member(item, "tolerance", JsonValue(*d.tolerance), allocator);
+        add_member(item, "unit", d.unit, allocator);
+        deviations.PushBack(item, allocator);
+    }
+    add_member(entry, "deviations", std::move(deviations), allocator);
+    return entry;
+}
+
+}  // namespace
+
+JsonValue assembly_to_json(const Reconstruction& result, const AssemblyNames& names, JsonAllocator& allocator) {
+    JsonValue assembly(rapidjson::kObjectType), fragments(rapidjson::kArrayType), constraints(rapidjson::kArrayType),
+        objections(rapidjson::kArrayType), levels(rapidjson::kArrayType);
+    add_member(assembly, "format", "ostraka-assembly", allocator);
+    add_member(assembly, "version", JsonValue(1), allocator);
+    add_member(assembly, "template", names.template_file, allocator);
+    add_member(assembly, "scale", JsonValue(result.placement.scale), allocator);
+    for (std::size_t k = 0; k < result.placement.fragments.size(); ++k) {
+        JsonValue entry = placement_of(result.placement.fragments[k], allocator), matches(rapidjson::kArrayType),
+                  notes(rapidjson::kArrayType);
+        add_member(entry, "name", k < names.fragments.size() ? names.fragments[k] : std::to_string(k + 1), allocator);
+        if (k < result.annotations.size())
+            for (const AnnotationMatch& match : result.annotations[k]) {
+                JsonValue item(rapidjson::kObjectType);
+                add_member(item, "ofFragment", JsonValue(match.of_fragment), allocator);
+                add_member(item, "ofTemplate", JsonValue(match.of_template), allocator);
+                add_member(item, "score", JsonValue(match.score), allocator);
+                add_member(item, "attributes", JsonValue(match.attributes), allocator);
+                add_member(item, "containers", JsonValue(match.containers), allocator);
+                add_member(item, "place", JsonValue(match.place), allocator);
+                add_member(item, "extent", JsonValue(match.extent), allocator);
+                add_member(item, "stated", JsonValue(match.stated), allocator);
+                matches.PushBack(item, allocator);
+            }
+        add_member(entry, "annotations", std::move(matches), allocator);
+        if (k < result.notes.size())
+            for (const std::string& note : result.notes[k]) notes.PushBack(JsonValue(note, allocator), allocator);
+        add_member(entry, "notes", std::move(notes), allocator);
+        fragments.PushBack(entry, allocator);
+    }
+    add_member(assembly, "fragments", std::move(fragments), allocator);
+    for (const NonRigidFit::Level& level : result.fit.levels) {
+        JsonValue item(rapidjson::kObjectType);
+        add_member(item, "smoothing", JsonValue(level.smoothing), allocator);
+        add_member(item, "matched", JsonValue(static_cast<std::uint64_t>(level.matched)), allocator);
+        add_member(item, "residual", JsonValue(level.residual), allocator);
+        add_member(item, "steps", JsonValue(level.steps), allocator);
+        levels.PushBack(item, allocator);
+    }
+    add_member(assembly, "levels", std::move(levels), allocator);
+    add_member(assembly, "observedShare", JsonValue(result.observed_share), allocator);
+    for (const ConstraintReport& constraint : result.constraints)
+        constraints.PushBack(constraint_of(constraint, allocator), allocator);
+    add_member(assembly, "constraints", std::move(constraints), allocator);
+    for (const Objection& objection : result.objections) {
+        JsonValue item(rapidjson::kObjectType);
+        if (objection.fragment >= 0)
+            add_member(item, "fragment", names.fragments[static_cast<std::size_t>(objection.fragment)], allocator);
+        if (objection.constraint >= 0) add_member(item, "constraint", JsonValue(objection.constraint), allocator);
+        add_member(item, "text", objection.text, allocator);
+        objections.PushBack(item, allocator);
+    }
+    add_member(assembly, "objections", std::move(objections), allocator);
+    add_member(assembly, "verdict", to_string(result.verdict), allocator);
+    if (!result.undecided.empty()) add_member(assembly, "undecided", result.undecided, allocator);
+    return assembly;
+}
+
+std::vector<StatedMatch> stated_matches(const JsonValue& assembly, const std::string& fragment) {
+    validate(assembly, "assembly", "assembly");
+    std::vector<StatedMatch> list;
+    for (const auto& entry : assembly["fragments"].GetArray()) {
+        if (fragment != entry["name"].GetString() || !entry.HasMember("annotations")) continue;
+        for (const auto& item : entry["annotations"].GetArray()) {
+            if (!item.HasMember("stated") || !item["stated"].GetBool()) continue;
+            StatedMatch match{item["ofFragment"].GetInt(), {}};
+            if (item.HasMember("ofTemplate") && item["ofTemplate"].IsInt()) match.of_template = item["ofTemplate"].GetInt();
+            list.push_back(match);
+        }
+    }
+    return list;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,141 @@
+#include "match_search.h"
+
+#include "ostraka/core/parallel.h"
+#include "ostraka/geom/eigen.h"
+#include "ostraka/geom/submesh.h"
+
+#include <algorithm>
+
+namespace ostraka {
+
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr int no_label = -1;
+
+/// For each face the number that comes with the smallest of the regions that hold it.
+std::vector<int> face_labels(const Mesh& mesh, const std::vector<std::pair<const Annotation*, int>>& regions) {
+    std::vector<int> labels(mesh.number_of_faces(), no_label);
+    std::vector<std::pair<double, std::size_t>> order;
+    for (std::size_t r = 0; r < regions.size(); ++r) {
+        double area = 0;
+        for (const Index face : regions[r].first->faces) area += face_area(mesh, Face(face));
+        order.emplace_back(area, r);
+    }
+    std::sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a > b; });
+    for (const auto& [area, r] : order)
+        for (const Index face : regions[r].first->faces) labels[face] = regions[r].second;
+    return labels;
+}
+
+}  // namespace
+
+MatchSearch::~MatchSearch() = default;
+
+MatchSearch::MatchSearch(const Mesh& scaled, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments) {
+    // Regions that any fragment has.
+    std::vector<std::pair<const Annotation*, int>> ours;
+    for (std::size_t k = 0; k < fragments.size(); ++k) {
+        const PlacedFragment& fragment = fragments[k];
+        std::vector<std::pair<const Annotation*, int>> theirs;
+        for (const AnnotationMatch& match : fragment.matches) {
+            const Annotation *a = set.find(match.of_template), *b = fragment.annotations->find(match.of_fragment);
+            if (a == nullptr || b == nullptr || a->type != b->type) continue;
+            if (a->type == AnnotationType::region && !a->all && !b->all) {
+                theirs.emplace_back(b, a->id);
+                if (std::none_of(ours.begin(), ours.end(), [&](const auto& one) { return one.first == a; }))
+                    ours.emplace_back(a, a->id);
+            } else if (a->type == AnnotationType::point && a->points.size() == 1 && b->points.size() == 1) {
+                guides_.push_back({a->points.front(), eigen(fragment.mesh.point(Vertex(b->points.front()))), 0});
+            }
+        }
+        const std::vector<int> labels = face_labels(fragment.mesh, theirs);
+        std::vector<bool> outer(fragment.mesh.number_of_faces(), true);
+        for (std::size_t f = 0; f < fragment.facets.size(); ++f) outer[f] = fragment.facets[f] != Facet::fracture;
+        std::map<int, std::vector<bool>> kept;
+        for (std::size_t f = 0; f < labels.size(); ++f)
+            if (outer[f]) kept.try_emplace(labels[f], labels.size(), false).first->second[f] = true;
+        for (const auto& [label, keep] : kept) {
+            auto part = std::make_unique<Part>();
+            part->fragment = static_cast<int>(k);
+            SubMesh sub = keep_faces(fragment.mesh, keep);
+            part->mesh = std::move(sub.mesh);
+            part->faces = std::move(sub.faces);
+            part->edge_breaks.assign(part->mesh.number_of_edges(), false);
+            part->vertex_breaks.assign(part->mesh.number_of_vertices(), false);
+            for (const Edge e : part->mesh.edges()) {
+                if (!part->mesh.is_border(e)) continue;
+                const Vertex a = part->mesh.vertex(e, 0), b = part->mesh.vertex(e, 1);
+                Halfedge h = find_halfedge(fragment.mesh, Vertex(sub.vertices[a]), Vertex(sub.vertices[b]));
+                bool ends = h == Mesh::null_halfedge();
+                for (int side = 0; side < 2 && !ends; ++side, h = fragment.mesh.opposite(h))
+                    ends = fragment.mesh.is_border(h) || !outer[fragment.mesh.face(h)];
+                if (!ends) continue;
+                part->edge_breaks[e] = true;
+                part->vertex_breaks[a] = part->vertex_breaks[b] = true;
+            }
+            part->search = std::make_unique<SurfaceSearch>(part->mesh);
+            parts_[label].push_back(std::move(part));
+        }
+    }
+    const std::vector<int> labels = face_labels(scaled, ours);
+    for (const Vertex v : scaled.vertices()) {
+        std::vector<int> list;
+        if (!scaled.is_isolated(v))
+            for (const Face face : scaled.faces_around_target(scaled.halfedge(v)))
+                if (face != Mesh::null_face() && std::find(list.begin(), list.end(), labels[face]) == list.end())
+                    list.push_back(labels[face]);
+        std::sort(list.begin(), list.end());
+        labels_.push_back(std::move(list));
+    }
+}
+
+std::vector<VertexMatch> MatchSearch::matches(const Points& now, const Mesh& connectivity, double reach,
+                                              double min_cosine) const {
+    const std::size_t n = labels_.size();
+    // Normals of the shape as it is now.
+    std::vector<Vector3d> normals(n, Vector3d::Zero());
+    for (const Face face : connectivity.faces()) {
+        const auto c = corners(connectivity, face);
+        const Vector3d a = now.col(static_cast<Eigen::Index>(c[0])), b = now.col(static_cast<Eigen::Index>(c[1])),
+                       d = now.col(static_cast<Eigen::Index>(c[2]));
+        const Vector3d area = (b - a).cross(d - a);
+        for (const Vertex v : c) normals[v] += area;
+    }
+    std::vector<VertexMatch> found(n);
+    parallel_for(n, [&](std::size_t i) {
+        const double length = normals[i].norm();
+        if (!(length > 0)) return;
+        const Vector3d place = now.col(static_cast<Eigen::Index>(i));
+        double nearest = reach;
+        for (const int label : labels_[i]) {
+            const auto list = parts_.find(label);
+            if (list == parts_.end()) continue;
+            for (const auto& part : list->second) {
+                const auto hit =
+                    part->search->closest_compatible(point_of(place), vector_of(normals[i] / length), min_cosine, nearest);
+                if (!hit) continue;
+                // Beyond the end of what is there, everything is nearest to its rim.
+                constexpr double on_edge = 1e-6;
+                const Face face(hit->face);
+                const auto c = corners(part->mesh, face);
+                bool at_end = false;
+                for (const Halfedge h : part->mesh.halfedges_around_face(part->mesh.halfedge(face))) {
+                    const Vertex opposite = part->mesh.target(part->mesh.next(h));
+                    for (int k = 0; k < 3; ++k)
+                        if (c[static_cast<std::size_t>(k)] == opposite && hit->barycentric[static_cast<std::size_t>(k)] < on_edge)
+                            at_end = at_end || part->edge_breaks[part->mesh.edge(h)];
+                }
+                for (std::size_t k = 0; k < 3; ++k)
+                    at_end = at_end || (hit->barycentric[k] > 1 - on_edge && part->vertex_breaks[c[k]]);
+                nearest = hit->distance;
+                found[i] =
+                    at_end ? VertexMatch() : VertexMatch{part->fragment, part->faces[hit->face], eigen(hit->point), nearest};
+            }
+        }
+    });
+    return found;
+}
+
+}  // namespace ostraka

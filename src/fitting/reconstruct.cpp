@@ -1,0 +1,236 @@
+#include "ostraka/fitting/reconstruct.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/text.h"
+#include "ostraka/geom/eigen.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace ostraka {
+
+std::string to_string(Origin origin) {
+    switch (origin) {
+        case Origin::observed:
+            return "observed";
+        case Origin::interpolated:
+            return "interpolated";
+        default:
+            return "hypothesis";
+    }
+}
+
+std::string to_string(Compatibility compatibility) {
+    switch (compatibility) {
+        case Compatibility::compatible:
+            return "compatible";
+        case Compatibility::incompatible:
+            return "incompatible";
+        default:
+            return "undecided";
+    }
+}
+
+namespace {
+
+Mesh scaled_by(const Mesh& mesh, double scale) {
+    Motion motion;
+    motion.scale = scale;
+    return moved(mesh, motion);
+}
+
+class Reconstructor {
+public:
+    Reconstructor(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
+                  const std::vector<const Fragment*>& fragments, const ReconstructOptions& options,
+                  const std::vector<std::vector<StatedMatch>>& stated)
+        : mesh_(mesh), set_(set), graph_(graph), fragments_(fragments), options_(options), stated_(stated) {}
+
+    Reconstruction run() {
+        timed("placement", [&] { place(); });
+        if (!result_.placement.any()) {
+            result_.undecided = "no fragment could be placed";
+            for (std::size_t k = 0; k < fragments_.size(); ++k)
+                result_.objections.push_back({static_cast<int>(k), -1, result_.placement.fragments[k].problem});
+            return std::move(result_);
+        }
+        scaled_ = scaled_by(mesh_, result_.placement.scale);
+        diagonal_ = box_diagonal(scaled_);
+        timed("annotations", [&] { match(); });
+        timed("fit", [&] { result_.fit = fit_template(scaled_, set_, placed_, options_.fit); });
+        result_.points = result_.fit.points;
+        timed("observed", [&] { see(); });
+        timed("constraints", [&] { restore(); });
+        judge();
+        return std::move(result_);
+    }
+
+private:
+    template <class Work>
+    void timed(const char* phase, Work&& work) {
+        const auto begin = std::chrono::steady_clock::now();
+        work();
+        result_.seconds[phase] += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    }
+
+    void place() {
+        std::vector<std::vector<LandmarkPair>> pairs;
+        result_.notes.resize(fragments_.size());
+        for (std::size_t k = 0; k < fragments_.size(); ++k)
+            pairs.push_back(common_landmarks(mesh_, set_, fragments_[k]->mesh, fragments_[k]->annotations, &result_.notes[k]));
+        result_.placement = place_by_landmarks(pairs, options_.placement);
+    }
+
+    void match() {
+        result_.annotations.resize(fragments_.size());
+        for (std::size_t k = 0; k < fragments_.size(); ++k) {
+            const FragmentPlacement& placement = result_.placement.fragments[k];
+            if (!placement.problem.empty()) continue;
+            const Fragment& fragment = *fragments_[k];
+            result_.annotations[k] =
+                match_annotations(scaled_, set_, fragment.mesh, fragment.annotations, placement.pose,
+                                  k < stated_.size() ? stated_[k] : std::vector<StatedMatch>(), options_.annotations);
+            PlacedFragment placed{moved(fragment.mesh, placement.pose), &fragment.annotations, fragment.facets,
+                                  result_.annotations[k]};
+            // A landmark that was found to be a wrong one guides nothing.
+            std::erase_if(placed.matches, [&](const AnnotationMatch& one) {
+                const Annotation* a = set_.find(one.of_template);
+                return a != nullptr && a->type == AnnotationType::point &&
+                       std::any_of(placement.landmarks.begin(), placement.landmarks.end(),
+                                   [&](const auto& landmark) { return landmark.name == a->tag && !landmark.used; });
+            });
+            placed_.push_back(std::move(placed));
+            number_.push_back(static_cast<int>(k));
+        }
+    }
+
+    /// Which vertices and faces were observed: matched within the tolerance, with a neighbour that was, too.
+    void see() {
+        const std::size_t n = mesh_.number_of_vertices();
+        std::vector<bool> near(n, false);
+        result_.distance.assign(n, -1);
+        for (std::size_t i = 0; i < n; ++i) {
+            VertexMatch& match = result_.fit.matches[i];
+            if (match.fragment < 0) continue;
+            match.fragment = number_[static_cast<std::size_t>(match.fragment)];
+            near[i] = match.distance <= options_.observed * diagonal_;
+            if (near[i]) result_.distance[i] = match.distance;
+        }
+        held_ = near;
+        result_.origin.assign(mesh_.number_of_faces(), Origin::hypothesis);
+        result_.fragment.assign(mesh_.number_of_faces(), -1);
+        result_.confidence.assign(mesh_.number_of_faces(), 0);
+        double area = 0, seen = 0;
+        for (const Face face : mesh_.faces()) {
+            const auto c = corners(mesh_, face);
+            const auto count = std::count_if(c.begin(), c.end(), [&](Vertex v) { return near[v]; });
+            const double a = face_area(scaled_, face);
+            area += a;
+            if (count == 0) continue;
+            result_.origin[face] = count == 3 ? Origin::observed : Origin::interpolated;
+            double worst = 0;
+            for (const Vertex v : c)
+                if (near[v]) {
+                    worst = std::max(worst, result_.distance[v]);
+                    result_.fragment[face] = std::max(result_.fragment[face], result_.fit.matches[v].fragment);
+                }
+            const double tolerance = options_.observed * diagonal_;
+            result_.confidence[face] = static_cast<double>(count) / 3 * (tolerance > 0 ? 1 - worst / tolerance : 1);
+            if (count == 3) seen += a;
+        }
+        result_.observed_share = area > 0 ? seen / area : 0;
+    }
+
+    void restore() {
+        const bool any = std::any_of(graph_.relationships.begin(), graph_.relationships.end(),
+                                     [](const Relationship& one) { return one.is_constraint; });
+        if (!any || !options_.restore) return;
+        DeformOptions options;
+        DeformResult restored =
+            restore_constraints(scaled_, set_, graph_, result_.points, held_, options, {}, "the template's graph");
+        result_.points = std::move(restored.points);
+        result_.constraints = std::move(restored.constraints);
+        result_.conflicts = std::move(restored.conflicts);
+    }
+
+    void judge() {
+        std::size_t placed = 0;
+        for (std::size_t k = 0; k < fragments_.size(); ++k) {
+            const FragmentPlacement& one = result_.placement.fragments[k];
+            const int number = static_cast<int>(k);
+            if (!one.problem.empty()) {
+                result_.objections.push_back({number, -1, "not placed: " + one.problem});
+                continue;
+            }
+            ++placed;
+            const double off = 100 * std::abs(one.own_scale / result_.placement.scale - 1);
+            if (off > options_.scale_tolerance)
+                result_.objections.push_back({number, -1,
+                                              "alone it would have the template " + digits(one.own_scale, 4) +
+                                                  " times as large, and all together " + digits(result_.placement.scale, 4) +
+                                                  " times: its size is off by " + digits(off, 3) + " %"});
+            double spread = 0, count = 0;
+            const auto pairs = common_landmarks(mesh_, set_, fragments_[k]->mesh, fragments_[k]->annotations);
+            Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+            for (const auto& pair : pairs) middle += pair.on_fragment / static_cast<double>(pairs.size());
+            for (const auto& pair : pairs) spread += (pair.on_fragment - middle).squaredNorm(), ++count;
+            spread = count > 0 ? std::sqrt(spread / count) : 0;
+            if (spread > 0 && one.residual > options_.residual * spread)
+                result_.objections.push_back({number, -1,
+                                              "its landmarks are " + digits(one.residual, 3) +
+                                                  " off those of the template (root mean square), " +
+                                                  digits(100 * one.residual / spread, 3) + " % of their spread"});
+        }
+        bool tested = false;
+        for (const ConstraintReport& constraint : result_.constraints) {
+            tested = tested || constraint.used;
+            if (!constraint.used || constraint.verdict != Verdict::fails) continue;
+            std::string words;
+            for (const Deviation& d : constraint.deviations)
+                if (d.value && d.tolerance && *d.value > *d.tolerance)
+                    words += (words.empty() ? "" : "; ") + d.quantity + " " + digits(*d.value, 4) + ", at most " +
+                             digits(*d.tolerance, 4) + (d.unit.empty() ? "" : " " + d.unit);
+            result_.objections.push_back(
+                {-1, constraint.id, constraint.type + " does not hold" + (words.empty() ? "" : ": " + words)});
+        }
+        const bool against = std::any_of(result_.objections.begin(), result_.objections.end(), [&](const Objection& one) {
+            return one.constraint >= 0 ||
+                   (one.fragment >= 0 && result_.placement.fragments[static_cast<std::size_t>(one.fragment)].problem.empty());
+        });
+        if (against) {
+            result_.verdict = Compatibility::incompatible;
+        } else if (placed < fragments_.size()) {
+            result_.undecided = "not all fragments could be placed";
+        } else if (placed == 1 && !tested) {
+            result_.undecided = "one fragment and no constraint: nothing can contradict it";
+        } else {
+            result_.verdict = Compatibility::compatible;
+        }
+    }
+
+    const Mesh& mesh_;
+    const AnnotationSet& set_;
+    const RelationGraph& graph_;
+    const std::vector<const Fragment*>& fragments_;
+    const ReconstructOptions& options_;
+    const std::vector<std::vector<StatedMatch>>& stated_;
+    Mesh scaled_;
+    double diagonal_ = 0;
+    std::vector<PlacedFragment> placed_;
+    std::vector<int> number_;  ///< of each placed fragment
+    std::vector<bool> held_;
+    Reconstruction result_;
+};
+
+}  // namespace
+
+Reconstruction reconstruct(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
+                           const std::vector<const Fragment*>& fragments, const ReconstructOptions& options,
+                           const std::vector<std::vector<StatedMatch>>& stated) {
+    check_options(options, "fit");
+    if (fragments.empty()) fail_usage("there is no fragment", "give one or more");
+    return Reconstructor(mesh, set, graph, fragments, options, stated).run();
+}
+
+}  // namespace ostraka

@@ -1,0 +1,116 @@
+#include "scratch.h"
+
+#include "ostraka/annotation/annotation_file.h"
+#include "ostraka/core/json.h"
+#include "ostraka/io/mesh_file.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace ostraka {
+namespace {
+
+using test::run_command;
+using test::Scratch;
+
+std::string quoted(const Path& path) { return "'" + path.string() + "'"; }
+
+/// A made statuette as a template, and a fragment of another one.
+class FitCommand : public ::testing::Test {
+protected:
+    void SetUp() override {
+        ASSERT_EQ(run_command("study make proportions --objects 2 --vertices 4000 --seed 1 " + quoted(scratch / "made")).code, 0);
+        ASSERT_EQ(run_command("template pack " + quoted(scratch / "made" / "t.template.json") + " --mesh " +
+                              quoted(scratch / "made" / "statuette-1.ply") + " --annotations " +
+                              quoted(scratch / "made" / "statuette-1.ant.json"))
+                      .code,
+                  0);
+        const auto broken = run_command("mesh break " + quoted(scratch / "made" / "statuette-2.ply") + " " +
+                                        quoted(scratch / "top.ply") + " --at head --share 0.45 --annotations " +
+                                        quoted(scratch / "made" / "statuette-2.ant.json") + " --annotations-out " +
+                                        quoted(scratch / "top.ant.json") + " --pose-out " + quoted(scratch / "pose.json"));
+        ASSERT_EQ(broken.code, 0) << broken.err;
+    }
+    [[nodiscard]] test::CommandResult fit(const std::string& rest) const {
+        return run_command("fit " + quoted(scratch / "made" / "t.template.json") + " " + rest + " --output " +
+                           quoted(scratch / "out"));
+    }
+    Scratch scratch;
+};
+
+TEST_F(FitCommand, CompletesAStatuetteAndSaysWhatWasSeen) {
+    const auto run = fit(quoted(scratch / "top.ply") + " --placed --json");
+    EXPECT_EQ(run.code, 3) << run.err << run.out;
+    const Json report = parse_json(run.out, "report");
+    const JsonValue& result = report["result"];
+    EXPECT_STREQ(result["verdict"].GetString(), "undecided") << "one fragment, no constraint";
+    EXPECT_GT(result["observedShare"].GetDouble(), 0.3);
+    EXPECT_LT(result["observedShare"].GetDouble(), 0.6);
+    ASSERT_EQ(result["fragments"].Size(), 1U);
+    EXPECT_STREQ(result["fragments"][0]["name"].GetString(), "top");
+    EXPECT_TRUE(result["fragments"][0].HasMember("pose"));
+    const MeshFile whole = read_mesh(scratch / "out" / "completed.ply");
+    const std::set<std::int32_t> origins(whole.extras.face_labels.begin(), whole.extras.face_labels.end());
+    EXPECT_EQ(origins, (std::set<std::int32_t>{0, 1, 2}));
+    const AnnotationSet set = read_annotations(scratch / "out" / "completed.ant.json", whole.mesh);
+    EXPECT_GT(set.annotations.size(), 10U);
+    EXPECT_TRUE(std::filesystem::exists(scratch / "out" / "top.placed.ply"));
+    const Json assembly = read_json(scratch / "out" / "fit.assembly.json");
+    validate(assembly, "assembly", "assembly");
+    EXPECT_TRUE(assembly.HasMember("provenance"));
+}
+
+TEST_F(FitCommand, WhatAPersonStatesHolds) {
+    ASSERT_EQ(fit(quoted(scratch / "top.ply")).code, 3);
+    Json assembly = read_json(scratch / "out" / "fit.assembly.json");
+    JsonValue& matches = assembly["fragments"][0]["annotations"];
+    ASSERT_GT(matches.Size(), 2U);
+    const int none = matches[0]["ofFragment"].GetInt();
+    matches[0]["ofTemplate"].SetNull();
+    matches[0]["stated"].SetBool(true);
+    write_json(scratch / "said.assembly.json", assembly);
+    const auto run = fit(quoted(scratch / "top.ply") + " --json --assembly " + quoted(scratch / "said.assembly.json"));
+    ASSERT_EQ(run.code, 3) << run.err;
+    const Json report = parse_json(run.out, "report");
+    for (const auto& match : report["result"]["fragments"][0]["annotations"].GetArray())
+        EXPECT_NE(match["ofFragment"].GetInt(), none);
+    matches[0]["ofTemplate"].SetInt(4711);
+    write_json(scratch / "wrong.assembly.json", assembly);
+    const auto wrong = fit(quoted(scratch / "top.ply") + " --assembly " + quoted(scratch / "wrong.assembly.json"));
+    EXPECT_EQ(wrong.code, 1);
+    EXPECT_NE(wrong.err.find("4711"), std::string::npos) << wrong.err;
+}
+
+TEST_F(FitCommand, WrongWordsAndFilesAreSaid) {
+    EXPECT_EQ(run_command("fit " + quoted(scratch / "made" / "t.template.json") + " --output " + quoted(scratch / "out")).code,
+              2);
+    EXPECT_EQ(run_command("fit " + quoted(scratch / "made" / "t.template.json") + " " + quoted(scratch / "top.ply")).code, 2);
+    EXPECT_EQ(fit(quoted(scratch / "absent.ply")).code, 1);
+    EXPECT_EQ(fit(quoted(scratch / "top.ply") + " " + quoted(scratch / "top.ply")).code, 2);
+    EXPECT_EQ(fit(quoted(scratch / "top.ply") + " --detail 0").code, 2);
+    EXPECT_FALSE(std::filesystem::exists(scratch / "out")) << "nothing is written before all is read";
+    // Two landmarks only.
+    ASSERT_EQ(run_command("mesh break " + quoted(scratch / "made" / "statuette-2.ply") + " " + quoted(scratch / "base.ply") +
+                          " --at base --share 0.2 --annotations " + quoted(scratch / "made" / "statuette-2.ant.json") +
+                          " --annotations-out " + quoted(scratch / "base.ant.json"))
+                  .code,
+              0);
+    const auto two = fit(quoted(scratch / "base.ply"));
+    EXPECT_EQ(two.code, 3);
+    EXPECT_NE(two.out.find("cannot decide"), std::string::npos) << two.out;
+    EXPECT_NE(two.out.find("landmark"), std::string::npos) << two.out;
+}
+
+TEST_F(FitCommand, BreakRefusesWhatItCannotDo) {
+    const std::string mesh = "mesh break " + quoted(scratch / "made" / "statuette-2.ply") + " " + quoted(scratch / "x.ply");
+    EXPECT_EQ(run_command(mesh).code, 2);
+    EXPECT_EQ(run_command(mesh + " --at 1,2").code, 2);
+    EXPECT_EQ(run_command(mesh + " --at nan,0,0").code, 2);
+    EXPECT_EQ(run_command(mesh + " --at head").code, 2) << "no annotations are given";
+    EXPECT_EQ(run_command(mesh + " --at 0,0,0 --share 0.001 --erosion 0.5").code, 1);
+    EXPECT_FALSE(std::filesystem::exists(scratch / "x.ply"));
+}
+
+}  // namespace
+}  // namespace ostraka

@@ -1,0 +1,201 @@
+#include "ostraka/fitting/reconstruct.h"
+
+#include "meshes.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/geom/eigen.h"
+#include "ostraka/geom/surface_search.h"
+#include "ostraka/shapes/fragments.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace ostraka {
+namespace {
+
+using Eigen::Vector3d;
+
+/// A body with a head: a sphere with waves, so that no turn leaves it as it is.
+Mesh body(int levels = 4) {
+    Mesh mesh = build_mesh(test::octahedron_sphere(levels));
+    for (const Vertex v : mesh.vertices()) {
+        const Vector3d p = eigen(mesh.point(v));
+        mesh.point(v) = point_of((1 + 0.15 * std::sin(3 * p.x() + 1) * std::cos(2 * p.y()) + 0.1 * p.z() * p.x()) *
+                                 Vector3d(p.x(), 1.2 * p.y(), 1.8 * p.z()));
+    }
+    return mesh;
+}
+
+Mesh deformed_by(const Mesh& mesh, const std::function<Vector3d(const Vector3d&)>& map) {
+    Mesh result = mesh;
+    for (const Vertex v : result.vertices()) result.point(v) = point_of(map(eigen(mesh.point(v))));
+    return result;
+}
+
+Annotation landmark(int id, const std::string& tag, Index vertex) {
+    Annotation one;
+    one.id = id;
+    one.tag = tag;
+    one.type = AnnotationType::point;
+    one.points = {vertex};
+    return one;
+}
+
+/// Twelve vertices evenly over the list as landmarks.
+AnnotationSet landmarks_of(const Mesh& mesh) {
+    AnnotationSet set;
+    const auto n = static_cast<Index>(mesh.number_of_vertices());
+    for (int i = 0; i < 40; ++i)
+        set.annotations.push_back(landmark(i, "landmark " + std::to_string(i), (static_cast<Index>(i) * 97U) % n));
+    return set;
+}
+
+/// A fragment of `whole` around a place, with the landmarks that it has.
+struct Cut {
+    Fragment fragment;
+    BrokenPiece piece;
+};
+Cut cut(const Mesh& whole, const AnnotationSet& set, const Point& centre, const BreakOptions& options) {
+    Cut result{{"piece", {}, {}, {}}, break_off(whole, centre, options)};
+    result.fragment.mesh = result.piece.mesh;
+    for (const Annotation& one : set.annotations) {
+        const auto& kept = result.piece.vertices;
+        const auto found = std::find(kept.begin(), kept.end(), one.points.front());
+        if (found != kept.end())
+            result.fragment.annotations.annotations.push_back(
+                landmark(one.id, one.tag, static_cast<Index>(found - kept.begin())));
+    }
+    return result;
+}
+
+double worst_distance(const Mesh& mesh, const std::vector<Point>& points, const std::vector<bool>& which, const Mesh& surface) {
+    const SurfaceSearch search(surface);
+    double worst = 0;
+    for (const Vertex v : mesh.vertices())
+        if (which[v]) worst = std::max(worst, search.closest(points[v]).distance);
+    return worst;
+}
+
+TEST(Fit, AFragmentOfTheTemplateItselfChangesNothing) {
+    const Mesh whole = body();
+    const AnnotationSet set = landmarks_of(whole);
+    BreakOptions options;
+    options.share = 0.4;
+    const Cut one = cut(whole, set, Point(0, 0, 1.8), options);
+    const Reconstruction result = reconstruct(whole, set, {}, {&one.fragment});
+    ASSERT_TRUE(result.placement.any()) << result.placement.fragments[0].problem;
+    EXPECT_NEAR(result.placement.scale, 1, 1e-9);
+    EXPECT_LT((result.placement.fragments[0].pose.turn - one.piece.pose.turn).norm(), 1e-9);
+    for (const Vertex v : whole.vertices())
+        EXPECT_LT(std::sqrt(CGAL::squared_distance(result.points[v], whole.point(v))), 1e-6 * box_diagonal(whole));
+    EXPECT_EQ(result.verdict, Compatibility::undecided) << "one fragment, no constraint";
+}
+
+TEST(Fit, TheObservedPartLiesOnTheFragmentAndTheRestFollows) {
+    const Mesh mesh = body();
+    const AnnotationSet set = landmarks_of(mesh);
+    const double diagonal = box_diagonal(mesh);
+    const Mesh whole = deformed_by(
+        mesh, [](const Vector3d& p) { return Vector3d(p.x() * (1 + 0.1 * p.z()), p.y() + 0.08 * p.z() * p.z(), 1.08 * p.z()); });
+    BreakOptions options;
+    options.share = 0.5;
+    const Cut one = cut(whole, set, Point(0, 0, 1.9), options);
+    const Reconstruction result = reconstruct(mesh, set, {}, {&one.fragment});
+    ASSERT_TRUE(result.placement.any()) << result.placement.fragments[0].problem;
+    EXPECT_NEAR(result.observed_share, 0.5, 0.08);
+    std::vector<bool> seen(mesh.number_of_vertices(), false);
+    for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = result.distance[i] >= 0;
+    const Mesh placed = moved(one.fragment.mesh, result.placement.fragments[0].pose);
+    EXPECT_LT(worst_distance(mesh, result.points, seen, placed), 0.005 * diagonal);
+    // Nearer to the truth than the template laid there, also where nothing was seen.
+    const Motion frame = result.placement.fragments[0].pose.after(one.piece.pose.inverse());
+    double fitted = 0, rigid = 0;
+    for (const Vertex v : mesh.vertices()) {
+        if (seen[v]) continue;
+        const Vector3d truth = frame(eigen(whole.point(v)));
+        fitted += (eigen(result.points[v]) - truth).squaredNorm();
+        rigid += (result.placement.scale * eigen(mesh.point(v)) - truth).squaredNorm();
+    }
+    EXPECT_LT(fitted, rigid);
+    for (const Face face : mesh.faces()) {
+        const auto c = corners(mesh, face);
+        const auto count = std::count_if(c.begin(), c.end(), [&](Vertex v) { return seen[v]; });
+        EXPECT_EQ(result.origin[face] == Origin::observed, count == 3);
+        EXPECT_EQ(result.origin[face] == Origin::hypothesis, count == 0);
+        EXPECT_EQ(result.fragment[face] >= 0, count > 0);
+        EXPECT_GE(result.confidence[face], 0);
+        EXPECT_LE(result.confidence[face], 1);
+    }
+}
+
+TEST(Fit, NothingIsFittedToAFracture) {
+    const Mesh mesh = body(3);
+    const AnnotationSet set = landmarks_of(mesh);
+    Cut one = cut(mesh, set, Point(0, 0, 1.8), {});
+    one.fragment.facets.assign(one.fragment.mesh.number_of_faces(), Facet::fracture);
+    const Reconstruction result = reconstruct(mesh, set, {}, {&one.fragment});
+    EXPECT_EQ(result.observed_share, 0);
+    for (const auto& match : result.fit.matches) EXPECT_EQ(match.fragment, -1);
+}
+
+TEST(Fit, TheSameForAnyNumberOfThreadsAndFarAway) {
+    const Mesh mesh = body(3);
+    const AnnotationSet set = landmarks_of(mesh);
+    const Mesh whole = deformed_by(mesh, [](const Vector3d& p) { return Vector3d(p.x(), p.y(), 1.1 * p.z()); });
+    const Cut one = cut(whole, set, Point(0, 0, 1.9), {});
+    const int before = threads();
+    set_threads(1);
+    const Reconstruction alone = reconstruct(mesh, set, {}, {&one.fragment});
+    set_threads(4);
+    const Reconstruction many = reconstruct(mesh, set, {}, {&one.fragment});
+    set_threads(before);
+    EXPECT_EQ(alone.points, many.points);
+    Fragment far = one.fragment.facets.empty() ? Fragment{"far", {}, {}, {}} : Fragment{};
+    Motion away;
+    away.shift = Vector3d(1e5, -1e5, 1e5);
+    far.mesh = moved(one.fragment.mesh, away);
+    for (const auto& annotation : one.fragment.annotations.annotations) far.annotations.annotations.push_back(annotation);
+    const Reconstruction there = reconstruct(mesh, set, {}, {&far});
+    for (std::size_t i = 0; i < alone.points.size(); ++i)
+        EXPECT_LT(std::sqrt(CGAL::squared_distance(alone.points[i], there.points[i])), 1e-4);
+}
+
+TEST(Fit, WithoutLandmarksItCannotDecide) {
+    const Mesh mesh = body(3);
+    const AnnotationSet set = landmarks_of(mesh);
+    Cut one = cut(mesh, set, Point(0, 0, 1.8), {});
+    one.fragment.annotations.annotations.clear();
+    const Reconstruction result = reconstruct(mesh, set, {}, {&one.fragment});
+    EXPECT_EQ(result.verdict, Compatibility::undecided);
+    EXPECT_NE(result.undecided, "");
+    ASSERT_EQ(result.objections.size(), 1U);
+    EXPECT_NE(result.objections[0].text.find("landmarks"), std::string::npos);
+    EXPECT_TRUE(result.points.empty());
+    EXPECT_THROW(reconstruct(mesh, set, {}, {}), Error);
+}
+
+TEST(Fragments, HaveTheirShareAndTheirPose) {
+    const Mesh whole = body();
+    BreakOptions options;
+    for (const double share : {0.1, 0.25, 0.5}) {
+        options.share = share;
+        const BrokenPiece piece = break_off(whole, Point(0, 0, 1.8), options);
+        EXPECT_NEAR(surface_area(piece.mesh), share * surface_area(whole), 0.02 * surface_area(whole));
+        for (const Vertex v : piece.mesh.vertices())
+            EXPECT_LT((piece.pose(eigen(piece.mesh.point(v))) - eigen(whole.point(Vertex(piece.vertices[v])))).norm(), 1e-12);
+        options.erosion = 0.03;
+        EXPECT_LT(surface_area(break_off(whole, Point(0, 0, 1.8), options).mesh), surface_area(piece.mesh));
+        options.erosion = 0;
+    }
+    options.share = 0.01;
+    options.erosion = 0.5;
+    EXPECT_THROW(break_off(whole, Point(0, 0, 1.8), options), Error);
+    options.share = 2;
+    EXPECT_THROW(break_off(whole, Point(0, 0, 1.8), options), Error);
+}
+
+}  // namespace
+}  // namespace ostraka
