@@ -16,13 +16,6 @@ std::vector<double> displacements(const std::vector<Point>& from, const std::vec
     return lengths;
 }
 
-Mesh with_points(const Mesh& mesh, const std::vector<Point>& points) {
-    if (points.size() != mesh.number_of_vertices()) fail_usage("there must be a point for each vertex");
-    Mesh moved = mesh;
-    for (const Vertex v : moved.vertices()) moved.point(v) = points[v];
-    return moved;
-}
-
 void write_coloured(const Path& file, const Mesh& mesh, const std::vector<double>& values, std::optional<double> maximum) {
     const ColourScale scale = maximum ? ColourScale{0, *maximum, false, ""} : scale_of({&values}, file.string());
     MeshExtras extras;

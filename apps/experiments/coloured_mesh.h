@@ -3,6 +3,7 @@
 
 #include "ostraka/core/file.h"
 #include "ostraka/core/mesh.h"
+#include "ostraka/geom/with_points.h"
 
 #include <optional>
 #include <vector>
@@ -11,7 +12,6 @@ namespace ostraka::experiments {
 
 /// Length of each vertex's way from one shape to the other.
 std::vector<double> displacements(const std::vector<Point>& from, const std::vector<Point>& to);
-Mesh with_points(const Mesh& mesh, const std::vector<Point>& points);
 
 /// Writes a PLY whose vertices are coloured by one number each, which also are the property "quality". Colours go from 0 to
 /// `maximum`, so that several meshes can have one scale; without it, over the numbers there are.

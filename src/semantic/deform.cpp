@@ -4,6 +4,7 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/geom/eigen.h"
+#include "ostraka/geom/with_points.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,23 +16,12 @@ namespace ostraka {
 namespace {
 
 using semantic::columns_of;
-
-Mesh with_points(const Mesh& mesh, const std::vector<Point>& points) {
-    Mesh result = mesh;
-    for (const Vertex v : result.vertices()) result.point(v) = points[v];
-    return result;
-}
+using semantic::list_of;
 
 Points columns_of(const std::vector<Point>& list) {
     Points points(3, static_cast<Eigen::Index>(list.size()));
     for (std::size_t i = 0; i < list.size(); ++i) points.col(static_cast<Eigen::Index>(i)) = eigen(list[i]);
     return points;
-}
-
-std::vector<Point> list_of(const Points& points) {
-    std::vector<Point> list;
-    for (Eigen::Index i = 0; i < points.cols(); ++i) list.push_back(point_of(points.col(i)));
-    return list;
 }
 
 /// What solving for some of the constraints gives.

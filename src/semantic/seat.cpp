@@ -2,6 +2,7 @@
 
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/surface_search.h"
+#include "ostraka/geom/with_points.h"
 #include "ostraka/semantic/edit.h"
 
 #include <Eigen/Sparse>
@@ -18,12 +19,6 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-Mesh with_points(const Mesh& mesh, const Points& points) {
-    Mesh result = mesh;
-    for (const Vertex v : result.vertices()) result.point(v) = point_of(points.col(v.idx()));
-    return result;
-}
 
 /// Values at free vertices that minimise the sum of the squared uniform Laplacians over those vertices and, with `to_others`,
 /// over their neighbours; columns of `values` are vertices, those of others are given.
@@ -144,7 +139,7 @@ public:
         for (const Feature& feature : features_) insides.insert(insides.end(), feature.inside.begin(), feature.inside.end());
         std::sort(insides.begin(), insides.end());
         smooth(mesh_, insides, true, base_points);
-        const Mesh base = with_points(mesh_, base_points);
+        const Mesh base = with_points(mesh_, list_of(base_points));
         const SurfaceSearch search(base);
         for (Feature& feature : features_) {
             Points to(3, feature.rest_outline.cols());
@@ -312,6 +307,12 @@ private:
 };
 
 }  // namespace
+
+std::vector<Point> list_of(const Points& points) {
+    std::vector<Point> list;
+    for (Eigen::Index i = 0; i < points.cols(); ++i) list.push_back(point_of(points.col(i)));
+    return list;
+}
 
 bool has_outline(const Mesh& mesh, const Annotation& region) {
     const std::vector<bool> inside = face_flags(mesh, region.faces);

@@ -13,6 +13,9 @@ struct Seating {
     double bend = 0;  ///< root mean square by which one may bend to lie on the base, as a share of the diagonal
 };
 
+/// A point a column.
+std::vector<Point> list_of(const Points& points);
+
 /// Whether other faces adjoin those of a region: the whole of a piece has no place to be seated at.
 bool has_outline(const Mesh& mesh, const Annotation& region);
 

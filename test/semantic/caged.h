@@ -1,0 +1,60 @@
+// A made object in a cage, and constraints on its parts in a line each.
+#pragma once
+
+#include "annotation/example_meshes.h"
+#include "ostraka/cage/cage.h"
+#include "ostraka/core/error.h"
+#include "ostraka/select/recipe.h"
+#include "ostraka/semantic/deform.h"
+#include "ostraka/shapes/make_mesh.h"
+
+namespace ostraka::test {
+
+using namespace ostraka::example;
+
+inline Json edit(const std::string& steps) {
+    return parse_json(R"({"format": "ostraka-edit", "version": 1, "steps": [)" + steps + "]}", "e");
+}
+
+/// A made object with the annotations of its recipe, a cage and mean value coordinates.
+struct Caged {
+    MadeMesh made;
+    AnnotationSet set;
+    Mesh cage;
+    Coordinates coordinates;
+    Caged(const std::string& name, std::uint64_t vertices, std::uint64_t cage_vertices)
+        : made(make_mesh(made_object(name), {.vertices = vertices})),
+          set(apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data" / (name + ".recipe.json"), made.mesh, made.face_labels)),
+          cage(make_cage(made.mesh, {.vertices = cage_vertices}).cage),
+          coordinates(compute_coordinates("mean-value", cage, made.mesh)) {}
+    [[nodiscard]] HandleSpace handles() const { return {made.mesh, set, &cage, &coordinates}; }
+    [[nodiscard]] HandleSpace bare() const { return {made.mesh, set}; }
+};
+
+inline const Caged& teapot() {
+    static const Caged object("teapot", 5000, 150);
+    return object;
+}
+
+inline Relationship constraint(int id, const std::string& type, std::vector<int> members, const std::string& parameters,
+                               double weight = 1) {
+    Relationship r;
+    r.id = id;
+    r.type = type;
+    r.annotations = std::move(members);
+    r.is_constraint = true;
+    r.weight = weight;
+    r.constraint = parameters;
+    return r;
+}
+
+inline std::string error_of(const HandleSpace& space, const std::string& steps, const RelationGraph& graph = {}) {
+    try {
+        deform(space, graph, edit(steps), "e.edit.json");
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return {};
+}
+
+}  // namespace ostraka::test

@@ -1,0 +1,111 @@
+// Axes that turn no farther than they must, and partners that mirror.
+#include "outcome.h"
+
+#include <gtest/gtest.h>
+
+namespace ostraka {
+namespace {
+
+/// The least squared distance of turned rows with the axis at an angle to a direction, by trying all turns.
+double least_by_trying(const Points& rows, const Vector3d& axis, const Vector3d& direction, double wanted) {
+    double least = std::numeric_limits<double>::infinity();
+    constexpr int steps = 120;
+    const Vector3d e1 = direction.unitOrthogonal();
+    const auto turn = [](int i, const Vector3d& about) {
+        return Eigen::AngleAxisd(2 * std::numbers::pi * i / steps, about).toRotationMatrix();
+    };
+    for (const double side : {1.0, -1.0})
+        for (int i = 0; i < steps; ++i) {
+            const Vector3d to = std::cos(wanted) * side * direction + std::sin(wanted) * (turn(i, direction) * e1);
+            const Matrix3d first = Eigen::Quaterniond::FromTwoVectors(axis, to).toRotationMatrix();
+            for (int j = 0; j < steps; ++j) least = std::min(least, (turn(j, to) * first * rows - rows).squaredNorm());
+        }
+    return least;
+}
+
+TEST(Constraint, AxesTurnNoFartherThanTheyMust) {
+    // Rods, plates and blocks whose axis is known, turned anyhow and exactly along and across the direction.
+    const Vector3d d = Vector3d(1, -2, 3).normalized();
+    for (const Vector3d& size :
+         {Vector3d(1, 1, 4), Vector3d(1, 2, 4), Vector3d(1, 0, 3), Vector3d(3, 3, 0.5), Vector3d(2, 2, 2)}) {
+        Points rest = random_points(30, 6);
+        rest.colwise() -= rest.rowwise().mean().eval();
+        rest = size.asDiagonal() * rest;
+        for (const Vector3d& own : {Vector3d(0, 0, 1), Vector3d(0.6, 0, 0.8)})
+            for (int place = 0; place < 4; ++place) {
+                Matrix3d turn = some_turn();
+                if (place == 1) turn = Eigen::Quaterniond::FromTwoVectors(own, d).toRotationMatrix();
+                if (place == 2) turn = Eigen::Quaterniond::FromTwoVectors(own, d.unitOrthogonal()).toRotationMatrix();
+                if (place == 3) turn = Eigen::Quaterniond::FromTwoVectors(own, -d + 1e-7 * d.unitOrthogonal()).toRotationMatrix();
+                const Points rows = turn * rest;
+                for (const double wanted : {0.0, 1e-4, 0.3, 1.2, std::numbers::pi / 2}) {
+                    ConstraintParameters parameters;
+                    parameters.direction = d;
+                    parameters.rest_direction = own;
+                    parameters.min = parameters.max = wanted;
+                    const auto c = make_constraint("AxisDirection", first_ids(30), 1, parameters, rest);
+                    const Outcome o = outcome(*c, rows);
+                    const std::string what = testing::PrintToString(size.transpose().eval()) + " place " + std::to_string(place) +
+                                             " angle " + std::to_string(wanted);
+                    const Matrix3d found = Eigen::umeyama(rows, o.projected, false).topLeftCorner<3, 3>();
+                    ASSERT_LT((found * rows - o.projected).norm(), 1e-10) << what;
+                    const double angle_there = angle(found * turn * own, d);
+                    ASSERT_NEAR(std::min(angle_there, std::numbers::pi - angle_there), wanted, 2e-8) << what;
+                    const double least = least_by_trying(rows, turn * own, d, wanted),
+                                 reached = (o.rows - o.projected).squaredNorm();
+                    ASSERT_LE(reached, least + 1e-9 * rows.squaredNorm()) << what;
+                    ASSERT_LT((again(*c, o.projected) - o.projected).norm(), 1e-7) << what;
+                }
+            }
+    }
+}
+
+TEST(Constraint, AxesThatAreInRangeStay) {
+    const Points rest = random_points(9, 12);
+    ConstraintParameters parameters;
+    parameters.direction = Vector3d(0, 0, 1);
+    parameters.rest_direction = Vector3d(1, 0, 1);  // at pi / 4
+    parameters.min = 0.7;
+    parameters.max = 0.8;
+    EXPECT_EQ(make_constraint("AxisDirection", first_ids(9), 1, parameters, rest)->residual(rest), 0);
+    parameters.min.reset();
+    EXPECT_EQ(make_constraint("AxisDirection", first_ids(9), 1, parameters, rest)->residual(rest), 0);
+    parameters.min = 0.7;
+    parameters.max.reset();  // up to a right angle
+    EXPECT_EQ(make_constraint("AxisDirection", first_ids(9), 1, parameters, rest)->residual(rest), 0);
+    parameters.min.reset();  // parallel
+    EXPECT_GT(make_constraint("AxisDirection", first_ids(9), 1, parameters, rest)->residual(rest), 0.1);
+}
+
+TEST(Constraint, PartnersInTrianglesMirror) {
+    // A point and a triangle on the other side of x = 1, whose mirror image of the point is at (3, 0.25, 0.25) but for a bump.
+    Points rest(3, 4);
+    rest.col(0) << -1, 0.25, 0.25;
+    rest.col(1) << 3, 0, 0;
+    rest.col(2) << 3, 1, 0;
+    rest.col(3) << 3, 0, 1;
+    ConstraintParameters parameters;
+    parameters.direction = Vector3d(2, 0, 0);
+    parameters.point = Vector3d(1, 7, 7);
+    parameters.coefficients = {0.5, 0.25, 0.25};
+    const auto exact = make_constraint("MirrorSymmetry", first_ids(4), 1, parameters, rest);
+    EXPECT_LT(exact->residual(rest), 1e-15);
+    Points bumped = rest;
+    bumped.col(0) += Vector3d(-0.4, 0.2, 0.6);
+    // Each side takes half of it.
+    const Outcome o = outcome(*exact, bumped);
+    EXPECT_LT((o.projected.col(0) - Vector3d(-1.2, 0.35, 0.55)).norm(), 1e-15);
+    EXPECT_LT((o.projected.col(1) - Vector3d(3.2, 0.35, 0.55)).norm(), 1e-15);
+    // What is off at rest stays so.
+    const Points off = Vector3d(0.4, 0.2, 0.6);
+    parameters.target = off;
+    const auto nearly = make_constraint("MirrorSymmetry", first_ids(4), 1, parameters, bumped);
+    EXPECT_LT(nearly->residual(bumped), 1e-15);
+    EXPECT_NEAR(nearly->residual(rest), off.norm(), 1e-15);
+    exact->set_target(off);
+    EXPECT_LT(exact->residual(bumped), 1e-15);
+    EXPECT_THROW(exact->set_target(bumped), Error);
+}
+
+}  // namespace
+}  // namespace ostraka
