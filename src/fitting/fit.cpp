@@ -104,7 +104,7 @@ public:
                 }
                 const Stopwatch watch(fit.seconds_solving);
                 const Points before = now_;
-                solve(record.smoothing);
+                solve(record.smoothing, record.steps == 0);
                 const double change = (now_ - before).colwise().norm().maxCoeff();
                 if (change < 0.05 * record.smoothing) {
                     ++record.steps;
@@ -161,22 +161,39 @@ private:
         solver_ = std::make_unique<MeshSpaceSolver>(std::move(list), rest_);
     }
 
-    void solve(double smoothing) {
+    /// Where few matches came or went since the weights were last set, they stay, and with them the factorisation: who lost its
+    /// match is held where it is, who found one waits.
+    [[nodiscard]] bool matched_as_before() const {
+        std::size_t changed = 0;
+        for (std::size_t i = 0; i < matches_.size(); ++i) changed += (matches_[i].fragment >= 0) != weighted_[i] ? 1 : 0;
+        return static_cast<double>(changed) <= 0.02 * static_cast<double>(matches_.size());
+    }
+
+    void solve(double smoothing, bool new_level) {
         // In units of mean areas, and of lengths of the smoothing, so that weights are near one.
         const double transition = options_.stay * diagonal_;
         const double stay = std::pow(std::min(1.0, smoothing / transition), 4);
         turn();
+        const bool renew = new_level || !matched_as_before();
+        if (renew) weighted_.assign(matches_.size(), false);
         for (std::size_t i = 0; i < matches_.size(); ++i) {
-            const double share = rings_.area[i] / mean_area_;
-            solver_->set_weight(match_[i], matches_[i].fragment >= 0 ? share : 0);
-            if (matches_[i].fragment >= 0) solver_->set_target(match_[i], matches_[i].place);
-            solver_->set_weight(stay_[i], stay * std::max(share, 1e-6));
+            const bool matched = matches_[i].fragment >= 0;
+            if (renew) {
+                const double share = rings_.area[i] / mean_area_;
+                weighted_[i] = matched;
+                solver_->set_weight(match_[i], matched ? share : 0);
+                solver_->set_weight(stay_[i], stay * std::max(share, 1e-6));
+            }
+            if (weighted_[i])
+                solver_->set_target(match_[i],
+                                    matched ? Points(matches_[i].place) : Points(now_.col(static_cast<Eigen::Index>(i))));
             if (laplacian_[i] == no_constraint) continue;
+            solver_->set_target(laplacian_[i], displacement_.col(static_cast<Eigen::Index>(i)));
+            if (!renew) continue;
             const double area = std::max(rings_.area[i], 1e-6 * mean_area_);
             solver_->set_weight(laplacian_[i], std::pow(smoothing, 4) * rings_.sum[i] * rings_.sum[i] / (area * mean_area_));
-            solver_->set_target(laplacian_[i], displacement_.col(static_cast<Eigen::Index>(i)));
         }
-        for (std::size_t g = 0; g < guides_.size(); ++g) {
+        for (std::size_t g = 0; renew && g < guides_.size(); ++g) {
             // What a patch of the smoothing's size would weigh: of a landmark the whole, of an outline the share of its length.
             const double width = guides_[g].length > 0 ? guides_[g].length * smoothing : smoothing * smoothing;
             solver_->set_weight(guide_[g], options_.guides * std::max(width, 0.0) / mean_area_);
@@ -232,6 +249,7 @@ private:
     std::vector<std::size_t> match_, stay_, laplacian_, guide_;
     std::unique_ptr<MeshSpaceSolver> solver_;
     std::vector<VertexMatch> matches_;
+    std::vector<bool> weighted_;  ///< vertices whose match weighs in the factorisation
 };
 
 }  // namespace
