@@ -57,6 +57,7 @@ public:
         }
         scaled_ = scaled_by(mesh_, result_.placement.scale);
         diagonal_ = box_diagonal(scaled_);
+        if (options_.refine) timed("refinement", [&] { refine(); });
         timed("annotations", [&] { match(); });
         timed("fit", [&] { result_.fit = fit_template(scaled_, set_, placed_, options_.fit); });
         result_.points = result_.fit.points;
@@ -80,6 +81,34 @@ private:
         for (std::size_t k = 0; k < fragments_.size(); ++k)
             pairs.push_back(common_landmarks(mesh_, set_, fragments_[k]->mesh, fragments_[k]->annotations, &result_.notes[k]));
         result_.placement = place_by_landmarks(pairs, options_.placement);
+    }
+
+    void refine() {
+        const SurfaceSearch whole(scaled_);
+        result_.alignment.resize(fragments_.size());
+        for (std::size_t k = 0; k < fragments_.size(); ++k) {
+            FragmentPlacement& placement = result_.placement.fragments[k];
+            const Fragment& fragment = *fragments_[k];
+            if (!placement.problem.empty()) continue;
+            std::vector<bool> counts(fragment.facets.size());
+            for (std::size_t f = 0; f < counts.size(); ++f) counts[f] = fragment.facets[f] != Facet::fracture;
+            if (!counts.empty() && std::find(counts.begin(), counts.end(), true) == counts.end()) continue;
+            std::vector<Anchor> anchors;
+            const auto pairs = common_landmarks(mesh_, set_, fragment.mesh, fragment.annotations);
+            for (std::size_t i = 0; i < pairs.size(); ++i)
+                if (placement.landmarks[i].used)
+                    anchors.push_back({pairs[i].on_fragment, result_.placement.scale * pairs[i].on_template});
+            result_.alignment[k] = align_part(fragment.mesh, counts, whole, placement.pose, anchors, options_.alignment);
+            placement.pose = result_.alignment[k].pose;
+            double squares = 0;
+            for (std::size_t i = 0; i < pairs.size(); ++i) {
+                LandmarkResidual& landmark = placement.landmarks[i];
+                landmark.distance =
+                    (placement.pose(pairs[i].on_fragment) - result_.placement.scale * pairs[i].on_template).norm();
+                if (landmark.used) squares += landmark.distance * landmark.distance;
+            }
+            placement.residual = std::sqrt(squares / static_cast<double>(anchors.size()));
+        }
     }
 
     void match() {

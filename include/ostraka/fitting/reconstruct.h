@@ -3,6 +3,7 @@
 
 #include "ostraka/fitting/fit.h"
 #include "ostraka/fitting/placement.h"
+#include "ostraka/registration/part_alignment.h"
 #include "ostraka/semantic/deform.h"
 
 #include <map>
@@ -11,6 +12,8 @@ namespace ostraka {
 
 struct ReconstructOptions {
     PlacementOptions placement;
+    bool refine = true;  ///< poses are refined by the surface, with the landmarks as anchors
+    PartAlignmentOptions alignment;
     AnnotationMatchOptions annotations;
     NonRigidOptions fit;
     double observed = 0.02;       ///< farthest that an observed vertex lies from its match, as a share of the diagonal
@@ -21,6 +24,8 @@ struct ReconstructOptions {
     template <class Visitor>
     void describe(Visitor& visit) {
         placement.describe(visit);
+        visit("refine", refine, "poses are refined by closest points of the surface, landmarks as anchors", Anything{});
+        alignment.describe(visit);
         annotations.describe(visit);
         fit.describe(visit);
         visit("observed", observed, "vertices farther from the fragments than this share of the diagonal are not observed",
@@ -50,6 +55,7 @@ std::string to_string(Compatibility compatibility);
 
 struct Reconstruction {
     Placement placement;
+    std::vector<PartAlignment> alignment;                   ///< of each fragment placed, where poses were refined
     std::vector<std::vector<AnnotationMatch>> annotations;  ///< of each fragment
     std::vector<std::vector<std::string>> notes;            ///< of each fragment
     NonRigidFit fit;
@@ -67,9 +73,9 @@ struct Reconstruction {
     std::map<std::string, double> seconds;  ///< by phase
 };
 
-/// Places every fragment by the landmarks it has in common with the template matches
-/// annotations, deforms the scaled template to all fragments placed, holds what was observed, and solves the graph's
-/// constraints for the rest. Fragments that cannot be placed are left out and said. The verdict: incompatible where a
+/// Places every fragment by the landmarks it has in common with the template, refines the poses by the
+/// surface, matches annotations, deforms the scaled template to all fragments placed, holds what was observed, and solves the
+/// graph's constraints for the rest. Fragments that cannot be placed are left out and said. The verdict: incompatible where a
 /// constraint fails, a fragment's own scale or its landmarks contradict the others; undecided where no fragment is placed, or
 /// there is but one and no constraint. Throws Error (input) for a template that does not fit its annotations.
 Reconstruction reconstruct(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,

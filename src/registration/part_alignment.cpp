@@ -1,0 +1,150 @@
+#include "ostraka/registration/part_alignment.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/geom/eigen.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+namespace ostraka {
+
+using Eigen::Vector3d;
+
+namespace {
+
+struct Sample {
+    Vector3d place, normal;
+};
+
+/// Centroids of faces, each for the same area.
+std::vector<Sample> samples_of(const Mesh& part, const std::vector<bool>& of_part, int count) {
+    double area = 0;
+    for (const Face face : part.faces())
+        if (of_part.empty() || of_part[face]) area += face_area(part, face);
+    if (!(area > 0)) fail_input("fragment", "has no area that could be laid onto a template", "look at its faces and facets");
+    std::vector<Sample> samples;
+    double sum = 0, next = 0.5 * area / count;
+    for (const Face face : part.faces()) {
+        if (!of_part.empty() && !of_part[face]) continue;
+        sum += face_area(part, face);
+        if (next >= sum || samples.size() >= static_cast<std::size_t>(count)) continue;
+        samples.push_back({eigen(centroid(part, face)), eigen(area_vector(part, face)).normalized()});
+        while (next < sum) next += area / count;
+    }
+    return samples;
+}
+
+class PartAligner {
+public:
+    PartAligner(std::vector<Sample> samples, const SurfaceSearch& whole, const std::vector<Anchor>& anchors,
+                const PartAlignmentOptions& options)
+        : samples_(std::move(samples)), whole_(whole), anchors_(anchors), options_(options) {}
+
+    PartAlignment run(const Motion& start) {
+        constexpr int patience = 4;
+        PartAlignment result;
+        Motion pose = start;
+        double least = measure(pose);
+        result.pose = pose;
+        result.residual = residual_;
+        result.overlap = overlap_;
+        for (int since = 0; result.iterations < options_.iterations && since < patience && pairs_.size() >= 6;
+             ++result.iterations) {
+            pose = step(pose);
+            const double now = measure(pose);
+            since = now < least * (1 - 1e-4) ? 0 : since + 1;
+            if (now < least) {
+                least = now;
+                result.pose = pose;
+                result.residual = residual_;
+                result.overlap = overlap_;
+            }
+            result.settled = since >= patience;
+        }
+        return result;
+    }
+
+private:
+    struct Pair {
+        Vector3d point, place, normal;
+        double squared;
+    };
+
+    /// Pairs under a pose, trimmed; what is minimised, anchors and samples without a partner included.
+    double measure(const Motion& pose) {
+        std::vector<std::optional<Pair>> found(samples_.size());
+        const double reach = options_.reach * whole_.diagonal(), cosine = std::cos(options_.angle * std::numbers::pi / 180);
+        parallel_for(samples_.size(), [&](std::size_t i) {
+            const Vector3d p = pose(samples_[i].place), n = pose.turn * samples_[i].normal;
+            const auto hit = whole_.closest_compatible(point_of(p), vector_of(n), cosine, reach);
+            if (hit) found[i] = Pair{p, eigen(hit->point), eigen(whole_.normal(hit->face)), hit->distance * hit->distance};
+        });
+        pairs_.clear();
+        for (const auto& pair : found)
+            if (pair) pairs_.push_back(*pair);
+        overlap_ = static_cast<double>(pairs_.size()) / static_cast<double>(samples_.size());
+        const auto wanted =
+            std::max<std::size_t>(1, static_cast<std::size_t>(options_.trim * static_cast<double>(samples_.size())));
+        std::stable_sort(pairs_.begin(), pairs_.end(), [](const Pair& a, const Pair& b) { return a.squared < b.squared; });
+        if (pairs_.size() > wanted) pairs_.resize(wanted);
+        double sum = 0;
+        for (const Pair& pair : pairs_) sum += std::pow(pair.normal.dot(pair.point - pair.place), 2);
+        residual_ = pairs_.empty() ? reach : std::sqrt(sum / static_cast<double>(pairs_.size()));
+        // Who has no partner is as far off as can be: a pose in which few find one is no better for it.
+        sum += static_cast<double>(wanted - pairs_.size()) * reach * reach;
+        weight_ = anchors_.empty() ? 0 : options_.anchors * static_cast<double>(wanted) / static_cast<double>(anchors_.size());
+        for (const Anchor& anchor : anchors_) sum += weight_ * (pose(anchor.of_part) - anchor.of_whole).squaredNorm();
+        return sum;
+    }
+
+    /// Turned by w and shifted by t about the pairs' centre, linearised.
+    [[nodiscard]] Motion step(const Motion& pose) const {
+        Vector3d centre = Vector3d::Zero();
+        for (const Pair& pair : pairs_) centre += pair.point / static_cast<double>(pairs_.size());
+        const double unit = whole_.diagonal();
+        using Row = Eigen::Matrix<double, 6, 1>;
+        Eigen::Matrix<double, 6, 6> matrix = Eigen::Matrix<double, 6, 6>::Zero();
+        Row right = Row::Zero();
+        const auto add = [&](const Vector3d& point, const Vector3d& normal, double off, double weight) {
+            Row row;
+            row << ((point - centre) / unit).cross(normal), normal;
+            matrix += weight * row * row.transpose();
+            right += weight * off / unit * row;
+        };
+        for (const Pair& pair : pairs_) add(pair.point, pair.normal, pair.normal.dot(pair.place - pair.point), 1);
+        for (const Anchor& anchor : anchors_) {
+            const Vector3d p = pose(anchor.of_part);
+            for (int axis = 0; axis < 3; ++axis) add(p, Vector3d::Unit(axis), anchor.of_whole[axis] - p[axis], weight_);
+        }
+        matrix.diagonal().array() += 1e-9 * matrix.trace();
+        const Row x = matrix.ldlt().solve(right);
+        Motion move;
+        const double angle = x.head<3>().norm();
+        if (angle > 0) move.turn = Eigen::AngleAxisd(angle, x.head<3>() / angle).toRotationMatrix();
+        move.shift = centre + unit * x.tail<3>() - move.turn * centre;
+        return move.after(pose);
+    }
+
+    std::vector<Sample> samples_;
+    const SurfaceSearch& whole_;
+    const std::vector<Anchor>& anchors_;
+    const PartAlignmentOptions& options_;
+    std::vector<Pair> pairs_;
+    double residual_ = 0, overlap_ = 0, weight_ = 0;
+};
+
+}  // namespace
+
+PartAlignment align_part(const Mesh& part, const std::vector<bool>& of_part, const SurfaceSearch& whole, const Motion& start,
+                         const std::vector<Anchor>& anchors, const PartAlignmentOptions& options) {
+    check_options(options, "registration");
+    if (!of_part.empty() && of_part.size() != part.number_of_faces())
+        fail_usage("there are " + std::to_string(of_part.size()) + " marks for " + std::to_string(part.number_of_faces()) +
+                   " faces");
+    return PartAligner(samples_of(part, of_part, options.samples), whole, anchors, options).run(start);
+}
+
+}  // namespace ostraka
