@@ -116,7 +116,11 @@ void draw(const MouldInput& input, const MouldAnswer& answer) {
     tree.title = input.group.method == "linkage" ? "Average linkage of the distances" : "Single linkage, which DBSCAN goes by";
     tree.tree = answer.groups.tree;
     tree.names = names;
-    tree.cut = answer.groups.epsilon;
+    tree.groups = answer.groups.labels;
+    if (input.group.method != "embedding") {  // whose epsilon is no distance of this tree
+        tree.cut = answer.groups.epsilon;
+        tree.cut_label = "epsilon " + significant(answer.groups.epsilon, 3);
+    }
     tree.classes = truth_of(answer);
     write_plot(input.files.plot("dendrogram"), tree);
 

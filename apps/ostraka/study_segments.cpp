@@ -10,7 +10,9 @@
 #include "ostraka/select/slice_segments.h"
 #include "ostraka/stats/scores.h"
 
+#include <algorithm>
 #include <iostream>
+#include <map>
 #include <memory>
 
 namespace ostraka::app {
@@ -18,14 +20,55 @@ namespace ostraka::app {
 namespace {
 
 struct StudySegments {
-    std::string mesh, output, up, curve, compare;
+    std::string mesh, output, up, curve, compare, unit;
     SliceSegmentOptions options;
 
-    [[nodiscard]] Vector upward(const Mesh& surface) const {
-        std::array<double, 3> way{0, 0, 1};
+    /// Upward direction and unit, of the options, else of the annotations compared with.
+    struct Known {
+        Vector up{0, 0, 1};
+        std::string unit;
+    };
+    [[nodiscard]] Known known(const Session& session, const Mesh& surface) const {
+        Known result;
+        result.unit = unit;
+        std::optional<std::array<double, 3>> way;
+        if (!compare.empty()) {
+            const AnnotationSet set = read_annotations(compare, surface);
+            way = set.up;
+            if (unit.empty()) result.unit = set.unit;
+        }
         if (!up.empty()) way = direction_of(up, "--up");
-        else if (!compare.empty()) way = read_annotations(compare, surface).up.value_or(way);
-        return {way[0], way[1], way[2]};
+        if (way) result.up = {(*way)[0], (*way)[1], (*way)[2]};
+        else session.note("note: no upward direction is known, z is taken; else give --up");
+        return result;
+    }
+
+    /// Clusters without a segment, and those with several.
+    [[nodiscard]] std::string about_clusters(const SliceSegments& segments) const {
+        std::map<int, std::vector<std::string>> of;
+        for (std::size_t i = 0; i < segments.segments.size(); ++i)
+            of[segments.segments[i].cluster].push_back(std::to_string(i + 1));
+        std::string gone, again;
+        std::size_t count = 0;
+        for (int cluster = 0; cluster < segments.clusters; ++cluster) {
+            if (of.contains(cluster)) continue;
+            ++count;
+            const auto slices = std::count(segments.raw.begin(), segments.raw.end(), cluster);
+            gone += (gone.empty() ? "" : ", ") + std::to_string(cluster) + " (" + std::to_string(slices) +
+                    (slices == 1 ? " slice)" : " slices)");
+        }
+        for (const auto& [cluster, list] : of) {
+            if (list.size() < 2) continue;
+            again += again.empty() ? "" : "; ";
+            for (std::size_t k = 0; k < list.size(); ++k) again += (k == 0 ? "" : k + 1 < list.size() ? ", " : " and ") + list[k];
+        }
+        std::string text;
+        if (count > 0)
+            text += std::to_string(count) + " of the " + std::to_string(segments.clusters) + " clusters " +
+                    (count == 1 ? "has" : "have") + " no segment: " + gone + " in runs of fewer than " +
+                    std::to_string(options.least_run) + ", which joined their neighbours (--least-run)\n";
+        if (!again.empty()) text += "one cluster, and so one colour: segments " + again + "\n";
+        return text;
     }
 
     /// Adjusted Rand index of segments and known parts over the faces: those of an annotation file, or the mesh file's labels.
@@ -64,14 +107,16 @@ struct StudySegments {
         check_outputs({mesh, compare}, {output, curve});
         Provenance provenance{"study segments", list_options(options), {}};
         provenance.options.emplace_back("up", up.empty() ? "auto" : up);
+        if (!unit.empty()) provenance.options.emplace_back("unit", unit);
         provenance.add_input(mesh);
         if (!compare.empty()) provenance.add_input(compare);
         const MeshFile file = read_mesh(mesh);
         for (const auto& note : file.notes) session.note("note: " + note);
-        const SliceSegments segments = in_file(mesh, [&] { return segment_by_slices(file.mesh, upward(file.mesh), options); });
+        const Known frame = known(session, file.mesh);
+        const SliceSegments segments = in_file(mesh, [&] { return segment_by_slices(file.mesh, frame.up, options); });
         AnnotationSet set = annotate_segments(file.mesh, segments);
-        const Vector way = upward(file.mesh);
-        set.up = {way.x(), way.y(), way.z()};
+        set.up = {frame.up.x(), frame.up.y(), frame.up.z()};
+        set.unit = frame.unit;
         const std::optional<double> ari = agreement(file, segments);
         OutputTransaction transaction;
         write_annotations(output, set, file.mesh, mesh, provenance);
@@ -109,6 +154,7 @@ struct StudySegments {
             counts.push_back(
                 {std::to_string(row.clusters), number(row.cost), number(row.silhouette), number(row.gap), number(row.gap_error)});
         }
+        if (!frame.unit.empty()) add_member(result, "unit", frame.unit, allocator);
         add_member(result, "clusters", JsonValue(segments.clusters), allocator);
         add_member(result, "proposed", JsonValue(segments.count.proposed), allocator);
         add_member(result, "criterion", options.count.criterion, allocator);
@@ -119,9 +165,13 @@ struct StudySegments {
             session.print_report(provenance, document, result);
             return done;
         }
+        const std::string length = frame.unit.empty() ? "" : " " + printable(frame.unit, 20);
         std::cout << table({"clusters", "cost", "silhouette", "gap", "gap error"}, counts) << segments.count.proposed
                   << " clusters proposed by " << options.count.criterion << ", " << segments.clusters << " used\n\n"
-                  << table({"segment", "cluster", "from", "to", "slices", "area"}, cells);
+                  << table({"segment", "cluster", "from" + length, "to" + length, "slices",
+                            "area" + (length.empty() ? "" : length + "^2")},
+                           cells)
+                  << about_clusters(segments);
         if (ari) std::cout << "adjusted Rand index against the known parts, over the faces: " << number(*ari, 3) << "\n";
         return done;
     }
@@ -136,6 +186,7 @@ void add_study_segments(CLI::App& study, Session& session) {
     command->add_option("mesh", work->mesh, "mesh file")->required();
     command->add_option("output", work->output, "annotations to write (.ant.json)")->required();
     command->add_option("--up", work->up, "x,y,z: upward direction; else as the annotations of --compare say, else 0,0,1");
+    command->add_option("--unit", work->unit, "unit of the mesh; else as the annotations of --compare say");
     command->add_option("--curve", work->curve, "plot of the criterion over the number of clusters (.svg, .png)");
     command->add_option("--compare", work->compare,
                         "annotations with the known parts; else the mesh file's labels, if it has any");

@@ -5,10 +5,13 @@
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/collection/technique_study.h"
+#include "ostraka/core/error.h"
 #include "ostraka/io/mesh_file.h"
 
+#include <cmath>
 #include <iostream>
 #include <memory>
+#include <numbers>
 
 namespace ostraka::app {
 
@@ -20,12 +23,43 @@ struct StudyTechnique {
     TechniqueOptions slices;
     TechniqueStudyOptions options;
 
-    /// Of the option, else as the annotations say, else z.
-    [[nodiscard]] Vector upward(const CollectionObject& object, const Mesh& mesh) const {
-        std::array<double, 3> way{0, 0, 1};
-        if (!up.empty()) way = direction_of(up, "--up");
-        else if (!object.annotations.empty()) way = read_annotations(object.annotations, mesh).up.value_or(way);
-        return {way[0], way[1], way[2]};
+    /// Of the option, else as the annotations say, else z; and where it is from.
+    struct Upward {
+        Vector way;
+        const char* from;
+    };
+    [[nodiscard]] Upward upward(const CollectionObject& object, const Mesh& mesh) const {
+        const auto vector = [](const std::array<double, 3>& way) { return Vector(way[0], way[1], way[2]); };
+        std::optional<std::array<double, 3>> known;
+        if (up.empty()) {
+            if (!object.annotations.empty()) known = read_annotations(object.annotations, mesh).up;
+            return known ? Upward{vector(*known), "annotations"} : Upward{Vector(0, 0, 1), "assumed"};
+        }
+        const Vector way = vector(direction_of(up, "--up"));
+        try {
+            if (!object.annotations.empty()) known = read_annotations(object.annotations, mesh).up;
+        } catch (const Error&) {
+            known.reset();  // nothing is asked of these annotations
+        }
+        // Another direction: by more than half a degree.
+        const bool other = known && way * vector(*known) < std::cos(0.5 * std::numbers::pi / 180) *
+                                                               std::sqrt(way.squared_length() * vector(*known).squared_length());
+        return {way, other ? "option against the annotations" : "option"};
+    }
+
+    /// Directions that nobody gave, or that were given twice.
+    static void note_directions(const Session& session, const Collection& collection, const std::vector<ObjectResult>& results) {
+        const auto say = [&](const char* from, const std::string& words) {
+            std::vector<std::string> names;
+            for (std::size_t i = 0; i < results.size(); ++i)
+                if (results[i].problem.empty() && std::string_view(results[i].result["upFrom"].GetString()) == from)
+                    names.push_back(collection.objects[i].name);
+            if (!names.empty())
+                session.note("note: " + words + " (" + std::to_string(names.size()) + " objects: " + names.front() +
+                             (names.size() > 1 ? " ..." : "") + ")");
+        };
+        say("assumed", "no upward direction is known, z is taken; else give --up, or annotations that have one");
+        say("option against the annotations", "--up is taken, though the annotations have another upward direction");
     }
 
     int run(const Session& session) const {
@@ -36,15 +70,20 @@ struct StudyTechnique {
         for (const auto& option : list_options(options)) provenance.options.push_back(option);
         provenance.options.emplace_back("up", up.empty() ? "auto" : up);
         const Collection collection = files.read(session, provenance);
-        std::vector<std::string> what{"technique slices 1", up};
+        std::vector<std::string> what{"technique slices 2", up};
         for (const auto& [key, value] : list_options(slices)) what.push_back(key + "=" + value);
         const auto results = for_each_object(collection, files.store(), what, [&](const CollectionObject& object) {
             if (object.mesh.empty())
                 throw Error(ErrorKind::input, object.name, "has landmarks but no mesh", "give a mesh, or leave the object out");
             const MeshFile file = read_mesh(object.mesh);
-            return in_file(object.mesh.string(),
-                           [&] { return technique_to_json(measure_technique(file.mesh, upward(object, file.mesh), slices)); });
+            return in_file(object.mesh.string(), [&] {
+                const Upward direction = upward(object, file.mesh);
+                Json kept = technique_to_json(measure_technique(file.mesh, direction.way, slices));
+                add_member(kept, "upFrom", direction.from, kept.GetAllocator());
+                return kept;
+            });
         });
+        note_directions(session, collection, results);
         std::vector<TechniqueObject> objects;
         for (std::size_t i = 0; i < results.size(); ++i) {
             if (!results[i].problem.empty()) continue;
@@ -67,8 +106,8 @@ struct StudyTechnique {
         } else {
             std::cout << technique_summary(study, objects, left_out);
         }
-        // Without known answers the question was whether there are two groups at all.
-        return study.learned || study.separated ? done : answer_is_no;
+        // Whether they can be told apart is the question, and without known answers whether there are two groups at all.
+        return study.separated ? done : answer_is_no;
     }
 };
 

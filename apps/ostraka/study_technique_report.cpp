@@ -1,6 +1,5 @@
 #include "study_technique_report.h"
 
-#include "ostraka/report/plot.h"
 #include "ostraka/report/table.h"
 
 #include <algorithm>
@@ -12,6 +11,35 @@ namespace {
 
 JsonValue number_or_null(double value) { return std::isfinite(value) ? JsonValue(value) : JsonValue(rapidjson::kNullType); }
 JsonValue whole(std::size_t value) { return JsonValue(static_cast<std::uint64_t>(value)); }
+
+JsonValue pair_of(double low, double high, JsonAllocator& allocator) {
+    JsonValue pair(rapidjson::kArrayType);
+    pair.PushBack(low, allocator).PushBack(high, allocator);
+    return pair;
+}
+
+/// Words for the classifier or descriptor that answers.
+std::string answering(const TechniqueStudy& study) {
+    for (const ClassifierResult& each : study.classifiers)
+        if (each.classifier.name == study.answered_by) return each.classifier.words;
+    return study.answered_by;
+}
+
+std::string against_label(const TechniqueAnswer& answer) {
+    return answer.label.empty() || answer.answer.empty() ? "" : answer.wrong() ? "WRONG" : "right";
+}
+
+/// Cells of a classifier: name, objects, F1, its interval, the trivial F1, whether it is better, precision, recall, ROC area.
+std::vector<std::string> scores_of(const ClassifierResult& each) {
+    std::vector<std::string> cells{each.classifier.name, std::to_string(each.objects)};
+    if (each.validated)
+        cells.insert(cells.end(),
+                     {fixed(each.validation.mean_f1, 3), fixed(each.f1_interval.low, 3), fixed(each.f1_interval.high, 3),
+                      fixed(each.trivial_f1, 3), each.better ? "yes" : "no", fixed(each.validation.mean_precision, 3),
+                      fixed(each.validation.mean_recall, 3), fixed(each.roc.area, 3)});
+    cells.resize(10);
+    return cells;
+}
 
 JsonValue classifier_entry(const ClassifierResult& each, JsonAllocator& allocator) {
     JsonValue entry(rapidjson::kObjectType), descriptors(rapidjson::kArrayType);
@@ -28,8 +56,12 @@ JsonValue classifier_entry(const ClassifierResult& each, JsonAllocator& allocato
     }
     add_member(entry, "f1", JsonValue(each.validation.mean_f1), allocator);
     add_member(entry, "f1Deviation", JsonValue(each.validation.deviation), allocator);
-    add_member(entry, "precision", JsonValue(each.validation.first.precision()), allocator);
-    add_member(entry, "recall", JsonValue(each.validation.first.recall()), allocator);
+    add_member(entry, "f1Interval", pair_of(each.f1_interval.low, each.f1_interval.high, allocator), allocator);
+    add_member(entry, "trivialF1", JsonValue(each.trivial_f1), allocator);
+    add_member(entry, "better", JsonValue(each.better), allocator);
+    add_member(entry, "error", JsonValue(each.error), allocator);
+    add_member(entry, "precision", JsonValue(each.validation.mean_precision), allocator);
+    add_member(entry, "recall", JsonValue(each.validation.mean_recall), allocator);
     add_member(entry, "area", JsonValue(each.roc.area), allocator);
     if (each.threshold) {
         add_member(entry, "threshold", JsonValue(each.threshold->value), allocator);
@@ -55,19 +87,23 @@ JsonValue answer_entry(const TechniqueAnswer& each, const TechniqueObject& objec
     JsonValue entry(rapidjson::kObjectType), descriptors(rapidjson::kObjectType), slices(rapidjson::kObjectType);
     add_member(entry, "name", each.name, allocator);
     if (!each.label.empty()) add_member(entry, "label", each.label, allocator);
-    if (!each.answer.empty()) {
-        add_member(entry, "answer", each.answer, allocator);
-        if (learned) {
-            add_member(entry, "score", JsonValue(each.score), allocator);
-            add_member(entry, "agreement", JsonValue(each.agreement), allocator);
-            add_member(entry, "resamples", JsonValue(each.asked), allocator);
-        }
+    if (!each.answer.empty()) add_member(entry, "answer", each.answer, allocator);
+    if (learned && !each.certainty.empty()) {
+        add_member(entry, "certainty", each.certainty, allocator);
+        add_member(entry, "score", JsonValue(each.score), allocator);
+        add_member(entry, "agreement", JsonValue(each.agreement), allocator);
+        add_member(entry, "resamples", JsonValue(each.asked), allocator);
     }
-    if (each.roundness) {
-        JsonValue interval(rapidjson::kArrayType);
-        interval.PushBack(each.roundness->low, allocator).PushBack(each.roundness->high, allocator);
-        add_member(entry, "roundnessInterval", std::move(interval), allocator);
+    if (each.unlike) {
+        JsonValue unlike(rapidjson::kObjectType);
+        add_member(unlike, "descriptor", each.unlike->descriptor, allocator);
+        add_member(unlike, "value", JsonValue(each.unlike->value), allocator);
+        add_member(unlike, "labelled", pair_of(each.unlike->low, each.unlike->high, allocator), allocator);
+        add_member(unlike, "distance", JsonValue(each.unlike->distance), allocator);
+        add_member(entry, "unlike", std::move(unlike), allocator);
     }
+    if (each.roundness)
+        add_member(entry, "roundnessInterval", pair_of(each.roundness->low, each.roundness->high, allocator), allocator);
     add_member(slices, "asked", whole(object.measures.asked), allocator);
     add_member(slices, "used", whole(object.measures.slices.size()), allocator);
     add_member(slices, "open", whole(object.measures.open_used), allocator);
@@ -91,7 +127,7 @@ void add_technique_result(JsonValue& result, const TechniqueStudy& study, const 
     add_member(result, "learned", JsonValue(study.learned), allocator);
     known_answers(objects).add_to(result, allocator);
     add_member(result, "answeredBy", study.answered_by, allocator);
-    if (!study.learned) add_member(result, "separated", JsonValue(study.separated), allocator);
+    add_member(result, "separated", JsonValue(study.separated), allocator);
     for (const auto& each : study.classifiers) classifiers.PushBack(classifier_entry(each, allocator), allocator);
     for (const auto& each : study.splits) divisions.PushBack(split_entry(each, allocator), allocator);
     for (std::size_t i = 0; i < objects.size(); ++i)
@@ -114,13 +150,22 @@ void write_technique_tables(const StudyFiles& files, const TechniqueStudy& study
     descriptors.write(folder, "descriptors", "Descriptors of technique");
 
     if (study.learned) {
-        TextTable classifiers(
-            {"classifier", "objects", "F1", "deviation", "precision", "recall", "ROC area", "positive", "threshold"});
+        TextTable classifiers({"classifier", "objects", "F1", "from", "to", "F1 of all " + study.positive, "better", "precision",
+                               "recall", "ROC area", "positive", "threshold"});
         for (const ClassifierResult& each : study.classifiers) {
-            std::vector<TableCell> cells{each.classifier.name, std::to_string(each.objects)};
-            for (const double value : {each.validation.mean_f1, each.validation.deviation, each.validation.first.precision(),
-                                       each.validation.first.recall(), each.roc.area})
-                cells.push_back(fixed_cell(each.validated ? std::optional(value) : std::nullopt, 3));
+            const auto value = [&](double x) { return fixed_cell(each.validated ? std::optional(x) : std::nullopt, 3); };
+            std::vector<TableCell> cells{each.classifier.name,
+                                         std::to_string(each.objects),
+                                         value(each.validation.mean_f1),
+                                         value(each.f1_interval.low),
+                                         value(each.f1_interval.high),
+                                         value(each.trivial_f1),
+                                         !each.validated ? ""
+                                         : each.better   ? "yes"
+                                                         : "no",
+                                         value(each.validation.mean_precision),
+                                         value(each.validation.mean_recall),
+                                         value(each.roc.area)};
             cells.emplace_back(!each.threshold ? "" : each.threshold->above ? "from" : "up to");
             cells.push_back(number_cell(each.threshold ? std::optional(each.threshold->value) : std::nullopt, 4));
             classifiers.add(cells);
@@ -134,100 +179,74 @@ void write_technique_tables(const StudyFiles& files, const TechniqueStudy& study
                        number_cell(each.p_value, 2), fixed_cell(each.f1, 3)});
     divisions.write(folder, "divisions", "Divisions into two groups without known answers");
 
-    TextTable answers({"name", "label", "answer", "score", "agreement", "why"});
+    TextTable answers({"name", "label", "answer", "certainty", "against the label", "score", "agreement", "why"});
     for (const TechniqueAnswer& each : study.answers) {
-        const bool told = study.learned && !each.answer.empty();
+        const bool told = study.learned && !each.certainty.empty();
         const auto value = [&](double x) { return fixed_cell(told ? std::optional(x) : std::nullopt, 2); };
-        answers.add({each.name, each.label, each.answer, value(each.score), value(each.agreement), each.words});
+        answers.add({each.name, each.label, each.answer, each.certainty, against_label(each), value(each.score),
+                     value(each.agreement), each.words});
     }
-    answers.write(folder, "answers", "Answers by " + study.answered_by);
+    answers.write(folder, "answers", "Answers by " + answering(study));
 }
 
 namespace {
 
-/// Objects by two descriptors, in classes by label (or answer, where no labels are known).
-void draw_scatter(const StudyFiles& files, const TechniqueStudy& study, const std::vector<TechniqueObject>& objects,
-                  const std::string& file, const std::string& title, const std::string& x, const std::string& y,
-                  bool logarithmic) {
-    Plot plot;
-    plot.title = title;
-    plot.x = {x, logarithmic};
-    plot.y = {y, true};
-    std::vector<std::string> classes{study.positive, study.negative, study.learned ? "not known" : "no answer"};
-    for (std::size_t c = 0; c < classes.size(); ++c) {
-        PlotSeries series;
-        series.name = classes[c];
-        series.joined = false;
-        for (std::size_t i = 0; i < objects.size(); ++i) {
-            const std::string& kind = study.learned ? objects[i].label : study.answers[i].answer;
-            const std::size_t number = kind == study.positive ? 0 : kind == study.negative ? 1 : 2;
-            const double a = objects[i].measures.value(x), b = objects[i].measures.value(y);
-            if (number == c && std::isfinite(a) && std::isfinite(b) && b > 0 && (a > 0 || !logarithmic))
-                series.points.push_back({a, b});
-        }
-        if (!series.points.empty()) plot.series.push_back(std::move(series));
-    }
-    if (plot.series.empty()) return;
+/// Whether the answering classifier tells the labels apart, and which others do.
+std::string learned_verdict(const TechniqueStudy& study) {
+    std::vector<const ClassifierResult*> better;
+    const ClassifierResult* chosen = nullptr;
     for (const ClassifierResult& each : study.classifiers) {
-        if (!each.threshold) continue;
-        if (each.classifier.descriptors.front() == x) plot.lines.push_back({each.threshold->value, true, "threshold"});
-        if (each.classifier.descriptors.front() == y) plot.lines.push_back({each.threshold->value, false, "threshold"});
+        if (each.better) better.push_back(&each);
+        if (each.classifier.name == study.answered_by) chosen = &each;
     }
-    write_plot(files.plot(file), plot);
+    if (study.separated || chosen == nullptr) return {};
+    if (!chosen->validated)
+        return "this classifier does not tell them apart here: two objects of each label that have its descriptors are needed\n";
+    std::string text = "this classifier does not tell them apart here: F1 of " + printable(answering(study)) + " " +
+                       fixed(chosen->validation.mean_f1, 3) + " (" + fixed(chosen->f1_interval.low, 3) + " to " +
+                       fixed(chosen->f1_interval.high, 3) + "), of calling all of them " + printable(study.positive) + " " +
+                       fixed(chosen->trivial_f1, 3) + "; no answers are given\n";
+    std::stable_sort(better.begin(), better.end(),
+                     [](const auto* a, const auto* b) { return a->f1_interval.low > b->f1_interval.low; });
+    if (better.empty()) return text + "no other classifier does better than that either: give more labelled objects\n";
+    text += "better here, by --answer-by:";
+    for (std::size_t i = 0; i < better.size(); ++i)
+        text += (i == 0 ? " '" : ", '") + better[i]->classifier.name + "' (" + fixed(better[i]->validation.mean_f1, 3) + ")";
+    return text + "\n";
+}
+
+std::string listed(const std::vector<std::string>& names) {
+    std::string text;
+    for (std::size_t i = 0; i < names.size() && i < 12; ++i) text += (i == 0 ? "" : ", ") + printable(names[i], 40);
+    return names.size() > 12 ? text + ", and " + std::to_string(names.size() - 12) + " more" : text;
+}
+
+/// "39 of 40 right; wrong: statuette-38"
+std::string count_of_answers(const TechniqueStudy& study) {
+    std::size_t known = 0, right = 0;
+    std::vector<std::string> wrong, unlike;
+    std::size_t without = 0;
+    for (const TechniqueAnswer& each : study.answers) {
+        if (each.unlike) unlike.push_back(each.name);
+        if (each.label.empty()) continue;
+        ++known;
+        if (each.answer.empty()) ++without;
+        else if (each.wrong()) wrong.push_back(each.name);
+        else ++right;
+    }
+    std::string text;
+    if (known > 0 && without < known) {
+        text = std::to_string(right) + " of " + std::to_string(known) + " right";
+        if (without > 0) text += ", " + std::to_string(without) + " without an answer";
+        if (!wrong.empty()) text += "; wrong: " + listed(wrong);
+        text += "\n";
+    }
+    if (!unlike.empty())
+        text += "unlike the labelled objects, so that they get no answer (see answers.md): " + listed(unlike) + "\n";
+    return text;
 }
 
 }  // namespace
-
-void draw_technique(const StudyFiles& files, const TechniqueStudy& study, const std::vector<TechniqueObject>& objects) {
-    draw_scatter(files, study, objects, "roundness", "Roundness over the lower slices, relative to the radius", "roundness mean",
-                 "roundness variance", true);
-    draw_scatter(files, study, objects, "eccentricity", "Eccentricity over the lower slices", "eccentricity mean",
-                 "eccentricity variance", false);
-    draw_scatter(files, study, objects, "ovality", "Ovality and finger marks, relative to the radius", "ovality", "marks", true);
-    if (!study.learned) return;
-    Plot bars;
-    bars.title = "F1 of " + study.positive + " under cross-validation";
-    bars.y = {"F1"};
-    bars.y.minimum = 0;
-    bars.y.maximum = 1;
-    bars.width = 980;
-    bars.height = 560;
-    PlotSeries series;
-    series.joined = false;
-    series.mark = Mark::bars;
-    for (const ClassifierResult& each : study.classifiers) {
-        if (!each.validated) continue;
-        bars.x.names.push_back(each.classifier.name);
-        const double f1 = each.validation.mean_f1, s = each.validation.deviation;
-        series.points.push_back({static_cast<double>(series.points.size()), f1});
-        series.intervals.emplace_back(std::array<double, 2>{std::max(0.0, f1 - s), std::min(1.0, f1 + s)});
-    }
-    if (series.points.empty()) return;
-    bars.series.push_back(std::move(series));
-    write_plot(files.plot("classifiers"), bars);
-
-    Plot roc;
-    roc.title = "Receiver operating characteristics";
-    roc.x = {"hand-made taken for wheel-made"};
-    roc.x.label = "share of " + study.negative + " called " + study.positive;
-    roc.y = {"share of " + study.positive + " called so"};
-    roc.x.minimum = roc.y.minimum = 0;
-    roc.x.maximum = roc.y.maximum = 1;
-    roc.square = true;
-    roc.width = 760;
-    roc.height = 560;
-    for (const ClassifierResult& each : study.classifiers) {
-        const auto& name = each.classifier.name;
-        if (!each.validated || (name != "roundness" && name != "eccentricity" && name != "both" && name != "outside")) continue;
-        PlotSeries curve;
-        curve.name = name + " (area " + fixed(each.roc.area, 3) + ")";
-        curve.marked = false;
-        for (const RocPoint& point : each.roc.points)
-            curve.points.push_back({point.false_positive_rate, point.true_positive_rate});
-        roc.series.push_back(std::move(curve));
-    }
-    if (!roc.series.empty()) write_plot(files.plot("roc"), roc);
-}
 
 KnownAnswers known_answers(const std::vector<TechniqueObject>& objects) {
     std::vector<std::string> labels;
@@ -241,17 +260,13 @@ std::string technique_summary(const TechniqueStudy& study, const std::vector<Tec
         std::to_string(objects.size()) + " objects studied, " + std::to_string(left_out) + " left out\n" + known.words();
     std::vector<std::vector<std::string>> rows;
     if (study.learned) {
-        for (const ClassifierResult& each : study.classifiers) {
-            std::vector<std::string> cells{each.classifier.name, std::to_string(each.objects)};
-            if (each.validated)
-                for (const double value : {each.validation.mean_f1, each.validation.deviation, each.validation.first.precision(),
-                                           each.validation.first.recall(), each.roc.area})
-                    cells.push_back(fixed(value, 3));
-            cells.resize(7);
-            rows.push_back(std::move(cells));
-        }
-        text += "F1 of " + printable(study.positive) + ", each object answered when it was left out\n" +
-                table({"classifier", "objects", "F1", "+-", "precision", "recall", "ROC area"}, rows);
+        for (const ClassifierResult& each : study.classifiers) rows.push_back(scores_of(each));
+        text += "F1 of " + printable(study.positive) +
+                " when left out: means over the repeats of the cross-validation; from, to: 95 % over objects drawn anew\n" +
+                table({"classifier", "objects", "F1", "from", "to", "all " + printable(study.positive, 20), "better", "precision",
+                       "recall", "ROC area"},
+                      rows) +
+                learned_verdict(study);
     } else {
         for (const TechniqueSplit& each : study.splits)
             rows.push_back({each.descriptor, std::to_string(each.objects),
@@ -262,11 +277,17 @@ std::string technique_summary(const TechniqueStudy& study, const std::vector<Tec
         if (!study.separated) text += "by " + study.answered_by + " there are no two groups\n";
     }
     rows.clear();
-    for (const TechniqueAnswer& each : study.answers)
-        rows.push_back({printable(each.name, 40), printable(each.label, 20),
-                        each.answer.empty() ? "-" : printable(each.answer, 20),
-                        study.learned && !each.answer.empty() ? fixed(each.agreement, 2) : ""});
-    text += "answers by " + study.answered_by + "\n" + table({"object", "label", "answer", "agreement"}, rows);
+    for (const TechniqueAnswer& each : study.answers) {
+        rows.push_back(
+            {printable(each.name, 40), printable(each.label, 20), each.answer.empty() ? "-" : printable(each.answer, 20)});
+        if (study.learned)
+            rows.back().insert(rows.back().end(), {each.certainty, each.certainty.empty() ? "" : fixed(each.agreement, 2),
+                                                   each.wrong() ? "WRONG" : ""});
+    }
+    std::vector<std::string> columns{"object", "label", "answer"};
+    if (study.learned) columns.insert(columns.end(), {"certainty", "agreement", ""});
+    text += "answers by " + answering(study) + "\n" + table(columns, rows);
+    if (study.learned) text += count_of_answers(study);
     return text;
 }
 

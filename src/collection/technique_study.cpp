@@ -42,80 +42,6 @@ std::string rounder_label(const std::vector<TechniqueObject>& objects, const std
     return best;
 }
 
-/// Rows of a table whose objects are labelled, and their truth.
-struct Labelled {
-    std::vector<std::size_t> rows;
-    std::vector<bool> truth;  ///< of every row of the table; false where there is no label
-    [[nodiscard]] std::size_t positives() const {
-        return static_cast<std::size_t>(std::count_if(rows.begin(), rows.end(), [&](std::size_t row) { return truth[row]; }));
-    }
-    [[nodiscard]] bool enough() const { return positives() >= 2 && rows.size() - positives() >= 2; }
-};
-Labelled labelled(const std::vector<TechniqueObject>& objects, const DescriptorTable& table, const std::string& positive) {
-    Labelled result;
-    for (std::size_t row = 0; row < table.objects.size(); ++row) {
-        const std::string& label = objects[table.objects[row]].label;
-        result.truth.push_back(label == positive);
-        if (!label.empty()) result.rows.push_back(row);
-    }
-    return result;
-}
-
-ClassifierResult validate_classifier(const std::vector<TechniqueObject>& objects, const TechniqueClassifier& classifier,
-                                     const std::string& positive, const TechniqueStudyOptions& options) {
-    ClassifierResult result;
-    result.classifier = classifier;
-    const DescriptorTable table = descriptor_table(objects, classifier.descriptors);
-    const Labelled known = labelled(objects, table, positive);
-    result.objects = known.rows.size();
-    if (!known.enough()) return result;
-    result.validated = true;
-    const auto rows_of = [&](const std::vector<std::size_t>& samples) {
-        std::vector<std::size_t> rows;
-        for (const std::size_t sample : samples) rows.push_back(known.rows[sample]);
-        return rows;
-    };
-    std::vector<bool> truth;
-    for (const std::size_t row : known.rows) truth.push_back(known.truth[row]);
-    CrossValidationOptions folds;
-    folds.folds = options.folds;
-    folds.repeats = options.repeats;
-    folds.seed = options.seed;
-    result.validation = cross_validate(
-        truth,
-        [&](const std::vector<std::size_t>& taught, const std::vector<std::size_t>& asked) {
-            const TechniqueModel model = learn(table.values, known.truth, rows_of(taught));
-            std::vector<bool> answers;
-            for (const std::size_t row : rows_of(asked)) {
-                const double x = table.values(static_cast<Eigen::Index>(row), 0);
-                answers.push_back(model.threshold ? model.threshold->positive(x)
-                                                  : model.score(table.values.row(static_cast<Eigen::Index>(row))) >= 0);
-            }
-            return answers;
-        },
-        folds);
-    std::vector<double> scores(known.rows.size());
-    const TechniqueModel all = learn(table.values, known.truth, known.rows);
-    parallel_for(
-        scores.size(),
-        [&](std::size_t i) {
-            if (all.threshold) {
-                scores[i] = (all.threshold->above ? 1 : -1) * table.values(static_cast<Eigen::Index>(known.rows[i]), 0);
-                return;
-            }
-            std::vector<std::size_t> others = known.rows;
-            others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-            // The weights of the others, but one zero for all: a limit learned without an object shifts against its label.
-            const VectorXd x = table.values.row(static_cast<Eigen::Index>(known.rows[i]));
-            scores[i] = learn(table.values, known.truth, others).weights.dot(x - all.middle);
-        },
-        8);
-    result.roc = roc_curve(scores, truth);
-    result.threshold = all.threshold;
-    if (result.threshold && table.logarithm) result.threshold->value = std::exp(result.threshold->value);
-    return result;
-}
-
 /// 95 % of the mean roundness when blocks of a tenth of the slices are drawn anew (moving blocks, Kuensch 1989: neighbouring
 /// slices are alike).
 std::optional<Interval> roundness_interval(const TechniqueMeasures& measures, std::uint64_t seed, std::size_t object) {
@@ -134,12 +60,22 @@ std::optional<Interval> roundness_interval(const TechniqueMeasures& measures, st
     return Interval{sample_quantile(means, 0.025), sample_quantile(means, 0.975)};
 }
 
+/// What an answer is worth: the agreement tells how stable it is, and the classifier's error how often stable answers are wrong.
+std::string certainty_of(const TechniqueAnswer& answer, const ClassifierResult& by) {
+    if (answer.unlike) return "unlike";
+    if (!by.better) return "not told apart";
+    if (answer.agreement < 0.5) return "undecided";
+    if (answer.agreement >= 0.95 && by.error <= 0.05) return "clear";
+    return answer.agreement >= 0.8 && by.error <= 0.2 ? "likely" : "doubtful";
+}
+
 /// Answers of the chosen classifier, each learned without the object itself.
 void answer_learned(TechniqueStudy& study, const std::vector<TechniqueObject>& objects, const ClassifierResult& chosen,
                     const TechniqueStudyOptions& options) {
     const DescriptorTable table = descriptor_table(objects, chosen.classifier.descriptors);
     const Labelled known = labelled(objects, table, study.positive);
     if (!known.enough()) return;
+    study.separated = chosen.better;
     const std::size_t rows = table.objects.size();
     std::vector<TechniqueModel> models(rows);
     parallel_for(
@@ -171,6 +107,7 @@ void answer_learned(TechniqueStudy& study, const std::vector<TechniqueObject>& o
                 if (!taken[row]) votes[i][row] = model.score(table.values.row(static_cast<Eigen::Index>(row))) >= 0 ? 1 : 0;
         },
         8);
+    const auto unlike = unlike_the_labelled(objects, study.positive, options.unlike_from);
     for (std::size_t row = 0; row < rows; ++row) {
         TechniqueAnswer& answer = study.answers[table.objects[row]];
         answer.score = models[row].score(table.values.row(static_cast<Eigen::Index>(row)));
@@ -183,6 +120,9 @@ void answer_learned(TechniqueStudy& study, const std::vector<TechniqueObject>& o
             if ((vote[row] == 1) == answer.positive) ++same;
         }
         answer.agreement = answer.asked > 0 ? static_cast<double>(same) / answer.asked : 0;
+        answer.unlike = unlike[table.objects[row]];
+        answer.certainty = certainty_of(answer, chosen);
+        if (answer.certainty != "clear" && answer.certainty != "likely" && answer.certainty != "doubtful") answer.answer.clear();
     }
 }
 
@@ -262,23 +202,27 @@ void answer_by_split(TechniqueStudy& study, const TechniqueSplit& split, const s
 
 const std::vector<TechniqueClassifier>& technique_classifiers() {
     static const std::vector<TechniqueClassifier> list{
-        {"roundness", {"roundness mean"}},
-        {"roundness variance", {"roundness variance"}},
-        {"roundness mean and variance", {"roundness mean", "roundness variance"}},
-        {"eccentricity", {"eccentricity mean"}},
-        {"eccentricity variance", {"eccentricity variance"}},
-        {"eccentricity mean and variance", {"eccentricity mean", "eccentricity variance"}},
-        {"both means", {"roundness mean", "eccentricity mean"}},
-        {"both", {"roundness mean", "roundness variance", "eccentricity mean", "eccentricity variance"}},
-        {"equivalent roundness", {"equivalent roundness mean"}},
-        {"ovality", {"ovality"}},
-        {"marks", {"marks"}},
-        {"coherence", {"coherence"}},
-        {"straightness", {"straightness"}},
-        {"upright straightness", {"upright straightness"}},
-        {"wall variation", {"wall variation"}},
-        {"outside", {"ovality", "marks", "coherence", "straightness"}},
-        {"outside and wall", {"ovality", "marks", "coherence", "straightness", "wall variation"}}};
+        {"roundness", {"roundness mean"}, "roundness"},
+        {"roundness variance", {"roundness variance"}, "the variance of roundness"},
+        {"roundness mean and variance", {"roundness mean", "roundness variance"}, "roundness and its variance"},
+        {"eccentricity", {"eccentricity mean"}, "eccentricity"},
+        {"eccentricity variance", {"eccentricity variance"}, "the variance of eccentricity"},
+        {"eccentricity mean and variance", {"eccentricity mean", "eccentricity variance"}, "eccentricity and its variance"},
+        {"both means", {"roundness mean", "eccentricity mean"}, "mean roundness and mean eccentricity"},
+        {"both",
+         {"roundness mean", "roundness variance", "eccentricity mean", "eccentricity variance"},
+         "roundness and eccentricity"},
+        {"equivalent roundness", {"equivalent roundness mean"}, "equivalent roundness"},
+        {"ovality", {"ovality"}, "ovality"},
+        {"marks", {"marks"}, "finger marks"},
+        {"coherence", {"coherence"}, "coherence"},
+        {"straightness", {"straightness"}, "straightness"},
+        {"upright straightness", {"upright straightness"}, "upright straightness"},
+        {"wall variation", {"wall variation"}, "wall variation"},
+        {"outside", {"ovality", "marks", "coherence", "straightness"}, "ovality, marks, coherence and straightness"},
+        {"outside and wall",
+         {"ovality", "marks", "coherence", "straightness", "wall variation"},
+         "ovality, marks, coherence, straightness and wall variation"}};
     return list;
 }
 

@@ -13,22 +13,55 @@ std::string digits(const char* pattern, double value) {
     std::snprintf(text, sizeof text, pattern, value);
     return text;
 }
-std::string percent_of_radius(double share) { return digits("%.2f %% of the radius", 100 * share); }
+std::string percent_of_radius(double share) { return digits("%.3g %% of the radius", 100 * share); }
 
-std::string how_sure(double agreement) { return agreement >= 0.95 ? "clear" : agreement >= 0.8 ? "likely" : "doubtful"; }
+/// A descriptor's value as people read it: variances as deviations, lengths in per cent of the radius.
+std::string shown(const std::string& descriptor, double value) {
+    const bool variance = descriptor.ends_with("variance");
+    const double number = variance ? std::sqrt(std::max(value, 0.0)) : value;
+    if (descriptor == "coherence" || descriptor == "eccentricity mean") return digits("%.3f", number);
+    if (descriptor == "eccentricity variance") return digits("%.2g", number);
+    if (descriptor == "wall variation") return digits("%.2g %% of the thickness", 100 * number);
+    return percent_of_radius(number);
+}
+std::string name_of(const std::string& descriptor) {
+    if (descriptor.ends_with(" variance")) return "deviation of " + descriptor.substr(0, descriptor.size() - 9);
+    if (descriptor.ends_with(" mean")) return descriptor.substr(0, descriptor.size() - 5) + " in the mean";
+    return descriptor;
+}
 
 /// A descriptor's value beside its threshold, and the side of it; nothing where it is not known.
 std::string beside(const TechniqueStudy& study, const TechniqueObject& object, const std::string& classifier,
-                   const std::string& words, bool relative) {
+                   const std::string& words) {
     for (const ClassifierResult& each : study.classifiers) {
         if (each.classifier.name != classifier || !each.threshold) continue;
-        const double value = object.measures.value(each.classifier.descriptors.front());
+        const std::string& descriptor = each.classifier.descriptors.front();
+        const double value = object.measures.value(descriptor);
         if (!std::isfinite(value)) return {};
-        const auto shown = [&](double x) { return relative ? percent_of_radius(x) : digits("%.4g", x); };
-        return words + " " + shown(value) + " (threshold " + shown(each.threshold->value) + ": as " +
+        return words + " " + shown(descriptor, value) + " (threshold " + shown(descriptor, each.threshold->value) + ": as " +
                (each.threshold->positive(value) ? study.positive : study.negative) + ")";
     }
     return {};
+}
+
+std::string unlike_words(const TechniqueOutlier& unlike) {
+    return "unlike the labelled objects, so that no answer is given: " + name_of(unlike.descriptor) + " " +
+           shown(unlike.descriptor, unlike.value) + ", theirs from " + shown(unlike.descriptor, unlike.low) + " to " +
+           shown(unlike.descriptor, unlike.high) + " (" + digits("%.0f", unlike.distance) +
+           " robust standard deviations outside)";
+}
+
+std::string verdict(const TechniqueStudy& study, const TechniqueAnswer& answer, const std::string& by) {
+    if (answer.unlike) return unlike_words(*answer.unlike);
+    if (answer.certainty == "not told apart")
+        return "no answer: " + by + " does not tell " + study.positive + " from " + study.negative + " here";
+    const std::string agree = std::to_string(static_cast<int>(std::lround(answer.agreement * answer.asked))) + " of " +
+                              std::to_string(answer.asked) + " resampled collections agree: " + answer.certainty;
+    const std::string away = digits("%.2g", std::abs(answer.score)) + " standard deviations from the limit";
+    if (answer.answer.empty())
+        return "by " + by + " nearer to " + (answer.positive ? study.positive : study.negative) + ", " + away + ", but only " +
+               agree;
+    return "by " + by + " " + answer.answer + ", " + away + "; " + agree;
 }
 
 std::string explain(const TechniqueStudy& study, const TechniqueObject& object, const TechniqueAnswer& answer) {
@@ -49,19 +82,20 @@ std::string explain(const TechniqueStudy& study, const TechniqueObject& object, 
         return text;
     }
     const std::pair<std::string, std::string> list[] = {{"roundness", "roundness in the mean"},
-                                                        {"roundness variance", "its variance"},
+                                                        {"roundness variance", "its deviation over the slices"},
                                                         {"eccentricity", "eccentricity in the mean"},
-                                                        {"eccentricity variance", "its variance"}};
+                                                        {"eccentricity variance", "its deviation"}};
     for (const auto& [classifier, words] : list) {
-        const std::string part = beside(study, object, classifier, words, classifier == "roundness");
+        const std::string part = beside(study, object, classifier, words);
         if (!part.empty()) text += (text.empty() ? "" : "; ") + part;
     }
-    if (answer.answer.empty())
-        return text + "; no answer by '" + study.answered_by + "': it needs descriptors that are not known here";
-    text += "; by '" + study.answered_by + "' " + answer.answer + ", " + digits("%.2g", std::abs(answer.score)) +
-            " standard deviations from the limit; " +
-            std::to_string(static_cast<int>(std::lround(answer.agreement * answer.asked))) + " of " +
-            std::to_string(answer.asked) + " resampled collections agree: " + how_sure(answer.agreement);
+    std::string by = study.answered_by;
+    for (const ClassifierResult& each : study.classifiers)
+        if (each.classifier.name == study.answered_by) by = each.classifier.words;
+    if (answer.certainty.empty())
+        return text + (text.empty() ? "" : "; ") + "no answer by " + by + ": it needs descriptors that are not known here";
+    text += "; " + verdict(study, answer, by);
+    if (answer.answer.empty()) return text;
     for (const ClassifierResult& each : study.classifiers) {
         if (each.classifier.name != "roundness" || !each.threshold || !answer.roundness) continue;
         if (answer.roundness->low < each.threshold->value && answer.roundness->high > each.threshold->value)

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 
 namespace ostraka {
 
@@ -14,7 +15,8 @@ namespace {
 
 using namespace report;
 
-constexpr double row_height = 17, tree_width = 460, name_size = 12, largest_name = 220;
+constexpr double row_height = 17, tree_width = 460, name_size = 12, largest_name = 220, number_size = 10.5;
+constexpr Rgb between{130, 130, 130}, cut_colour{200, 30, 30};
 
 void check(const Dendrogram& d) {
     if (d.tree.samples < 1) fail_input("dendrogram", "the tree has no samples", "give at least one");
@@ -31,8 +33,9 @@ void check(const Dendrogram& d) {
                            "each cluster is merged once, after it was made");
             merged[static_cast<std::size_t>(child)] = true;
         }
-    if (d.names.size() != n || (!d.classes.empty() && d.classes.size() != n))
-        fail_usage("the names or classes of a dendrogram do not fit its " + std::to_string(n) + " samples", "give one a sample");
+    if (d.names.size() != n || (!d.classes.empty() && d.classes.size() != n) || (!d.groups.empty() && d.groups.size() != n))
+        fail_usage("the names, classes or groups of a dendrogram do not fit its " + std::to_string(n) + " samples",
+                   "give one a sample");
 }
 
 std::string draw(const Dendrogram& d, Sheet::Format format) {
@@ -47,13 +50,14 @@ std::string draw(const Dendrogram& d, Sheet::Format format) {
         Sheet measure(10, 10);
         for (const std::string& name : d.names)
             names = std::max(names, std::min(largest_name, measure.width_of(name, name_size)));
-        for (const auto& [name, index] : classes) legend = std::max(legend, 34 + measure.width_of(name));
+        for (const auto& [name, index] : classes)
+            legend = std::max({legend, 34 + measure.width_of(name), measure.width_of("known answers")});
         legend = std::max(legend, measure.width_of(d.title) - names - tree_width);
     }
     const double mark = classes.empty() ? 0 : 16, left = margin + names + 8 + mark, right = left + tree_width;
-    const double top = margin + 2 * text_size, bottom = top + static_cast<double>(n) * row_height;
+    const double top = margin + (d.cut_label.empty() ? 2 : 3) * text_size, bottom = top + static_cast<double>(n) * row_height;
     const double height =
-        std::max(bottom + 3.4 * text_size, top + (static_cast<double>(classes.size()) + 1) * 1.6 * text_size) + margin;
+        std::max(bottom + 3.4 * text_size, top + (static_cast<double>(classes.size()) + 2) * 1.6 * text_size) + margin;
     Sheet sheet(right + 2 * margin + legend, height, format);
     sheet.text(d.title, margin, margin + 0.8 * text_size, 0);
 
@@ -72,7 +76,7 @@ std::string draw(const Dendrogram& d, Sheet::Format format) {
     sheet.text(d.label, (left + right) / 2, bottom + 2.9 * text_size, 0.5);
 
     const std::vector<int> leaves = leaf_order(d.tree);
-    const std::vector<int> clusters = d.cut ? cut_at(d.tree, *d.cut) : std::vector<int>(n, -1);
+    const std::vector<int> clusters = !d.groups.empty() ? d.groups : d.cut ? cut_at(d.tree, *d.cut) : std::vector<int>(n, -1);
     std::vector<double> place(2 * n), at(2 * n, 0.0);
     std::vector<int> cluster(2 * n, -1);
     for (std::size_t r = 0; r < leaves.size(); ++r) {
@@ -86,21 +90,41 @@ std::string draw(const Dendrogram& d, Sheet::Format format) {
             sheet.mark(left - 10, place[leaf], of, series_colour(of));
         }
     }
-    const auto colour = [&](int of) { return of < 0 ? ink : category_colour(static_cast<std::size_t>(of)); };
+    const auto draw_branch = [&](int of, double x1, double y1, double x2, double y2) {
+        const Rgb colour = of < 0 ? between : classes.empty() ? category_colour(static_cast<std::size_t>(of)) : ink;
+        sheet.line(x1, y1, x2, y2, colour, of < 0 ? 1.2 : 2);
+    };
+    // The number of a group stands at the branch that leaves it.
+    std::vector<std::tuple<double, double, int>> numbers;
     for (std::size_t m = 0; m < d.tree.merges.size(); ++m) {
         const Merge& merge = d.tree.merges[m];
         const auto a = static_cast<std::size_t>(merge.first), b = static_cast<std::size_t>(merge.second);
         const double to = x(merge.height);
-        const bool below = d.cut && merge.height <= *d.cut;
-        cluster[n + m] = below ? cluster[a] : -1;
-        for (const std::size_t child : {a, b})
-            sheet.line(x(at[child]), place[child], to, place[child], colour(below ? cluster[child] : -1), 1.5);
-        sheet.line(to, place[a], to, place[b], colour(cluster[n + m]), 1.5);
+        cluster[n + m] = cluster[a] == cluster[b] ? cluster[a] : -1;
+        for (const std::size_t child : {a, b}) {
+            draw_branch(cluster[n + m], x(at[child]), place[child], to, place[child]);
+            if (cluster[child] >= 0 && cluster[n + m] < 0) numbers.emplace_back(x(at[child]), place[child], cluster[child]);
+        }
+        draw_branch(cluster[n + m], to, place[a], to, place[b]);
         place[n + m] = (place[a] + place[b]) / 2;
         at[n + m] = merge.height;
     }
-    if (d.cut) sheet.line(x(*d.cut), top - 4, x(*d.cut), bottom, {200, 30, 30}, 1.2, true);
+    if (cluster[2 * n - 2] >= 0) numbers.emplace_back(x(at[2 * n - 2]), place[2 * n - 2], cluster[2 * n - 2]);
+    for (const auto& [px, py, of] : numbers) {
+        const std::string words = "group " + std::to_string(of + 1);
+        const double begin = std::min(px + 4, right - sheet.width_of(words, number_size) - 2);
+        sheet.rectangle({begin - 2, py - number_size / 2, begin + sheet.width_of(words, number_size) + 2, py + number_size / 2},
+                        paper);
+        sheet.text(words, begin, py + 0.35 * number_size, 0, number_size);
+    }
+    if (d.cut) {
+        sheet.line(x(*d.cut), top - 4, x(*d.cut), bottom, cut_colour, 1.2, true);
+        const double half = sheet.width_of(d.cut_label, number_size) / 2;
+        sheet.text(d.cut_label, std::clamp(x(*d.cut), left + half, std::max(left + half, right - half)), top - 6, 0.5,
+                   number_size, cut_colour);
+    }
     double row = top + 0.8 * text_size;
+    if (!classes.empty()) sheet.text("known answers", right + margin, row + 0.35 * text_size, 0), row += 1.6 * text_size;
     for (const auto& [name, index] : classes) {
         sheet.mark(right + margin + 13, row, index, series_colour(index));
         sheet.text(name.empty() ? "not known" : name, right + margin + 26, row + 0.35 * text_size, 0);

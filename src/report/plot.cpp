@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace ostraka {
 
@@ -15,6 +14,7 @@ namespace {
 using namespace report;
 
 constexpr double label_size = 10.5;
+constexpr Rgb leader{150, 150, 150};
 
 void check(const Plot& plot) {
     for (const PlotSeries& series : plot.series) {
@@ -44,7 +44,7 @@ public:
         if (series.mark == Mark::bars) return;
         std::vector<std::array<double, 2>> run;
         const auto end_run = [&] {
-            if (series.joined && run.size() > 1) sheet_.polyline(run, colour, series.dashed);
+            if (series.joined && run.size() > 1) sheet_.polyline(run, colour, series.dashed, series.thickness);
             run.clear();
         };
         for (const auto& point : series.points) {
@@ -62,33 +62,16 @@ public:
             }
     }
 
-    /// After all marks: each label where it covers least of what is there.
-    void draw_labels(const Box& area) {
+    /// After all marks: each label near its point where it covers nothing, farther ones with a line to it. Labels that find no
+    /// room are left out; returns their number.
+    std::size_t draw_labels(const Box& area) {
+        std::size_t left_out = 0;
         for (const PlotSeries& series : plot_.series)
-            for (std::size_t i = 0; i < series.labels.size(); ++i) {
-                if (series.labels[i].empty() || !placed(series.points[i])) continue;
-                const std::string words = sheet_.fitted(series.labels[i], 140, label_size);
-                const double width = sheet_.width_of(words, label_size), height = label_size;
-                const auto [px, py] = pixel(series.points[i]);
-                Box best;
-                int least = std::numeric_limits<int>::max();
-                for (const auto& [dx, dy] : {std::array{6.0, -height / 2},
-                                             {6.0, -height - 4},
-                                             {6.0, 4.0},
-                                             {-6.0 - width, -height / 2},
-                                             {-6.0 - width, -height - 4},
-                                             {-6.0 - width, 4.0},
-                                             {-width / 2, -height - 6},
-                                             {-width / 2, 6.0}}) {
-                    const Box box{px + dx, py + dy, px + dx + width, py + dy + height};
-                    int covered =
-                        box.left < area.left || box.right > area.right || box.top < area.top || box.bottom > area.bottom ? 3 : 0;
-                    for (const Box& other : taken_) covered += box.meets(other) ? 1 : 0;
-                    if (covered < least) least = covered, best = box;
-                }
-                taken_.push_back(best);
-                sheet_.text(words, best.left, best.bottom - 0.15 * height, 0, label_size);
-            }
+            for (std::size_t i = 0; i < series.labels.size(); ++i)
+                if (!series.labels[i].empty() && placed(series.points[i]) &&
+                    !draw_label(sheet_.fitted(series.labels[i], 140, label_size), pixel(series.points[i]), area))
+                    ++left_out;
+        return left_out;
     }
 
 private:
@@ -101,6 +84,31 @@ private:
     [[nodiscard]] double bar_width() const {
         return std::min(60.0,
                         0.8 * std::abs(x_.pixel(plot_.x.logarithmic ? 10 : 1) - x_.pixel(plot_.x.logarithmic ? 1 : 0)) / bars_);
+    }
+    bool draw_label(const std::string& words, const std::array<double, 2>& at, const Box& area) {
+        const double width = sheet_.width_of(words, label_size), height = label_size;
+        const auto [px, py] = at;
+        for (const double away : {6.0, 14.0, 26.0, 40.0}) {
+            const double slant = 0.7 * away;
+            for (const auto& [dx, dy] : {std::array{away, -height / 2},
+                                         {slant, -height - slant},
+                                         {slant, slant},
+                                         {-away - width, -height / 2},
+                                         {-slant - width, -height - slant},
+                                         {-slant - width, slant},
+                                         {-width / 2, -height - away},
+                                         {-width / 2, away}}) {
+                const Box box{px + dx, py + dy, px + dx + width, py + dy + height};
+                if (box.left < area.left || box.right > area.right || box.top < area.top || box.bottom > area.bottom) continue;
+                if (std::any_of(taken_.begin(), taken_.end(), [&](const Box& other) { return box.meets(other); })) continue;
+                taken_.push_back(box);
+                if (away > 6)
+                    sheet_.line(px, py, std::clamp(px, box.left, box.right), std::clamp(py, box.top, box.bottom), leader, 0.7);
+                sheet_.text(words, box.left, box.bottom - 0.15 * height, 0, label_size);
+                return true;
+            }
+        }
+        return false;
     }
     void draw_bars(const PlotSeries& series, const Rgb& colour) {
         const double width = bar_width(), base = y_.pixel(y_.inside(0) && !plot_.y.logarithmic ? 0 : y_.lowest());
@@ -142,7 +150,7 @@ void draw_legend(Sheet& sheet, const Plot& plot, double left, double top) {
         if (series.name.empty()) continue;
         const Rgb colour = series_colour(series.colour.value_or(i));
         if (series.mark == Mark::bars) sheet.rectangle({left + 6, row - 6, left + 20, row + 6}, colour);
-        else if (series.joined) sheet.polyline({{left, row}, {left + 26, row}}, colour, series.dashed);
+        else if (series.joined) sheet.polyline({{left, row}, {left + 26, row}}, colour, series.dashed, series.thickness);
         if (series.mark == Mark::dots && series.marked) {
             if (series.joined) sheet.dot(left + 13, row, colour);
             else sheet.mark(left + 13, row, series.colour.value_or(i), colour);
@@ -155,11 +163,13 @@ void draw_legend(Sheet& sheet, const Plot& plot, double left, double top) {
 std::string draw(const Plot& plot, Sheet::Format format) {
     check(plot);
     Ruler x(plot, 0), y(plot, 1);
+    const double longest_below = std::max(180.0, 0.45 * plot.height);
     double widest_tick = 0, widest_name = 0, widest_below = 0;
     {
         Sheet measure(10, 10);
         for (const Tick& tick : y.ticks()) widest_tick = std::max(widest_tick, std::min(180.0, measure.width_of(tick.text)));
-        for (const Tick& tick : x.ticks()) widest_below = std::max(widest_below, std::min(180.0, measure.width_of(tick.text)));
+        for (const Tick& tick : x.ticks())
+            widest_below = std::max(widest_below, std::min(longest_below, measure.width_of(tick.text)));
         for (const PlotSeries& series : plot.series) widest_name = std::max(widest_name, measure.width_of(series.name));
     }
     const double left = margin + 1.6 * text_size + widest_tick + 8, top = margin + 1.8 * text_size;
@@ -184,7 +194,7 @@ std::string draw(const Plot& plot, Sheet::Format format) {
     for (const Tick& tick : x.ticks()) {
         const double at = x.pixel(tick.value);
         if (plot.x.names.empty()) sheet.line(at, top, at, bottom, pale, 1);
-        if (upright) sheet.upward_text(sheet.fitted(tick.text, 180), at + 0.35 * text_size, bottom + 6, 1);
+        if (upright) sheet.upward_text(sheet.fitted(tick.text, longest_below), at + 0.35 * text_size, bottom + 6, 1);
         else sheet.text(sheet.fitted(tick.text, 180), at, bottom + 1.4 * text_size, 0.5);
     }
     for (const Tick& tick : y.ticks()) {
@@ -200,15 +210,15 @@ std::string draw(const Plot& plot, Sheet::Format format) {
 
     const Box area{left, top, right, bottom};
     sheet.clip({left, top - 5, right + 5, bottom + 5});
+    Drawing drawing(sheet, plot, x, y);
+    for (std::size_t i = 0; i < plot.series.size(); ++i) drawing.draw(i);
     for (const PlotLine& mark : plot.lines) {
         if (!has_place(mark.upright ? plot.x : plot.y, mark.value)) continue;
         const double at = (mark.upright ? x : y).pixel(mark.value);
         if (mark.upright) sheet.line(at, top, at, bottom, ink, 1, true);
         else sheet.line(left, at, right, at, ink, 1, true);
     }
-    Drawing drawing(sheet, plot, x, y);
-    for (std::size_t i = 0; i < plot.series.size(); ++i) drawing.draw(i);
-    drawing.draw_labels(area);
+    const std::size_t unnamed = drawing.draw_labels(area);
     for (const PlotLine& mark : plot.lines) {
         if (mark.label.empty() || !has_place(mark.upright ? plot.x : plot.y, mark.value)) continue;
         const double at = (mark.upright ? x : y).pixel(mark.value), length = sheet.width_of(mark.label, label_size);
@@ -221,6 +231,9 @@ std::string draw(const Plot& plot, Sheet::Format format) {
         }
     }
     sheet.unclip();
+    if (unnamed > 0)
+        sheet.text(std::to_string(unnamed) + (unnamed == 1 ? " name finds" : " names find") + " no room", right,
+                   margin + 0.8 * text_size, 1, label_size);
     return sheet.finish();
 }
 

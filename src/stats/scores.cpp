@@ -185,12 +185,16 @@ CrossValidation cross_validate(const std::vector<bool>& truth, const Learner& le
         const ConfusionScores scores = confusion(said, truth);
         if (result.f1.empty()) result.first = scores;
         result.f1.push_back(scores.f1());
+        result.mean_precision += scores.precision() / static_cast<double>(repeats);
+        result.mean_recall += scores.recall() / static_cast<double>(repeats);
+        result.mean_accuracy += scores.accuracy() / static_cast<double>(repeats);
         for (std::size_t i = 0; i < truth.size(); ++i) result.positive[i] += said[i] ? 1 : 0;
     }
     for (double& share_of : result.positive) share_of /= static_cast<double>(repeats);
     const Summary summary = summarise(result.f1, "F1");
     result.mean_f1 = summary.mean;
     result.deviation = summary.deviation.value_or(0);
+    result.answers = std::move(answers);
     return result;
 }
 

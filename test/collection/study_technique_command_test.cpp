@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 namespace ostraka {
 namespace {
 using test::run_command;
@@ -115,6 +117,68 @@ TEST(StudyTechniqueCommand, RefusesWhatMakesNoSense) {
     EXPECT_EQ(run_command("study technique " + (scratch / "nowhere").string() + " --output " + (scratch / "o").string()).code, 1);
     // Nothing can be used: all slices lie above the objects' lower parts.
     EXPECT_EQ(run_command(start + " --least-slices 101").code, 1);
+}
+
+TEST(StudyTechniqueCommand, SaysWhereAClassifierTellsNothing) {
+    Scratch scratch;
+    const std::string folder = (scratch / "alike").string();
+    ASSERT_EQ(run_command("study make technique " + folder + " --objects 16 --level 5 --vertices 4000 --seed 7").code, 0);
+    const auto result = run_command("study technique " + folder + " --truth " + folder + "/truth.csv --output " +
+                                    (scratch / "out").string() + " --answer-by \"eccentricity mean and variance\"");
+    EXPECT_EQ(result.code, 3) << result.err;
+    EXPECT_NE(result.out.find("this classifier does not tell them apart here"), std::string::npos) << result.out;
+    EXPECT_NE(result.out.find("0.667"), std::string::npos) << "the F1 of calling all of them wheel-made";
+    EXPECT_EQ(result.out.find("clear"), std::string::npos) << result.out;
+}
+
+TEST(StudyTechniqueCommand, ForeignObjectsGetNoAnswer) {
+    Scratch scratch;
+    const Path folder = scratch / "mixed", out = scratch / "out";
+    std::filesystem::copy(population(), folder);
+    ASSERT_EQ(run_command("mesh make hand " + (folder / "hand.ply").string() + " --vertices 5000").code, 0);
+    const auto result = run_command("study technique " + folder.string() + " --truth " + (folder / "truth.csv").string() +
+                                    " --answer-by roundness --output " + out.string());
+    EXPECT_EQ(result.code, 0) << result.err;
+    EXPECT_NE(result.err.find("no upward direction is known, z is taken"), std::string::npos) << result.err;
+    EXPECT_NE(result.out.find("8 of 8 right\nunlike the labelled objects"), std::string::npos) << result.out;
+    const Json report = read_json(out / "technique.json");
+    validate(report, "technique", "technique.json");
+    for (const auto& object : report["objects"].GetArray())
+        EXPECT_EQ(object.HasMember("unlike"), std::string(object["name"].GetString()) == "hand");
+    EXPECT_NE(read_file(out / "roundness.svg").find("<svg"), std::string::npos);
+}
+
+TEST(StudyTechniqueCommand, SaysWhereTheOptionOverridesTheAnnotations) {
+    Scratch scratch;
+    const std::string start = "study technique " + population().string() + " --output ";
+    const auto same = run_command(start + (scratch / "same").string() + " --up 0,0,2");
+    EXPECT_EQ(same.err.find("--up is taken"), std::string::npos) << same.err;
+    EXPECT_EQ(same.err.find("is known"), std::string::npos) << same.err;
+    for (int run = 0; run < 2; ++run) {  // also where the results are kept from an earlier run
+        const auto other = run_command(start + (scratch / "other").string() + " --up 0,0.2,1");
+        EXPECT_NE(other.err.find("--up is taken, though the annotations have another"), std::string::npos) << other.err;
+    }
+}
+
+TEST(StudySegmentsCommand, SaysWhichClustersHaveNoSegment) {
+    Scratch scratch;
+    const Path mesh = population() / "statuette-1.ply", out = scratch / "segments.ant.json";
+    for (const int least : {1, 30}) {
+        const std::string words = "study segments " + mesh.string() + " " + out.string() + " --size --clusters 6 --unit mm " +
+                                  "--least-run " + std::to_string(least);
+        const auto result = run_command(words);
+        ASSERT_EQ(result.code, 0) << result.err;
+        const auto report = run_command(words + " --json");
+        std::set<int> clusters;
+        const Json json = parse_json(report.out, "report");
+        for (const auto& each : json["result"]["segments"].GetArray()) clusters.insert(each["cluster"].GetInt());
+        EXPECT_EQ(result.out.find("of the 6 clusters") != std::string::npos, clusters.size() < 6) << result.out;
+        EXPECT_EQ(clusters.size() == 6, least == 1);
+        EXPECT_EQ(result.out.find("one cluster, and so one colour") != std::string::npos,
+                  json["result"]["segments"].Size() > clusters.size());
+        EXPECT_NE(result.out.find("area mm^2"), std::string::npos) << result.out;
+        EXPECT_EQ(read_annotations(out, read_mesh(mesh).mesh).unit, "mm");
+    }
 }
 
 TEST(StudySegmentsCommand, WritesRegionsAndComparesThem) {

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -188,6 +189,89 @@ TEST(TechniqueStudy, ChanceIsNotTakenForKnowledge) {
     int doubtful = 0;
     for (const TechniqueAnswer& each : study.answers) doubtful += each.agreement < 0.95 ? 1 : 0;
     EXPECT_GT(doubtful, 60);
+}
+
+TEST(TechniqueStudy, WhatTellsNothingApartGivesNoAnswers) {
+    int told = 0;
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        const TechniqueStudy study = study_technique(drawn(24, 0, true, seed));
+        for (const ClassifierResult& each : study.classifiers) {
+            EXPECT_DOUBLE_EQ(each.trivial_f1, 2.0 / 3);
+            EXPECT_LE(each.f1_interval.low, each.validation.mean_f1);
+            EXPECT_GE(each.f1_interval.high, each.validation.mean_f1);
+        }
+        if (study.separated) ++told;
+        else
+            for (const TechniqueAnswer& each : study.answers) {
+                EXPECT_TRUE(each.answer.empty());
+                EXPECT_TRUE(each.unlike || each.certainty == "not told apart") << each.certainty;
+            }
+    }
+    EXPECT_LE(told, 1);
+}
+
+TEST(TechniqueStudy, NoAnswerIsSurerThanTheClassifier) {
+    const TechniqueStudy study = study_technique(drawn(100, 1.6, true));
+    const auto both = std::find_if(study.classifiers.begin(), study.classifiers.end(),
+                                   [](const ClassifierResult& each) { return each.classifier.name == "both"; });
+    ASSERT_TRUE(study.separated);
+    ASSERT_GT(both->error, 0.05);
+    int stable = 0;
+    for (const TechniqueAnswer& each : study.answers) {
+        EXPECT_NE(each.certainty, "clear");
+        EXPECT_EQ(each.certainty == "undecided", !each.unlike && each.agreement < 0.5);
+        EXPECT_EQ(each.answer.empty(), each.certainty == "undecided" || each.certainty == "unlike");
+        if (each.agreement >= 0.95 && !each.answer.empty()) ++stable;
+    }
+    EXPECT_GT(stable, 50);
+    // Of 60 that are told without an error one in 62 may be wrong; of 4 one in 6.
+    EXPECT_NEAR(study_technique(drawn(60, 8, true)).classifiers.front().error, 1.0 / 62, 1e-12);
+    const TechniqueStudy few = study_technique(drawn(4, 30, true));
+    for (const TechniqueAnswer& each : few.answers) EXPECT_NE(each.certainty, "clear");
+}
+
+TEST(TechniqueStudy, WhatIsUnlikeTheLabelledIsNotAnswered) {
+    auto objects = drawn(40, 6, true);
+    TechniqueObject between = objects[0], far = objects[0];
+    between.name = "between", far.name = "far";
+    between.label = far.label = "";
+    // Medians are exp(0) and exp(0.3 * 6) hundredths.
+    for (auto& each : between.measures.descriptors) each.value = 0.01 * std::exp(0.3 * 3.2);
+    for (auto& each : far.measures.descriptors)
+        if (each.name == "marks") each.value = 0.01 * std::exp(0.3 * 20);
+    objects.push_back(between);
+    objects.push_back(far);
+    const TechniqueStudy study = study_technique(objects);
+    for (std::size_t i = 0; i < 40; ++i) EXPECT_EQ(study.answers[i].answer, study.answers[i].label);
+    EXPECT_FALSE(study.answers[40].unlike);
+    ASSERT_TRUE(study.answers[41].unlike);
+    EXPECT_EQ(study.answers[41].unlike->descriptor, "marks");
+    EXPECT_EQ(study.answers[41].certainty, "unlike");
+    EXPECT_TRUE(study.answers[41].answer.empty());
+    EXPECT_NE(study.answers[41].words.find("unlike the labelled objects"), std::string::npos) << study.answers[41].words;
+    EXPECT_NE(study.answers[41].words.find("marks"), std::string::npos);
+    TechniqueStudyOptions all;
+    all.unlike_from = 1e6;
+    EXPECT_FALSE(study_technique(objects, all).answers[41].unlike);
+}
+
+TEST(TechniqueStudy, FewOfOnePopulationAreTakenForUnlike) {
+    int unlike = 0, asked = 0;
+    for (const int count : {8, 16, 40, 100})
+        for (std::uint64_t seed = 1; seed <= 5; ++seed)
+            for (const TechniqueAnswer& each : study_technique(drawn(count, 2, true, seed)).answers) {
+                ++asked;
+                unlike += each.unlike ? 1 : 0;
+            }
+    EXPECT_LT(unlike, 0.01 * asked);
+}
+
+TEST(TechniqueStudy, ReasonsGiveDeviationsInPerCentOfTheRadius) {
+    const TechniqueStudy study = study_technique(drawn(40, 6, true));
+    for (const TechniqueAnswer& each : study.answers) {
+        EXPECT_NE(each.words.find("its deviation over the slices "), std::string::npos) << each.words;
+        EXPECT_EQ(each.words.find("e-0"), std::string::npos) << each.words;
+    }
 }
 
 TEST(TechniqueStudy, TogetherDescriptorsTellMoreThanOne) {

@@ -102,6 +102,38 @@ TEST(Plot, LabelsAndIntervalsAreOneAPoint) {
     EXPECT_THROW(svg_bytes(plot), Error);
 }
 
+/// A plot of the unit square with points and labels of white, so that nothing but names is ink in its area.
+Plot labelled(const std::vector<std::array<double, 2>>& points, const std::string& words) {
+    Plot plot{"", {"x", false, 0.0, 1.0}, {"y", false, 0.0, 1.0}, {{"", points}}};
+    plot.series[0].joined = false;
+    plot.series[0].labels.assign(points.size(), words);
+    return plot;
+}
+
+TEST(Plot, LabelsAreNeitherCutNorOverEachOther) {
+    const auto dark = [](const Picture& picture) {
+        double sum = 0;
+        for (const std::uint32_t pixel : picture.argb) {
+            const int red = pixel >> 16 & 0xff, green = pixel >> 8 & 0xff, blue = pixel & 0xff;
+            if (std::max({red, green, blue}) - std::min({red, green, blue}) < 20) sum += 255 - red;
+        }
+        return sum;
+    };
+    const std::array<double, 2> middle{0.55, 0.55};
+    const auto ink_of = [&](const std::vector<std::array<double, 2>>& points) {
+        return dark(picture_of(labelled(points, "a long name of it"))) - dark(picture_of(labelled(points, "")));
+    };
+    const double one = ink_of({middle});
+    ASSERT_GT(one, 1000);
+    for (const auto& corner : {std::array{0.0, 0.0}, std::array{0.0, 1.0}, std::array{1.0, 0.0}, std::array{1.0, 1.0}})
+        EXPECT_NEAR(ink_of({corner}) / one, 1, 0.1) << corner[0] << " " << corner[1];
+    EXPECT_NEAR(ink_of({middle, {0.55, 0.551}}) / one, 2, 0.2);
+    // Of a thousand in one place a few find room, and a line says how many do not.
+    const double many = ink_of(std::vector<std::array<double, 2>>(1000, middle));
+    EXPECT_GT(many, 3 * one);
+    EXPECT_LT(many, 60 * one);
+}
+
 TEST(Plot, NamesFromOutsideStayText) {
     Plot plot = simple();
     plot.title = "</svg><script>alert(1)</script> \xff\xfe \x01 \n";
@@ -165,10 +197,18 @@ TEST(DendrogramPicture, OfTreesOfAnySize) {
     Dendrogram tree{"tree", average_linkage(distance_matrix(places)), {"a", "b", "c", "d"}};
     EXPECT_EQ(svg_bytes(tree), svg_bytes(tree));
     tree.cut = 2.5;
+    for (const std::size_t colour : {0u, 1u}) EXPECT_GT(count(picture_of(tree), category_colour(colour)), 100u);
+    tree.cut_label = "epsilon 2.5";
     tree.classes = {"one", "two", "one", ""};
+    for (const std::size_t colour : {0u, 1u})
+        EXPECT_EQ(count(picture_of(tree), category_colour(colour)), 0u) << "the colours are those of the classes alone";
+    tree.classes.clear();
+    tree.groups = {1, 0, 1, 0};
     const Picture picture = picture_of(tree);
-    EXPECT_GT(count(picture, category_colour(0)), 100u);
     EXPECT_GT(count(picture, category_colour(1)), 100u);
+    EXPECT_GT(count(picture, category_colour(0)), 100u);
+    tree.groups = {1, 0};
+    EXPECT_THROW(svg_bytes(tree), Error);
     EXPECT_NO_THROW(svg_bytes(Dendrogram{"", average_linkage(Eigen::MatrixXd::Zero(1, 1)), {"alone"}}));
     EXPECT_NO_THROW(svg_bytes(Dendrogram{"", average_linkage(Eigen::MatrixXd::Zero(3, 3)), {"a", "a", "a"}}));
 }

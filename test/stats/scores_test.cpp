@@ -343,5 +343,22 @@ TEST(ClusterStability, OfRealAndOfArbitraryClusters) {
     EXPECT_THROW(cluster_stability({0, 0}, [](const auto&) { return std::vector<int>(); }), Error);
 }
 
+TEST(CrossValidation, PrecisionAndRecallAreMeansOverTheRepeats) {
+    std::vector<double> values;
+    std::vector<bool> truth;
+    for (int i = 0; i < 30; ++i) values.push_back((i * 7) % 30 + (i % 2) * 6), truth.push_back(i % 2 == 1);
+    const CrossValidation result = cross_validate_threshold(values, truth);
+    ASSERT_EQ(result.answers.size(), 10u);
+    double precision = 0, recall = 0, accuracy = 0;
+    for (std::size_t r = 0; r < result.answers.size(); ++r) {
+        const ConfusionScores scores = confusion(result.answers[r], truth);
+        EXPECT_EQ(scores.f1(), result.f1[r]);
+        precision += scores.precision() / 10, recall += scores.recall() / 10, accuracy += scores.accuracy() / 10;
+    }
+    EXPECT_NEAR(result.mean_precision, precision, 1e-12);
+    EXPECT_NEAR(result.mean_recall, recall, 1e-12);
+    EXPECT_NEAR(result.mean_accuracy, accuracy, 1e-12);
+}
+
 }  // namespace
 }  // namespace ostraka

@@ -28,6 +28,7 @@ struct PlotSeries {
     std::vector<std::string> labels = {};                              ///< written beside the points; empty, or one a point
     std::vector<std::optional<std::array<double, 2>>> intervals = {};  ///< low and high y of each point, or none
     std::optional<std::size_t> colour = {};                            ///< number of its colour; else the series' own number
+    double thickness = 1.8;                                            ///< of the line
     Mark mark = Mark::dots;                                            ///< bars stand on y = 0, or on the axis' lower end
 };
 

@@ -71,8 +71,10 @@ struct CrossValidationOptions {
 struct CrossValidation {
     std::vector<double> f1;             ///< of each repeat, over all samples, each answered when it was left out
     double mean_f1 = 0, deviation = 0;  ///< over the repeats; deviation 0 for one
-    ConfusionScores first;              ///< of the first repeat
-    std::vector<double> positive;       ///< a share of repeats a sample: how often it was called positive
+    double mean_precision = 0, mean_recall = 0, mean_accuracy = 0;  ///< over the same repeats
+    ConfusionScores first;                                          ///< of the first repeat
+    std::vector<std::vector<bool>> answers;                         ///< a list a repeat: what each sample was called
+    std::vector<double> positive;  ///< a share of repeats a sample: how often it was called positive
 };
 
 /// Answers for `asked` samples of what was learned from `known` ones.

@@ -1,0 +1,77 @@
+// Objects unlike those that a classifier was taught by.
+#include "technique_model.h"
+
+#include "ostraka/core/parallel.h"
+#include "ostraka/stats/summary.h"
+
+#include <cmath>
+
+namespace ostraka {
+
+namespace {
+
+/// Differences that say nothing, however alike the labelled objects are: a twentieth.
+constexpr double least_spread = 0.05;
+
+/// On the scale on which distances are taken: logarithms, of the ratio of sides that of what is missing to 1. Coherence is not
+/// compared: it has bounds, and near them no scale.
+bool compared(const DescriptorMeaning& descriptor) { return descriptor.name != "coherence"; }
+double on_scale(const DescriptorMeaning& descriptor, double table_value) {
+    return descriptor.positive ? table_value : std::log(std::max(1 - table_value, 1e-3));
+}
+double from_scale(const DescriptorMeaning& descriptor, double value) {
+    return descriptor.positive ? std::exp(value) : 1 - std::exp(value);
+}
+
+/// Values of one descriptor of the labelled objects, by kind.
+struct Known {
+    std::vector<double> values[2];
+    [[nodiscard]] bool enough() const { return std::min(values[0].size(), values[1].size()) >= least_compared; }
+};
+
+/// Distance of `x` from the nearer median, outwards, in robust standard deviations about the medians (Rousseeuw and Croux 1993),
+/// widened by 5 / n for the uncertainty of few values.
+double distance_outside(const Known& known, double x) {
+    const double medians[2]{sample_quantile(known.values[0], 0.5), sample_quantile(known.values[1], 0.5)};
+    std::vector<double> away;
+    for (int kind = 0; kind < 2; ++kind)
+        for (const double value : known.values[kind]) away.push_back(std::abs(value - medians[kind]));
+    const double n = static_cast<double>(away.size());
+    const double spread = std::max(least_spread, 1.4826 * sample_quantile(std::move(away), 0.5)) * (1 + 5 / n);
+    return std::max({0.0, std::min(medians[0], medians[1]) - x, x - std::max(medians[0], medians[1])}) / spread;
+}
+
+}  // namespace
+
+std::vector<std::optional<TechniqueOutlier>> unlike_the_labelled(const std::vector<TechniqueObject>& objects,
+                                                                 const std::string& positive, double unlike_from) {
+    std::vector<std::optional<TechniqueOutlier>> result(objects.size());
+    for (const DescriptorMeaning& descriptor : technique_descriptors()) {
+        if (!compared(descriptor)) continue;
+        const DescriptorTable table = descriptor_table(objects, {descriptor.name});
+        const Labelled known = labelled(objects, table, positive);
+        parallel_for(
+            table.objects.size(),
+            [&](std::size_t row) {
+                const auto value = [&](std::size_t of) {
+                    return on_scale(descriptor, table.values(static_cast<Eigen::Index>(of), 0));
+                };
+                Known others;
+                for (const std::size_t other : known.rows)
+                    if (other != row) others.values[known.truth[other] ? 1 : 0].push_back(value(other));
+                if (!others.enough()) return;
+                const double distance = distance_outside(others, value(row));
+                auto& most = result[table.objects[row]];
+                if (distance < unlike_from || (most && most->distance >= distance)) return;
+                std::vector<double> all = others.values[0];
+                all.insert(all.end(), others.values[1].begin(), others.values[1].end());
+                for (double& each : all) each = from_scale(descriptor, each);
+                const auto [low, high] = std::minmax_element(all.begin(), all.end());
+                most = TechniqueOutlier{descriptor.name, from_scale(descriptor, value(row)), *low, *high, distance};
+            },
+            8);
+    }
+    return result;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,110 @@
+// How well a classifier tells objects that it was not taught.
+#include "technique_model.h"
+
+#include "ostraka/core/parallel.h"
+#include "ostraka/stats/random.h"
+#include "ostraka/stats/summary.h"
+
+#include <cmath>
+
+namespace ostraka {
+
+using Eigen::VectorXd;
+
+Labelled labelled(const std::vector<TechniqueObject>& objects, const DescriptorTable& table, const std::string& positive) {
+    Labelled result;
+    for (std::size_t row = 0; row < table.objects.size(); ++row) {
+        const std::string& label = objects[table.objects[row]].label;
+        result.truth.push_back(label == positive);
+        if (!label.empty()) result.rows.push_back(row);
+    }
+    return result;
+}
+
+namespace {
+
+/// F1 with its interval beside that of calling everything positive, and the share of wrong answers.
+void judge(ClassifierResult& result, const std::vector<bool>& truth, const TechniqueStudyOptions& options) {
+    std::vector<std::size_t> kinds[2];
+    for (std::size_t i = 0; i < truth.size(); ++i) kinds[truth[i] ? 1 : 0].push_back(i);
+    const auto count = static_cast<double>(truth.size()), positives = static_cast<double>(kinds[1].size());
+    result.trivial_f1 = 2 * positives / (positives + count);
+    result.error = ((1 - result.validation.mean_accuracy) * count + 1) / (count + 2);
+    std::vector<double> f1(1000);
+    parallel_for(
+        f1.size(),
+        [&](std::size_t i) {
+            Random random(options.seed, 3000000 + i);
+            std::vector<std::size_t> drawn;
+            for (const auto& kind : kinds)
+                for (const std::size_t sample : random.resample(kind.size())) drawn.push_back(kind[sample]);
+            for (const auto& answers : result.validation.answers) {
+                ConfusionScores scores;
+                for (const std::size_t sample : drawn) scores.add(answers[sample], truth[sample]);
+                f1[i] += scores.f1() / static_cast<double>(result.validation.answers.size());
+            }
+        },
+        32);
+    result.f1_interval = {std::min(1.0, sample_quantile(f1, 0.025)), std::min(1.0, sample_quantile(f1, 0.975))};
+    result.better = result.f1_interval.low > result.trivial_f1;
+}
+
+}  // namespace
+
+ClassifierResult validate_classifier(const std::vector<TechniqueObject>& objects, const TechniqueClassifier& classifier,
+                                     const std::string& positive, const TechniqueStudyOptions& options) {
+    ClassifierResult result;
+    result.classifier = classifier;
+    const DescriptorTable table = descriptor_table(objects, classifier.descriptors);
+    const Labelled known = labelled(objects, table, positive);
+    result.objects = known.rows.size();
+    if (!known.enough()) return result;
+    result.validated = true;
+    const auto rows_of = [&](const std::vector<std::size_t>& samples) {
+        std::vector<std::size_t> rows;
+        for (const std::size_t sample : samples) rows.push_back(known.rows[sample]);
+        return rows;
+    };
+    std::vector<bool> truth;
+    for (const std::size_t row : known.rows) truth.push_back(known.truth[row]);
+    CrossValidationOptions folds;
+    folds.folds = options.folds;
+    folds.repeats = options.repeats;
+    folds.seed = options.seed;
+    result.validation = cross_validate(
+        truth,
+        [&](const std::vector<std::size_t>& taught, const std::vector<std::size_t>& asked) {
+            const TechniqueModel model = learn(table.values, known.truth, rows_of(taught));
+            std::vector<bool> answers;
+            for (const std::size_t row : rows_of(asked)) {
+                const double x = table.values(static_cast<Eigen::Index>(row), 0);
+                answers.push_back(model.threshold ? model.threshold->positive(x)
+                                                  : model.score(table.values.row(static_cast<Eigen::Index>(row))) >= 0);
+            }
+            return answers;
+        },
+        folds);
+    std::vector<double> scores(known.rows.size());
+    const TechniqueModel all = learn(table.values, known.truth, known.rows);
+    parallel_for(
+        scores.size(),
+        [&](std::size_t i) {
+            if (all.threshold) {
+                scores[i] = (all.threshold->above ? 1 : -1) * table.values(static_cast<Eigen::Index>(known.rows[i]), 0);
+                return;
+            }
+            std::vector<std::size_t> others = known.rows;
+            others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+            // The weights of the others, but one zero for all: a limit learned without an object shifts against its label.
+            const VectorXd x = table.values.row(static_cast<Eigen::Index>(known.rows[i]));
+            scores[i] = learn(table.values, known.truth, others).weights.dot(x - all.middle);
+        },
+        8);
+    judge(result, truth, options);
+    result.roc = roc_curve(scores, truth);
+    result.threshold = all.threshold;
+    if (result.threshold && table.logarithm) result.threshold->value = std::exp(result.threshold->value);
+    return result;
+}
+
+}  // namespace ostraka
