@@ -179,7 +179,7 @@ TextTable group_table(const MouldAnswer& answer) {
         }
         const auto& stability = answer.stability[static_cast<std::size_t>(group)];
         const auto if_known = [](bool known, double value) { return known ? std::optional(value) : std::nullopt; };
-        const bool alone = nearest<0, resampled = stability.resamples> 0;
+        const bool alone = nearest<0, resampled = stability.resamples> 0 && size > 1;
         table.add({std::to_string(group + 1), std::to_string(size), number_cell(if_known(pairs > 0, within / pairs), 3),
                    number_cell(if_known(!alone, nearest + 1), 6),
                    number_cell(if_known(!alone, alone ? 0 : to[static_cast<std::size_t>(nearest)]), 3),
@@ -258,7 +258,7 @@ JsonValue report_of(const MouldInput& input, const MouldAnswer& answer, double s
             if (answer.groups.labels[i] == group) members.PushBack(json_string(answer.matrices.names[i], allocator), allocator);
         add_member(entry, "heads", std::move(members), allocator);
         const auto& stability = answer.stability[static_cast<std::size_t>(group)];
-        if (stability.resamples > 0) {
+        if (stability.resamples > 0 && entry["heads"].Size() > 1) {
             add_member(entry, "stability", JsonValue(stability.jaccard), allocator);
             add_member(entry, "recovered", JsonValue(stability.recovered), allocator);
             add_member(entry, "dissolved", JsonValue(stability.dissolved), allocator);
@@ -279,6 +279,21 @@ JsonValue report_of(const MouldInput& input, const MouldAnswer& answer, double s
     add_member(result, "groups", std::move(groups), allocator);
     add_member(result, "heads", std::move(heads), allocator);
     return result;
+}
+
+/// The heads that are alone in their group; empty for none.
+std::string single_heads(const MouldAnswer& answer) {
+    std::string names;
+    for (std::size_t i = 0; i < answer.labels.size(); ++i)
+        if (std::count(answer.groups.labels.begin(), answer.groups.labels.end(), answer.groups.labels[i]) == 1)
+            names += (names.empty() ? "" : ", ") + answer.matrices.names[i];
+    return names;
+}
+
+/// Of a matrix with zeros on its diagonal.
+double mean_of_pairs(const Eigen::MatrixXd& distances) {
+    const auto n = static_cast<double>(distances.rows());
+    return n > 1 ? distances.sum() / (n * (n - 1)) : 0;
 }
 
 int run(const MouldInput& input, const Session& session) {
@@ -339,7 +354,13 @@ int run(const MouldInput& input, const Session& session) {
                   << number(answer.groups.silhouette, 3);
         if (answer.known().scorable()) std::cout << ", adjusted Rand index " << number(answer.agreement(answer.groups.labels), 4);
         std::cout << "\n" << answer.known().words();
-        if (!answer.groups.clear) std::cout << "the groups do not stand out: one mould, or each head its own\n";
+        const std::string single = single_heads(answer);
+        if (!single.empty()) std::cout << "belongs to no group: " << single << '\n';
+        if (!answer.groups.clear)
+            std::cout
+                << "the groups do not stand out: one mould, or each head its own; the mean distance by consistent matches is "
+                << number(mean_of_pairs(mould_distances(answer.matrices, "consistent")), 3)
+                << " (near 1: each its own; small: one mould)\n";
         if (failed > 0) std::cout << failed << " objects were left out\n";
     }
     return answer.groups.clear ? done : answer_is_no;

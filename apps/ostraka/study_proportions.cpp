@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <map>
 #include <memory>
 
 namespace ostraka::app {
@@ -71,15 +72,15 @@ std::vector<const RatioRow*> by_deviation(const ProportionStudy& study) {
     return rows;
 }
 
-TextTable verdicts(const ProportionStudy& study) {
-    TextTable table(
-        {"ratio", "objects", "average", "cv", variation_interval_column(), "p pairing", "p others", "p size", "q", "verdict"});
+TextTable verdicts(const ProportionStudy& study, double false_discoveries) {
+    TextTable table({"ratio", "objects", "average", "cv", variation_interval_column(), "p pairing", "p others", "p size", "q",
+                     "verdict", "failed"});
     for (const RatioRow* ratio : by_deviation(study)) {
         const Summary& s = *ratio->row.summary;
         table.add({ratio->row.name, std::to_string(s.count), number_cell(s.mean, 4), percent_cell(s.variation),
                    share_interval_cell(ratio->row.variation_interval), number_cell(ratio->p_pairing, 2),
                    number_cell(ratio->p_others, 2), number_cell(ratio->p_size, 2), number_cell(ratio->q, 2),
-                   to_string(ratio->fixedness)});
+                   to_string(ratio->fixedness), not_fixed_because(*ratio, false_discoveries)});
     }
     return table;
 }
@@ -175,8 +176,9 @@ struct StudyProportions {
 
         write_file(files.in("values.csv"), measure_table_to_csv(table));
         table_3_1(study).write(files.output, "table-3-1", "Measures and their ratios");
-        verdicts(study).write(files.output, "ratios", "Ratios by their variation, and whether they are fixed");
-        draw(study, table);
+        verdicts(study, options.false_discoveries)
+            .write(files.output, "ratios", "Ratios by their variation, and whether they are fixed");
+        draw(session, study);
 
         JsonValue rows(rapidjson::kArrayType), ratios(rapidjson::kArrayType);
         for (const MeasureRow& row : study.measures) rows.PushBack(row_json(row, allocator), allocator);
@@ -207,7 +209,9 @@ struct StudyProportions {
         if (session.json) {
             session.print_report(provenance, document, result);
         } else {
-            std::cout << verdicts(study).plain() << '\n';
+            std::cout << verdicts(study, options.false_discoveries).plain()
+                      << "q: the larger of 'p others' and 'p size', corrected for the number of ratios; fixed: q of at most "
+                      << options.false_discoveries << ". failed: the tests that speak against it\n\n";
             std::cout << count << " of " << study.ratios.size() << " ratios are fixed, of " << table.objects.size() << " objects"
                       << (failures > 0 ? " (" + std::to_string(failures) + " failed)" : "") << '\n';
             if (study.size_deviation) std::cout << "common size varies by " << percent(*study.size_deviation) << '\n';
@@ -238,12 +242,21 @@ private:
         failures = report_failures(session, collection, taken, result, allocator);
         std::vector<std::string> names;
         std::vector<std::optional<ObjectMeasures>> objects;
+        std::map<std::string, std::vector<std::string>> told;  // one line for what is the same in many objects
+        std::vector<std::string> order;
         for (std::size_t i = 0; i < taken.size(); ++i) {
             names.push_back(collection.objects[i].name);
             objects.push_back(taken[i].problem.empty() ? std::optional(object_measures_from_json(taken[i].result))
                                                        : std::nullopt);
-            if (objects.back())
-                for (const auto& note : objects.back()->notes) notes.push_back(names.back() + ": " + note);
+            if (!objects.back()) continue;
+            for (const auto& note : objects.back()->notes) {
+                if (told[note].empty()) order.push_back(note);
+                told[note].push_back(names.back());
+            }
+        }
+        for (const auto& note : order) {
+            const auto& of = told[note];
+            notes.push_back(of.front() + (of.size() == 1 ? "" : " and " + std::to_string(of.size() - 1) + " more") + ": " + note);
         }
         if (std::none_of(taken.begin(), taken.end(), [](const ObjectResult& each) { return each.problem.empty(); }))
             throw Error(ErrorKind::input, files.collection, "not one object could be measured",
@@ -251,18 +264,24 @@ private:
         return measure_table(names, objects, definitions, notes);
     }
 
-    void draw(const ProportionStudy& study, const MeasureTable& table) const {
-        const auto m = static_cast<Eigen::Index>(table.measures.size());
+    void draw(const Session& session, const ProportionStudy& study) const {
+        // Measures without a value have no row.
+        std::vector<Eigen::Index> rows(study.measures.size(), -1);
+        Eigen::Index m = 0;
+        for (const RatioRow& ratio : study.ratios) rows[ratio.numerator] = rows[ratio.denominator] = 0;
+        for (Eigen::Index& row : rows)
+            if (row == 0) row = m++;
         if (by_deviation(study).empty()) return;
         write_plot(files.plot("variation"), variation_plot(study, "How much each ratio varies, with 95 % intervals"));
         HeatMap map{"Standard deviation of the logarithm of each ratio", {}, {}, {}, "standard deviation"};
         map.values.setConstant(m, m, std::numeric_limits<double>::quiet_NaN());
         bool complete = true;
         for (const RatioRow& ratio : study.ratios) {
-            const auto a = static_cast<Eigen::Index>(ratio.numerator), b = static_cast<Eigen::Index>(ratio.denominator);
+            const auto a = rows[ratio.numerator], b = rows[ratio.denominator];
             if (ratio.row.summary && ratio.row.summary->count > 1) map.values(a, b) = map.values(b, a) = ratio.log_deviation;
         }
-        for (const MeasureRow& row : study.measures) map.rows.push_back(row.name);
+        for (std::size_t j = 0; j < rows.size(); ++j)
+            if (rows[j] >= 0) map.rows.push_back(study.measures[j].name);
         map.columns = map.rows;
         map.numbers = true;
         map.minimum = 0;
@@ -273,6 +292,7 @@ private:
             write_plot(files.plot("measures"),
                        Dendrogram{"Measures by how fixed their ratios are (average linkage)", average_linkage(map.values),
                                   map.rows, "standard deviation of the logarithm of ratios"});
+        else session.note("note: no plot 'measures': not each two measures have a ratio known of two objects or more");
     }
 
     void propose(const Session& session, Provenance& provenance, const MeasureDefinitions& definitions,
@@ -307,6 +327,8 @@ void add_study_proportions(CLI::App& study, Session& session) {
                     "which ratios of measures are fixed over a collection (or a table of measures, .csv); exit code 3 if none is",
                     [&session, work] { return work->run(session); });
     add_study_files(command, work->files, false);
+    command->get_option("collection")
+        ->description("folder of meshes, a list of objects (.study.json), or a table of measures (.csv)");
     command->add_option("--measures", work->measures, "the measures to take on every object (.measures.json)");
     command->add_option("--template-mesh", work->mesh, "mesh of the template that proportions are proposed for");
     command->add_option("--template-annotations", work->annotations, "its annotations");

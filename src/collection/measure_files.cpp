@@ -3,6 +3,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/text.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -171,9 +172,13 @@ MeasureTable read_measure_table(const Path& file) {
             std::optional<double> value;
             if (cell.empty() || cell == "-") value = none;
             else value = number_of(cell);
-            if (!value)
+            if (!value) {
+                std::string pointed = cell;
+                std::replace(pointed.begin(), pointed.end(), ',', '.');
                 fail_input(at, "'" + cell + "' under '" + head[columns[c]] + "' is no number",
-                           "leave the cell empty where the measure is missing");
+                           pointed != cell && number_of(pointed) ? "a decimal comma? Write " + pointed
+                                                                 : "leave the cell empty where the measure is missing");
+            }
             table.values(static_cast<Eigen::Index>(r - 1), static_cast<Eigen::Index>(c)) = *value;
         }
     }

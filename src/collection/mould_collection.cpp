@@ -2,6 +2,7 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/core/text.h"
 #include "ostraka/geom/submesh.h"
 #include "ostraka/io/mesh_file.h"
 
@@ -73,6 +74,14 @@ double common_size(std::vector<double> sizes) {
     return std::pow(1.1, std::round(std::log(sizes[sizes.size() / 2]) / std::log(1.1)));
 }
 
+/// A head of another order of size than the others is most likely in another unit.
+std::string remedy_by_size(const Mesh& mesh, double common, const std::string& otherwise) {
+    const double ratio = common > 0 ? std::sqrt(surface_area(mesh)) / common : 1;
+    if (!(ratio > 0) || (ratio > 0.2 && ratio < 5)) return otherwise;
+    return "its size is " + (ratio < 1 ? "1/" + digits(1 / ratio, 2) : digits(ratio, 2) + " times that") +
+           " of the others': is it in another unit?";
+}
+
 }  // namespace
 
 PreparedCollection prepare_collection(const Collection& collection, const CompareOptions& options,
@@ -98,10 +107,16 @@ PreparedCollection prepare_collection(const Collection& collection, const Compar
     std::vector<std::string> what{"mould features", left_out};
     for (const auto& [name, value] : list_options(prepared.options.features)) what.push_back(name + "=" + value);
     prepared.results = for_each_object(collection, store, what, [&](const CollectionObject& object) {
-        const PreparedHead head = prepare_head(read_head(object, leave_out), prepared.options);
-        Json result;
-        static_cast<JsonValue&>(result) = to_json(head.features, result.GetAllocator());
-        return result;
+        const Mesh mesh = read_head(object, leave_out);
+        try {
+            const PreparedHead head = prepare_head(mesh, prepared.options);
+            Json result;
+            static_cast<JsonValue&>(result) = to_json(head.features, result.GetAllocator());
+            return result;
+        } catch (const Error& error) {
+            if (error.kind() != ErrorKind::input) throw;
+            fail_input(object.mesh.filename().string(), error.problem(), remedy_by_size(mesh, size, error.remedy()));
+        }
     });
     for (std::size_t i = 0; i < prepared.results.size(); ++i)
         if (prepared.results[i].problem.empty()) prepared.objects.push_back(i);

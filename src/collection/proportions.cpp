@@ -19,6 +19,7 @@ using proportions::Pair;
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t most_measures = 60;
+constexpr std::size_t enough_objects = 10;
 
 MeasureRow row_of(const std::string& name, const std::string& unit, const std::vector<double>& values, double confidence) {
     MeasureRow row{name, unit, std::nullopt, std::nullopt, std::nullopt, std::nullopt};
@@ -29,7 +30,7 @@ MeasureRow row_of(const std::string& name, const std::string& unit, const std::v
     return row;
 }
 
-/// The measures of one kind: ratios are taken among them.
+/// The measures of one kind, those without any value left out: ratios are taken among them.
 struct Kind {
     std::vector<std::size_t> measures;
     Eigen::MatrixXd logs;  ///< of the values above zero
@@ -39,6 +40,7 @@ std::vector<Kind> kinds_of(const MeasureTable& table) {
     std::map<std::pair<int, std::string>, Kind> kinds;
     for (std::size_t j = 0; j < table.measures.size(); ++j) {
         const MeasureColumn& column = table.measures[j];
+        if (table.values.col(static_cast<Eigen::Index>(j)).array().isNaN().all()) continue;
         kinds[{column.power, column.power == 0 ? column.unit : ""}].measures.push_back(j);
     }
     std::vector<Kind> result;
@@ -238,6 +240,23 @@ std::string to_string(Fixedness fixedness) {
     return "unknown";
 }
 
+std::string not_fixed_because(const RatioRow& ratio, double false_discoveries) {
+    switch (ratio.fixedness) {
+        case Fixedness::fixed:
+            return "";
+        case Fixedness::stable:
+            // Both p-values are small but not together, or the size is all that binds the two.
+            return ratio.p_size && *ratio.p_size > ratio.p_others ? "size" : "others";
+        case Fixedness::with_size:
+            return "others";
+        case Fixedness::free:
+            return ratio.q_others > false_discoveries ? "pairing, others" : "pairing";
+        case Fixedness::unknown:
+            break;
+    }
+    return "nothing is known";
+}
+
 ProportionStudy study_proportions(const MeasureTable& given, const ProportionOptions& options) {
     check_options(options, "proportions");
     ProportionStudy study;
@@ -255,10 +274,19 @@ ProportionStudy study_proportions(const MeasureTable& given, const ProportionOpt
             if (const double value = table.values(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
                 !std::isnan(value) && (table.measures[j].power == 0 || unified.comparable[i]))
                 values.push_back(value);
-        study.measures.push_back(row_of(table.measures[j].name, table.measures[j].unit, values, options.confidence));
-        if (values.empty()) study.notes.push_back("measure '" + table.measures[j].name + "' has no value in any object");
+        const bool absent = table.values.col(static_cast<Eigen::Index>(j)).array().isNaN().all();
+        // Of what was never taken the unit is not known.
+        study.measures.push_back(
+            row_of(table.measures[j].name, absent ? "" : table.measures[j].unit, values, options.confidence));
+        if (absent)
+            study.notes.push_back("measure '" + table.measures[j].name + "' has no value in any object: no ratios with it");
+        else if (values.empty())
+            study.notes.push_back("measure '" + table.measures[j].name + "' has no value that can be compared");
     }
 
+    if (table.objects.size() < enough_objects)
+        study.notes.push_back(std::to_string(table.objects.size()) + (table.objects.size() == 1 ? " object" : " objects") +
+                              ": a fixed ratio can hardly be shown; ten or more are wanted");
     const std::vector<Kind> kinds = kinds_of(table);
     if (kinds.size() > 1)
         study.notes.push_back("measures of different kinds (lengths, areas, volumes, others): ratios are taken within each kind");
@@ -306,6 +334,7 @@ ProportionStudy study_proportions(const MeasureTable& given, const ProportionOpt
     for (std::size_t r = 0; r < all.size(); ++r) {
         all[r].ratio.q = q[r];
         all[r].ratio.q_pairing = q_pairing[r];
+        all[r].ratio.q_others = q_others[r];
         all[r].ratio.fixedness = verdict(all[r], identical, options.false_discoveries, q_others[r]);
         few += all[r].count < 4 ? 1 : 0;
         constant += all[r].constant ? 1 : 0;

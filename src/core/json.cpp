@@ -200,6 +200,11 @@ void validate(const JsonValue& value, const std::string& schema, const std::stri
         }
     }
     const std::string at = text_of(pointer);
+    if (keyword == "additionalProperties" && pointer.GetTokenCount() > 0) {
+        const auto& token = pointer.GetTokens()[pointer.GetTokenCount() - 1];
+        fail_input(where, "at " + at + ": unknown member '" + std::string(token.name, token.length) + "'",
+                   "is it misspelt? See doc/schema/" + schema + ".schema.json");
+    }
     fail_input(where,
                "at " + (at.empty() ? std::string("the root") : at) + ": does not fit the format, which asks for " + expected,
                "see doc/schema/" + schema + ".schema.json");

@@ -187,6 +187,16 @@ TEST(MeasureTable, AsCsvReadsBack) {
         EXPECT_THROW(read_measure_table(scratch.file("w.csv", bad)), Error) << bad;
 }
 
+TEST(MeasureTable, ADecimalCommaIsTold) {
+    const Scratch scratch;
+    try {
+        (void)read_measure_table(scratch.file("comma.csv", "name;a\nx;1,5\n"));
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("decimal comma? Write 1.5"), std::string::npos) << error.what();
+    }
+}
+
 /// A study that found the first measure in fixed proportion to the second.
 ProportionStudy fixed_ratio(double low, double high) {
     ProportionStudy study;

@@ -269,6 +269,8 @@ TEST_F(MouldStudy, WhatCannotBeComparedIsLeftOut) {
     EXPECT_EQ(prepared.heads.size(), 3U);
     ASSERT_EQ(prepared.results.size(), 5U);
     EXPECT_NE(prepared.results[0].problem.find("salient"), std::string::npos) << prepared.results[0].problem;
+    EXPECT_NE(prepared.results[0].problem.find("ball.ply"), std::string::npos) << prepared.results[0].problem;
+    EXPECT_NE(prepared.results[0].problem.find("another unit"), std::string::npos) << "a ball of radius 1 among heads of 44 mm";
     EXPECT_FALSE(prepared.results[1].problem.empty());
     // Parts can be left out only where faces have labels.
     const auto without = prepare_collection(read_collection(folder), {}, {9}, ResultStore());

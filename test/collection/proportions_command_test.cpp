@@ -233,7 +233,7 @@ TEST(StudyProportionsCommand, TablesForMachinesHoldPlainNumbers) {
         const std::string text = read_file(scratch / "out" / (name + ".csv"));
         const auto rows = csv_rows(text, ',', name);
         ASSERT_GT(rows.size(), 3U);
-        const std::size_t first = name == "ratios" ? 1 : 2, last = rows[0].cells.size() - (name == "ratios" ? 1 : 0);
+        const std::size_t first = name == "ratios" ? 1 : 2, last = rows[0].cells.size() - (name == "ratios" ? 2 : 0);
         std::size_t empty = 0, full = 0;
         for (std::size_t r = 1; r < rows.size(); ++r)
             for (std::size_t c = first; c < last; ++c) {

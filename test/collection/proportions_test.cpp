@@ -79,6 +79,36 @@ TEST(Proportions, RowsByHand) {
     EXPECT_NE(ratio.fixedness, Fixedness::fixed) << "with two measures there is nothing to compare with";
 }
 
+TEST(Proportions, AMeasureWithoutAValueHasNoRatios) {
+    MeasureTable table =
+        table_of({"a", "b", "c", "handle"}, {{8, 20, 5, none}, {9, 18, 6, none}, {7, 21, 4, none}, {8, 25, 5, none}});
+    const ProportionStudy with = study_proportions(table, quick());
+    ASSERT_EQ(with.measures.size(), 4u);
+    EXPECT_EQ(with.measures[3].unit, "") << "what was never taken has no unit";
+    EXPECT_EQ(with.ratios.size(), 3u);
+    for (const RatioRow& ratio : with.ratios) EXPECT_EQ(ratio.row.name.find("handle"), std::string::npos);
+    table.measures.pop_back();
+    table.values = Eigen::MatrixXd(table.values.leftCols(3));
+    const ProportionStudy without = study_proportions(table, quick());
+    for (std::size_t r = 0; r < 3; ++r) EXPECT_EQ(with.ratios[r].q, without.ratios[r].q);
+}
+
+TEST(Proportions, FewObjectsAreToldAndTheFailedTestIsNamed) {
+    MadeMeasuresOptions made;
+    made.objects = 9;
+    const ProportionStudy few = study_proportions(make_measures(made).table, quick());
+    EXPECT_NE(all_notes(few).find("9 objects: a fixed ratio can hardly be shown"), std::string::npos) << all_notes(few);
+    made.objects = 10;
+    const ProportionStudy enough = study_proportions(make_measures(made).table, quick());
+    EXPECT_EQ(all_notes(enough).find("hardly"), std::string::npos);
+    for (const ProportionStudy& study : {few, enough})
+        for (const RatioRow& ratio : study.ratios)
+            EXPECT_EQ(not_fixed_because(ratio, 0.05).empty(), ratio.fixedness == Fixedness::fixed) << ratio.row.name;
+    RatioRow stable;
+    stable.fixedness = Fixedness::stable, stable.p_others = 2e-5, stable.p_size = 0.99;
+    EXPECT_EQ(not_fixed_because(stable, 0.05), "size");
+}
+
 TEST(Proportions, PlantedOnesAreFoundWithAndWithoutCommonSize) {
     for (const double size : {0.0, 0.15, 0.4}) {
         MadeMeasuresOptions made;

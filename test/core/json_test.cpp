@@ -38,6 +38,19 @@ TEST(Json, NumbersSurviveARoundTrip) {
     EXPECT_EQ(parse_json(text, "again")[0].GetDouble(), 0.1);
 }
 
+TEST(Json, AnUnknownMemberIsNamed) {
+    try {
+        validate(
+            parse_json(
+                R"({"format": "ostraka-measures", "version": 1, "foo": 1, "measures": [{"name": "a", "descriptor": "area"}]})",
+                "m"),
+            "measures", "m");
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("unknown member 'foo'"), std::string::npos) << error.what();
+    }
+}
+
 TEST(Json, SchemaErrorNamesPointerAndRule) {
     const Json value = parse_json(R"({"format": "ostraka-report", "command": 3, "result": {}})", "r");
     try {

@@ -185,8 +185,8 @@ TEST(Recipe, ErrorsNameTheStep) {
     const std::string at = "/annotations/0/select";
     expect_error(R"({"format": "ostraka-annotations", "annotations": []})", mesh, "/format", "ostraka-annotations");
     expect_error(R"({"version": 1, "annotations": []})", mesh, "root", "format");
-    expect_error(recipe("", R"("colour": 1, )"), mesh, "/colour", "additionalProperties");
-    expect_error(recipe(step("region", R"({"cube": 1})")), mesh, at, "additionalProperties");
+    expect_error(recipe("", R"("colour": 1, )"), mesh, "/colour", "unknown member 'colour'");
+    expect_error(recipe(step("region", R"({"cube": 1})")), mesh, at, "unknown member 'cube'");
     expect_error(recipe(step("region", "{}")), mesh, at, "minProperties");
     expect_error(recipe(step("region", R"({"frame": "box", "faces": [1], "all": true})")), mesh, at, "maxProperties");
     expect_error(recipe(step("region", R"({"faces": [1], "all": true})")), mesh, at, "two kinds");

@@ -143,7 +143,7 @@ TEST(ClassRules, WhatIsRefused) {
                  "/rules/0", "one of the three");
     expect_error(rule(R"("attribute": {"of": "eye", "name": "height", "is": "x", "min": 1})"), "/rules/0/attribute",
                  "words and bounds");
-    expect_error(rule(R"("attribute": {"of": "eye", "name": "height", "mim": 1})"), "/rules/0/attribute", "additionalProperties");
+    expect_error(rule(R"("attribute": {"of": "eye", "name": "height", "mim": 1})"), "/rules/0/attribute", "unknown member 'mim'");
     expect_error(R"({"format": "ostraka-vocabulary", "version": 1, "rules": []})", "/format", "ostraka-vocabulary");
     std::string twice = rules_text;
     twice.replace(twice.find("few points"), 10, "two eyes");

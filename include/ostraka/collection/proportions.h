@@ -63,8 +63,13 @@ struct RatioRow {
     double p_others = 1;  ///< that the ratio is as variable as those of any two measures, deviations from the size dealt out anew
     std::optional<double> p_size;  ///< that nothing but the common size binds them; none where it was not asked or cannot be told
     double q = 1, q_pairing = 1;   ///< corrected for the number of ratios: of the larger of p_others and p_size, and of p_pairing
+    double q_others = 1;           ///< the same of p_others
     Fixedness fixedness = Fixedness::unknown;
 };
+
+/// The questions that a ratio failed ("pairing", "others", "size"), empty where it is fixed; "nothing is known" where nothing
+/// can be said.
+std::string not_fixed_because(const RatioRow& ratio, double false_discoveries);
 
 struct ProportionStudy {
     std::vector<MeasureRow> measures;
