@@ -48,7 +48,18 @@ struct Creases {
         if (!creases.empty()) write_annotations(output, set, file.mesh, mesh, provenance);
         add_member(result, "creases", std::move(list), allocator);
         if (session.json) session.print_report(provenance, document, result);
-        else std::cout << table({"id", "tag", "closed", "length", "width", "mean curvature", "strength"}, rows);
+        else {
+            const auto in = [&](const std::string& name, const std::string& measure) {
+                return unit.empty() ? name : name + ", " + measure;
+            };
+            std::cout << table(
+                {"id", "tag", "closed", in("length", unit), in("width", unit), in("mean curvature", "1/" + unit), "strength"},
+                rows);
+            if (!rows.empty())
+                std::cout
+                    << "strength: mean response along the line, in robust deviations of the response over the surface (--weak "
+                    << number(options.weak) << ", --strong " << number(options.strong) << ")\n";
+        }
         if (creases.empty())
             session.note("nothing stands out at this scale, so " + printable(output) +
                          " is not written: try another --scale, or a lower --weak and --strong");
@@ -56,6 +67,15 @@ struct Creases {
     }
 
 private:
+    /// Ridges are warm and hollows cold; those next in number are told apart by tone, six of each.
+    static std::array<int, 3> shade(bool ridge, int number) {
+        static constexpr std::array<std::array<int, 3>, 6> warm{
+            {{213, 94, 0}, {230, 159, 0}, {153, 27, 30}, {240, 120, 110}, {120, 70, 20}, {250, 200, 90}}};
+        static constexpr std::array<std::array<int, 3>, 6> cold{
+            {{0, 114, 178}, {86, 180, 233}, {0, 140, 110}, {60, 50, 150}, {120, 200, 170}, {150, 130, 220}}};
+        return (ridge ? warm : cold).at(static_cast<std::size_t>(number - 1) % 6);
+    }
+
     static std::vector<std::pair<std::string, double>> figures(const Crease& crease) {
         return {{"length", crease.length},
                 {"width", crease.width},
@@ -67,7 +87,7 @@ private:
         Annotation annotation;
         annotation.id = free_id(set);
         annotation.tag = (crease.ridge ? "ridge " : "hollow ") + std::to_string(number);
-        annotation.colour = crease.ridge ? std::array<int, 3>{213, 94, 0} : std::array<int, 3>{0, 114, 178};
+        annotation.colour = shade(crease.ridge, number);
         annotation.type = regions ? AnnotationType::region : AnnotationType::line;
         if (regions) annotation.faces = crease.faces;
         else annotation.polylines = {crease.line};

@@ -2,29 +2,40 @@
 #include "command.h"
 #include "number_lists.h"
 
+#include "ostraka/annotation/annotation_file.h"
 #include "ostraka/io/mesh_file.h"
+#include "ostraka/measure/solid.h"
 #include "ostraka/slicing/clay.h"
 
 #include <cmath>
 #include <iostream>
 #include <memory>
+#include <numeric>
 
 namespace ostraka::app {
 
 namespace {
 
 struct Clay {
-    std::string mesh, up = "0,0,1", unit;
+    std::string mesh, annotations, up, unit;
     ClayOptions options;
+    ReadAnnotationsOptions reading;
 
-    int run(const Session& session) const {
-        const auto direction = direction_of(up, "--up");
+    int run(const Session& session) {
+        std::array<double, 3> direction{0, 0, 1};
+        if (!up.empty()) direction = direction_of(up, "--up");
         Provenance provenance{"measure clay", list_options(options), {}};
         provenance.options.emplace_back("up", up);
         provenance.options.emplace_back("unit", unit);
         provenance.add_input(mesh);
         const MeshFile file = read_mesh(mesh);
         for (const auto& note : file.notes) session.note("note: " + note);
+        if (!annotations.empty()) {
+            provenance.add_input(annotations);
+            const AnnotationSet set = read_annotations(annotations, file.mesh, reading);
+            if (unit.empty()) unit = set.unit;
+            if (up.empty() && set.up) direction = *set.up;
+        }
         const SliceFrame frame = slice_frame(Point(0, 0, 0), Vector(direction[0], direction[1], direction[2]));
         const ClayVolume clay = in_file(mesh, [&] { return clay_volume(file.mesh, frame, options); });
         const std::string cubed = unit.empty() ? "" : unit + "^3";
@@ -34,8 +45,8 @@ struct Clay {
             {"within the outer surface", clay.envelope, cubed},
             {"wall taken for least", clay.wall, unit},
             {"wall seen, mean", clay.wall_mean, unit},
-            {"wall seen, least", clay.wall_least, unit},
-            {"wall seen, most", clay.wall_most, unit},
+            {"wall seen, least (5 % quantile)", clay.wall_least, unit},
+            {"wall seen, most (95 % quantile)", clay.wall_most, unit},
             {"slices", clay.slices, ""},
             {"slices with a cavity seen", clay.with_cavity, ""},
             {"slices without an outline", clay.without_outline, ""},
@@ -50,8 +61,10 @@ struct Clay {
             rows.push_back({name, std::isnan(value) ? "unknown" : number(value) + (its_unit.empty() ? "" : " " + its_unit)});
         }
         add_member(result, "unit", unit, allocator);
+        const double own = own_volume(file.mesh);
+        if (std::isfinite(own)) add_member(result, "volume of the mesh", JsonValue(own), allocator);
         if (session.json) session.print_report(provenance, document, result);
-        else std::cout << table({"clay", ""}, rows);
+        else std::cout << table({"clay", ""}, rows) << '\n' << sentence(clay, own) << '\n';
         if (std::isnan(clay.least) && !std::isnan(clay.most))
             session.note("no wall is seen, so there is no least: give one with --wall");
         if (clay.without_outline > 0)
@@ -75,6 +88,33 @@ struct Clay {
                 "height, or inside out?");
         return std::isnan(clay.most) ? answer_is_no : done;
     }
+
+private:
+    /// Of a closed mesh, however it is oriented; else NaN.
+    static double own_volume(const Mesh& mesh) {
+        for (const Halfedge h : mesh.halfedges())
+            if (mesh.is_border(h)) return std::numeric_limits<double>::quiet_NaN();
+        std::vector<Index> faces(mesh.number_of_faces());
+        std::iota(faces.begin(), faces.end(), Index{0});
+        return std::abs(region_solid(mesh, faces).volume);
+    }
+
+    /// "12345 mm^3 (12.3 cm^3)": large ones in larger units beside.
+    [[nodiscard]] std::string volume(double value) const {
+        std::string text = number(value) + (unit.empty() ? "" : " " + unit + "^3");
+        const double cubic_cm = unit == "mm" ? value / 1000 : unit == "cm" ? value : 0;
+        if (cubic_cm >= 1000) text += " (" + number(cubic_cm / 1000, 3) + " litres)";
+        else if (unit == "mm" && cubic_cm >= 1) text += " (" + number(cubic_cm, 3) + " cm^3)";
+        return text;
+    }
+
+    [[nodiscard]] std::string sentence(const ClayVolume& clay, double own) const {
+        std::string text = std::isnan(clay.most)    ? "the clay is not known"
+                           : std::isnan(clay.least) ? "clay: at most " + volume(clay.most)
+                                                    : "clay: between " + volume(clay.least) + " and " + volume(clay.most);
+        if (std::isnan(own)) return text + "; the mesh is open, so that it has no volume of its own";
+        return text + "; the mesh is closed, and its own volume is " + volume(own);
+    }
 };
 
 }  // namespace
@@ -85,9 +125,13 @@ void add_measure_clay(CLI::App& measure, Session& session) {
         session.add(measure, "clay", "volume of clay, between what it is if the unseen inside is solid and if it is hollow",
                     [&session, work] { return work->run(session); });
     command->add_option("mesh", work->mesh, "mesh file, closed or open")->required();
-    command->add_option("--up", work->up, "x,y,z: direction that slices lie across")->capture_default_str();
-    command->add_option("--unit", work->unit, "unit of the mesh's coordinates, e.g. mm");
+    command->add_option("annotations", work->annotations, "its annotations (.ant.json): unit and upward direction");
+    command->add_option(
+        "--up", work->up,
+        "x, y, z, -x, -y, -z or three numbers: direction that slices lie across; else as the annotations say, else 0,0,1");
+    command->add_option("--unit", work->unit, "unit of the mesh's coordinates, e.g. mm; else as the annotations say");
     add_flags(command, work->options);
+    add_flags(command, work->reading);
 }
 
 }  // namespace ostraka::app

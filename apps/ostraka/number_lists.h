@@ -26,8 +26,17 @@ std::vector<Number> numbers_of(const std::string& text, const std::string& optio
     return numbers;
 }
 
-/// The direction "0,0,1"; Error (usage) names the option.
+/// The direction "0,0,1", or the axis "z" or "-z"; Error (usage) names the option.
 inline std::array<double, 3> direction_of(const std::string& text, const std::string& option) {
+    for (std::size_t k = 0; k < 3; ++k)
+        for (const double sign : {1.0, -1.0})
+            if (text == std::string(sign < 0 ? "-" : "") + "xyz"[k]) {
+                std::array<double, 3> axis{0, 0, 0};
+                axis.at(k) = sign;
+                return axis;
+            }
+    if (!text.empty() && text.find_first_of("0123456789") == std::string::npos)
+        fail_usage(option + " is '" + printable(text, 60) + "'", "use x, y, z, -x, -y, -z or three numbers like 0,1,0");
     const auto numbers = numbers_of<double>(text, option);
     const auto fails = [&](const char* remedy) { fail_usage(option + " is '" + printable(text, 60) + "'", remedy); };
     if (numbers.size() != 3) fails("give three numbers, like 0,0,1");

@@ -26,7 +26,7 @@ namespace {
 
 struct SliceCommand {
     std::string mesh, annotations, direction = "up", up, heights, range = "0,1", plane, unit, colour_by = "height", medial, angle,
-                                   profile;
+                                   profile, title;
     std::vector<std::string> names, outputs;
     int count = 0, drawn = 24;
     double spacing = 0;
@@ -39,6 +39,7 @@ struct SliceCommand {
     MeshFile file;
     std::vector<Index> faces;  ///< of the part; empty: all
     std::array<double, 3> upward{0, 0, 1};
+    bool up_known = false;
     CutObject cut;
     std::vector<Point> curve;  ///< what was cut across, if not parallel
     double lowest = 0, highest = 0;
@@ -70,7 +71,7 @@ struct SliceCommand {
         const auto found = find_axes();
         const SliceStack stack = cut.stack();
         const Tube tube = plane.empty() ? tubular_part(stack, cut.descriptors, tube_options) : Tube{};
-        const ThicknessHomogeneity thickness = thickness_homogeneity(cut.descriptors);
+        const ThicknessHomogeneity thickness = thickness_homogeneity(cut.slices);
 
         Json document(rapidjson::kObjectType);
         auto& allocator = document.GetAllocator();
@@ -90,6 +91,13 @@ struct SliceCommand {
         write(files, result, provenance, session);
         if (session.json) session.print_report(provenance, document, result);
         else print(found, tube, thickness);
+        if (!up_known && (direction == "rotation" || direction == "principal"))
+            session.note("note: which end of the axis is up is not known (0,0,1 taken): if it is upside down, give --up");
+        if (!cut.parallel && is_hollow())
+            session.note(
+                "note: the object is hollow: its skeleton lies in the wall or wanders through the mouth, so that slices across "
+                "it "
+                "cut the wall aslant (--direction rotation or up cuts a vessel)");
         for (const auto& note : remarks_of(cut, plane.empty() ? std::pair(0.0, highest) : over_plane, !plane.empty()))
             session.note("note: " + note);
         const bool met = std::any_of(cut.slices.begin(), cut.slices.end(), [](const Slice& s) { return !s.contours.empty(); });
@@ -139,7 +147,8 @@ private:
                                          {"plane", plane},
                                          {"unit", unit},
                                          {"medial-axis", medial},
-                                         {"profile-angle", angle}})
+                                         {"profile-angle", angle},
+                                         {"title", title}})
             if (!value.empty()) list.emplace_back(key, value);
         if (count > 0) list.emplace_back("count", std::to_string(count));
         if (spacing > 0) list.emplace_back("spacing", number(spacing, 17));
@@ -194,11 +203,12 @@ private:
     }
 
     void read_part() {
+        up_known = !up.empty();
         if (!up.empty()) upward = direction_of(up, "--up");
         if (annotations.empty()) return;
         const AnnotationSet set = read_annotations(annotations, file.mesh, reading);
         if (unit.empty()) unit = set.unit;
-        if (up.empty() && set.up) upward = *set.up;
+        if (up.empty() && set.up) upward = *set.up, up_known = true;
         for (const auto& name : names) {
             const Annotation& annotation = find_annotation(set, name, annotations);
             if (annotation.type != AnnotationType::region)
@@ -273,6 +283,10 @@ private:
             along = axis.direction * along < 0 ? -axis.direction : axis.direction;
             through = axis.point;
         } else if (direction != "up") {
+            if (direction.find_first_of("0123456789,") == std::string::npos &&
+                direction.find_first_of("xyz") != direction.size() - 1)
+                fail_usage("--direction is '" + printable(direction, 60) + "'",
+                           "use up, principal, rotation, skeleton, an axis (x, y, z, -x, -y, -z) or three numbers like 0,1,0");
             const auto numbers = direction_of(direction, "--direction");
             along = {numbers[0], numbers[1], numbers[2]};
         }
@@ -322,6 +336,15 @@ private:
             cut.slices.size(), [&](std::size_t i) { cut.medial[i] = medial_axis(cut.slices[i], residues); }, 1);
     }
 
+    /// Whether a quarter of 24 level slices are half empty within, by area.
+    [[nodiscard]] bool is_hollow() const {
+        const SliceFrame frame = slice_frame(Point(0, 0, 0), Vector(upward[0], upward[1], upward[2]));
+        const auto ends = height_range(file.mesh, frame, faces);
+        const auto level =
+            describe_slices(slice_mesh(file.mesh, frame, slice_heights(ends.first, ends.second, 24), faces).slices);
+        return 4 * std::count_if(level.begin(), level.end(), [](const auto& d) { return d.hole_area_ratio > 0.5; }) >= 24;
+    }
+
     [[nodiscard]] std::vector<NamedAxis> find_axes() const {
         std::vector<NamedAxis> list;
         const auto centres = cut.centres();
@@ -330,11 +353,12 @@ private:
             list.push_back({name, "", line, {}, straightness(centres, line)});
         };
         if (cut.parallel) add_line("mean of barycentres", mean_line(cut.frames[0], centres));
-        try {
-            add_line("regression of barycentres", regression_line(cut.frames[0], centres));
-        } catch (const Error& error) {
-            list.push_back({"regression of barycentres", error.problem(), {}, {}, {}});
-        }
+        if (centres.size() == 2) list.push_back({"regression of barycentres", "two places are always in line", {}, {}, {}});
+        else try {
+                add_line("regression of barycentres", regression_line(cut.frames[0], centres));
+            } catch (const Error& error) {
+                list.push_back({"regression of barycentres", error.problem(), {}, {}, {}});
+            }
         if (!curve.empty()) list.push_back({"skeleton", "", {}, curve, straightness(centres, curve)});
         if (!axes) return list;
         for (const std::string method : {"rotation", "principal", "slices", "skeleton"}) {
@@ -351,16 +375,18 @@ private:
         return list;
     }
 
+    [[nodiscard]] std::string name_of_drawing() const { return title.empty() ? Path(mesh).filename().string() : title; }
+
     /// The slices drawn: all, or as many as asked for, spread evenly.
     [[nodiscard]] SliceSheet sheet() const {
         SliceSheet content;
-        content.title = Path(mesh).filename().string() + ": " + std::to_string(cut.slices.size()) +
-                        (cut.slices.size() == 1 ? " slice" : " slices");
+        content.title =
+            name_of_drawing() + ": " + std::to_string(cut.slices.size()) + (cut.slices.size() == 1 ? " slice" : " slices");
         content.unit = unit;
         const std::size_t n = cut.slices.size(), most = static_cast<std::size_t>(drawn);
         for (std::size_t k = 0; k < std::min(n, most); ++k) {
             const std::size_t i = n <= most ? k : k * (n - 1) / std::max<std::size_t>(1, most - 1);
-            DrawnSlice entry{&cut.slices[i], &cut.descriptors[i], {}};
+            DrawnSlice entry{&cut.slices[i], &cut.descriptors[i], {}, i + 1};
             if (!cut.medial.empty() && !cut.medial[i].levels.empty())
                 for (const auto& branch : cut.medial[i].levels[0].branches) entry.lines.push_back(branch.points);
             content.slices.push_back(entry);
@@ -417,13 +443,28 @@ private:
             } else if (kind == Kind::sheet) {
                 if (drawable(path, session)) write_slice_sheet(path, sheet());
             } else if (drawable(path, session)) {
-                const double turn = angle.empty() ? std::numeric_limits<double>::quiet_NaN() : turn_of_profile();
-                write_profile_drawing(path, find_profile(file.mesh, profile_axis(), turn), Path(mesh).filename().string(), unit);
+                draw_profile(path, session);
             }
         }
         for (const auto& name : outputs)
             if (std::filesystem::is_directory(name)) replace_outputs(name, "slice");
         together.commit();
+    }
+
+    /// Of what was not turned only where it was asked for.
+    void draw_profile(const Path& path, const Session& session) const {
+        const double turn = angle.empty() ? std::numeric_limits<double>::quiet_NaN() : turn_of_profile();
+        const Profile drawn_one = find_profile(file.mesh, profile_axis(), turn);
+        const std::string not_turned = "note: not a turned object about this axis (fewer than half of 24 slices are round): ";
+        if (!drawn_one.turned && path != profile) {
+            session.note(not_turned + path.filename().string() + " is not written; --profile FILE draws it all the same");
+            return;
+        }
+        if (!drawn_one.turned) session.note(not_turned + "a profile drawing says little of it");
+        if (drawn_one.hides)
+            session.note("note: " + path.filename().string() +
+                         " does not show all that stands out from the turned body: some of it lies before or behind it");
+        write_profile_drawing(path, drawn_one, name_of_drawing(), unit);
     }
 
     /// Nothing is drawn where nothing was met.
@@ -446,9 +487,12 @@ private:
                             cell(100 * d.roundness_fitted_relative, 3), cell(d.hole_area_ratio, 3), cell(d.thickness_mean, 3),
                             cut.slices[i].contours.empty() ? "empty" : number(100 * cut.slices[i].completeness.share, 3)});
         }
-        std::cout << table({"slice", "height", "contours", "area", "perimeter", "m/M", "solidity", "compactness", "off circle %",
-                            "hole ratio", "thickness", "complete %"},
+        std::cout << table({"slice", cut.parallel ? "height" : "along the curve", "contours", "area", "perimeter", "m/M",
+                            "solidity", "compactness", "off circle %", "hole ratio", "thickness", "complete %"},
                            rows);
+        std::cout
+            << "m/M: sides of the smallest rectangle around the whole slice, loose pieces too (`eccentricity` in files; 1 for a "
+               "circle); off circle: mean distance from the best circle, of its radius\n";
         rows.clear();
         for (const auto& axis : found) {
             const auto& s = axis.straightness;
@@ -458,9 +502,13 @@ private:
         }
         if (!rows.empty()) std::cout << '\n' << table({"axis", "mean distance", "largest", "length", "mean / length %"}, rows);
         if (std::isfinite(thickness.mean))
-            std::cout << "\nthickness " << number(thickness.mean) << (unit.empty() ? "" : " " + unit) << ": varies by "
-                      << cell(100 * thickness.within, 3) << " % within slices, " << cell(100 * thickness.across, 3)
-                      << " % between them\n";
+            std::cout << "\nwall " << number(thickness.mean) << (unit.empty() ? "" : " " + unit) << ": varies by "
+                      << cell(100 * thickness.within, 3) << " % within slices, "
+                      << (thickness.slices < 2 ? std::string("and one slice tells nothing of how it does between them")
+                                               : cell(100 * thickness.across, 3) + " % between them")
+                      << " (medians; " << thickness.slices << " of " << cut.slices.size() << " slices show the wall alone)\n";
+        else if (thickness.beside > 0)
+            std::cout << "\nno slice shows the wall alone: all that do have handles or other parts beside it\n";
         if (!plane.empty()) return;
         if (tube.found) {
             std::vector<double> sorted;
@@ -487,9 +535,10 @@ void add_slice(CLI::App& tool, Session& session) {
     command->add_option("--annotation", slice->names, "id or tag of a region: slice that part only; more than one: all together");
     command
         ->add_option("--direction", slice->direction,
-                     "across what: up, principal, rotation, skeleton, or three numbers like 0,1,0")
+                     "across what: up, principal, rotation, skeleton, an axis such as y or -z, or three numbers like 0,1,0")
         ->capture_default_str();
-    command->add_option("--up", slice->up, "x,y,z: upward direction; else as the annotations say, else 0,0,1");
+    command->add_option("--up", slice->up,
+                        "x, y, z, -x, -y, -z or three numbers: upward direction; else as the annotations say, else 0,0,1");
     command->add_option("--count", slice->count, "number of slices, in the middles of as many layers (default 50)")
         ->check(CLI::Range(1, 1000000));
     command->add_option("--spacing", slice->spacing, "distance of the slices, in the mesh's unit, from the lowest place up")
@@ -508,6 +557,7 @@ void add_slice(CLI::App& tool, Session& session) {
                      "mesh); repeatable")
         ->check(given);
     command->add_option("--profile", slice->profile, "write a profile drawing (.svg, .png)")->check(given);
+    command->add_option("--title", slice->title, "title of the drawings; else the mesh file's name");
     command->add_option("--profile-angle", slice->angle, "direction of the section of the profile, degrees; else a typical one");
     command->add_option("--drawn", slice->drawn, "most slices on the drawing")
         ->check(CLI::Range(1, 10000))

@@ -166,6 +166,7 @@ JsonValue json_of(const std::vector<NamedAxis>& axes, JsonAllocator& allocator) 
 JsonValue json_of(const ThicknessHomogeneity& thickness, JsonAllocator& allocator) {
     JsonValue object(rapidjson::kObjectType);
     add_member(object, "slices", JsonValue(static_cast<std::uint64_t>(thickness.slices)), allocator);
+    add_member(object, "slices_with_parts_beside", JsonValue(static_cast<std::uint64_t>(thickness.beside)), allocator);
     add_number(object, "mean", thickness.mean, allocator);
     add_number(object, "variation_within", thickness.within, allocator);
     add_number(object, "variation_across", thickness.across, allocator);
@@ -191,9 +192,10 @@ JsonValue json_of(const Tube& tube, const CutObject& cut, JsonAllocator& allocat
 }
 
 std::string csv_of(const CutObject& cut, const std::string& unit) {
-    std::vector<std::string> header{"slice",         "unit",  "height",        "contours",          "open_contours",
-                                    "closed_share",  "share", "angle_degrees", "crossing_contours", "turned_contours",
-                                    "doubtful_share"};
+    std::vector<std::string> header{"slice",           "unit",          cut.parallel ? "height" : "along_the_curve",
+                                    "contours",        "open_contours", "closed_share",
+                                    "share",           "angle_degrees", "crossing_contours",
+                                    "turned_contours", "doubtful_share"};
     for (const auto& entry : list_descriptors({})) header.emplace_back(entry.name);
     std::string text = csv_row(header);
     const auto cell = [](double value) {

@@ -296,7 +296,7 @@ void StepFlags::add_to(CLI::App& command) {
              {"--box", tools.box, "six numbers: least and greatest corner"},
              {"--sphere", tools.sphere, "x,y,z,radius"},
              {"--halfspace", tools.halfspace, "six numbers: a point of the plane, and the normal to the side wanted"},
-             {"--nearest", tools.nearest, "x,y,z: the nearest vertex"},
+             {"--nearest", tools.nearest, "x, y, z, -x, -y, -z or three numbers: the nearest vertex"},
              {"--threshold", tools.threshold,
               "x, y, z, mean-curvature, gaussian-curvature, thickness, distance (from --seed) or a file of values (.npy or "
               "text)"},
@@ -355,7 +355,9 @@ void StepFlags::add_to(CLI::App& command) {
         ->capture_default_str()
         ->group(camera);
     command
-        .add_option("--up", up, "x,y,z: upward direction, kept where a new file is made; else as the annotations say, else 0,0,1")
+        .add_option("--up", up,
+                    "x, y, z, -x, -y, -z or three numbers: upward direction, kept where a new file is made; else as the "
+                    "annotations say, else 0,0,1")
         ->group(camera);
     command.add_option("--projection", projection, "orthographic or perspective")
         ->check(CLI::IsMember({"orthographic", "perspective"}))

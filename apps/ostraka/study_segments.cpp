@@ -185,7 +185,9 @@ void add_study_segments(CLI::App& study, Session& session) {
                                     [&session, work] { return work->run(session); });
     command->add_option("mesh", work->mesh, "mesh file")->required();
     command->add_option("output", work->output, "annotations to write (.ant.json)")->required();
-    command->add_option("--up", work->up, "x,y,z: upward direction; else as the annotations of --compare say, else 0,0,1");
+    command->add_option(
+        "--up", work->up,
+        "x, y, z, -x, -y, -z or three numbers: upward direction; else as the annotations of --compare say, else 0,0,1");
     command->add_option("--unit", work->unit, "unit of the mesh; else as the annotations of --compare say");
     command->add_option("--curve", work->curve, "plot of the criterion over the number of clusters (.svg, .png)");
     command->add_option("--compare", work->compare,

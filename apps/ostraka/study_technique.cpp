@@ -118,7 +118,9 @@ void add_study_technique(CLI::App& study, Session& session) {
     CLI::App* command = session.add(study, "technique", "which bodies are wheel-made and which hand-made, by their lower slices",
                                     [&session, work] { return work->run(session); });
     add_study_files(command, work->files, true);
-    command->add_option("--up", work->up, "x,y,z: upward direction of all objects; else as their annotations say, else 0,0,1");
+    command->add_option(
+        "--up", work->up,
+        "x, y, z, -x, -y, -z or three numbers: upward direction of all objects; else as their annotations say, else 0,0,1");
     add_flags(command, work->slices);
     add_flags(command, work->options);
 }

@@ -1,5 +1,6 @@
 // ostraka template pack | check | show
 #include "command.h"
+#include "number_lists.h"
 
 #include "ostraka/bundle/template.h"
 
@@ -57,7 +58,7 @@ struct Examine {
 
 struct Pack {
     std::string output, object_class, unit;
-    std::vector<double> up;
+    std::string up;
     std::map<std::string, std::vector<std::string>> given;
     bool copy = false;
     TemplateOptions options;
@@ -68,7 +69,7 @@ struct Pack {
         TemplateFile file;
         file.object_class = object_class;
         file.unit = unit;
-        if (!up.empty()) file.up = {up[0], up[1], up[2]};
+        if (!up.empty()) file.up = direction_of(up, "--up");
         std::vector<Path> inputs, outputs{output};
         for (const std::string& role : template_roles())
             for (const std::string& name : given[role]) {
@@ -144,7 +145,7 @@ void add_template(CLI::App& bundle, Session& session) {
     part("landmarks", "landmarks (.ant.json)", false);
     command->add_option("--class", pack->object_class, "class of the object; else as the annotations say");
     command->add_option("--unit", pack->unit, "unit of the coordinates, any text such as mm; else as the annotations say");
-    command->add_option("--up", pack->up, "upward direction, three numbers; else as the annotations say")->expected(3);
+    command->add_option("--up", pack->up, "x, y, z, -x, -y, -z or three numbers: upward direction; else as the annotations say");
     command->add_flag("--copy", pack->copy, "copy the parts into the template's folder");
     add_flags(command, pack->options);
 

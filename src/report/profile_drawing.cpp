@@ -51,6 +51,28 @@ void dimension(Sheet& sheet, double x1, double y1, double x2, double y2) {
     sheet.line(x2 - dx, y2 - dy, x2 + dx, y2 + dy, ink, 0.5);
 }
 
+/// What of the outline lies beyond the section on its side, by more than a hundredth of the size.
+std::vector<std::vector<Vector2d>> beyond_section(const Profile& profile) {
+    const double height = profile.high - profile.low, step = height / 200;
+    std::vector<std::vector<Vector2d>> runs;
+    for (const auto& curve : profile.outline) {
+        bool open = false;
+        for (std::size_t i = 0; i < curve.size(); ++i) {
+            const Vector2d &a = curve[i], &b = curve[(i + 1) % curve.size()];
+            const int parts = static_cast<int>(std::clamp(std::ceil((b - a).norm() / step), 1.0, 1000.0));
+            for (int k = 0; k < parts; ++k) {
+                const Vector2d p = a + double(k) / parts * (b - a);
+                const bool beyond = p.x() <= 0 && -p.x() > profile.reach_at(p.y()) + height / 100;
+                if (beyond && !open) runs.emplace_back();
+                if (beyond) runs.back().push_back(p);
+                open = beyond;
+            }
+        }
+    }
+    std::erase_if(runs, [](const auto& run) { return run.size() < 3; });
+    return runs;
+}
+
 }  // namespace
 
 void write_profile_drawing(const Path& file, const Profile& profile, const std::string& title, const std::string& unit) {
@@ -58,7 +80,7 @@ void write_profile_drawing(const Path& file, const Profile& profile, const std::
     for (const auto& contour : profile.section.contours)
         for (const auto& p : contour.points) left = std::max(left, -p.x());
     for (const auto& curve : profile.outline)
-        for (const auto& p : curve) right = std::max(right, p.x());
+        for (const auto& p : curve) right = std::max(right, p.x()), left = std::max(left, -p.x());
     const double height = profile.high - profile.low;
     if (!(left + right > 0) || !(height > 0))
         fail_input("drawing", "the object has no profile about this axis", "choose another axis");
@@ -80,6 +102,7 @@ void write_profile_drawing(const Path& file, const Profile& profile, const std::
             for (const auto& contour : part.contours) sheet.polyline(placing(contour.points, true), ink, false, 0.7);
         }
         open_contours(sheet, profile.section, placing);
+        for (const auto& curve : beyond_section(profile)) sheet.polyline(placing(curve, false), ink, true, 0.7);
         sheet.unclip();
         // The outside, seen.
         sheet.clip({middle, 0, sheet_width, sheet_height});

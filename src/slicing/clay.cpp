@@ -2,6 +2,7 @@
 
 #include "ostraka/geom/planar.h"
 #include "ostraka/slicing/slice_descriptors.h"
+#include "ostraka/stats/summary.h"
 
 #include <algorithm>
 #include <cmath>
@@ -109,19 +110,22 @@ ClayVolume clay_volume(const Mesh& mesh, const SliceFrame& frame, const ClayOpti
     ClayVolume result;
     result.reversed = stack.reversed;
     for (const Slice& slice : stack.slices) result.turned += slice.completeness.turned > 0 ? 1 : 0;
+    std::vector<double> thinnest, thickest;
     for (const Layer& layer : layers) {
         if (!layer.met) continue;
         ++result.slices;
         if (!layer.outlined) ++result.without_outline;
         if (layer.crossing) ++result.crossing;
         if (!layer.cavity) continue;
-        if (result.with_cavity == 0) result.wall_least = layer.thinnest, result.wall_most = layer.thickest, result.wall_mean = 0;
+        if (result.with_cavity == 0) result.wall_mean = 0;
         ++result.with_cavity;
         result.wall_mean += layer.wall;
-        result.wall_least = std::min(result.wall_least, layer.thinnest);
-        result.wall_most = std::max(result.wall_most, layer.thickest);
+        thinnest.push_back(layer.thinnest), thickest.push_back(layer.thickest);
     }
-    if (result.with_cavity > 0) result.wall_mean /= result.with_cavity;
+    if (result.with_cavity > 0) {
+        result.wall_mean /= result.with_cavity;
+        result.wall_least = sample_quantile(thinnest, 0.05), result.wall_most = sample_quantile(thickest, 0.95);
+    }
     result.wall = options.wall > 0 ? options.wall : result.wall_least;
     fill_between(layers);
     const double height = (highest - lowest) / options.slices;
@@ -132,8 +136,11 @@ ClayVolume clay_volume(const Mesh& mesh, const SliceFrame& frame, const ClayOpti
     if (result.without_outline == result.slices) result.most = result.envelope = ClayVolume::unknown;
     if (std::isnan(result.wall) || std::isnan(result.most)) return result;
     result.least = 0;
-    for (const Slice& slice : stack.slices)
-        if (slice.completeness.has_areas()) result.least += height * least_of(slice, result.wall);
+    for (const Slice& slice : stack.slices) {
+        if (!slice.completeness.has_areas()) continue;
+        const bool at_end = std::min(slice.height - lowest, highest - slice.height) < result.wall;
+        result.least += height * least_of(slice, at_end ? std::numeric_limits<double>::infinity() : result.wall);
+    }
     result.least = std::min(result.least, result.most);
     return result;
 }

@@ -61,15 +61,15 @@ double reach(const Slice& section, double height) {
     return most;
 }
 
+constexpr int steps = 200;
+
 /// Corners of the outer profile: of the poly-line of 200 reaches, where it turns by more than 25 degrees over 1/40 of the height,
 /// at the sharpest place of each such stretch.
-std::vector<Profile::Edge> breaks(const Slice& section, double low, double high) {
-    constexpr int steps = 200, window = 5;
+std::vector<Profile::Edge> breaks(const Profile& profile) {
+    constexpr int window = 5;
     std::vector<Vector2d> line;
-    for (int i = 0; i < steps; ++i) {
-        const double h = low + (high - low) * (i + 0.5) / steps;
-        line.emplace_back(reach(section, h), h);
-    }
+    for (std::size_t i = 0; i < steps; ++i)
+        line.emplace_back(profile.reach[i], profile.low + (profile.high - profile.low) * (double(i) + 0.5) / steps);
     std::vector<double> turn(steps, 0);
     for (std::size_t i = window; i + window < steps; ++i) {
         const Vector2d a = line[i] - line[i - window], b = line[i + window] - line[i];
@@ -86,19 +86,44 @@ std::vector<Profile::Edge> breaks(const Slice& section, double low, double high)
     return edges;
 }
 
-/// The one of 36 directions in which the mesh reaches farthest from the axis.
-double widest(const Mesh& mesh, const SliceFrame& axis) {
-    double best = 0, most = -1;
-    for (int k = 0; k < 36; ++k) {
-        const double angle = k * pi / 18;
-        const Vector along = std::cos(angle) * axis.u + std::sin(angle) * axis.v;
-        for (const Vertex v : mesh.vertices())
-            if (const double reach = along * (mesh.point(v) - axis.origin); reach > most * (1 + 1e-9)) most = reach, best = angle;
+/// The one of 36 directions in which the mesh stands out farthest from the section's outer side.
+double widest(const Mesh& mesh, const SliceFrame& axis, const Profile& profile) {
+    std::vector<double> most(36, -std::numeric_limits<double>::infinity());
+    for (const Vertex v : mesh.vertices()) {
+        const Vector2d place = axis.place(mesh.point(v));
+        const double wall = profile.reach_at(axis.height(mesh.point(v)));
+        for (std::size_t k = 0; k < 36; ++k)
+            most[k] =
+                std::max(most[k], std::cos(double(k) * pi / 18) * place.x() + std::sin(double(k) * pi / 18) * place.y() - wall);
     }
-    return best;
+    std::size_t best = 0;
+    for (std::size_t k = 1; k < 36; ++k)
+        if (most[k] > most[best] + 1e-9 * std::abs(most[best])) best = k;
+    return double(best) * pi / 18;
+}
+
+/// Whether something stands out that lies before or behind the body in the view.
+bool hides(const Mesh& mesh, const SliceFrame& axis, const Profile& profile) {
+    const double size = profile.high - profile.low;
+    const Vector2d along(std::cos(profile.view_angle), std::sin(profile.view_angle));
+    return std::any_of(mesh.vertices().begin(), mesh.vertices().end(), [&](Vertex v) {
+        const Vector2d place = axis.place(mesh.point(v));
+        const double wall = profile.reach_at(axis.height(mesh.point(v)));
+        return wall > 0 && place.norm() > wall + 0.05 * size && std::abs(along.dot(place)) < wall + 0.01 * size;
+    });
 }
 
 }  // namespace
+
+double Profile::reach_at(double height) const {
+    if (reach.empty() || !(height >= low && height <= high)) return 0;
+    const auto n = static_cast<long>(reach.size());
+    const long place = std::clamp(static_cast<long>((height - low) / (high - low) * double(n)), 0L, n - 1);
+    double most = 0;
+    for (long k = std::max(0L, place - 1); k <= std::min(n - 1, place + 1); ++k)
+        most = std::max(most, reach[static_cast<std::size_t>(k)]);
+    return most;
+}
 
 Profile find_profile(const Mesh& mesh, const SliceFrame& axis, double angle) {
     Profile profile;
@@ -124,6 +149,7 @@ Profile find_profile(const Mesh& mesh, const SliceFrame& axis, double angle) {
     profile.frame = section_frame(axis, angle);
     profile.section = slice_mesh(mesh, profile.frame, {0}).slices[0];
     const double size = profile.high - profile.low;
+    for (int i = 0; i < steps; ++i) profile.reach.push_back(reach(profile.section, profile.low + size * (i + 0.5) / steps));
     auto heights = slice_heights(profile.low, profile.high, 24);
     for (const double share : {0.002, 0.005, 0.01, 0.015, 0.02, 0.03}) heights.push_back(profile.high - share * size);
     const auto stack = slice_mesh(mesh, axis, heights);
@@ -145,12 +171,13 @@ Profile find_profile(const Mesh& mesh, const SliceFrame& axis, double angle) {
     profile.view_angle = angle + pi;
     if (profile.turned) {
         // Only where what is there is round and as wide: no edge of an arm or a handle.
-        for (const auto& edge : breaks(profile.section, profile.low, profile.high)) {
+        for (const auto& edge : breaks(profile)) {
             const auto layer = static_cast<std::size_t>(std::clamp((edge.height - profile.low) / size * 24, 0.0, 23.0));
             const auto& d = descriptors[layer];
             if (d.roundness_fitted_relative < 0.05 && edge.radius < 1.3 * d.fitted_radius) profile.edges.push_back(edge);
         }
-        profile.view_angle = widest(mesh, axis);
+        profile.view_angle = widest(mesh, axis, profile);
+        profile.hides = hides(mesh, axis, profile);
     }
     profile.outline = silhouette(mesh, section_frame(axis, profile.view_angle + pi), 1000);
     return profile;

@@ -3,6 +3,7 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/limits.h"
+#include "ostraka/core/parallel.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/line.h"
 #include "ostraka/geom/shortest_path.h"
@@ -28,6 +29,31 @@ Straightness summary_of(const std::vector<double>& distances, double length) {
 bool may_belong(const Slice& slice, const SliceDescriptors& d, const TubeOptions& options) {
     return slice.completeness.complete() && d.components == 1 && d.eccentricity >= options.least_eccentricity &&
            d.roundness_equivalent_relative <= options.most_roundness;
+}
+
+struct Wall {
+    double mean = ThicknessHomogeneity::absent, variance = 0;
+    bool beside = false;  ///< there is more than the wall
+};
+
+/// Between the largest outer contour and the largest hole in it.
+Wall wall_of(const Slice& slice) {
+    Wall wall;
+    if (!slice.completeness.has_areas()) return wall;
+    const auto parts = components(slice);
+    if (parts.empty() || parts[0].contours.size() < 2) return wall;
+    const Contour &outer = parts[0].contours[0], &hole = parts[0].contours[1];
+    const auto of_size = [](const Contour& contour, const Contour& main) {
+        return std::abs(contour.area) > std::abs(main.area) / 50;
+    };
+    for (std::size_t k = 2; k < parts[0].contours.size(); ++k) wall.beside = wall.beside || of_size(parts[0].contours[k], hole);
+    for (std::size_t k = 1; k < parts.size(); ++k) wall.beside = wall.beside || of_size(parts[k].contours[0], outer);
+    if (wall.beside) return wall;
+    Slice alone = parts[0];
+    alone.contours.resize(2);
+    const SliceDescriptors d = describe_slice(alone);
+    wall.mean = d.thickness_mean, wall.variance = d.thickness_variance;
+    return wall;
 }
 
 /// k-means with the least number of groups whose rms distances from their centres are small enough.
@@ -98,24 +124,30 @@ Straightness straightness(const std::vector<Point>& barycentres, const std::vect
     return summary_of(distances, length);
 }
 
-ThicknessHomogeneity thickness_homogeneity(const std::vector<SliceDescriptors>& descriptors) {
+ThicknessHomogeneity thickness_homogeneity(const std::vector<Slice>& slices) {
+    std::vector<Wall> walls(slices.size());
+    parallel_for(
+        slices.size(), [&](std::size_t i) { walls[i] = wall_of(slices[i]); }, 1);
     ThicknessHomogeneity result;
     std::vector<double> means, within;
-    double second = 0;
-    for (const auto& d : descriptors) {
-        if (!std::isfinite(d.thickness_mean)) continue;
-        means.push_back(d.thickness_mean);
-        if (d.thickness_mean > 0) within.push_back(std::sqrt(d.thickness_variance) / d.thickness_mean);
-        second += d.thickness_variance + d.thickness_mean * d.thickness_mean;
+    double first = 0, second = 0;
+    for (const Wall& wall : walls) {
+        if (wall.beside) ++result.beside;
+        if (!std::isfinite(wall.mean)) continue;
+        means.push_back(wall.mean);
+        if (wall.mean > 0) within.push_back(std::sqrt(wall.variance) / wall.mean);
+        first += wall.mean, second += wall.variance + wall.mean * wall.mean;
     }
     result.slices = means.size();
     if (means.empty()) return result;
-    const Summary summary = summarise(means);
-    result.mean = summary.mean;
-    result.across = summary.variation.value_or(ThicknessHomogeneity::absent);
-    if (!within.empty()) result.within = summarise(within).mean;
-    if (result.mean > 0)
-        result.overall = std::sqrt(std::max(0.0, second / double(means.size()) - result.mean * result.mean)) / result.mean;
+    result.mean = sample_quantile(means, 0.5);
+    if (!within.empty()) result.within = sample_quantile(within, 0.5);
+    first /= double(means.size()), second /= double(means.size());
+    if (first > 0) result.overall = std::sqrt(std::max(0.0, second - first * first)) / first;
+    if (means.size() > 1 && result.mean > 0) {
+        for (double& mean : means) mean = std::abs(mean - result.mean);
+        result.across = 1.4826 * sample_quantile(means, 0.5) / result.mean;
+    }
     return result;
 }
 

@@ -71,7 +71,7 @@ struct Ball : Scratch {
         return "template pack " + at(output) + " --mesh " + at("ball.ply") + " --annotations " + at("ball.ant.json") +
                " --graph " + at("ball.graph.json") + " --cage " + at("cage.ply") + " --coordinates " + at("ball.npy") +
                " --vocabulary " + at("ball.vocabulary.json") + " --rules " + at("ball.rules.json") + " --ranges " +
-               at("ranges.json") + " --landmarks " + at("ball.ant.json") + " --class ball --unit mm --up 0 0 2";
+               at("ranges.json") + " --landmarks " + at("ball.ant.json") + " --class ball --unit mm --up 0,0,2";
     }
     void pack() const {
         const auto result = run_command(arguments());
@@ -281,8 +281,8 @@ TEST(Template, NothingIsWrittenWhereThePartsDoNotFit) {
     EXPECT_EQ(run_command("template pack " + ball.at("x.template.json")).code, 2) << "no mesh";
     EXPECT_EQ(run_command("template pack " + ball.at("x.template.json") + " --mesh " + ball.at("none.ply")).code, 1);
     EXPECT_EQ(run_command("template pack " + ball.at("ball.ply") + " --mesh " + ball.at("ball.ply")).code, 2);
-    EXPECT_EQ(run_command("template pack " + ball.at("x.template.json") + " --mesh " + ball.at("ball.ply") + " --up 0 0 0").code,
-              1);
+    EXPECT_EQ(run_command("template pack " + ball.at("x.template.json") + " --mesh " + ball.at("ball.ply") + " --up 0,0,0").code,
+              2);
 }
 
 TEST(Template, DamagedFiles) {

@@ -160,6 +160,9 @@ TEST(CreasesCommand, WritesAnnotationsOrSaysThatThereIsNothing) {
         const AnnotationSet set = read_annotations(scratch / "out.ant.json", mesh, {});
         ASSERT_EQ(set.annotations.size(), 1U);
         EXPECT_EQ(set.annotations[0].tag, "ridge 1");
+        const bool has_unit = std::string(flags).find("--unit") != std::string::npos;
+        EXPECT_EQ(result.out.find("mean curvature, 1/mm") != std::string::npos, has_unit) << result.out;
+        EXPECT_NE(result.out.find("robust deviations"), std::string::npos) << result.out;
     }
     // What stood in the file stays.
     const std::string before = read_file(scratch / "out.ant.json");

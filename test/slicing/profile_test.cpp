@@ -92,3 +92,34 @@ TEST(Profile, OfWhatIsNotTurnedOrOpen) {
     for (const auto& contour : open.section.contours) EXPECT_FALSE(contour.closed);
     EXPECT_THROW((void)find_profile(Mesh(), slice_frame({0, 0, 0}, {0, 0, 1})), Error);
 }
+
+TEST(Profile, OfWhatStandsOutAboveAndBesideTheWall) {
+    // A handle like an arch over the rim, no wider than the belly, in the plane at 40 degrees.
+    const double turn = 40 * M_PI / 180;
+    const TriangleSoup arch = grid(60, 24, false, true, [&](double u, double v) {
+        const double along = M_PI * u, around = 2 * M_PI * v, r = 5 + 0.4 * std::cos(around);
+        const double x = r * std::cos(along), y = 0.4 * std::sin(around);
+        return std::array<double, 3>{2 + x * std::cos(turn) - y * std::sin(turn), 1 + x * std::sin(turn) + y * std::cos(turn),
+                                     6 + r * std::sin(along)};
+    });
+    const SliceFrame axis = slice_frame({2, 1, 0}, {0, 0, 1});
+    const Profile basket = find_profile(build_mesh(joined(bowl(ring, 2, 1), arch)), axis);
+    EXPECT_NEAR(basket.high, 11.4, 0.01);
+    ASSERT_TRUE(basket.turned);
+    EXPECT_NEAR(std::remainder(basket.view_angle - turn, M_PI), 0, 0.1);
+    EXPECT_FALSE(basket.hides);
+    // On both sides of the axis, as far as it reaches.
+    double left = 0, right = 0;
+    for (const auto& curve : basket.outline)
+        for (const auto& p : curve)
+            if (p.y() > 6.5 && p.y() < 7.5) left = std::min(left, p.x()), right = std::max(right, p.x());
+    EXPECT_NEAR(right, 5.38, 0.1);
+    EXPECT_NEAR(left, -5.38, 0.1);
+    EXPECT_NEAR(basket.reach_at(4.5), 7, 0.1);
+    EXPECT_EQ(basket.reach_at(12), 0);
+    // Two knobs at a right angle: the view along one hides it.
+    TriangleSoup knobs =
+        joined(moved(octahedron_sphere(3), 0.8, {2 + 7.5, 1, 4}), moved(octahedron_sphere(3), 0.7, {2, 1 + 7.5, 4}));
+    const Profile two = find_profile(build_mesh(joined(bowl(ring, 2, 1), knobs)), axis);
+    EXPECT_TRUE(two.hides);
+}

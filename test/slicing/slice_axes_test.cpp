@@ -66,19 +66,43 @@ TEST(SliceAxes, EvennessOfWalls) {
     for (const double wall : {1.0, 2.0, 3.0})
         slices.push_back(slice_at(wall, {ellipse(500, 5, 5), reversed(ellipse(500, 5 - wall, 5 - wall))}));
     slices.push_back(slice_at(4, {ellipse(50, 5, 5)}));
-    const auto even = thickness_homogeneity(describe_slices(slices));
+    const auto even = thickness_homogeneity(slices);
     EXPECT_EQ(even.slices, 3U);
+    EXPECT_EQ(even.beside, 0U);
     EXPECT_NEAR(even.mean, 2, 1e-3);
     EXPECT_NEAR(even.within, 0, 1e-3);
-    EXPECT_NEAR(even.across, 0.5, 1e-3);
+    EXPECT_NEAR(even.across, 1.4826 / 2, 1e-3);
     EXPECT_NEAR(even.overall, std::sqrt(2.0 / 3) / 2, 1e-3);
-    const auto one = thickness_homogeneity(describe_slices({slices[0]}));
+    const auto one = thickness_homogeneity({slices[0]});
     EXPECT_TRUE(std::isnan(one.across));
     EXPECT_NEAR(one.overall, 0, 1e-3);
     EXPECT_TRUE(std::isnan(thickness_homogeneity({}).mean));
     // No wall at all: the hole covers the outline.
-    const auto none = thickness_homogeneity(describe_slices({slice_at(0, {ellipse(50, 5, 5), reversed(ellipse(50, 5, 5))})}));
+    const auto none = thickness_homogeneity({slice_at(0, {ellipse(50, 5, 5), reversed(ellipse(50, 5, 5))})});
     EXPECT_TRUE(std::isnan(none.mean) || none.mean < 1e-12);
+}
+
+TEST(SliceAxes, HandlesCrumbsAndAFootDoNotSpoilTheEvenness) {
+    const auto ring = [](double wall) { return std::vector{ellipse(500, 5, 5), reversed(ellipse(500, 5 - wall, 5 - wall))}; };
+    std::vector<Slice> slices;
+    for (int i = 0; i < 9; ++i) slices.push_back(slice_at(i, ring(1)));
+    const auto plain = thickness_homogeneity(slices);
+    // A crumb beside the wall; a thick foot.
+    auto crumbs = ring(1);
+    crumbs.push_back(ellipse(40, 0.1, 0.1, {8, 0})), crumbs.push_back(reversed(ellipse(40, 0.05, 0.05, {8, 0})));
+    slices.push_back(slice_at(9, crumbs));
+    slices.push_back(slice_at(-1, ring(4)));
+    // A hollow handle, and one that is joined so that there is a hole between it and the wall.
+    auto handle = ring(1), joined = ring(1);
+    handle.push_back(ellipse(80, 1, 1, {8, 0})), handle.push_back(reversed(ellipse(80, 0.2, 0.2, {8, 0})));
+    joined[0] = ellipse(500, 9, 6), joined.push_back(reversed(ellipse(80, 1, 1, {7, 0})));
+    slices.push_back(slice_at(10, handle)), slices.push_back(slice_at(11, joined));
+    const auto other = thickness_homogeneity(slices);
+    EXPECT_EQ(other.slices, 11U);
+    EXPECT_EQ(other.beside, 2U);
+    EXPECT_NEAR(other.mean, plain.mean, 1e-9);
+    EXPECT_NEAR(other.within, plain.within, 1e-9);
+    EXPECT_NEAR(other.across, 0, 1e-9);
 }
 
 TEST(SliceAxes, TheTubeBetweenFeetAndHead) {

@@ -289,3 +289,56 @@ TEST(SliceCommand, MeshesWithoutSurfaceOrSkeleton) {
     expect_fails("measure clay " + flat, 3, "no height along this direction");
     expect_fails("slice " + flat + " --direction skeleton", 3, "slice along another --direction");
 }
+
+TEST(SliceCommand, AProfileIsOfTurnedObjects) {
+    const Scratch scratch;
+    const std::string cube = (scratch / "cube.ply").string(), folder = (scratch / "cut").string();
+    write_triangles(cube, box(3));
+    const auto left_out = run_command("slice --count 4 " + cube + " --output " + folder);
+    EXPECT_EQ(left_out.code, 0) << left_out.err;
+    EXPECT_NE(left_out.err.find("not a turned object"), std::string::npos) << left_out.err;
+    EXPECT_FALSE(std::filesystem::exists(Path(folder) / "profile.svg"));
+    const auto asked =
+        run_command("slice --count 4 " + cube + " --title 'A box of mine' --profile " + (scratch / "p.svg").string());
+    EXPECT_EQ(asked.code, 0);
+    EXPECT_NE(asked.err.find("not a turned object"), std::string::npos) << asked.err;
+    EXPECT_TRUE(std::filesystem::exists(scratch / "p.svg"));
+    const auto turned = run_command("slice --count 4 " + vase + "--output " + folder);
+    EXPECT_EQ(turned.err.find("not a turned object"), std::string::npos) << turned.err;
+    EXPECT_TRUE(std::filesystem::exists(Path(folder) / "profile.svg"));
+}
+
+TEST(SliceCommand, DirectionsInWords) {
+    const auto same = [](const std::string& words, const std::string& numbers) {
+        const auto a = run_command("slice " + vase + "--count 3 " + words),
+                   b = run_command("slice " + vase + "--count 3 " + numbers);
+        EXPECT_EQ(a.code, 0) << a.err;
+        EXPECT_EQ(a.out, b.out) << words;
+    };
+    same("--up y", "--up 0,1,0");
+    same("--up -z", "--up 0,0,-1");
+    same("--direction -x", "--direction -1,0,0");
+    expect_fails("slice " + vase + "--up w", 2, "x, y, z, -x, -y, -z");
+    expect_fails("slice " + vase + "--direction diagonal", 2, "up, principal, rotation, skeleton");
+    const auto rotation = run_command("slice " + data + "vase.ply --count 3 --direction rotation");
+    EXPECT_NE(rotation.err.find("give --up"), std::string::npos) << rotation.err;
+    EXPECT_EQ(run_command("slice " + vase + "--count 3 --direction rotation").err.find("give --up"), std::string::npos);
+}
+
+TEST(SliceCommand, WhatTwoSlicesAndSkeletonsTell) {
+    const auto two = run_command("slice " + vase + "--heights 60,120");
+    EXPECT_EQ(two.code, 0);
+    EXPECT_NE(two.out.find("two places are always in line"), std::string::npos) << two.out;
+    EXPECT_NE(two.out.find("2 of 2 slices show the wall alone"), std::string::npos) << two.out;
+    const auto one = run_command("slice " + vase + "--heights 60");
+    EXPECT_NE(one.out.find("one slice tells nothing"), std::string::npos) << one.out;
+    EXPECT_EQ(one.out.find("along the curve"), std::string::npos);
+    const auto curve = run_command("slice " + vase + "--direction skeleton --count 4");
+    EXPECT_NE(curve.out.find("along the curve"), std::string::npos) << curve.out;
+    EXPECT_NE(curve.err.find("the object is hollow"), std::string::npos) << curve.err;
+    const Scratch scratch;
+    const std::string bar = (scratch / "bar.ply").string();
+    write_triangles(bar, moved(octahedron_sphere(4), 3, {0, 0, 0}));
+    const auto solid = run_command("slice " + bar + " --direction skeleton --count 4");
+    EXPECT_EQ(solid.err.find("the object is hollow"), std::string::npos) << solid.err;
+}

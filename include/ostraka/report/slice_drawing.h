@@ -15,6 +15,7 @@ struct DrawnSlice {
     const Slice* slice = nullptr;
     const SliceDescriptors* descriptors = nullptr;
     std::vector<std::vector<Eigen::Vector2d>> lines = {};  ///< drawn over it: a medial axis, say
+    std::size_t number = 0;                                ///< that it is called by; 0: its place on the sheet
 };
 
 struct SliceSheet {
@@ -30,9 +31,9 @@ struct SliceSheet {
 /// for other endings.
 void write_slice_sheet(const Path& file, const SliceSheet& sheet);
 
-/// Writes a profile as pottery is drawn: the section of the wall filled on the left, the outside on the right, the axis between
-/// them, the rim's diameter and the height, a scale bar. Where the unit is mm, cm or m, an SVG printed at its own size is at the
-/// scale written in it. Endings and errors as above.
+/// Writes a profile as pottery is drawn: the section of the wall filled on the left, the outside on the right, what is seen of
+/// the other side beyond the section dashed, the axis between them, the rim's diameter and the height, a scale bar. Where the
+/// unit is mm, cm or m, an SVG printed at its own size is at the scale written in it. Endings and errors as above.
 void write_profile_drawing(const Path& file, const Profile& profile, const std::string& title, const std::string& unit);
 
 }  // namespace ostraka

@@ -17,7 +17,7 @@ struct ClayOptions {
     void describe(Visitor& visit) {
         visit("slices", slices, "layers that the object is cut into", Range{2, 1000000});
         visit("wall", wall,
-              "least wall that the clay is taken to have where it is not seen, in the mesh's unit; 0: the thinnest that is seen",
+              "least wall that the clay is taken to have where it is not seen, in the mesh's unit; 0: a thin one of those seen",
               Range{0, 1e60});
     }
 };
@@ -29,7 +29,8 @@ struct ClayVolume {
     double least = unknown;  ///< what is not seen is hollow but for a wall; unknown if no wall is seen or given
     double envelope = 0;     ///< within the outer surface, cavities filled; unknown where contours cross
     double wall = unknown;   ///< that `least` goes by, in the mesh's unit
-    /// The wall where both its sides are seen: mean of the slices' means, the least and the largest distance of its sides.
+    /// The wall where both its sides are seen: mean of the slices' means; of their least and of their largest distances of its
+    /// sides the 5 and the 95 % quantile, since a plane that grazes a floor or a rim tells nothing of a wall.
     double wall_mean = unknown, wall_least = unknown, wall_most = unknown;
     int slices = 0;           ///< that meet the object
     int with_cavity = 0;      ///< of them, those with a hole all of whose outline is seen
@@ -44,9 +45,9 @@ struct ClayVolume {
 /// Sums over slices (middles of layers of equal height). In a slice whose cavity is seen the material's area counts. Elsewhere
 /// each outer contour of area A may hide a cavity: between its A and A - pi (r - t)^2 of clay, r the radius of the circle of area
 /// A and t the wall: by the inequality of Brunn and Minkowski no contour with a wall of t or more all around holds less, and a
-/// disc holds just that. t is the least distance of the sides of a wall that is seen, if none is given. Contours within others
-/// and open ones count for nothing. Error of the sum: second order in the height of a layer, away from flat tops. Throws as
-/// `slice_mesh`, and Error (usage) for options.
+/// disc holds just that. What lies within t of the lowest and of the highest place is wall. t is `wall_least` if none is given.
+/// Contours within others and open ones count for nothing. Error of the sum: second order in the height of a layer, away from
+/// flat tops. Throws as `slice_mesh`, and Error (usage) for options.
 ClayVolume clay_volume(const Mesh& mesh, const SliceFrame& frame, const ClayOptions& options = {});
 
 }  // namespace ostraka

@@ -24,13 +24,19 @@ struct Profile {
                               ///< those with a relative roundness below 0.1 and a mouth (a hole, open contours, a border of the
                               ///< mesh); 0 if there is none
     double rim_share = 1;     ///< of that circle's turn that is there
+    /// Points of the section's outer side, half a per cent of the height apart: how far it reaches from the axis, from `low` on.
+    std::vector<double> reach;
+    bool hides = false;  ///< something of a turned object stands out by more than 5 % of its height and is not seen to
+
+    /// The reach at a height, the largest of its neighbourhood; 0 outside.
+    [[nodiscard]] double reach_at(double height) const;
 };
 
 /// `axis` has its normal along the object's axis and its origin on it. The section goes along `angle` (radians from u,
 /// counter-clockwise seen from above); where that is NaN, along the one of 36 directions whose half section, among those without
 /// open contours, has the median area, so that neither a handle nor a spout is cut (among all with the least open length, if none
-/// is complete). Of a turned object the outline is that seen with the farthest reach to the right, so that a handle shows; of
-/// others it is that of the section's plane. Errors as slice_mesh.
+/// is complete). Of a turned object the outline is that seen with what stands out farthest from the section's outer side to the
+/// right, so that a handle shows, beside the wall or above it; of others it is that of the section's plane. Errors as slice_mesh.
 Profile find_profile(const Mesh& mesh, const SliceFrame& axis, double angle = std::numeric_limits<double>::quiet_NaN());
 
 }  // namespace ostraka

@@ -35,16 +35,19 @@ Straightness straightness(const std::vector<Point>& barycentres, const SliceLine
 /// From a bent axis; the length is that of the poly-line. Throws Error (usage) for a poly-line without points.
 Straightness straightness(const std::vector<Point>& barycentres, const std::vector<Point>& polyline);
 
-/// How even the wall is. Absent (NaN) where no slice has a thickness.
+/// How even the wall is. Absent (NaN) where no slice counts. A slice counts by its main outline and the main hole in it, if there
+/// is nothing else of size: no other outer contour and no other hole of more than a fiftieth of theirs, as handles and feet make,
+/// and no contours that cross.
 struct ThicknessHomogeneity {
     static constexpr double absent = std::numeric_limits<double>::quiet_NaN();
-    std::size_t slices = 0;   ///< with a thickness
-    double mean = absent;     ///< of the slices' means; unit
-    double within = absent;   ///< mean over the slices of deviation / mean around each
-    double across = absent;   ///< deviation (n - 1) of the slices' means / their mean; absent for one slice
-    double overall = absent;  ///< deviation / mean over all slices together, each with the same weight
+    std::size_t slices = 0;   ///< that count
+    std::size_t beside = 0;   ///< left out, since handles or other parts are beside or within the wall
+    double mean = absent;     ///< median of the slices' means; unit
+    double within = absent;   ///< median over the slices of deviation / mean around each
+    double across = absent;   ///< 1.4826 x median distance of the slices' means from their median / that; absent for one slice
+    double overall = absent;  ///< deviation / mean over all these slices together, each with the same weight
 };
-ThicknessHomogeneity thickness_homogeneity(const std::vector<SliceDescriptors>& descriptors);
+ThicknessHomogeneity thickness_homogeneity(const std::vector<Slice>& slices);
 
 struct TubeOptions {
     double least_eccentricity = 0.7;
