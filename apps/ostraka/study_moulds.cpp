@@ -19,7 +19,7 @@ namespace {
 
 struct MouldInput {
     StudyFiles files;
-    std::string similarity = "consistent";
+    std::string similarity = "combined";
     std::vector<int> leave_out;
     bool choices = false;
     CompareOptions compare;
