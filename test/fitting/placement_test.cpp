@@ -105,7 +105,8 @@ TEST(Placement, ProportionsOfAnotherMemberAreNotLeftOut) {
         place.z() *= place.z() > 0 ? 1.25 : 1;
         pair.on_fragment = there(place);
     }
-    for (const LandmarkResidual& landmark : place_by_landmarks({pairs}).fragments[0].landmarks) EXPECT_TRUE(landmark.used);
+    const Placement found = place_by_landmarks({pairs});
+    for (const LandmarkResidual& landmark : found.fragments[0].landmarks) EXPECT_TRUE(landmark.used);
 }
 
 TEST(Placement, SaysWhyAFragmentIsNotPlaced) {
