@@ -15,6 +15,7 @@ void check_extras(const MeshExtras& extras, const WriteOptions& options, std::si
                                    std::to_string(wanted));
     };
     check(options.vertex_quality.size(), vertices, "vertex_quality");
+    for (const FaceValues& one : options.face_values) check(one.values.size(), triangles, one.name.c_str());
     check(extras.vertex_colours.size(), vertices, "vertex_colours");
     check(extras.vertex_labels.size(), vertices, "vertex_labels");
     check(extras.vertex_texture.size(), vertices, "vertex_texture");
@@ -53,11 +54,12 @@ std::vector<std::string> write_triangles(const Path& file, const TriangleSoup& s
     check_extras(extras, options, soup.points.size(), soup.triangles.size());
     check_soup(file, soup);
     const std::string ending = extension(file);
-    if (ending != ".ply" && !options.vertex_quality.empty()) {
+    if (ending != ".ply" && (!options.vertex_quality.empty() || !options.face_values.empty())) {
         WriteOptions rest = options;
         rest.vertex_quality.clear();
+        rest.face_values.clear();
         std::vector<std::string> notes = write_triangles(file, soup, extras, rest);
-        notes.emplace_back("only PLY holds numbers of vertices: they are left out");
+        notes.emplace_back("only PLY holds numbers of vertices and faces: they are left out");
         return notes;
     }
     if (ending == ".obj") return io::write_obj(file, soup, extras, options);

@@ -62,6 +62,7 @@ Notes write_ply(const Path& file, const TriangleSoup& soup, const MeshExtras& ex
     header += "element face " + std::to_string(soup.triangles.size()) + "\nproperty list uchar int vertex_indices\n";
     if (!extras.face_colours.empty()) header += colour_properties(face_alpha);
     if (!extras.face_labels.empty()) header += "property int label\n";
+    for (const FaceValues& one : options.face_values) header += "property float " + one.name + "\n";
     if (!extras.corner_texture.empty()) header += "property list uchar float texcoord\n";
     writer.text(header + "end_header\n");
 
@@ -80,6 +81,7 @@ Notes write_ply(const Path& file, const TriangleSoup& soup, const MeshExtras& ex
         for (const Index v : soup.triangles[t]) values.put(v);
         if (!extras.face_colours.empty()) values.colour(extras.face_colours[t], face_alpha);
         if (!extras.face_labels.empty()) values.put(extras.face_labels[t]);
+        for (const FaceValues& one : options.face_values) values.put(one.values[t]);
         if (!extras.corner_texture.empty()) {
             values.put(std::uint8_t{6});
             for (std::size_t k = 3 * t; k < 3 * t + 3; ++k)

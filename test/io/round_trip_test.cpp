@@ -57,6 +57,23 @@ TEST(RoundTrip, PlyKeepsEverything) {
         }
 }
 
+TEST(RoundTrip, PlyHoldsNamedNumbersOfFacesAndOtherFormatsSayThatTheyDoNot) {
+    const Scratch scratch;
+    const TriangleSoup soup = octahedron();
+    WriteOptions options;
+    options.encoding = Encoding::ascii;
+    options.face_values = {{"distance", std::vector<float>(soup.triangles.size(), 0.25F)},
+                           {"fragment", std::vector<float>(soup.triangles.size(), -1)}};
+    EXPECT_TRUE(write_triangles(scratch / "a.ply", soup, {}, options).empty());
+    const std::string text = read_file(scratch / "a.ply");
+    EXPECT_NE(text.find("property float distance\nproperty float fragment\nend_header"), std::string::npos);
+    EXPECT_NE(text.find(" 0.25 -1\n"), std::string::npos);
+    EXPECT_EQ(reread(scratch / "a.ply").soup.triangles, soup.triangles);
+    EXPECT_FALSE(write_triangles(scratch / "a.obj", soup, {}, options).empty());
+    options.face_values[0].values.pop_back();
+    EXPECT_ANY_THROW(write_triangles(scratch / "a.ply", soup, {}, options));
+}
+
 TEST(RoundTrip, ObjKeepsGeometryColoursAndTexture) {
     const Scratch scratch;
     for (const auto& soup : soups())

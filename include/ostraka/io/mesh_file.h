@@ -63,11 +63,18 @@ MeshFile read_mesh(const Path& file);
 
 enum class Encoding { binary, ascii };
 
+/// A number for each triangle, under the name that the property has in a PLY file.
+struct FaceValues {
+    std::string name;
+    std::vector<float> values;
+};
+
 struct WriteOptions {
     Encoding encoding = Encoding::binary;  ///< for PLY and STL
     std::string comment;                   ///< one line (provenance), where the format has comments
     std::vector<double>
         vertex_quality{};  ///< empty or one number a vertex: the property "quality" of PLY, which viewers colour by
+    std::vector<FaceValues> face_values{};  ///< further properties of the faces, of PLY
 };
 
 /// Writes OBJ, PLY, OFF, STL or GLB by extension, atomically. Coordinates as shortest round-trip text or float64
