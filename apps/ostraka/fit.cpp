@@ -7,6 +7,7 @@
 #include "ostraka/geom/eigen.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/measure/measure.h"
+#include "ostraka/transfer/transfer.h"
 
 #include <filesystem>
 #include <iostream>
@@ -79,9 +80,19 @@ private:
         fragment.annotations.unit = set.unit;
     }
 
+    /// The template's annotations on the completed object.
+    static AnnotationSet carry(const Mesh& mesh, const AnnotationSet& set, const Reconstruction& result) {
+        Mesh fitted = mesh;
+        for (const Vertex v : fitted.vertices()) fitted.point(v) = result.points[v];
+        TransferOptions options;
+        options.overlap = false;
+        options.force = true;
+        return transfer(fitted, set, SurfaceSearch(result.object.mesh), options).annotations;
+    }
+
     [[nodiscard]] Path in(const std::string& name) const { return Path(output) / name; }
 
-    void write(const MeshFile& file, AnnotationSet& set, const std::vector<Fragment>& fragments, const AssemblyNames& names,
+    void write(const MeshFile& file, const AnnotationSet& set, const std::vector<Fragment>& fragments, const AssemblyNames& names,
                const Reconstruction& result, const Provenance& provenance, const Session& session) const {
         std::error_code code;
         fs::create_directories(output, code);
@@ -92,10 +103,9 @@ private:
         add_member(report, "provenance", provenance.to_json(document.GetAllocator()), document.GetAllocator());
         write_json(in("fit.assembly.json"), report);
         if (!result.points.empty()) {
-            Mesh mesh = file.mesh;
-            for (const Vertex v : mesh.vertices()) mesh.point(v) = result.points[v];
+            const CompletedObject& object = result.object;
             MeshExtras extras;
-            for (const Origin origin : result.origin) {
+            for (const Origin origin : object.origin) {
                 extras.face_labels.push_back(static_cast<std::int32_t>(origin));
                 extras.face_colours.push_back(origin == Origin::observed       ? Colour{186, 120, 82, 255}
                                               : origin == Origin::interpolated ? Colour{214, 180, 120, 255}
@@ -103,9 +113,18 @@ private:
             }
             WriteOptions how;
             how.comment = provenance.to_line();
-            write_mesh(in("completed.ply"), mesh, extras, how);
-            for (const auto& note : refresh_measures(mesh, set).notes) session.note("note: " + note);
-            write_annotations(in("completed.ant.json"), set, mesh, "completed.ply", provenance);
+            FaceValues fragment{"fragment", {}}, distance{"distance", {}}, confidence{"confidence", {}};
+            for (std::size_t f = 0; f < object.origin.size(); ++f) {
+                fragment.values.push_back(static_cast<float>(object.fragment[f] + 1));
+                distance.values.push_back(static_cast<float>(object.distance[f]));
+                confidence.values.push_back(static_cast<float>(object.confidence[f]));
+            }
+            how.face_values = {std::move(fragment), std::move(distance), std::move(confidence)};
+            write_mesh(in("completed.ply"), object.mesh, extras, how);
+            for (const std::string& note : object.notes) session.note("note: " + note);
+            AnnotationSet carried = carry(file.mesh, set, result);
+            for (const auto& note : refresh_measures(object.mesh, carried).notes) session.note("note: " + note);
+            write_annotations(in("completed.ant.json"), carried, object.mesh, "completed.ply", provenance);
         }
         if (placed)
             for (std::size_t k = 0; k < fragments.size(); ++k)
@@ -143,6 +162,10 @@ private:
         std::cout << table({"fragment", "", "landmarks", "residual", "own scale", "wrong landmarks"}, rows);
         std::cout << "scale of the template " << number(result.placement.scale, 4) << "; observed "
                   << number(100 * result.observed_share, 3) << " % of the surface\n";
+        if (result.crossings > 0)
+            std::cout << result.crossings
+                      << " pairs of faces of the template cross each other now: a lower --detail or --smoothing "
+                      << "may help\n";
         std::vector<std::vector<std::string>> constraints;
         for (const ConstraintReport& constraint : result.constraints) {
             std::string words = constraint.text;

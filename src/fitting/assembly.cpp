@@ -91,6 +91,8 @@ JsonValue assembly_to_json(const Reconstruction& result, const AssemblyNames& na
         if (k < result.notes.size())
             for (const std::string& note : result.notes[k]) notes.PushBack(JsonValue(note, allocator), allocator);
         add_member(entry, "notes", std::move(notes), allocator);
+        if (k < result.joined.size())
+            add_member(entry, "joinedFaces", JsonValue(static_cast<std::uint64_t>(result.joined[k])), allocator);
         fragments.PushBack(entry, allocator);
     }
     add_member(assembly, "fragments", std::move(fragments), allocator);
@@ -104,6 +106,10 @@ JsonValue assembly_to_json(const Reconstruction& result, const AssemblyNames& na
     }
     add_member(assembly, "levels", std::move(levels), allocator);
     add_member(assembly, "observedShare", JsonValue(result.observed_share), allocator);
+    add_member(assembly, "crossings", JsonValue(static_cast<std::uint64_t>(result.crossings)), allocator);
+    JsonValue completion(rapidjson::kArrayType);
+    for (const std::string& note : result.object.notes) completion.PushBack(JsonValue(note, allocator), allocator);
+    add_member(assembly, "completionNotes", std::move(completion), allocator);
     for (const ConstraintReport& constraint : result.constraints)
         constraints.PushBack(constraint_of(constraint, allocator), allocator);
     add_member(assembly, "constraints", std::move(constraints), allocator);

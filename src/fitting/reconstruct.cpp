@@ -3,23 +3,13 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/text.h"
 #include "ostraka/geom/eigen.h"
+#include "ostraka/io/diagnose.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 
 namespace ostraka {
-
-std::string to_string(Origin origin) {
-    switch (origin) {
-        case Origin::observed:
-            return "observed";
-        case Origin::interpolated:
-            return "interpolated";
-        default:
-            return "hypothesis";
-    }
-}
 
 std::string to_string(Compatibility compatibility) {
     switch (compatibility) {
@@ -63,6 +53,7 @@ public:
         result_.points = result_.fit.points;
         timed("observed", [&] { see(); });
         timed("constraints", [&] { restore(); });
+        timed("completion", [&] { finish(); });
         judge();
         return std::move(result_);
     }
@@ -134,7 +125,7 @@ private:
         }
     }
 
-    /// Which vertices and faces were observed: matched within the tolerance, with a neighbour that was, too.
+    /// Which vertices were observed: matched within the tolerance.
     void see() {
         const std::size_t n = mesh_.number_of_vertices();
         std::vector<bool> near(n, false);
@@ -146,29 +137,30 @@ private:
             near[i] = match.distance <= options_.observed * diagonal_;
             if (near[i]) result_.distance[i] = match.distance;
         }
-        held_ = near;
-        result_.origin.assign(mesh_.number_of_faces(), Origin::hypothesis);
-        result_.fragment.assign(mesh_.number_of_faces(), -1);
-        result_.confidence.assign(mesh_.number_of_faces(), 0);
+        held_ = std::move(near);
+    }
+
+    void finish() {
+        Mesh fitted = scaled_;
+        for (const Vertex v : fitted.vertices()) fitted.point(v) = result_.points[v];
+        CompleteOptions options = options_.completion;
+        options.tolerance = options_.observed;
+        result_.object = complete(fitted, placed_, options);
+        CompletedObject& object = result_.object;
+        result_.joined.assign(fragments_.size(), 0);
+        for (std::size_t i = 0; i < number_.size(); ++i) result_.joined[static_cast<std::size_t>(number_[i])] = object.joined[i];
         double area = 0, seen = 0;
-        for (const Face face : mesh_.faces()) {
-            const auto c = corners(mesh_, face);
-            const auto count = std::count_if(c.begin(), c.end(), [&](Vertex v) { return near[v]; });
-            const double a = face_area(scaled_, face);
+        for (const Face face : object.mesh.faces()) {
+            if (object.fragment[face] >= 0) object.fragment[face] = number_[static_cast<std::size_t>(object.fragment[face])];
+            const double a = face_area(object.mesh, face);
             area += a;
-            if (count == 0) continue;
-            result_.origin[face] = count == 3 ? Origin::observed : Origin::interpolated;
-            double worst = 0;
-            for (const Vertex v : c)
-                if (near[v]) {
-                    worst = std::max(worst, result_.distance[v]);
-                    result_.fragment[face] = std::max(result_.fragment[face], result_.fit.matches[v].fragment);
-                }
-            const double tolerance = options_.observed * diagonal_;
-            result_.confidence[face] = static_cast<double>(count) / 3 * (tolerance > 0 ? 1 - worst / tolerance : 1);
-            if (count == 3) seen += a;
+            if (object.origin[face] == Origin::observed) seen += a;
         }
         result_.observed_share = area > 0 ? seen / area : 0;
+        const auto before = self_intersections(to_soup(scaled_)).pairs, after = self_intersections(to_soup(fitted)).pairs;
+        result_.crossings = static_cast<std::size_t>(std::count_if(after.begin(), after.end(), [&](const auto& pair) {
+            return !std::binary_search(before.begin(), before.end(), pair);
+        }));
     }
 
     void restore() {

@@ -1,7 +1,7 @@
 // From fragments to the whole object: placement, non-rigid fit, constraints, completion, verdict (thesis, section 5.3.1).
 #pragma once
 
-#include "ostraka/fitting/fit.h"
+#include "ostraka/fitting/complete.h"
 #include "ostraka/fitting/placement.h"
 #include "ostraka/registration/part_alignment.h"
 #include "ostraka/semantic/deform.h"
@@ -16,6 +16,7 @@ struct ReconstructOptions {
     PartAlignmentOptions alignment;
     AnnotationMatchOptions annotations;
     NonRigidOptions fit;
+    CompleteOptions completion;   ///< its tolerance is `observed`
     double observed = 0.02;       ///< farthest that an observed vertex lies from its match, as a share of the diagonal
     double scale_tolerance = 10;  ///< per cent by which a fragment's own scale may differ from that of all
     double residual = 0.25;       ///< of landmarks, as a share of the spread of a fragment's landmarks: more is rejected
@@ -28,6 +29,7 @@ struct ReconstructOptions {
         alignment.describe(visit);
         annotations.describe(visit);
         fit.describe(visit);
+        completion.describe(visit);
         visit("observed", observed, "vertices farther from the fragments than this share of the diagonal are not observed",
               Range{0, 1});
         visit("scale-tolerance", scale_tolerance,
@@ -38,10 +40,6 @@ struct ReconstructOptions {
         visit("restore", restore, "constraints of the graph are solved for what was not observed", Anything{});
     }
 };
-
-/// Whether a face of the completed object was seen.
-enum class Origin : std::uint8_t { observed, interpolated, hypothesis };
-std::string to_string(Origin origin);
 
 /// A finding that speaks against a fragment, or against all of them together.
 struct Objection {
@@ -59,12 +57,12 @@ struct Reconstruction {
     std::vector<std::vector<AnnotationMatch>> annotations;  ///< of each fragment
     std::vector<std::vector<std::string>> notes;            ///< of each fragment
     NonRigidFit fit;
-    std::vector<Point> points;       ///< of the completed template, in the unit of the fragments
-    std::vector<Origin> origin;      ///< of each of its faces
-    std::vector<int> fragment;       ///< whose it is, -1: none
-    std::vector<double> distance;    ///< of each vertex from its fragment; none where it was not observed: -1
-    std::vector<double> confidence;  ///< of each face, 0 to 1
-    double observed_share = 0;       ///< of the area
+    std::vector<Point> points;     ///< of the template's vertices at the end, in the unit of the fragments
+    std::vector<double> distance;  ///< of each of them from its fragment; none where it was not observed: -1
+    CompletedObject object;
+    std::vector<std::size_t> joined;  ///< faces of each fragment that are in it
+    double observed_share = 0;        ///< of the completed object's area
+    std::size_t crossings = 0;        ///< pairs of the template's faces that cross after the fit, but did not before
     std::vector<ConstraintReport> constraints;
     std::vector<ConstraintConflict> conflicts;
     Compatibility verdict = Compatibility::undecided;
@@ -74,10 +72,11 @@ struct Reconstruction {
 };
 
 /// Places every fragment by the landmarks it has in common with the template, refines the poses by the
-/// surface, matches annotations, deforms the scaled template to all fragments placed, holds what was observed, and solves the
-/// graph's constraints for the rest. Fragments that cannot be placed are left out and said. The verdict: incompatible where a
-/// constraint fails, a fragment's own scale or its landmarks contradict the others; undecided where no fragment is placed, or
-/// there is but one and no constraint. Throws Error (input) for a template that does not fit its annotations.
+/// surface, matches annotations, deforms the scaled template to all fragments placed, holds what was observed, solves the
+/// graph's constraints for the rest, and joins both into one surface. Fragments that cannot be placed are left out and said. The
+/// verdict: incompatible where a constraint fails, a fragment's own scale or its landmarks contradict the others; undecided where
+/// no fragment is placed, or there is but one and no constraint. Throws Error (input) for a template that does not fit its
+/// annotations.
 Reconstruction reconstruct(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
                            const std::vector<const Fragment*>& fragments, const ReconstructOptions& options = {},
                            const std::vector<std::vector<StatedMatch>>& stated = {});

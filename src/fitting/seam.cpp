@@ -1,0 +1,385 @@
+#include "seam.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/geom/eigen.h"
+#include "ostraka/remesh/insert_curves.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace ostraka {
+
+using Eigen::Vector3d;
+
+Patch::Patch(const Mesh& mesh, std::vector<bool> keep, double least) : mesh_(mesh), keep_(std::move(keep)), least_(least) {
+    regularise();
+}
+
+std::size_t Patch::size() const { return static_cast<std::size_t>(std::count(keep_.begin(), keep_.end(), true)); }
+
+void Patch::erode(const std::vector<Vertex>& vertices) {
+    for (const Vertex v : vertices)
+        for (const Face face : mesh_.faces_around_target(mesh_.halfedge(v)))
+            if (face != Mesh::null_face()) keep_[face] = false;
+    regularise();
+}
+
+void Patch::regularise() {
+    const auto kept = [&](Halfedge h) { return !mesh_.is_border(h) && keep_[mesh_.face(h)]; };
+    // Vertices at which the patch has several fans lose their faces, which may make others such.
+    std::vector<Vertex> stack(mesh_.vertices().begin(), mesh_.vertices().end());
+    while (!stack.empty()) {
+        const Vertex v = stack.back();
+        stack.pop_back();
+        if (mesh_.is_isolated(v)) continue;
+        int ends = 0;
+        for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v)))
+            ends += kept(h) && !kept(mesh_.opposite(h)) ? 1 : 0;
+        if (ends < 2) continue;
+        for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
+            if (!kept(h)) continue;
+            keep_[mesh_.face(h)] = false;
+            for (const Vertex other : corners(mesh_, mesh_.face(h)))
+                if (other != v) stack.push_back(other);
+        }
+    }
+    // Pieces that are too small.
+    std::vector<int> piece(keep_.size(), -1);
+    std::vector<double> area;
+    double whole = 0;
+    for (const Face seed : mesh_.faces()) {
+        whole += face_area(mesh_, seed);
+        if (!keep_[seed] || piece[seed] >= 0) continue;
+        const int number = static_cast<int>(area.size());
+        area.push_back(0);
+        std::vector<Face> todo{seed};
+        piece[seed] = number;
+        while (!todo.empty()) {
+            const Face face = todo.back();
+            todo.pop_back();
+            area.back() += face_area(mesh_, face);
+            for (const Halfedge h : mesh_.halfedges_around_face(mesh_.halfedge(face))) {
+                const Halfedge other = mesh_.opposite(h);
+                if (!kept(other) || piece[mesh_.face(other)] >= 0) continue;
+                piece[mesh_.face(other)] = number;
+                todo.push_back(mesh_.face(other));
+            }
+        }
+    }
+    for (const Face face : mesh_.faces())
+        if (keep_[face] && !(area[static_cast<std::size_t>(piece[face])] >= least_ * whole)) keep_[face] = false;
+
+    loops_.clear();
+    std::vector<bool> bordered(area.size(), false);
+    for (const Halfedge h : mesh_.halfedges())
+        if (kept(h) && !kept(mesh_.opposite(h))) bordered[static_cast<std::size_t>(piece[mesh_.face(h)])] = true;
+    closed_.clear();
+    for (const Face face : mesh_.faces()) {
+        if (!keep_[face] || bordered[static_cast<std::size_t>(piece[face])]) continue;
+        bordered[static_cast<std::size_t>(piece[face])] = true;
+        closed_.push_back(face);
+    }
+    std::vector<Vertex> next(mesh_.number_of_vertices(), Mesh::null_vertex());
+    for (const Halfedge h : mesh_.halfedges())
+        if (kept(h) && !kept(mesh_.opposite(h))) next[mesh_.source(h)] = mesh_.target(h);
+    for (const Vertex start : mesh_.vertices()) {
+        if (next[start] == Mesh::null_vertex()) continue;
+        loops_.emplace_back();
+        for (Vertex v = start; next[v] != Mesh::null_vertex();) {
+            loops_.back().push_back(v);
+            const Vertex then = next[v];
+            next[v] = Mesh::null_vertex();
+            v = then;
+        }
+    }
+}
+
+namespace {
+
+/// A patch's border drawn on the surface, loop by loop.
+struct Drawing {
+    std::vector<SurfaceCurve> curves;             ///< the first node comes once more at the end
+    std::vector<std::vector<std::size_t>> first;  ///< of each loop: the node at each vertex, and the last node
+    std::vector<Vertex> failed;                   ///< vertices from which there is no way to the next
+};
+
+Drawing draw(const Mesh& surface, const Patch& patch, const std::vector<std::optional<SurfaceHit>>& places) {
+    Drawing drawing;
+    for (const std::vector<Vertex>& loop : patch.loops()) {
+        SurfaceCurve curve;
+        std::vector<std::size_t> first;
+        for (std::size_t i = 0; i < loop.size(); ++i) {
+            const SurfaceHit &a = *places[loop[i]], &b = *places[loop[(i + 1) % loop.size()]];
+            const SurfaceNode from = surface_node(surface, a.face, a.barycentric),
+                              to = surface_node(surface, b.face, b.barycentric);
+            Vector up = area_vector(surface, Face(a.face));
+            up = up / std::sqrt(up.squared_length());
+            Vector other = area_vector(surface, Face(b.face));
+            up = up + other / std::sqrt(other.squared_length());
+            const double straight = std::sqrt(CGAL::squared_distance(from.point, to.point));
+            const auto piece = straight > 0 ? trace_line(surface, from, to, up, 3 * straight) : std::nullopt;
+            first.push_back(curve.nodes.empty() ? 0 : curve.nodes.size() - 1);
+            if (!piece || piece->nodes.size() < 2) {
+                drawing.failed.push_back(loop[i]);
+                drawing.failed.push_back(loop[(i + 1) % loop.size()]);
+                curve.nodes.assign(1, to);
+                curve.faces.clear();
+                continue;
+            }
+            curve.nodes.insert(curve.nodes.end(), piece->nodes.begin() + (curve.nodes.empty() ? 0 : 1), piece->nodes.end());
+            curve.faces.insert(curve.faces.end(), piece->faces.begin(), piece->faces.end());
+        }
+        first.push_back(curve.nodes.size() - 1);
+        drawing.curves.push_back(std::move(curve));
+        drawing.first.push_back(std::move(first));
+    }
+    return drawing;
+}
+
+/// Vertices of the border beside pieces that meet other pieces, or are no edges of the cut surface.
+std::vector<Vertex> crossed(const InsertedCurves& cut, const Patch& patch, const Drawing& drawing) {
+    std::vector<Vertex> failed;
+    std::vector<int> uses(cut.mesh.number_of_vertices(), 0);
+    for (const auto& nodes : cut.node_vertex)
+        for (std::size_t i = 0; i + 1 < nodes.size(); ++i) ++uses[nodes[i]];
+    for (std::size_t l = 0; l < patch.loops().size(); ++l) {
+        const auto& loop = patch.loops()[l];
+        const auto& nodes = cut.node_vertex[l];
+        for (std::size_t i = 0; i < loop.size(); ++i)
+            for (std::size_t n = drawing.first[l][i]; n < drawing.first[l][i + 1]; ++n)
+                if (uses[nodes[n]] > 1 || nodes[n] == nodes[n + 1] ||
+                    find_halfedge(cut.mesh, Vertex(nodes[n]), Vertex(nodes[n + 1])) == Mesh::null_halfedge()) {
+                    failed.push_back(loop[i]);
+                    failed.push_back(loop[(i + 1) % loop.size()]);
+                    break;
+                }
+    }
+    return failed;
+}
+
+/// The surface parted by the curves: faces to their left and to their right.
+struct Sides {
+    std::vector<bool> left;      ///< marks of faces, among them the whole pieces of the surface under pieces without a border
+    std::vector<Vertex> failed;  ///< of the shortest border of each region that is left of some and right of others
+};
+
+Sides part(const InsertedCurves& cut, const Patch& patch, const std::vector<std::optional<SurfaceHit>>& places) {
+    const Mesh& mesh = cut.mesh;
+    constexpr std::size_t none = static_cast<std::size_t>(-1);
+    std::vector<bool> fence(mesh.number_of_edges(), false);
+    const auto along = [&](std::size_t l, std::size_t i) {
+        return find_halfedge(mesh, Vertex(cut.node_vertex[l][i]), Vertex(cut.node_vertex[l][i + 1]));
+    };
+    for (std::size_t l = 0; l < cut.node_vertex.size(); ++l)
+        for (std::size_t i = 0; i + 1 < cut.node_vertex[l].size(); ++i) fence[mesh.edge(along(l, i))] = true;
+    std::vector<std::size_t> region(mesh.number_of_faces(), none);
+    std::size_t count = 0;
+    for (const Face seed : mesh.faces()) {
+        if (region[seed] != none) continue;
+        std::vector<Face> stack{seed};
+        region[seed] = count;
+        while (!stack.empty()) {
+            const Face face = stack.back();
+            stack.pop_back();
+            for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(face))) {
+                const Halfedge other = mesh.opposite(h);
+                if (fence[mesh.edge(h)] || mesh.is_border(other) || region[mesh.face(other)] != none) continue;
+                region[mesh.face(other)] = count;
+                stack.push_back(mesh.face(other));
+            }
+        }
+        ++count;
+    }
+    std::vector<bool> left(count, false), right(count, false);
+    std::vector<std::size_t> shortest(count, none);
+    for (std::size_t l = 0; l < cut.node_vertex.size(); ++l)
+        for (std::size_t i = 0; i + 1 < cut.node_vertex[l].size(); ++i) {
+            const Halfedge h = along(l, i);
+            for (const Halfedge half : {h, mesh.opposite(h)}) {
+                if (mesh.is_border(half)) continue;
+                const std::size_t r = region[mesh.face(half)];
+                (half == h ? left : right)[r] = true;
+                if (shortest[r] == none || patch.loops()[l].size() < patch.loops()[shortest[r]].size()) shortest[r] = l;
+            }
+        }
+    for (const Face face : patch.closed()) {
+        const Index old = places[corners(patch.mesh(), face)[0]]->face;
+        const auto found = std::find(cut.face_origin.begin(), cut.face_origin.end(), old);
+        left[region[static_cast<std::size_t>(found - cut.face_origin.begin())]] = true;
+    }
+    Sides sides;
+    for (std::size_t r = 0; r < count; ++r)
+        if (left[r] && right[r])
+            sides.failed.insert(sides.failed.end(), patch.loops()[shortest[r]].begin(), patch.loops()[shortest[r]].end());
+    sides.left.resize(region.size());
+    for (std::size_t f = 0; f < region.size(); ++f) sides.left[f] = left[region[f]];
+    return sides;
+}
+
+/// Vertices of the surface near the seam shifted by displacements that are harmonic between the seam and those `fixed`.
+void follow(const Mesh& mesh, const std::vector<bool>& gone, const std::map<Index, Vector3d>& seam, double width,
+            const std::vector<bool>& frozen, std::vector<Vector3d>& points) {
+    const double edge = mean_edge_length(mesh);
+    const int rings = edge > 0 ? static_cast<int>(std::clamp(std::ceil(width / edge), 1.0, 40.0)) : 1;
+    std::vector<int> ring(mesh.number_of_vertices(), -1);
+    std::vector<Vertex> front, band;
+    for (const auto& [v, place] : seam) {
+        ring[v] = 0;
+        front.emplace_back(v);
+    }
+    const auto stays = [&](Halfedge h) { return !mesh.is_border(h) && !gone[mesh.face(h)]; };
+    std::vector<std::vector<Vertex>> around;
+    for (int r = 1; r <= rings; ++r) {
+        std::vector<Vertex> then;
+        for (const Vertex v : front)
+            for (const Halfedge h : mesh.halfedges_around_target(mesh.halfedge(v))) {
+                const Vertex other = mesh.source(h);
+                if (ring[other] >= 0 || !(stays(h) || stays(mesh.opposite(h)))) continue;
+                ring[other] = r;
+                then.push_back(other);
+                if (!(static_cast<std::size_t>(other) < frozen.size() && frozen[other])) band.push_back(other);
+            }
+        front = std::move(then);
+    }
+    std::vector<Vector3d> shift(mesh.number_of_vertices(), Vector3d::Zero()), next;
+    for (const auto& [v, place] : seam) shift[v] = place - points[v];
+    for (const Vertex v : band) {
+        around.emplace_back();
+        for (const Halfedge h : mesh.halfedges_around_target(mesh.halfedge(v)))
+            if (stays(h) || stays(mesh.opposite(h))) around.back().push_back(mesh.source(h));
+    }
+    next.resize(band.size());
+    for (int step = 0; step < 4 * rings; ++step) {
+        for (std::size_t i = 0; i < band.size(); ++i) {
+            next[i] = Vector3d::Zero();
+            for (const Vertex other : around[i]) next[i] += shift[other];
+            next[i] /= static_cast<double>(std::max<std::size_t>(1, around[i].size()));
+        }
+        for (std::size_t i = 0; i < band.size(); ++i) shift[band[i]] = next[i];
+    }
+    for (std::size_t v = 0; v < points.size(); ++v) points[v] += shift[v];
+}
+
+using Splits = std::map<std::pair<Index, Index>, std::vector<Index>>;
+
+/// The triangle cut so that the further vertices on its edges are corners.
+void cut_triangle(std::array<Index, 3> t, const Splits& splits, std::vector<std::array<Index, 3>>& out) {
+    for (int k = 0; k < 3; ++k) {
+        const auto found = splits.find({t[0], t[1]});
+        if (found == splits.end() || found->second.empty()) {
+            t = {t[1], t[2], t[0]};
+            continue;
+        }
+        std::vector<Index> chain{t[0]};
+        chain.insert(chain.end(), found->second.begin(), found->second.end());
+        chain.push_back(t[1]);
+        for (std::size_t i = 0; i + 1 < chain.size(); ++i) cut_triangle({chain[i], chain[i + 1], t[2]}, splits, out);
+        return;
+    }
+    out.push_back(t);
+}
+
+Joint stitch(const Patch& patch, const InsertedCurves& cut, const Drawing& drawing, const std::vector<bool>& gone, double width,
+             const std::vector<bool>& frozen) {
+    const Mesh& surface = cut.mesh;
+    constexpr Index none = no_index;
+    TriangleSoup soup;
+    const auto add = [&](const Vector3d& p) {
+        soup.points.push_back({p.x(), p.y(), p.z()});
+        return static_cast<Index>(soup.points.size() - 1);
+    };
+    std::vector<Index> of_patch(patch.mesh().number_of_vertices(), none), of_surface(surface.number_of_vertices(), none);
+    for (const Face face : patch.mesh().faces())
+        if (patch.has(face))
+            for (const Vertex v : corners(patch.mesh(), face))
+                if (of_patch[v] == none) of_patch[v] = add(eigen(patch.mesh().point(v)));
+
+    Splits splits;
+    std::map<Index, Vector3d> seam;
+    for (std::size_t l = 0; l < patch.loops().size(); ++l) {
+        const auto& loop = patch.loops()[l];
+        const auto& nodes = cut.node_vertex[l];
+        for (std::size_t i = 0; i < loop.size(); ++i) {
+            const Vertex a = loop[i], b = loop[(i + 1) % loop.size()];
+            const std::size_t begin = drawing.first[l][i], end = drawing.first[l][i + 1];
+            of_surface[nodes[begin]] = of_patch[a];
+            seam.emplace(nodes[begin], eigen(patch.mesh().point(a)));
+            double length = 0;
+            std::vector<double> along{0};
+            for (std::size_t n = begin; n < end; ++n) {
+                length += std::sqrt(CGAL::squared_distance(surface.point(Vertex(nodes[n])), surface.point(Vertex(nodes[n + 1]))));
+                along.push_back(length);
+            }
+            std::vector<Index>& split = splits[{of_patch[a], of_patch[b]}];
+            for (std::size_t n = begin + 1; n < end; ++n) {
+                const double t = along[n - begin] / length;
+                const Vector3d place = (1 - t) * eigen(patch.mesh().point(a)) + t * eigen(patch.mesh().point(b));
+                of_surface[nodes[n]] = add(place);
+                seam.emplace(nodes[n], place);
+                split.push_back(of_surface[nodes[n]]);
+            }
+        }
+    }
+    std::vector<Vector3d> points;
+    for (const Vertex v : surface.vertices()) points.push_back(eigen(surface.point(v)));
+    follow(surface, gone, seam, width, frozen, points);
+
+    Joint joint;
+    for (const Face face : surface.faces()) {
+        if (gone[face]) continue;
+        std::array<Index, 3> triangle{};
+        const auto c = corners(surface, face);
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (of_surface[c[k]] == none) of_surface[c[k]] = add(points[c[k]]);
+            triangle[k] = of_surface[c[k]];
+        }
+        soup.triangles.push_back(triangle);
+        joint.old_face.push_back(cut.face_origin[face]);
+        joint.patch_face.push_back(none);
+    }
+    for (const Face face : patch.mesh().faces()) {
+        if (!patch.has(face)) continue;
+        const auto c = corners(patch.mesh(), face);
+        const std::size_t before = soup.triangles.size();
+        cut_triangle({of_patch[c[0]], of_patch[c[1]], of_patch[c[2]]}, splits, soup.triangles);
+        joint.old_face.resize(joint.old_face.size() + soup.triangles.size() - before, none);
+        joint.patch_face.resize(joint.patch_face.size() + soup.triangles.size() - before, face);
+    }
+    joint.mesh = build_mesh(soup);
+    return joint;
+}
+
+}  // namespace
+
+Joint join_patch(const Mesh& surface, Patch& patch, const std::vector<std::optional<SurfaceHit>>& places, double width,
+                 const std::vector<bool>& frozen) {
+    constexpr int most_attempts = 40;
+    Joint none;
+    for (int attempt = 0; attempt < most_attempts; ++attempt) {
+        if (patch.size() == 0) {
+            none.problem = attempt == 0 ? "nothing of it lies on the fitted template" : "its border is not simple anywhere";
+            return none;
+        }
+        const Drawing drawing = draw(surface, patch, places);
+        if (!drawing.failed.empty()) {
+            patch.erode(drawing.failed);
+            continue;
+        }
+        const InsertedCurves cut = insert_curves(surface, drawing.curves);
+        if (const std::vector<Vertex> failed = crossed(cut, patch, drawing); !failed.empty()) {
+            patch.erode(failed);
+            continue;
+        }
+        const Sides sides = part(cut, patch, places);
+        if (!sides.failed.empty()) {
+            patch.erode(sides.failed);
+            continue;
+        }
+        return stitch(patch, cut, drawing, sides.left, width, frozen);
+    }
+    none.problem = "its border crosses itself on the template";
+    return none;
+}
+
+}  // namespace ostraka
