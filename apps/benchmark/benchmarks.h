@@ -21,6 +21,7 @@ void register_relation_benchmarks();
 void register_solver_benchmarks();
 void register_coordinate_benchmarks();
 void register_slicing_benchmarks();
+void register_fitting_benchmarks();
 
 /// Wall time decides; processor time of all threads stands beside it, since the machine may be busy.
 inline void with_both_times(benchmark::internal::Benchmark* run) {

@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
     register_solver_benchmarks();
     register_coordinate_benchmarks();
     register_slicing_benchmarks();
+    register_fitting_benchmarks();
     register_transfer_benchmarks();
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;

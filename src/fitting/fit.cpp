@@ -5,6 +5,8 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/geom/eigen.h"
+#include "ostraka/geom/surface_search.h"
+#include "ostraka/remesh/simplify.h"
 #include "ostraka/solver/solve.h"
 
 #include <algorithm>
@@ -73,35 +75,50 @@ Rings rings_of(const Mesh& mesh, const Points& rest) {
     return rings;
 }
 
+/// The levels of a fit over one mesh of the template.
 class Fitter {
 public:
-    Fitter(const Mesh& scaled, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments,
+    /// `scale` is the template's diagonal. All outlive it.
+    Fitter(const Mesh& mesh, const MatchSearch& search, MatchSearch::Labels labels, std::vector<Guide> guides, double diagonal,
            const NonRigidOptions& options)
-        : mesh_(scaled), options_(options), diagonal_(box_diagonal(scaled)), search_(scaled, set, fragments) {
-        rest_.resize(3, static_cast<Eigen::Index>(scaled.number_of_vertices()));
-        for (const Vertex v : scaled.vertices()) rest_.col(static_cast<Eigen::Index>(v)) = eigen(scaled.point(v));
+        : mesh_(mesh),
+          search_(search),
+          labels_(std::move(labels)),
+          guides_(std::move(guides)),
+          diagonal_(diagonal),
+          options_(options) {
+        rest_.resize(3, static_cast<Eigen::Index>(mesh.number_of_vertices()));
+        for (const Vertex v : mesh.vertices()) rest_.col(static_cast<Eigen::Index>(v)) = eigen(mesh.point(v));
         now_ = rest_;
-        rings_ = rings_of(scaled, rest_);
+        rings_ = rings_of(mesh, rest_);
         double sum = 0;
         for (const double area : rings_.area) sum += area;
         mean_area_ = sum / static_cast<double>(std::max<std::size_t>(1, rings_.area.size()));
-        guides_ = search_.guides();
     }
 
-    NonRigidFit run() {
-        NonRigidFit fit;
-        make_solver();
-        for (int level = 0; level < options_.levels; ++level) {
-            const double t = options_.levels > 1 ? static_cast<double>(level) / (options_.levels - 1) : 1;
-            const auto between = [&](double first, double last) { return first * std::pow(last / first, t); };
+    void start_at(Points points) { now_ = std::move(points); }
+    [[nodiscard]] const Points& rest() const { return rest_; }
+    [[nodiscard]] const Points& now() const { return now_; }
+
+    /// Smoothing length of a level.
+    static double smoothing(const NonRigidOptions& options, int level, double diagonal) {
+        return between(options, level, options.start, options.end) * diagonal;
+    }
+
+    void run(int first, int end, NonRigidFit& fit) {
+        if (first == end) return;
+        if (!solver_) {
+            const Stopwatch watch(fit.seconds_solving);
+            make_solver();
+        }
+        for (int level = first; level < end; ++level) {
             NonRigidFit::Level record;
-            record.smoothing = between(options_.start, options_.end) * diagonal_;
-            const double reach = between(std::max(options_.reach, 1e-9), std::max(options_.last_reach, 1e-9)) * diagonal_;
+            record.vertices = mesh_.number_of_vertices();
+            record.smoothing = smoothing(options_, level, diagonal_);
+            const double reach =
+                between(options_, level, std::max(options_.reach, 1e-9), std::max(options_.last_reach, 1e-9)) * diagonal_;
             for (; record.steps < options_.steps; ++record.steps) {
-                {
-                    const Stopwatch watch(fit.seconds_matching);
-                    matches_ = search_.matches(now_, mesh_, reach, std::cos(options_.angle * std::numbers::pi / 180));
-                }
+                match(reach, fit);
                 const Stopwatch watch(fit.seconds_solving);
                 const Points before = now_;
                 solve(record.smoothing, record.steps == 0);
@@ -120,16 +137,44 @@ public:
             record.residual = record.matched > 0 ? std::sqrt(squares / static_cast<double>(record.matched)) : 0;
             fit.levels.push_back(record);
         }
-        {
-            const Stopwatch watch(fit.seconds_matching);
-            fit.matches =
-                search_.matches(now_, mesh_, options_.last_reach * diagonal_, std::cos(options_.angle * std::numbers::pi / 180));
-        }
-        for (Eigen::Index i = 0; i < now_.cols(); ++i) fit.points.push_back(point_of(now_.col(i)));
-        return fit;
+    }
+
+    const std::vector<VertexMatch>& match(double reach, NonRigidFit& fit) {
+        const Stopwatch watch(fit.seconds_matching);
+        matches_ = search_.matches(now_, mesh_, labels_, reach, std::cos(options_.angle * std::numbers::pi / 180));
+        return matches_;
+    }
+
+    /// How the surroundings of each vertex have turned.
+    [[nodiscard]] std::vector<Matrix3d> turns() const {
+        const auto n = static_cast<std::size_t>(rest_.cols());
+        std::vector<Matrix3d> covariances(n), turns(n);
+        parallel_for(n, [&](std::size_t i) {
+            Matrix3d sum = Matrix3d::Zero();
+            for (std::size_t k = rings_.begin[i]; k < rings_.begin[i + 1]; ++k) {
+                const int j = rings_.neighbour[k];
+                sum += rings_.weight[k] * (now_.col(j) - now_.col(static_cast<Eigen::Index>(i))) *
+                       (rest_.col(j) - rest_.col(static_cast<Eigen::Index>(i))).transpose();
+            }
+            covariances[i] = sum;
+        });
+        parallel_for(n, [&](std::size_t i) {
+            Matrix3d sum = covariances[i];
+            for (std::size_t k = rings_.begin[i]; k < rings_.begin[i + 1]; ++k)
+                sum += covariances[static_cast<std::size_t>(rings_.neighbour[k])];
+            const Eigen::JacobiSVD<Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
+            Vector3d signs(1, 1, 1);
+            if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0) signs.z() = -1;
+            turns[i] = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+        });
+        return turns;
     }
 
 private:
+    static double between(const NonRigidOptions& options, int level, double first, double last) {
+        return first * std::pow(last / first, options.levels > 1 ? static_cast<double>(level) / (options.levels - 1) : 1);
+    }
+
     /// For each vertex a match, a place to stay at and a Laplacian displacement; then the guides.
     void make_solver() {
         std::vector<std::unique_ptr<Constraint>> list;
@@ -208,49 +253,70 @@ private:
 
     /// Rest displacements turned with the surroundings of each vertex.
     void turn() {
-        const auto n = static_cast<std::size_t>(rest_.cols());
-        std::vector<Matrix3d> covariances(n);
+        const std::vector<Matrix3d> turned = turns();
         displacement_.setZero(3, rest_.cols());
-        parallel_for(n, [&](std::size_t i) {
-            Matrix3d sum = Matrix3d::Zero();
-            for (std::size_t k = rings_.begin[i]; k < rings_.begin[i + 1]; ++k) {
-                const int j = rings_.neighbour[k];
-                sum += rings_.weight[k] * (now_.col(j) - now_.col(static_cast<Eigen::Index>(i))) *
-                       (rest_.col(j) - rest_.col(static_cast<Eigen::Index>(i))).transpose();
-            }
-            covariances[i] = sum;
-        });
-        parallel_for(n, [&](std::size_t i) {
-            if (laplacian_[i] == no_constraint) return;
-            Matrix3d sum = covariances[i];
+        parallel_for(turned.size(), [&](std::size_t i) {
             Vector3d rest = Vector3d::Zero();
-            for (std::size_t k = rings_.begin[i]; k < rings_.begin[i + 1]; ++k) {
-                const int j = rings_.neighbour[k];
-                sum += covariances[static_cast<std::size_t>(j)];
-                rest += rings_.weight[k] / rings_.sum[i] * (rest_.col(j) - rest_.col(static_cast<Eigen::Index>(i)));
-            }
-            const Eigen::JacobiSVD<Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-            Vector3d signs(1, 1, 1);
-            if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0) signs.z() = -1;
-            displacement_.col(static_cast<Eigen::Index>(i)) =
-                svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose() * rest;
+            for (std::size_t k = rings_.begin[i]; k < rings_.begin[i + 1]; ++k)
+                rest +=
+                    rings_.weight[k] / rings_.sum[i] * (rest_.col(rings_.neighbour[k]) - rest_.col(static_cast<Eigen::Index>(i)));
+            displacement_.col(static_cast<Eigen::Index>(i)) = turned[i] * rest;
         });
     }
 
     static constexpr std::size_t no_constraint = static_cast<std::size_t>(-1);
 
     const Mesh& mesh_;
-    const NonRigidOptions& options_;
+    const MatchSearch& search_;
+    MatchSearch::Labels labels_;
+    std::vector<Guide> guides_;
     double diagonal_, mean_area_ = 1;
-    MatchSearch search_;
+    const NonRigidOptions& options_;
     Points rest_, now_, displacement_;
     Rings rings_;
-    std::vector<Guide> guides_;
     std::vector<std::size_t> match_, stay_, laplacian_, guide_;
     std::unique_ptr<MeshSpaceSolver> solver_;
     std::vector<VertexMatch> matches_;
     std::vector<bool> weighted_;  ///< vertices whose match weighs in the factorisation
 };
+
+/// The template with fewer vertices, for what is smooth anyway.
+struct Coarse {
+    Mesh mesh;
+    std::vector<Index> vertex_map, face_origin;
+};
+
+Coarse coarsened(const Mesh& mesh, std::size_t vertices) {
+    Coarse coarse{mesh, {}, {}};
+    SimplifyOptions options;
+    options.vertices = vertices;
+    options.outlines = "ignore";
+    const SimplifyResult done = simplify(coarse.mesh, options);
+    coarse.vertex_map = done.vertex_map;
+    coarse.face_origin.resize(coarse.mesh.number_of_faces());
+    for (Index f = 0; f < done.face_map.size(); ++f)
+        if (done.face_map[f] != no_index) coarse.face_origin[done.face_map[f]] = f;
+    return coarse;
+}
+
+/// The fine mesh moved with the surroundings of the nearest place of the coarse one.
+Points follow(const Mesh& fine, const Mesh& coarse, const Fitter& fitter) {
+    const std::vector<Matrix3d> turns = fitter.turns();
+    const SurfaceSearch search(coarse);
+    Points points(3, static_cast<Eigen::Index>(fine.number_of_vertices()));
+    parallel_for(fine.number_of_vertices(), [&](std::size_t i) {
+        const Point& p = fine.point(Vertex(static_cast<Index>(i)));
+        const SurfaceHit hit = search.closest(p);
+        const auto c = corners(coarse, Face(hit.face));
+        Vector3d sum = Vector3d::Zero();
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto v = static_cast<Eigen::Index>(c[k]);
+            sum += hit.barycentric[k] * (turns[c[k]] * (eigen(p) - fitter.rest().col(v)) + fitter.now().col(v));
+        }
+        points.col(static_cast<Eigen::Index>(i)) = sum;
+    });
+    return points;
+}
 
 }  // namespace
 
@@ -258,7 +324,38 @@ NonRigidFit fit_template(const Mesh& scaled, const AnnotationSet& set, const std
                          const NonRigidOptions& options) {
     check_options(options, "fit");
     if (scaled.number_of_faces() == 0) fail_input("template", "has no faces", "is it the right file?");
-    return Fitter(scaled, set, fragments, options).run();
+    constexpr std::size_t few = 4000;  // vertices that show every shape of the first levels
+    constexpr double edges = 0.8;      // least smoothing length of a level on the coarse mesh, in its edges
+    const double diagonal = box_diagonal(scaled);
+    NonRigidFit fit;
+    const MatchSearch search(scaled, set, fragments);
+    Fitter fine(scaled, search, search.labels(scaled, {}), search.guides(), diagonal, options);
+    int level = 0;
+    if (scaled.number_of_vertices() > 2 * few) {
+        Coarse coarse;
+        {
+            const Stopwatch watch(fit.seconds_coarsening);
+            coarse = coarsened(scaled, few);
+        }
+        const double edge = mean_edge_length(coarse.mesh);
+        while (level < options.levels && Fitter::smoothing(options, level, diagonal) >= edges * edge) ++level;
+        std::vector<Guide> guides = search.guides();
+        for (Guide& guide : guides) {
+            const Index here = coarse.vertex_map[guide.vertex];
+            if (here != no_index)
+                guide.place += eigen(coarse.mesh.point(Vertex(here))) - eigen(scaled.point(Vertex(guide.vertex)));
+            guide.vertex = here;
+        }
+        std::erase_if(guides, [&](const Guide& guide) { return guide.vertex >= coarse.mesh.number_of_vertices(); });
+        Fitter smooth(coarse.mesh, search, search.labels(coarse.mesh, coarse.face_origin), std::move(guides), diagonal, options);
+        smooth.run(0, level, fit);
+        const Stopwatch watch(fit.seconds_coarsening);
+        if (level > 0) fine.start_at(follow(scaled, coarse.mesh, smooth));
+    }
+    fine.run(level, options.levels, fit);
+    fit.matches = fine.match(options.last_reach * diagonal, fit);
+    for (Eigen::Index i = 0; i < fine.now().cols(); ++i) fit.points.push_back(point_of(fine.now().col(i)));
+    return fit;
 }
 
 }  // namespace ostraka

@@ -79,21 +79,27 @@ MatchSearch::MatchSearch(const Mesh& scaled, const AnnotationSet& set, const std
             parts_[label].push_back(std::move(part));
         }
     }
-    const std::vector<int> labels = face_labels(scaled, ours);
-    for (const Vertex v : scaled.vertices()) {
-        std::vector<int> list;
-        if (!scaled.is_isolated(v))
-            for (const Face face : scaled.faces_around_target(scaled.halfedge(v)))
-                if (face != Mesh::null_face() && std::find(list.begin(), list.end(), labels[face]) == list.end())
-                    list.push_back(labels[face]);
-        std::sort(list.begin(), list.end());
-        labels_.push_back(std::move(list));
-    }
+    face_labels_ = face_labels(scaled, ours);
 }
 
-std::vector<VertexMatch> MatchSearch::matches(const Points& now, const Mesh& connectivity, double reach,
+MatchSearch::Labels MatchSearch::labels(const Mesh& mesh, const std::vector<Index>& face_origin) const {
+    Labels labels(mesh.number_of_vertices());
+    for (const Vertex v : mesh.vertices()) {
+        if (mesh.is_isolated(v)) continue;
+        std::vector<int>& list = labels[v];
+        for (const Face face : mesh.faces_around_target(mesh.halfedge(v))) {
+            if (face == Mesh::null_face()) continue;
+            const int label = face_labels_[face_origin.empty() ? static_cast<Index>(face) : face_origin[face]];
+            if (std::find(list.begin(), list.end(), label) == list.end()) list.push_back(label);
+        }
+        std::sort(list.begin(), list.end());
+    }
+    return labels;
+}
+
+std::vector<VertexMatch> MatchSearch::matches(const Points& now, const Mesh& connectivity, const Labels& labels, double reach,
                                               double min_cosine) const {
-    const std::size_t n = labels_.size();
+    const std::size_t n = labels.size();
     // Normals of the shape as it is now.
     std::vector<Vector3d> normals(n, Vector3d::Zero());
     for (const Face face : connectivity.faces()) {
@@ -109,7 +115,7 @@ std::vector<VertexMatch> MatchSearch::matches(const Points& now, const Mesh& con
         if (!(length > 0)) return;
         const Vector3d place = now.col(static_cast<Eigen::Index>(i));
         double nearest = reach;
-        for (const int label : labels_[i]) {
+        for (const int label : labels[i]) {
             const auto list = parts_.find(label);
             if (list == parts_.end()) continue;
             for (const auto& part : list->second) {

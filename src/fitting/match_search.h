@@ -26,10 +26,14 @@ public:
     MatchSearch(const MatchSearch&) = delete;
     MatchSearch& operator=(const MatchSearch&) = delete;
 
+    /// For each vertex what it is to be matched among: the labels of the faces around it.
+    using Labels = std::vector<std::vector<int>>;
+    /// Of a mesh of the template whose faces come from `face_origin` of the template's (empty: they are the template's).
+    [[nodiscard]] Labels labels(const Mesh& mesh, const std::vector<Index>& face_origin) const;
     /// The nearest of all fragments for each vertex at `now`; fragment -1 where there is none within `reach` whose normal agrees
     /// and that is not at a border.
-    [[nodiscard]] std::vector<VertexMatch> matches(const Points& now, const Mesh& connectivity, double reach,
-                                                   double min_cosine) const;
+    [[nodiscard]] std::vector<VertexMatch> matches(const Points& now, const Mesh& connectivity, const Labels& labels,
+                                                   double reach, double min_cosine) const;
     /// Landmarks of matched point annotations.
     [[nodiscard]] std::vector<Guide> guides() const { return guides_; }
 
@@ -43,7 +47,7 @@ private:
         std::vector<bool> edge_breaks, vertex_breaks;  ///< of the part's edges and vertices: where the outer surface ends
     };
     std::map<int, std::vector<std::unique_ptr<Part>>> parts_;  ///< by label: the id of the template's annotation, -1 for none
-    std::vector<std::vector<int>> labels_;                     ///< of each template vertex
+    std::vector<int> face_labels_;                             ///< of the template
     std::vector<Guide> guides_;
 };
 

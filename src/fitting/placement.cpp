@@ -42,7 +42,7 @@ std::vector<LandmarkPair> common_landmarks(const Mesh& template_mesh, const Anno
     return pairs;
 }
 
-bool Placement::any() const {
+bool CommonPlacement::any() const {
     return std::any_of(fragments.begin(), fragments.end(), [](const auto& fragment) { return fragment.problem.empty(); });
 }
 
@@ -206,9 +206,9 @@ std::string names_of(const std::vector<LandmarkPair>& pairs) {
 
 }  // namespace
 
-Placement place_by_landmarks(const std::vector<std::vector<LandmarkPair>>& pairs, const PlacementOptions& options) {
+CommonPlacement place_by_landmarks(const std::vector<std::vector<LandmarkPair>>& pairs, const PlacementOptions& options) {
     check_options(options, "placement");
-    Placement placement;
+    CommonPlacement placement;
     std::vector<Landmarks> all;
     for (const auto& list : pairs) {
         FragmentPlacement one;

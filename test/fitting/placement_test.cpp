@@ -40,7 +40,8 @@ TEST(Placement, FindsOneScaleAndThePoseOfEachFragment) {
     for (const double scale : {1.0, 0.01, 250.0}) {
         Random random(3);
         const Motion first = random_motion(random), second = random_motion(random);
-        const Placement found = place_by_landmarks({landmarks(random, 4, scale, first), landmarks(random, 7, scale, second)});
+        const CommonPlacement found =
+            place_by_landmarks({landmarks(random, 4, scale, first), landmarks(random, 7, scale, second)});
         EXPECT_NEAR(found.scale, scale, 1e-12 * scale);
         for (const auto& [one, pose] : {std::pair(found.fragments[0], first), std::pair(found.fragments[1], second)}) {
             EXPECT_EQ(one.problem, "");
@@ -58,7 +59,7 @@ TEST(Placement, IsTheLeastSumOfSquares) {
     Random random(5);
     const std::vector<std::vector<LandmarkPair>> pairs{landmarks(random, 4, 2, random_motion(random), 0.1),
                                                        landmarks(random, 4, 2, random_motion(random), 0.1)};
-    const Placement found = place_by_landmarks(pairs);
+    const CommonPlacement found = place_by_landmarks(pairs);
     const auto cost = [&](double scale, const std::vector<Motion>& poses) {
         double sum = 0;
         for (std::size_t k = 0; k < 2; ++k)
@@ -88,7 +89,7 @@ TEST(Placement, OneWrongPairInSixIsFound) {
         auto pairs = landmarks(random, 6, 1, pose, 0.01);
         const std::size_t wrong = random.below(6);
         pairs[wrong].on_fragment = pose.inverse()(pairs[wrong].on_template + 1.5 * random_place(random).normalized());
-        const Placement found = place_by_landmarks({pairs});
+        const CommonPlacement found = place_by_landmarks({pairs});
         for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(found.fragments[0].landmarks[i].used, i != wrong) << seed << ' ' << i;
         EXPECT_LT((found.fragments[0].pose.turn - pose.turn).norm(), 0.1);
     }
@@ -105,7 +106,7 @@ TEST(Placement, ProportionsOfAnotherMemberAreNotLeftOut) {
         place.z() *= place.z() > 0 ? 1.25 : 1;
         pair.on_fragment = there(place);
     }
-    const Placement found = place_by_landmarks({pairs});
+    const CommonPlacement found = place_by_landmarks({pairs});
     for (const LandmarkResidual& landmark : found.fragments[0].landmarks) EXPECT_TRUE(landmark.used);
 }
 
@@ -114,7 +115,7 @@ TEST(Placement, SaysWhyAFragmentIsNotPlaced) {
     const Motion pose = random_motion(random);
     const auto good = landmarks(random, 5, 1, pose);
     const auto problem = [&](std::vector<LandmarkPair> pairs) {
-        const Placement found = place_by_landmarks({good, std::move(pairs), good});
+        const CommonPlacement found = place_by_landmarks({good, std::move(pairs), good});
         EXPECT_NEAR(found.scale, 1, 1e-12) << "who is not placed does not count";
         EXPECT_TRUE(found.any());
         return found.fragments[1].problem;

@@ -56,21 +56,23 @@ struct NonRigidFit {
     std::vector<Point> points;         ///< of the template's vertices
     std::vector<VertexMatch> matches;  ///< of each vertex after the last level
     struct Level {
-        double smoothing = 0;  ///< length, in the mesh's unit
+        std::size_t vertices = 0;  ///< of the mesh that it was solved on
+        double smoothing = 0;      ///< length, in the mesh's unit
         std::size_t matched = 0;
         double residual = 0;  ///< root mean square of the matches' distances after it
         int steps = 0;
     };
     std::vector<Level> levels;
-    double seconds_matching = 0, seconds_solving = 0;
+    double seconds_matching = 0, seconds_solving = 0, seconds_coarsening = 0;
 };
 
 /// Minimises  sum over vertices of A_i (w_i |x_i - q_i|^2 + (1 / t^4) |x_i - p_i|^2 s^4 + s^4 |Delta x_i - R_i Delta p_i|^2):
 /// the three costs of equation 5.2 (match, stay, Laplacian displacement) with areas A_i, so that the result does not depend on
 /// the resolution: s is the smoothing length of a level, t the length of transition. R_i follows the turn of each vertex's
 /// surroundings. Matches are the closest points of the fragments' outer facets with a like normal, within the same matched
-/// annotations on either side (the smallest one that holds the vertex), never at a border. `scaled` is the template at the scale
-/// of the placement.
+/// annotations on either side (the smallest one that holds the vertex), never at a border. Levels that are smooth against a mesh
+/// of 4000 vertices are solved on such a one (quadric error simplification); the template follows it, and takes up the rest.
+/// `scaled` is the template at the scale of the placement.
 NonRigidFit fit_template(const Mesh& scaled, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments,
                          const NonRigidOptions& options = {});
 

@@ -55,7 +55,7 @@ struct FragmentPlacement {
     std::string problem;    ///< why it is not placed, in words with the remedy; empty if it is
 };
 
-struct Placement {
+struct CommonPlacement {
     double scale = 1;  ///< of the template, about its origin
     std::vector<FragmentPlacement> fragments;
     [[nodiscard]] bool any() const;  ///< a fragment is placed
@@ -68,6 +68,6 @@ struct Placement {
 /// belongs; a sixth of them at most, and of five or more one, are left out, each off by four times the root mean square of the
 /// others. A fragment that cannot be placed has a `problem` (fewer than three landmarks, all on a line, a mirror image, another
 /// unit) and does not count for the scale.
-Placement place_by_landmarks(const std::vector<std::vector<LandmarkPair>>& pairs, const PlacementOptions& options = {});
+CommonPlacement place_by_landmarks(const std::vector<std::vector<LandmarkPair>>& pairs, const PlacementOptions& options = {});
 
 }  // namespace ostraka

@@ -52,7 +52,7 @@ enum class Compatibility { compatible, incompatible, undecided };
 std::string to_string(Compatibility compatibility);
 
 struct Reconstruction {
-    Placement placement;
+    CommonPlacement placement;
     std::vector<PartAlignment> alignment;                   ///< of each fragment placed, where poses were refined
     std::vector<std::vector<AnnotationMatch>> annotations;  ///< of each fragment
     std::vector<std::vector<std::string>> notes;            ///< of each fragment

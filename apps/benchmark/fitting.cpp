@@ -1,0 +1,109 @@
+// A template of 25,000 vertices fitted to fragments: placement, refinement, fit, completion, by phase.
+#include "benchmarks.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/fitting/reconstruct.h"
+#include "ostraka/geom/eigen.h"
+#include "ostraka/shapes/fragments.h"
+#include "ostraka/shapes/statuettes.h"
+
+#include <algorithm>
+#include <map>
+#include <string>
+
+namespace ostraka::bench {
+
+namespace {
+
+AnnotationSet landmarks_of(const Statuette& statuette) {
+    AnnotationSet set;
+    for (const StatuetteLandmark& place : statuette.landmarks) {
+        Annotation one;
+        one.id = static_cast<int>(set.annotations.size());
+        one.tag = place.name;
+        one.type = AnnotationType::point;
+        one.points = {place.vertex};
+        set.annotations.push_back(std::move(one));
+    }
+    return set;
+}
+
+struct Class {
+    Mesh mesh;
+    AnnotationSet set;
+};
+
+const Class& template_of_class() {
+    static const Class made = [] {
+        StatuetteParameters parameters;
+        parameters.wall = 0;
+        parameters.vertices = 25'000;
+        Statuette statuette = generate_statuette(parameters);
+        AnnotationSet set = landmarks_of(statuette);
+        return Class{std::move(statuette.mesh), std::move(set)};
+    }();
+    return made;
+}
+
+/// Half of another member of the class, meshed by itself, as a scan of about the number of vertices.
+const Fragment& fragment_of(std::uint64_t vertices) {
+    static std::map<std::uint64_t, Fragment> made;
+    const auto [entry, fresh] = made.try_emplace(vertices);
+    if (!fresh) return entry->second;
+    StatuetteParameters parameters;
+    parameters.wall = 0;
+    parameters.vertices = 2 * vertices;
+    parameters.height = 215;
+    parameters.head_height = 50;
+    parameters.arm_length = 76;
+    parameters.seed = 2;
+    const Statuette whole = generate_statuette(parameters);
+    const auto top = std::find_if(whole.landmarks.begin(), whole.landmarks.end(),
+                                  [](const StatuetteLandmark& one) { return one.name == "head joint"; });
+    BreakOptions options;
+    options.share = 0.5;
+    options.noise = 0.001;
+    BrokenPiece piece = break_off(whole.mesh, top->place, options);
+    Fragment& fragment = entry->second;
+    fragment.name = "fragment";
+    for (Annotation& one : landmarks_of(whole).annotations) {
+        const auto found = std::find(piece.vertices.begin(), piece.vertices.end(), one.points.front());
+        if (found == piece.vertices.end()) continue;
+        one.points = {static_cast<Index>(found - piece.vertices.begin())};
+        fragment.annotations.annotations.push_back(std::move(one));
+    }
+    fragment.mesh = std::move(piece.mesh);
+    return fragment;
+}
+
+void run(benchmark::State& state, std::uint64_t vertices, int thread_count) {
+    const Class& ours = template_of_class();
+    const Fragment& fragment = fragment_of(vertices);
+    set_threads(thread_count);
+    std::map<std::string, double> seconds;
+    double laps = 0;
+    for ([[maybe_unused]] const auto lap : state) {
+        const Reconstruction result = reconstruct(ours.mesh, ours.set, {}, {&fragment});
+        if (!result.placement.any()) state.SkipWithError("the fragment was not placed");
+        for (const auto& [phase, time] : result.seconds) seconds[phase] += time;
+        seconds["fit: matching"] += result.fit.seconds_matching;
+        seconds["fit: solving"] += result.fit.seconds_solving;
+        seconds["fit: coarsening"] += result.fit.seconds_coarsening;
+        ++laps;
+    }
+    set_threads(0);
+    for (const auto& [phase, time] : seconds) state.counters[phase + " ms"] = 1000 * time / laps;
+    state.counters["vertices"] = static_cast<double>(ours.mesh.number_of_vertices());
+    state.counters["fragment"] = static_cast<double>(fragment.mesh.number_of_vertices());
+}
+
+}  // namespace
+
+void register_fitting_benchmarks() {
+    for (const std::uint64_t vertices : {10'000, 50'000, 200'000})
+        for (const int thread_count : {1, 2})
+            with_both_times(benchmark::RegisterBenchmark(
+                ("fitting/fragment:" + std::to_string(vertices) + "/threads:" + std::to_string(thread_count)).c_str(),
+                [=](benchmark::State& state) { run(state, vertices, thread_count); }));
+}
+
+}  // namespace ostraka::bench
