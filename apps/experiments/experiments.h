@@ -103,6 +103,15 @@ struct FixedProportionsOptions {
 };
 void fixed_proportions(const FixedProportionsOptions& options);
 
+/// Fragments of deformed copies of a made template, fitted: pose, observed part, missing part, constraints.
+struct FragmentExperiment {
+    std::string output = "experiments-output/fragments";
+    std::vector<double> shares{0.1, 0.25, 0.5};
+    int seeds = 4;
+    std::uint64_t vertices = 12000;
+};
+void fragments(const FragmentExperiment& options);
+
 /// Which similarity and epsilon find the moulds of made heads and of mixes of scanned faces.
 struct MouldExperimentOptions {
     std::string output = "experiments-output/moulds";

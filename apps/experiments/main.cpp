@@ -116,6 +116,17 @@ int main(int argc, char** argv) {
         ->check(CLI::Range(1500, 1000000))
         ->capture_default_str();
 
+    experiments::FragmentExperiment broken;
+    CLI::App* fragment_command = tool.add_subcommand("fragments", "fragments of deformed copies of a template, fitted");
+    fragment_command->add_option("output", broken.output, "folder for the table")->capture_default_str();
+    fragment_command->add_option("--seeds", broken.seeds, "fragments of each kind")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    fragment_command->add_option("--shares", broken.shares, "of the surface that fragments have")->delimiter(',');
+    fragment_command->add_option("--vertices", broken.vertices, "of the template")
+        ->check(CLI::Range(4000, 1000000))
+        ->capture_default_str();
+
     experiments::SemanticOptions semantic;
     std::vector<std::pair<CLI::App*, void (*)(const experiments::SemanticOptions&)>> semantic_commands;
     const struct {
@@ -161,6 +172,7 @@ int main(int argc, char** argv) {
         if (label_command->parsed()) experiments::label_transfer(labels);
         if (fixed_command->parsed()) experiments::fixed_proportions(fixed);
         if (technique_command->parsed()) experiments::technique(technique);
+        if (fragment_command->parsed()) experiments::fragments(broken);
         if (mould_command->parsed()) experiments::moulds(heads);
         for (const auto& [command, run] : semantic_commands)
             if (command->parsed()) run(semantic);

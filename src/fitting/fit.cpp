@@ -121,7 +121,9 @@ public:
                 match(reach, fit);
                 const Stopwatch watch(fit.seconds_solving);
                 const Points before = now_;
-                solve(record.smoothing, record.steps == 0);
+                if (record.steps == 0) start_ = level == 0 ? rest_ : now_;
+                solve(record.smoothing, level == 0 ? options_.stay * diagonal_ : options_.fade * record.smoothing,
+                      record.steps == 0);
                 const double change = (now_ - before).colwise().norm().maxCoeff();
                 if (change < 0.05 * record.smoothing) {
                     ++record.steps;
@@ -214,9 +216,8 @@ private:
         return static_cast<double>(changed) <= 0.02 * static_cast<double>(matches_.size());
     }
 
-    void solve(double smoothing, bool new_level) {
+    void solve(double smoothing, double transition, bool new_level) {
         // In units of mean areas, and of lengths of the smoothing, so that weights are near one.
-        const double transition = options_.stay * diagonal_;
         const double stay = std::pow(std::min(1.0, smoothing / transition), 4);
         turn();
         const bool renew = new_level || !matched_as_before();
@@ -228,6 +229,7 @@ private:
                 weighted_[i] = matched;
                 solver_->set_weight(match_[i], matched ? share : 0);
                 solver_->set_weight(stay_[i], stay * std::max(share, 1e-6));
+                if (new_level) solver_->set_target(stay_[i], start_.col(static_cast<Eigen::Index>(i)));
             }
             if (weighted_[i])
                 solver_->set_target(match_[i],
@@ -272,7 +274,7 @@ private:
     std::vector<Guide> guides_;
     double diagonal_, mean_area_ = 1;
     const NonRigidOptions& options_;
-    Points rest_, now_, displacement_;
+    Points rest_, start_, now_, displacement_;  ///< start: of the level
     Rings rings_;
     std::vector<std::size_t> match_, stay_, laplacian_, guide_;
     std::unique_ptr<MeshSpaceSolver> solver_;

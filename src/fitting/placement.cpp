@@ -36,7 +36,7 @@ std::vector<LandmarkPair> common_landmarks(const Mesh& template_mesh, const Anno
                 notes->push_back("landmark '" + tag + "' is there more than once, and not used: which is which is not known");
         } else {
             pairs.push_back({tag, eigen(template_mesh.point(Vertex(found->second.front()->points.front()))),
-                             eigen(fragment.point(Vertex(list.front()->points.front())))});
+                             eigen(fragment.point(Vertex(list.front()->points.front()))), found->second.front()->points.front()});
         }
     }
     return pairs;

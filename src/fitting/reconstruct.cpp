@@ -34,8 +34,8 @@ class Reconstructor {
 public:
     Reconstructor(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
                   const std::vector<const Fragment*>& fragments, const ReconstructOptions& options,
-                  const std::vector<std::vector<StatedMatch>>& stated)
-        : mesh_(mesh), set_(set), graph_(graph), fragments_(fragments), options_(options), stated_(stated) {}
+                  const std::vector<std::vector<StatedMatch>>& stated, const ShapePrior* prior)
+        : mesh_(mesh), set_(set), graph_(graph), fragments_(fragments), options_(options), stated_(stated), prior_(prior) {}
 
     Reconstruction run() {
         timed("placement", [&] { place(); });
@@ -49,6 +49,7 @@ public:
         diagonal_ = box_diagonal(scaled_);
         if (options_.refine) timed("refinement", [&] { refine(); });
         timed("annotations", [&] { match(); });
+        if (prior_ != nullptr) timed("class", [&] { take_shape_of_class(); });
         timed("fit", [&] { result_.fit = fit_template(scaled_, set_, placed_, options_.fit); });
         result_.points = result_.fit.points;
         timed("observed", [&] { see(); });
@@ -76,7 +77,7 @@ private:
 
     void refine() {
         const SurfaceSearch whole(scaled_);
-        result_.alignment.resize(fragments_.size());
+        result_.alignment.assign(fragments_.size(), {});
         for (std::size_t k = 0; k < fragments_.size(); ++k) {
             FragmentPlacement& placement = result_.placement.fragments[k];
             const Fragment& fragment = *fragments_[k];
@@ -87,22 +88,37 @@ private:
             std::vector<Anchor> anchors;
             const auto pairs = common_landmarks(mesh_, set_, fragment.mesh, fragment.annotations);
             for (std::size_t i = 0; i < pairs.size(); ++i)
-                if (placement.landmarks[i].used)
-                    anchors.push_back({pairs[i].on_fragment, result_.placement.scale * pairs[i].on_template});
+                if (placement.landmarks[i].used) anchors.push_back({pairs[i].on_fragment, on_scaled(pairs[i])});
             result_.alignment[k] = align_part(fragment.mesh, counts, whole, placement.pose, anchors, options_.alignment);
             placement.pose = result_.alignment[k].pose;
             double squares = 0;
             for (std::size_t i = 0; i < pairs.size(); ++i) {
                 LandmarkResidual& landmark = placement.landmarks[i];
-                landmark.distance =
-                    (placement.pose(pairs[i].on_fragment) - result_.placement.scale * pairs[i].on_template).norm();
+                landmark.distance = (placement.pose(pairs[i].on_fragment) - on_scaled(pairs[i])).norm();
                 if (landmark.used) squares += landmark.distance * landmark.distance;
             }
             placement.residual = std::sqrt(squares / static_cast<double>(anchors.size()));
         }
     }
 
+    /// The place of a landmark on the template as it is now.
+    [[nodiscard]] Eigen::Vector3d on_scaled(const LandmarkPair& pair) const { return eigen(scaled_.point(Vertex(pair.vertex))); }
+
+    /// The fragments stay the template's frame: the shape of the class comes to them, then they are laid onto it.
+    void take_shape_of_class() {
+        constexpr int rounds = 2;
+        for (int round = 0; round < rounds; ++round) {
+            result_.prior = fit_prior(scaled_, set_, placed_, *prior_, options_.prior);
+            scaled_ = result_.prior->mesh;
+            if (!options_.refine || round + 1 == rounds) continue;
+            refine();
+            match();
+        }
+    }
+
     void match() {
+        placed_.clear();
+        number_.clear();
         result_.annotations.resize(fragments_.size());
         for (std::size_t k = 0; k < fragments_.size(); ++k) {
             const FragmentPlacement& placement = result_.placement.fragments[k];
@@ -163,13 +179,54 @@ private:
         }));
     }
 
+    /// The share of an annotation's vertices that were observed.
+    [[nodiscard]] double observed(int id) const {
+        const Annotation* one = set_.find(id);
+        std::vector<Index> vertices;
+        if (one != nullptr && one->all)
+            for (const Vertex v : mesh_.vertices()) vertices.push_back(v);
+        if (one != nullptr && !one->all) {
+            vertices = one->points;
+            for (const Index f : one->faces)
+                for (const Vertex v : corners(mesh_, Face(f))) vertices.push_back(v);
+        }
+        std::sort(vertices.begin(), vertices.end());
+        vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+        const auto seen = std::count_if(vertices.begin(), vertices.end(), [&](Index v) { return held_[v]; });
+        return vertices.empty() ? 0 : static_cast<double>(seen) / static_cast<double>(vertices.size());
+    }
+
+    /// Proportions whose first part was observed better than the second, the other way round.
+    [[nodiscard]] RelationGraph with_observed_as_reference() const {
+        RelationGraph graph;
+        graph.relationships = graph_.relationships;
+        for (Relationship& one : graph.relationships) {
+            const RelationType* type = find_relation_type(one.type);
+            if (!one.is_constraint || type == nullptr || type->name != "proportion" || one.annotations.size() != 2) continue;
+            if (!(observed(one.annotations[0]) > observed(one.annotations[1]))) continue;
+            Json parameters = parse_json(one.constraint.empty() ? "{}" : one.constraint, "constraint");
+            if (!parameters.HasMember("minValue") || !parameters.HasMember("maxValue") || !parameters.HasMember("measure1") ||
+                !parameters.HasMember("measure2"))
+                continue;
+            const double least = parameters["minValue"].IsNumber() ? parameters["minValue"].GetDouble() : 0,
+                         most = parameters["maxValue"].IsNumber() ? parameters["maxValue"].GetDouble() : 0;
+            if (!(least > 0 && most >= least)) continue;
+            parameters["minValue"].SetDouble(1 / most);
+            parameters["maxValue"].SetDouble(1 / least);
+            parameters["measure1"].Swap(parameters["measure2"]);
+            std::swap(one.annotations[0], one.annotations[1]);
+            one.constraint = to_text(parameters);
+        }
+        return graph;
+    }
+
     void restore() {
         const bool any = std::any_of(graph_.relationships.begin(), graph_.relationships.end(),
                                      [](const Relationship& one) { return one.is_constraint; });
         if (!any || !options_.restore) return;
         DeformOptions options;
-        DeformResult restored =
-            restore_constraints(scaled_, set_, graph_, result_.points, held_, options, {}, "the template's graph");
+        DeformResult restored = restore_constraints(scaled_, set_, with_observed_as_reference(), result_.points, held_, options,
+                                                    {}, "the template's graph");
         result_.points = std::move(restored.points);
         result_.constraints = std::move(restored.constraints);
         result_.conflicts = std::move(restored.conflicts);
@@ -236,6 +293,7 @@ private:
     const std::vector<const Fragment*>& fragments_;
     const ReconstructOptions& options_;
     const std::vector<std::vector<StatedMatch>>& stated_;
+    const ShapePrior* prior_;
     Mesh scaled_;
     double diagonal_ = 0;
     std::vector<PlacedFragment> placed_;
@@ -248,10 +306,11 @@ private:
 
 Reconstruction reconstruct(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
                            const std::vector<const Fragment*>& fragments, const ReconstructOptions& options,
-                           const std::vector<std::vector<StatedMatch>>& stated) {
+                           const std::vector<std::vector<StatedMatch>>& stated, const ShapePrior* prior) {
     check_options(options, "fit");
     if (fragments.empty()) fail_usage("there is no fragment", "give one or more");
-    return Reconstructor(mesh, set, graph, fragments, options, stated).run();
+    if (prior != nullptr) prior->check(mesh.number_of_vertices());
+    return Reconstructor(mesh, set, graph, fragments, options, stated, prior).run();
 }
 
 }  // namespace ostraka

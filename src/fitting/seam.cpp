@@ -280,8 +280,9 @@ void cut_triangle(std::array<Index, 3> t, const Splits& splits, std::vector<std:
     out.push_back(t);
 }
 
+/// `failed` gets the border vertices at edges that patch and surface both have, on either side of the seam.
 Joint stitch(const Patch& patch, const InsertedCurves& cut, const Drawing& drawing, const std::vector<bool>& gone, double width,
-             const std::vector<bool>& frozen) {
+             const std::vector<bool>& frozen, std::vector<Vertex>& failed) {
     const Mesh& surface = cut.mesh;
     constexpr Index none = no_index;
     TriangleSoup soup;
@@ -297,6 +298,7 @@ Joint stitch(const Patch& patch, const InsertedCurves& cut, const Drawing& drawi
 
     Splits splits;
     std::map<Index, Vector3d> seam;
+    std::map<Index, Vertex> border;  // new vertex -> border vertex of the patch that it is, or after which it comes
     for (std::size_t l = 0; l < patch.loops().size(); ++l) {
         const auto& loop = patch.loops()[l];
         const auto& nodes = cut.node_vertex[l];
@@ -304,6 +306,7 @@ Joint stitch(const Patch& patch, const InsertedCurves& cut, const Drawing& drawi
             const Vertex a = loop[i], b = loop[(i + 1) % loop.size()];
             const std::size_t begin = drawing.first[l][i], end = drawing.first[l][i + 1];
             of_surface[nodes[begin]] = of_patch[a];
+            border.emplace(of_patch[a], a);
             seam.emplace(nodes[begin], eigen(patch.mesh().point(a)));
             double length = 0;
             std::vector<double> along{0};
@@ -316,6 +319,7 @@ Joint stitch(const Patch& patch, const InsertedCurves& cut, const Drawing& drawi
                 const double t = along[n - begin] / length;
                 const Vector3d place = (1 - t) * eigen(patch.mesh().point(a)) + t * eigen(patch.mesh().point(b));
                 of_surface[nodes[n]] = add(place);
+                border.emplace(of_surface[nodes[n]], a);
                 seam.emplace(nodes[n], place);
                 split.push_back(of_surface[nodes[n]]);
             }
@@ -346,7 +350,17 @@ Joint stitch(const Patch& patch, const InsertedCurves& cut, const Drawing& drawi
         joint.old_face.resize(joint.old_face.size() + soup.triangles.size() - before, none);
         joint.patch_face.resize(joint.patch_face.size() + soup.triangles.size() - before, face);
     }
-    joint.mesh = build_mesh(soup);
+    std::vector<std::pair<Index, Index>> edges;
+    for (const auto& t : soup.triangles)
+        for (std::size_t k = 0; k < 3; ++k)
+            if (border.contains(t[k]) && border.contains(t[(k + 1) % 3])) edges.emplace_back(t[k], t[(k + 1) % 3]);
+    std::sort(edges.begin(), edges.end());
+    for (auto twice = std::adjacent_find(edges.begin(), edges.end()); twice != edges.end();
+         twice = std::adjacent_find(twice + 1, edges.end())) {
+        failed.push_back(border.at(twice->first));
+        failed.push_back(border.at(twice->second));
+    }
+    if (failed.empty()) joint.mesh = build_mesh(soup);
     return joint;
 }
 
@@ -376,7 +390,10 @@ Joint join_patch(const Mesh& surface, Patch& patch, const std::vector<std::optio
             patch.erode(sides.failed);
             continue;
         }
-        return stitch(patch, cut, drawing, sides.left, width, frozen);
+        std::vector<Vertex> failed;
+        Joint joint = stitch(patch, cut, drawing, sides.left, width, frozen, failed);
+        if (failed.empty()) return joint;
+        patch.erode(failed);
     }
     none.problem = "its border crosses itself on the template";
     return none;

@@ -14,7 +14,8 @@ struct NonRigidOptions {
     double end = 0.01;   ///< of the last
     int levels = 6;
     int steps = 3;       ///< matches and solutions in each level, at most
-    double stay = 0.5;   ///< length over which the deformation fades where nothing is observed
+    double stay = 0.5;   ///< length over which the deformation of the first level fades where nothing is observed
+    double fade = 3;     ///< what a later level adds fades over so many of its smoothing lengths
     double reach = 0.1;  ///< farthest match in the first level, as a share of the diagonal
     double last_reach = 0.02;
     double angle = 60;  ///< of normals of matches, degrees
@@ -27,8 +28,10 @@ struct NonRigidOptions {
         visit("detail", end, "the same of the last level", Range{1e-4, 10});
         visit("levels", levels, "levels of stiffness", Range{1, 100});
         visit("steps", steps, "matches and solutions in each level, at most", Range{1, 1000});
-        visit("transition", stay, "length over which the deformation fades where nothing is observed, as a share of the diagonal",
+        visit("transition", stay,
+              "length over which the deformation of the first level fades where nothing is observed, as a share of the diagonal",
               Range{1e-3, 1e3});
+        visit("fade", fade, "what a later level adds fades over so many of its smoothing lengths", Range{0.1, 1e3});
         visit("reach", reach, "farthest match in the first level, as a share of the diagonal", Range{0, 10});
         visit("last-reach", last_reach, "farthest match in the last level", Range{0, 10});
         visit("match-angle", angle, "normals of matches differ by at most this, degrees", Range{0, 180});
@@ -66,13 +69,15 @@ struct NonRigidFit {
     double seconds_matching = 0, seconds_solving = 0, seconds_coarsening = 0;
 };
 
-/// Minimises  sum over vertices of A_i (w_i |x_i - q_i|^2 + (1 / t^4) |x_i - p_i|^2 s^4 + s^4 |Delta x_i - R_i Delta p_i|^2):
-/// the three costs of equation 5.2 (match, stay, Laplacian displacement) with areas A_i, so that the result does not depend on
-/// the resolution: s is the smoothing length of a level, t the length of transition. R_i follows the turn of each vertex's
-/// surroundings. Matches are the closest points of the fragments' outer facets with a like normal, within the same matched
-/// annotations on either side (the smallest one that holds the vertex), never at a border. Levels that are smooth against a mesh
-/// of 4000 vertices are solved on such a one (quadric error simplification); the template follows it, and takes up the rest.
-/// `scaled` is the template at the scale of the placement.
+/// Minimises, level by level,  sum over vertices of A_i (w_i |x_i - q_i|^2 + (s/t)^4 |x_i - p_i|^2 + s^4 |Delta x_i - R_i Delta
+/// r_i|^2): the three costs of equation 5.2 (match, stay, Laplacian displacement of the template r) with areas A_i, so that the
+/// result does not depend on the resolution. s is the smoothing length of the level; R_i follows the turn of each vertex's
+/// surroundings. In the first level p is the template and t the length of transition; later p is what the level before left and t
+/// = `fade` s, so that what a level adds, and with it the noise of a fragment's edge, ends near what was observed. Matches are
+/// the closest points of the fragments' outer facets with a like normal, within the same matched annotations on either side (the
+/// smallest one that holds the vertex), never at a border. Levels that are smooth against a mesh of 4000 vertices are solved on
+/// such a one (quadric error simplification); the template follows it, and takes up the rest. `scaled` is the template at the
+/// scale of the placement.
 NonRigidFit fit_template(const Mesh& scaled, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments,
                          const NonRigidOptions& options = {});
 

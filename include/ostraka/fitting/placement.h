@@ -15,6 +15,7 @@ namespace ostraka {
 struct LandmarkPair {
     std::string name;
     Eigen::Vector3d on_template, on_fragment;
+    Index vertex = no_index;  ///< of the template
 };
 
 /// Point annotations of one point that both sets have under one tag, each tag once on either side, by tag. `notes` says which

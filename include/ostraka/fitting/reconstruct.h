@@ -3,6 +3,7 @@
 
 #include "ostraka/fitting/complete.h"
 #include "ostraka/fitting/placement.h"
+#include "ostraka/fitting/shape_prior.h"
 #include "ostraka/registration/part_alignment.h"
 #include "ostraka/semantic/deform.h"
 
@@ -15,6 +16,7 @@ struct ReconstructOptions {
     bool refine = true;  ///< poses are refined by the surface, with the landmarks as anchors
     PartAlignmentOptions alignment;
     AnnotationMatchOptions annotations;
+    PriorOptions prior;
     NonRigidOptions fit;
     CompleteOptions completion;   ///< its tolerance is `observed`
     double observed = 0.02;       ///< farthest that an observed vertex lies from its match, as a share of the diagonal
@@ -28,6 +30,7 @@ struct ReconstructOptions {
         visit("refine", refine, "poses are refined by closest points of the surface, landmarks as anchors", Anything{});
         alignment.describe(visit);
         annotations.describe(visit);
+        prior.describe(visit);
         fit.describe(visit);
         completion.describe(visit);
         visit("observed", observed, "vertices farther from the fragments than this share of the diagonal are not observed",
@@ -56,6 +59,7 @@ struct Reconstruction {
     std::vector<PartAlignment> alignment;                   ///< of each fragment placed, where poses were refined
     std::vector<std::vector<AnnotationMatch>> annotations;  ///< of each fragment
     std::vector<std::vector<std::string>> notes;            ///< of each fragment
+    std::optional<PriorFit> prior;                          ///< where a class was given
     NonRigidFit fit;
     std::vector<Point> points;     ///< of the template's vertices at the end, in the unit of the fragments
     std::vector<double> distance;  ///< of each of them from its fragment; none where it was not observed: -1
@@ -71,6 +75,11 @@ struct Reconstruction {
     std::map<std::string, double> seconds;  ///< by phase
 };
 
+/// With a `prior`, the template takes the most probable shape of its class before it is deformed freely, and the fragments are
+/// laid onto that shape anew, in two rounds: what is not observed is then as in the class's members that look so where it is.
+///
+/// A proportion changes the part of the two that was observed less, whichever the graph names first.
+///
 /// Places every fragment by the landmarks it has in common with the template, refines the poses by the
 /// surface, matches annotations, deforms the scaled template to all fragments placed, holds what was observed, solves the
 /// graph's constraints for the rest, and joins both into one surface. Fragments that cannot be placed are left out and said. The
@@ -79,6 +88,6 @@ struct Reconstruction {
 /// annotations.
 Reconstruction reconstruct(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
                            const std::vector<const Fragment*>& fragments, const ReconstructOptions& options = {},
-                           const std::vector<std::vector<StatedMatch>>& stated = {});
+                           const std::vector<std::vector<StatedMatch>>& stated = {}, const ShapePrior* prior = nullptr);
 
 }  // namespace ostraka

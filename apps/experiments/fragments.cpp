@@ -1,0 +1,216 @@
+// Fragments broken off deformed copies of a template, fitted: what is found again of pose, of the observed part and of the rest.
+#include "ostraka/shapes/fragments.h"
+#include "ostraka/collection/statuette_annotations.h"
+#include "ostraka/fitting/reconstruct.h"
+#include "ostraka/geom/eigen.h"
+#include "ostraka/geom/surface_search.h"
+#include "ostraka/measure/measure.h"
+#include "ostraka/report/table.h"
+
+#include "experiments.h"
+#include "report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <iostream>
+#include <numbers>
+
+namespace ostraka::experiments {
+
+namespace {
+
+using Eigen::Vector3d;
+
+/// A statuette with landmarks all over, and the canon that heights of parts keep their ratios.
+struct Canon {
+    Statuette statuette;
+    AnnotationSet set;
+    RelationGraph graph;
+};
+
+int find_tag(const AnnotationSet& set, const std::string& tag) {
+    for (const Annotation& one : set.annotations)
+        if (one.tag == tag) return one.id;
+    return -1;
+}
+
+double add_height(const Mesh& mesh, Annotation& part) {
+    Attribute height;
+    height.id = static_cast<int>(part.attributes.size());
+    height.name = "height";
+    height.type = AttributeType::measure;
+    height.measure.tool = "bounding";
+    height.measure.direction = {0, 0, 1};
+    height.measure.unit = "mm";
+    for (const Index pin : extremes(mesh, part, *height.measure.direction)) height.measure.points.push_back(pin);
+    height.measure.value = evaluate(mesh, part, height.measure);
+    part.attributes.push_back(height);
+    return *height.measure.value;
+}
+
+Canon make_canon(std::uint64_t vertices) {
+    StatuetteParameters parameters;
+    parameters.wall = 0;
+    parameters.vertices = vertices;
+    Canon canon{generate_statuette(parameters), {}, {}};
+    canon.set = annotate_statuette(canon.statuette);
+    const Mesh& mesh = canon.statuette.mesh;
+    constexpr Index landmarks = 60;
+    for (Index i = 0; i < landmarks; ++i) {
+        Annotation point;
+        point.id = free_id(canon.set);
+        point.tag = "place " + std::to_string(i);
+        point.type = AnnotationType::point;
+        point.points = {static_cast<Index>(static_cast<std::uint64_t>(i) * 7919U % mesh.number_of_vertices())};
+        canon.set.annotations.push_back(std::move(point));
+    }
+    std::map<std::string, double> heights;
+    const std::vector<std::string> parts{"head", "body", "hat"};
+    for (const std::string& part : parts) heights[part] = add_height(mesh, *canon.set.find(find_tag(canon.set, part)));
+    for (const auto& [part, reference] : {std::pair("body", "head"), std::pair("hat", "head")}) {
+        Relationship one;
+        one.id = free_id(canon.graph);
+        one.type = "proportion";
+        one.annotations = {find_tag(canon.set, part), find_tag(canon.set, reference)};
+        one.is_constraint = true;
+        const double ratio = heights[part] / heights[reference];
+        one.weight = 100;
+        one.constraint = format(R"({"measure1": "height", "measure2": "height", "minValue": %.9g, "maxValue": %.9g})",
+                                0.99 * ratio, 1.01 * ratio);
+        canon.graph.relationships.push_back(std::move(one));
+    }
+    return canon;
+}
+
+struct Case {
+    std::string deformation, at;
+    double share, noise, erosion;
+};
+
+struct Row {
+    bool placed = false;
+    double angle = 0, shift = 0;                  ///< of the pose, degrees and share of the diagonal
+    double observed = 0, missing = 0, rigid = 0;  ///< root mean square, share of the diagonal
+    double before = 0, after = 0;                 ///< worst constraint, per cent out of range
+    std::size_t crossings = 0;
+    double seconds = 0;
+};
+
+Row run(const Canon& canon, const Case& what, std::uint64_t seed) {
+    const Mesh& mesh = canon.statuette.mesh;
+    const double high = bounding_box(mesh).zmax(), strength = 1 + 0.25 * (static_cast<double>(seed % 4) - 1.5);
+    Mesh whole = mesh;
+    for (const Vertex v : whole.vertices()) {
+        Vector3d p = eigen(mesh.point(v));
+        const double t = p.z() / high;
+        if (what.deformation == "stretch") p.z() *= 1 + 0.15 * strength;
+        if (what.deformation == "squash") p.z() *= 1 - 0.12 * strength;
+        if (what.deformation == "bend") p.x() += 0.12 * strength * high * t * t;
+        whole.point(v) = point_of(p);
+    }
+    const double diagonal = box_diagonal(whole);
+    const Annotation* middle = canon.set.find(find_tag(canon.set, what.at));
+    Vector3d centre = Vector3d::Zero();
+    for (const Index f : middle->faces) centre += eigen(centroid(whole, Face(f))) / static_cast<double>(middle->faces.size());
+    BreakOptions options;
+    options.share = what.share;
+    options.noise = what.noise;
+    options.erosion = what.erosion;
+    options.seed = seed;
+    const BrokenPiece piece = break_off(whole, point_of(centre), options);
+    Fragment fragment;
+    fragment.name = "fragment";
+    fragment.mesh = piece.mesh;
+    std::vector<bool> seen(mesh.number_of_vertices(), false);
+    std::vector<Index> of_piece(mesh.number_of_vertices(), no_index);
+    for (Index i = 0; i < piece.vertices.size(); ++i) {
+        seen[piece.vertices[i]] = true;
+        of_piece[piece.vertices[i]] = i;
+    }
+    for (const Annotation& one : canon.set.annotations) {
+        if (one.type != AnnotationType::point || of_piece[one.points.front()] == no_index) continue;
+        Annotation point;
+        point.id = one.id;
+        point.tag = one.tag;
+        point.type = one.type;
+        point.points = {of_piece[one.points.front()]};
+        fragment.annotations.annotations.push_back(std::move(point));
+    }
+    const Stopwatch watch;
+    const Reconstruction result = reconstruct(mesh, canon.set, canon.graph, {&fragment});
+    Row row;
+    row.seconds = watch.seconds().wall;
+    row.placed = result.placement.any();
+    if (!row.placed) return row;
+    row.crossings = result.crossings;
+    // The truth where the fragment was laid.
+    const Motion frame = result.placement.fragments[0].pose.after(piece.pose.inverse());
+    std::vector<Vector3d> truth, laid;
+    for (const Vertex v : mesh.vertices()) {
+        truth.push_back(frame(eigen(whole.point(v))));
+        laid.push_back(result.placement.scale * eigen(mesh.point(v)));
+    }
+    // Where it would lie best as a whole.
+    const Motion best = fit_motion(truth, laid);
+    row.angle = Eigen::AngleAxisd(best.turn).angle() * 180 / std::numbers::pi;
+    Vector3d mean = Vector3d::Zero();
+    for (const Vector3d& p : truth) mean += p / static_cast<double>(truth.size());
+    row.shift = (best(mean) - mean).norm() / diagonal;
+    const SurfaceSearch completed(result.object.mesh);
+    double observed = 0, missing = 0, rigid = 0, count_seen = 0, count_missing = 0;
+    for (const Vertex v : mesh.vertices()) {
+        if (seen[v]) {
+            const double d = completed.closest(point_of(truth[v])).distance;
+            observed += d * d;
+            ++count_seen;
+        } else {
+            missing += (eigen(result.points[v]) - truth[v]).squaredNorm();
+            rigid += (laid[v] - truth[v]).squaredNorm();
+            ++count_missing;
+        }
+    }
+    row.observed = std::sqrt(observed / count_seen) / diagonal;
+    row.missing = std::sqrt(missing / count_missing) / diagonal;
+    row.rigid = std::sqrt(rigid / count_missing) / diagonal;
+    for (const ConstraintReport& one : result.constraints) {
+        if (!one.before_values.empty()) row.before = std::max(row.before, one.before_values.front());
+        if (!one.deviations.empty()) row.after = std::max(row.after, one.deviations.front().value.value_or(0));
+    }
+    return row;
+}
+
+}  // namespace
+
+void fragments(const FragmentExperiment& options) {
+    const Canon canon = make_canon(options.vertices);
+    TextTable table({"deformation", "at", "share", "noise", "erosion", "placed", "angle", "shift", "observed", "missing", "rigid",
+                     "missing/rigid", "constraint before", "after", "crossings", "seconds"});
+    for (const std::string deformation : {"none", "stretch", "squash", "bend"})
+        for (const std::string at : {"head", "base"})
+            for (const double share : options.shares)
+                for (const double noise : {0.001, 0.005}) {
+                    const Case what{deformation, at, share, noise, noise == 0.005 ? 0.01 : 0.0};
+                    Row sum;
+                    int placed = 0;
+                    for (int seed = 1; seed <= options.seeds; ++seed) {
+                        const Row row = run(canon, what, static_cast<std::uint64_t>(seed));
+                        if (!row.placed) continue;
+                        ++placed;
+                        sum.angle += row.angle, sum.shift += row.shift, sum.observed += row.observed, sum.missing += row.missing;
+                        sum.rigid += row.rigid, sum.before += row.before, sum.after += row.after, sum.crossings += row.crossings;
+                        sum.seconds += row.seconds;
+                    }
+                    const double n = std::max(1, placed);
+                    table.add(
+                        {deformation, at, percent_cell(share, 0), percent_cell(noise), percent_cell(what.erosion),
+                         format("%d of %d", placed, options.seeds), fixed_cell(sum.angle / n, 2), percent_cell(sum.shift / n, 2),
+                         percent_cell(sum.observed / n, 3), percent_cell(sum.missing / n, 2), percent_cell(sum.rigid / n, 2),
+                         fixed_cell(sum.missing / sum.rigid, 2), fixed_cell(sum.before / n, 2), fixed_cell(sum.after / n, 2),
+                         fixed_cell(static_cast<double>(sum.crossings) / n, 1), fixed_cell(sum.seconds / n, 2)});
+                }
+    std::cout << table.markdown();
+    write_file(Path(options.output) / "fragments.csv", table.csv());
+}
+
+}  // namespace ostraka::experiments

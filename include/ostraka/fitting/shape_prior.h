@@ -1,0 +1,56 @@
+// How the members of a class differ, for what a fragment does not show: a mean shape and modes of variation.
+#pragma once
+
+#include "ostraka/core/options.h"
+#include "ostraka/fitting/fit.h"
+
+#include <Eigen/Dense>
+
+#include <vector>
+
+namespace ostraka {
+
+/// Shapes with the template's vertices: mean + sum of b_k times mode k, the b_k with these standard deviations. In any position
+/// and unit.
+struct ShapePrior {
+    std::vector<Eigen::Vector3d> mean;  ///< of each vertex
+    Eigen::MatrixXd modes;              ///< a column a mode: x, y, z of the first vertex, then of the second ...
+    std::vector<double> deviations;     ///< of each mode's coefficient
+
+    /// Throws Error (input) unless it has these many vertices and all sizes agree.
+    void check(std::size_t vertices) const;
+};
+
+struct PriorOptions {
+    int iterations = 40;
+    double most = 3;       ///< standard deviations that a coefficient may go
+    double samples = 200;  ///< independent places that the observed surface counts as, against the prior
+    double reach = 0.1;    ///< farthest match, as a share of the diagonal
+    double angle = 60;     ///< of the normals of matches, degrees
+
+    template <class Visitor>
+    void describe(Visitor& visit) {
+        visit("class-iterations", iterations, "most steps of the fit of a class's modes", Range{1, 1000});
+        visit("class-limit", most, "standard deviations that a mode may go from the mean", Range{0, 100});
+        visit("class-samples", samples, "independent places that the observed surface counts as, against what the class says",
+              Range{1, 1e9});
+    }
+};
+
+struct PriorFit {
+    Mesh mesh;                         ///< the template in the shape that the class would give it, where the scaled template is
+    std::vector<double> coefficients;  ///< in standard deviations
+    double residual = 0;               ///< root mean square distance of matched vertices from the fragments' planes
+    std::size_t matched = 0;
+    int iterations = 0;
+};
+
+/// The most probable shape of the class for what is observed (maximum a posteriori; cf. statistical shape models, Cootes et al.
+/// 1995, Blanz and Vetter 1999): by turns, matches of the vertices (at most 4000 of them, evenly over their list) with the
+/// fragments as in `fit_template`, and a linear least squares problem for a turn, shift and scale of the shape and the
+/// coefficients, point to plane, with the coefficients' Mahalanobis distance. Starts at the mean laid onto `scaled`. Throws Error
+/// as ShapePrior::check.
+PriorFit fit_prior(const Mesh& scaled, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments,
+                   const ShapePrior& prior, const PriorOptions& options = {});
+
+}  // namespace ostraka
