@@ -144,6 +144,12 @@ public:
     const std::vector<VertexMatch>& match(double reach, NonRigidFit& fit) {
         const Stopwatch watch(fit.seconds_matching);
         matches_ = search_.matches(now_, mesh_, labels_, reach, std::cos(options_.angle * std::numbers::pi / 180));
+        if (options_.counterparts == "surface") return matches_;
+        VertexAssignmentOptions options = options_.vertices;
+        options.counterpart = options_.counterparts;
+        options.reach = reach;
+        options.angle = options_.angle;
+        search_.assign(now_, mesh_, labels_, options, matches_);
         return matches_;
     }
 

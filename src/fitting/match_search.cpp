@@ -33,7 +33,8 @@ std::vector<int> face_labels(const Mesh& mesh, const std::vector<std::pair<const
 
 MatchSearch::~MatchSearch() = default;
 
-MatchSearch::MatchSearch(const Mesh& scaled, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments) {
+MatchSearch::MatchSearch(const Mesh& scaled, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments)
+    : fragments_(fragments) {
     // Regions that any fragment has.
     std::vector<std::pair<const Annotation*, int>> ours;
     for (std::size_t k = 0; k < fragments.size(); ++k) {
@@ -48,11 +49,25 @@ MatchSearch::MatchSearch(const Mesh& scaled, const AnnotationSet& set, const std
                     ours.emplace_back(a, a->id);
             } else if (a->type == AnnotationType::point && a->points.size() == 1 && b->points.size() == 1) {
                 guides_.push_back({a->points.front(), eigen(fragment.mesh.point(Vertex(b->points.front()))), 0});
+                landmarks_.emplace_back(a->points.front(), b->points.front());
+                landmark_fragment_.push_back(static_cast<int>(k));
             }
         }
         const std::vector<int> labels = face_labels(fragment.mesh, theirs);
         std::vector<bool> outer(fragment.mesh.number_of_faces(), true);
         for (std::size_t f = 0; f < fragment.facets.size(); ++f) outer[f] = fragment.facets[f] != Facet::fracture;
+        std::vector<bool> breaks(fragment.mesh.number_of_vertices(), false);
+        for (const Halfedge h : fragment.mesh.halfedges())
+            if (fragment.mesh.is_border(h) || !outer[fragment.mesh.face(h)])
+                breaks[fragment.mesh.source(h)] = breaks[fragment.mesh.target(h)] = true;
+        for (const auto& [region, label] : theirs) {
+            Counterpart one{static_cast<int>(k), label, {}, breaks};
+            one.region.tag = region->tag;
+            one.region.type = AnnotationType::region;
+            for (const Index face : region->faces)
+                if (labels[face] == label && outer[face]) one.region.faces.push_back(face);
+            if (!one.region.faces.empty()) counterparts_.push_back(std::move(one));
+        }
         std::map<int, std::vector<bool>> kept;
         for (std::size_t f = 0; f < labels.size(); ++f)
             if (outer[f]) kept.try_emplace(labels[f], labels.size(), false).first->second[f] = true;
@@ -83,13 +98,16 @@ MatchSearch::MatchSearch(const Mesh& scaled, const AnnotationSet& set, const std
 }
 
 MatchSearch::Labels MatchSearch::labels(const Mesh& mesh, const std::vector<Index>& face_origin) const {
-    Labels labels(mesh.number_of_vertices());
+    Labels labels;
+    for (Index f = 0; f < mesh.number_of_faces(); ++f)
+        labels.of_face.push_back(face_labels_[face_origin.empty() ? f : face_origin[f]]);
+    labels.of_vertex.resize(mesh.number_of_vertices());
     for (const Vertex v : mesh.vertices()) {
         if (mesh.is_isolated(v)) continue;
-        std::vector<int>& list = labels[v];
+        std::vector<int>& list = labels.of_vertex[v];
         for (const Face face : mesh.faces_around_target(mesh.halfedge(v))) {
             if (face == Mesh::null_face()) continue;
-            const int label = face_labels_[face_origin.empty() ? static_cast<Index>(face) : face_origin[face]];
+            const int label = labels.of_face[face];
             if (std::find(list.begin(), list.end(), label) == list.end()) list.push_back(label);
         }
         std::sort(list.begin(), list.end());
@@ -99,7 +117,7 @@ MatchSearch::Labels MatchSearch::labels(const Mesh& mesh, const std::vector<Inde
 
 std::vector<VertexMatch> MatchSearch::matches(const Points& now, const Mesh& connectivity, const Labels& labels, double reach,
                                               double min_cosine) const {
-    const std::size_t n = labels.size();
+    const std::size_t n = labels.of_vertex.size();
     // Normals of the shape as it is now.
     std::vector<Vector3d> normals(n, Vector3d::Zero());
     for (const Face face : connectivity.faces()) {
@@ -115,7 +133,7 @@ std::vector<VertexMatch> MatchSearch::matches(const Points& now, const Mesh& con
         if (!(length > 0)) return;
         const Vector3d place = now.col(static_cast<Eigen::Index>(i));
         double nearest = reach;
-        for (const int label : labels[i]) {
+        for (const int label : labels.of_vertex[i]) {
             const auto list = parts_.find(label);
             if (list == parts_.end()) continue;
             for (const auto& part : list->second) {
@@ -142,6 +160,44 @@ std::vector<VertexMatch> MatchSearch::matches(const Points& now, const Mesh& con
         }
     });
     return found;
+}
+
+void MatchSearch::assign(const Points& now, const Mesh& connectivity, const Labels& labels,
+                         const VertexAssignmentOptions& options, std::vector<VertexMatch>& matches) const {
+    Mesh mesh = connectivity;
+    for (const Vertex v : mesh.vertices()) mesh.point(v) = point_of(now.col(static_cast<Eigen::Index>(v)));
+    for (const Counterpart& other : counterparts_) {
+        Annotation part;
+        part.type = AnnotationType::region;
+        for (Index f = 0; f < labels.of_face.size(); ++f)
+            if (labels.of_face[f] == other.label) part.faces.push_back(f);
+        if (part.faces.empty()) continue;
+        const PlacedFragment& fragment = fragments_[static_cast<std::size_t>(other.fragment)];
+        std::vector<std::pair<Index, Index>> landmarks;
+        if (labels.of_face.size() == face_labels_.size()) {
+            const std::vector<Index> ours = touched_vertices(mesh, part), theirs = touched_vertices(fragment.mesh, other.region);
+            for (std::size_t l = 0; l < landmarks_.size(); ++l)
+                if (landmark_fragment_[l] == other.fragment &&
+                    std::binary_search(ours.begin(), ours.end(), landmarks_[l].first) &&
+                    std::binary_search(theirs.begin(), theirs.end(), landmarks_[l].second))
+                    landmarks.push_back(landmarks_[l]);
+        }
+        const VertexAssignment found = assign_vertices(mesh, part, fragment.mesh, other.region, landmarks, options);
+        for (std::size_t i = 0; i < found.vertices.size(); ++i) {
+            const Index v = found.vertices[i], there = found.counterpart[i];
+            VertexMatch& match = matches[v];
+            // Of several fragments that have the part the nearest counts.
+            const bool ours = match.fragment == other.fragment || match.fragment < 0;
+            if (there == no_index || other.breaks[there]) {
+                if (ours) match = VertexMatch();
+                continue;
+            }
+            const Eigen::Vector3d place = eigen(fragment.mesh.point(Vertex(there)));
+            const double distance = (place - now.col(static_cast<Eigen::Index>(v))).norm();
+            if (!ours && match.distance <= distance) continue;
+            match = {other.fragment, fragment.mesh.face(fragment.mesh.halfedge(Vertex(there))), place, distance};
+        }
+    }
 }
 
 }  // namespace ostraka

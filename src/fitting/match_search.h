@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ostraka/fitting/fit.h"
+#include "ostraka/fitting/vertex_assignment.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/solver/constraint.h"
 
@@ -26,14 +27,21 @@ public:
     MatchSearch(const MatchSearch&) = delete;
     MatchSearch& operator=(const MatchSearch&) = delete;
 
-    /// For each vertex what it is to be matched among: the labels of the faces around it.
-    using Labels = std::vector<std::vector<int>>;
+    /// What each face, and each vertex by the faces around it, is to be matched among.
+    struct Labels {
+        std::vector<int> of_face;
+        std::vector<std::vector<int>> of_vertex;
+    };
     /// Of a mesh of the template whose faces come from `face_origin` of the template's (empty: they are the template's).
     [[nodiscard]] Labels labels(const Mesh& mesh, const std::vector<Index>& face_origin) const;
     /// The nearest of all fragments for each vertex at `now`; fragment -1 where there is none within `reach` whose normal agrees
     /// and that is not at a border.
     [[nodiscard]] std::vector<VertexMatch> matches(const Points& now, const Mesh& connectivity, const Labels& labels,
                                                    double reach, double min_cosine) const;
+    /// Puts the counterparts of equation 5.1 in the place of those matches whose vertices are in a matched annotation, as the
+    /// options say; none where the counterpart is where the fragment ends.
+    void assign(const Points& now, const Mesh& connectivity, const Labels& labels, const VertexAssignmentOptions& options,
+                std::vector<VertexMatch>& matches) const;
     /// Landmarks of matched point annotations.
     [[nodiscard]] std::vector<Guide> guides() const { return guides_; }
 
@@ -47,7 +55,17 @@ private:
         std::vector<bool> edge_breaks, vertex_breaks;  ///< of the part's edges and vertices: where the outer surface ends
     };
     std::map<int, std::vector<std::unique_ptr<Part>>> parts_;  ///< by label: the id of the template's annotation, -1 for none
-    std::vector<int> face_labels_;                             ///< of the template
+    /// A region of a fragment and its counterpart's label.
+    struct Counterpart {
+        int fragment = 0, label = 0;
+        Annotation region;         ///< its faces that carry the label
+        std::vector<bool> breaks;  ///< of the fragment's vertices: where its outer surface ends
+    };
+    const std::vector<PlacedFragment>& fragments_;
+    std::vector<Counterpart> counterparts_;
+    std::vector<std::pair<Index, Index>> landmarks_;  ///< vertices of the template and of the fragment, as guides_
+    std::vector<int> landmark_fragment_;
+    std::vector<int> face_labels_;  ///< of the template
     std::vector<Guide> guides_;
 };
 

@@ -43,10 +43,10 @@ public:
         coefficients_ = VectorXd::Zero(prior.modes.cols());
         labels_ = search_.labels(scaled, {});
         constexpr std::size_t most = 4000;
-        const std::size_t step = std::max<std::size_t>(1, labels_.size() / most);
-        for (std::size_t i = 0; i < labels_.size(); ++i)
-            if (i % step != 0) labels_[i].clear();
-        areas_.assign(labels_.size(), 0);
+        const std::size_t step = std::max<std::size_t>(1, labels_.of_vertex.size() / most);
+        for (std::size_t i = 0; i < labels_.of_vertex.size(); ++i)
+            if (i % step != 0) labels_.of_vertex[i].clear();
+        areas_.assign(scaled.number_of_vertices(), 0);
         for (const Face face : scaled.faces())
             for (const Vertex v : corners(scaled, face)) areas_[v] += face_area(scaled, face) / 3;
     }
@@ -81,7 +81,7 @@ private:
     bool step(const Points& now, PriorFit& fit) {
         const auto matches =
             search_.matches(now, scaled_, labels_, options_.reach * diagonal_, std::cos(options_.angle * std::numbers::pi / 180));
-        std::vector<Vector3d> normals(labels_.size(), Vector3d::Zero());
+        std::vector<Vector3d> normals(areas_.size(), Vector3d::Zero());
         for (const Face face : scaled_.faces()) {
             const auto c = corners(scaled_, face);
             const Vector3d a = now.col(static_cast<Eigen::Index>(c[0])), b = now.col(static_cast<Eigen::Index>(c[1])),

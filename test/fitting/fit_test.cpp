@@ -86,6 +86,42 @@ TEST(Fit, NoiseIsNotCarriedIntoWhatWasNotSeen) {
         }
 }
 
+TEST(Fit, PartsGoToTheirCounterpartsByPlaceOrByEquation51) {
+    const Mesh mesh = body();
+    AnnotationSet set = landmarks_of(mesh);
+    Annotation head;
+    head.id = 100;
+    head.tag = "head";
+    for (const Face face : mesh.faces())
+        if (centroid(mesh, face).z() > 1.2) head.faces.push_back(face);
+    set.annotations.push_back(head);
+    const double diagonal = box_diagonal(mesh);
+    const Mesh whole = deformed_by(mesh, [](const Vector3d& p) { return Vector3d(1.1 * p.x(), p.y(), p.z() + 0.05 * p.x()); });
+    AnnotationSet points = landmarks_of(mesh);
+    BreakOptions options;
+    options.share = 0.4;
+    Cut one = cut(whole, points, Point(0, 0, 1.9), options);
+    Annotation part = head;
+    part.faces.clear();
+    for (Index f = 0; f < one.piece.faces.size(); ++f)
+        if (std::binary_search(head.faces.begin(), head.faces.end(), one.piece.faces[f])) part.faces.push_back(f);
+    one.fragment.annotations.annotations.push_back(part);
+    for (const std::string counterparts : {"surface", "best", "one-to-one"}) {
+        ReconstructOptions how;
+        how.fit.counterparts = counterparts;
+        const Reconstruction result = reconstruct(mesh, set, {}, {&one.fragment}, how);
+        ASSERT_TRUE(result.placement.any());
+        std::vector<bool> seen(mesh.number_of_vertices(), false);
+        for (const Index f : head.faces)
+            for (const Vertex v : corners(mesh, Face(f))) seen[v] = result.distance[v] >= 0;
+        EXPECT_GT(std::count(seen.begin(), seen.end(), true), 50) << counterparts;
+        const Mesh placed = moved(one.fragment.mesh, result.placement.fragments[0].pose);
+        EXPECT_LT(worst_distance(mesh, result.points, seen, placed), 0.01 * diagonal) << counterparts;
+        // The rest of the surface lies no worse for it.
+        EXPECT_NEAR(result.observed_share, 0.4, 0.1) << counterparts;
+    }
+}
+
 TEST(Fit, NothingIsFittedToAFracture) {
     const Mesh mesh = body(3);
     const AnnotationSet set = landmarks_of(mesh);

@@ -4,6 +4,7 @@
 #include "ostraka/core/options.h"
 #include "ostraka/fitting/annotation_matches.h"
 #include "ostraka/fitting/fragment.h"
+#include "ostraka/fitting/vertex_assignment.h"
 
 #include <vector>
 
@@ -18,8 +19,10 @@ struct NonRigidOptions {
     double fade = 3;     ///< what a later level adds fades over so many of its smoothing lengths
     double reach = 0.1;  ///< farthest match in the first level, as a share of the diagonal
     double last_reach = 0.02;
-    double angle = 60;  ///< of normals of matches, degrees
-    double guides = 1;  ///< weight of outlines and landmarks of matched annotations
+    double angle = 60;                     ///< of normals of matches, degrees
+    std::string counterparts = "surface";  ///< in matched annotations: closest places, or the vertices of equation 5.1
+    VertexAssignmentOptions vertices;      ///< its weights; reach and angle are those of the level
+    double guides = 1;                     ///< weight of outlines and landmarks of matched annotations
 
     template <class Visitor>
     void describe(Visitor& visit) {
@@ -35,6 +38,14 @@ struct NonRigidOptions {
         visit("reach", reach, "farthest match in the first level, as a share of the diagonal", Range{0, 10});
         visit("last-reach", last_reach, "farthest match in the last level", Range{0, 10});
         visit("match-angle", angle, "normals of matches differ by at most this, degrees", Range{0, 180});
+        visit("counterparts", counterparts,
+              "of vertices in matched annotations: closest places of the surface (surface), or vertices by distance, outline and "
+              "position along it (equation 5.1): the best of each (best), or each given once (one-to-one)",
+              Choices{"surface", "best", "one-to-one"});
+        visit("boundary-weight", vertices.boundary, "equation 5.1: of vertices on an outline against vertices inside",
+              Range{0, 1e6});
+        visit("distance-weight", vertices.distance, "equation 5.1: of the distance", Range{0, 1e6});
+        visit("outline-weight", vertices.outline, "equation 5.1: of the positions along the outline", Range{0, 1e6});
         visit("guides", guides, "weight of matched outlines and landmarks against that of the surface", Range{0, 1e6});
     }
 };
