@@ -108,9 +108,13 @@ struct FragmentExperiment {
     std::string output = "experiments-output/fragments";
     std::vector<double> shares{0.1, 0.25, 0.5};
     int seeds = 4;
-    std::uint64_t vertices = 12000;
+    std::uint64_t vertices = 12000, seed = 1;
+    int pairs = 200;
 };
 void fragments(const FragmentExperiment& options);
+/// Pairs of fragments of one object, of two sizes, of another canon: which are called compatible, and what is said against
+/// others.
+void verdicts(const FragmentExperiment& options);
 
 /// Which similarity and epsilon find the moulds of made heads and of mixes of scanned faces.
 struct MouldExperimentOptions {

@@ -6,6 +6,8 @@
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/measure/measure.h"
 #include "ostraka/report/table.h"
+#include "ostraka/stats/random.h"
+#include "ostraka/stats/scores.h"
 
 #include "experiments.h"
 #include "report.h"
@@ -180,7 +182,113 @@ Row run(const Canon& canon, const Case& what, std::uint64_t seed) {
     return row;
 }
 
+/// What was planted in a pair of fragments.
+enum class Planted { nothing, size, proportion };
+
+/// A member of the canon: sizes differ, so do shapes within what the canon allows; with another canon its head is half as tall
+/// again.
+Mesh make_member(const Canon& canon, Random& random, double size, bool other_canon) {
+    const Mesh& mesh = canon.statuette.mesh;
+    double brim = 0;
+    for (const Index f : canon.set.find(find_tag(canon.set, "head"))->faces)
+        for (const Vertex v : corners(mesh, Face(f))) brim = std::max(brim, mesh.point(v).z());
+    const double high = bounding_box(mesh).zmax(), wide = 1 + 0.04 * random.normal(), tall = 1 + 0.03 * random.normal(),
+                 bend = 0.02 * random.normal();
+    Mesh member = mesh;
+    for (const Vertex v : member.vertices()) {
+        Vector3d p = eigen(mesh.point(v));
+        if (other_canon) p.z() += 0.5 * std::max(p.z() - brim, 0.0);
+        const double t = p.z() / high;
+        p = Vector3d(wide * p.x() + bend * high * t * t, wide * p.y(), tall * p.z());
+        member.point(v) = point_of(size * p);
+    }
+    return member;
+}
+
+Fragment make_fragment(const Canon& canon, const Mesh& whole, const std::string& name, const std::string& at, double share,
+                       double noise, std::uint64_t seed) {
+    const Annotation* middle = canon.set.find(find_tag(canon.set, at));
+    Vector3d centre = Vector3d::Zero();
+    for (const Index f : middle->faces) centre += eigen(centroid(whole, Face(f))) / static_cast<double>(middle->faces.size());
+    BreakOptions options;
+    options.share = share;
+    options.noise = noise;
+    options.seed = seed;
+    const BrokenPiece piece = break_off(whole, point_of(centre), options);
+    Fragment fragment;
+    fragment.name = name;
+    fragment.mesh = piece.mesh;
+    std::map<Index, Index> of_piece;
+    for (Index i = 0; i < piece.vertices.size(); ++i) of_piece.emplace(piece.vertices[i], i);
+    for (const Annotation& one : canon.set.annotations) {
+        if (one.type != AnnotationType::point || !of_piece.contains(one.points.front())) continue;
+        Annotation point;
+        point.id = one.id;
+        point.tag = one.tag;
+        point.type = one.type;
+        point.points = {of_piece.at(one.points.front())};
+        fragment.annotations.annotations.push_back(std::move(point));
+    }
+    return fragment;
+}
+
 }  // namespace
+
+void verdicts(const FragmentExperiment& options) {
+    const Canon canon = make_canon(options.vertices);
+    const int head_canon = canon.graph.relationships[1].id;  // hat against head
+    Random random(options.seed);
+    std::vector<bool> truth;       // of one object
+    std::vector<double> evidence;  // less strain
+    int right = 0, rejected = 0, called = 0, hit = 0, planted_named = 0, correctly_rejected = 0;
+    TextTable table({"pair", "planted", "verdict", "strain", "named first"});
+    for (int pair = 0; pair < options.pairs; ++pair) {
+        const Planted planted = pair % 2 == 0 ? Planted::nothing : pair % 4 == 1 ? Planted::size : Planted::proportion;
+        const double size = std::exp(0.15 * random.normal());
+        // Sizes that cannot belong together differ by 15 per cent at least.
+        const double factor = std::exp((random.uniform() < 0.5 ? -1 : 1) * (0.14 + 0.2 * random.uniform()));
+        const Mesh first = make_member(canon, random, size, planted == Planted::proportion);
+        Mesh second = planted == Planted::size ? make_member(canon, random, size * factor, false) : first;
+        const auto seed = static_cast<std::uint64_t>(pair) + 1;
+        const Fragment top = make_fragment(canon, first, "top", "head", 0.3, 0.001, seed),
+                       bottom = make_fragment(canon, second, "bottom", "base", 0.3, 0.001, seed + 100000);
+        const Reconstruction result = reconstruct(canon.statuette.mesh, canon.set, canon.graph, {&top, &bottom});
+        const bool compatible = result.verdict == Compatibility::compatible;
+        truth.push_back(planted == Planted::nothing);
+        evidence.push_back(-result.strain);
+        // Causes come before what follows from them: sizes before constraints, of these the one that is off farthest.
+        const Objection* worst = nullptr;
+        for (const Objection& one : result.objections)
+            if (worst == nullptr || one.kind < worst->kind || (one.kind == worst->kind && one.strain > worst->strain))
+                worst = &one;
+        called += compatible ? 1 : 0;
+        hit += compatible && planted == Planted::nothing ? 1 : 0;
+        right += compatible == (planted == Planted::nothing) ? 1 : 0;
+        rejected += compatible ? 0 : 1;
+        if (!compatible && planted != Planted::nothing) {
+            ++correctly_rejected;
+            planted_named += worst != nullptr && (planted == Planted::size ? worst->kind == ObjectionKind::size
+                                                                           : worst->kind == ObjectionKind::constraint &&
+                                                                                 worst->constraint == head_canon)
+                                 ? 1
+                                 : 0;
+        }
+        const char* const names[] = {"nothing", "size", "proportion"};
+        table.add({std::to_string(pair + 1), names[static_cast<int>(planted)], to_string(result.verdict),
+                   fixed_cell(result.strain, 2),
+                   worst == nullptr ? std::string("-") : to_string(worst->kind) + " " + std::to_string(worst->constraint)});
+    }
+    write_file(Path(options.output) / "verdicts.csv", table.csv());
+    const double positives = static_cast<double>(std::count(truth.begin(), truth.end(), true));
+    const double precision = called > 0 ? static_cast<double>(hit) / called : 0, recall = hit / positives;
+    TextTable summary(
+        {"pairs", "right", "precision", "recall", "F1 of compatible", "area under ROC", "rejected", "planted mismatch named"});
+    summary.add({std::to_string(options.pairs), std::to_string(right), fixed_cell(precision, 3), fixed_cell(recall, 3),
+                 fixed_cell(precision + recall > 0 ? 2 * precision * recall / (precision + recall) : 0, 3),
+                 fixed_cell(roc_curve(evidence, truth).area, 3), std::to_string(rejected),
+                 format("%d of %d", planted_named, correctly_rejected)});
+    std::cout << summary.markdown();
+}
 
 void fragments(const FragmentExperiment& options) {
     const Canon canon = make_canon(options.vertices);

@@ -127,6 +127,14 @@ int main(int argc, char** argv) {
         ->check(CLI::Range(4000, 1000000))
         ->capture_default_str();
 
+    CLI::App* verdict_command = tool.add_subcommand("verdicts", "pairs of fragments that belong together, or do not");
+    verdict_command->add_option("output", broken.output, "folder for the table")->capture_default_str();
+    verdict_command->add_option("--pairs", broken.pairs, "half of them of one object")
+        ->check(CLI::Range(4, 100000))
+        ->capture_default_str();
+    verdict_command->add_option("--vertices", broken.vertices, "of the template")->check(CLI::Range(4000, 1000000));
+    verdict_command->add_option("--seed", broken.seed, "of members and breaks");
+
     experiments::SemanticOptions semantic;
     std::vector<std::pair<CLI::App*, void (*)(const experiments::SemanticOptions&)>> semantic_commands;
     const struct {
@@ -173,6 +181,7 @@ int main(int argc, char** argv) {
         if (fixed_command->parsed()) experiments::fixed_proportions(fixed);
         if (technique_command->parsed()) experiments::technique(technique);
         if (fragment_command->parsed()) experiments::fragments(broken);
+        if (verdict_command->parsed()) experiments::verdicts(broken);
         if (mould_command->parsed()) experiments::moulds(heads);
         for (const auto& [command, run] : semantic_commands)
             if (command->parsed()) run(semantic);

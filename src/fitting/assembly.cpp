@@ -118,10 +118,13 @@ JsonValue assembly_to_json(const Reconstruction& result, const AssemblyNames& na
         if (objection.fragment >= 0)
             add_member(item, "fragment", names.fragments[static_cast<std::size_t>(objection.fragment)], allocator);
         if (objection.constraint >= 0) add_member(item, "constraint", JsonValue(objection.constraint), allocator);
+        add_member(item, "kind", to_string(objection.kind), allocator);
+        if (objection.strain > 0) add_member(item, "strain", JsonValue(objection.strain), allocator);
         add_member(item, "text", objection.text, allocator);
         objections.PushBack(item, allocator);
     }
     add_member(assembly, "objections", std::move(objections), allocator);
+    add_member(assembly, "strain", JsonValue(result.strain), allocator);
     add_member(assembly, "verdict", to_string(result.verdict), allocator);
     if (!result.undecided.empty()) add_member(assembly, "undecided", result.undecided, allocator);
     return assembly;

@@ -11,6 +11,19 @@
 
 namespace ostraka {
 
+std::string to_string(ObjectionKind kind) {
+    switch (kind) {
+        case ObjectionKind::placement:
+            return "placement";
+        case ObjectionKind::size:
+            return "size";
+        case ObjectionKind::landmarks:
+            return "landmarks";
+        default:
+            return "constraint";
+    }
+}
+
 std::string to_string(Compatibility compatibility) {
     switch (compatibility) {
         case Compatibility::compatible:
@@ -42,7 +55,7 @@ public:
         if (!result_.placement.any()) {
             result_.undecided = "no fragment could be placed";
             for (std::size_t k = 0; k < fragments_.size(); ++k)
-                result_.objections.push_back({static_cast<int>(k), -1, result_.placement.fragments[k].problem});
+                object(ObjectionKind::placement, static_cast<int>(k), -1, 0, result_.placement.fragments[k].problem);
             return std::move(result_);
         }
         scaled_ = scaled_by(mesh_, result_.placement.scale);
@@ -225,6 +238,7 @@ private:
                                      [](const Relationship& one) { return one.is_constraint; });
         if (!any || !options_.restore) return;
         DeformOptions options;
+        options.handles = 1e5;  // what was observed is not given up for a constraint
         DeformResult restored = restore_constraints(scaled_, set_, with_observed_as_reference(), result_.points, held_, options,
                                                     {}, "the template's graph");
         result_.points = std::move(restored.points);
@@ -232,50 +246,89 @@ private:
         result_.conflicts = std::move(restored.conflicts);
     }
 
+    /// Sum of squares of the template's landmarks about their mean: what a fragment weighs in the common scale.
+    [[nodiscard]] double weight_of(const std::vector<LandmarkPair>& pairs, const FragmentPlacement& placement,
+                                   bool on_fragment) const {
+        Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+        double count = 0, sum = 0;
+        const auto place = [&](const LandmarkPair& pair) { return on_fragment ? pair.on_fragment : pair.on_template; };
+        const auto used = [&](std::size_t i) { return i >= placement.landmarks.size() || placement.landmarks[i].used; };
+        for (std::size_t i = 0; i < pairs.size(); ++i)
+            if (used(i)) middle += place(pairs[i]), ++count;
+        if (!(count > 0)) return 0;
+        middle /= count;
+        for (std::size_t i = 0; i < pairs.size(); ++i)
+            if (used(i)) sum += (place(pairs[i]) - middle).squaredNorm();
+        return sum;
+    }
+
+    void object(ObjectionKind kind, int fragment, int constraint, double strain, const std::string& text) {
+        result_.strain = std::max(result_.strain, strain);
+        if (kind == ObjectionKind::placement || strain > 1)
+            result_.objections.push_back({kind, fragment, constraint, strain, text});
+    }
+
+    /// A fragment's size against that of the others, and its landmarks against the template's.
+    void judge_fragment(std::size_t k, const std::vector<std::vector<LandmarkPair>>& pairs) {
+        const FragmentPlacement& one = result_.placement.fragments[k];
+        const int number = static_cast<int>(k);
+        double sum = 0, weights = 0;
+        for (std::size_t j = 0; j < fragments_.size(); ++j) {
+            const FragmentPlacement& other = result_.placement.fragments[j];
+            if (j == k || !other.problem.empty() || !(other.own_scale > 0)) continue;
+            const double weight = weight_of(pairs[j], other, false);
+            sum += weight * other.own_scale;
+            weights += weight;
+        }
+        if (weights > 0 && one.own_scale > 0) {
+            const double others = sum / weights,
+                         off = 100 * (std::max(one.own_scale, others) / std::min(one.own_scale, others) - 1);
+            object(ObjectionKind::size, number, -1, off / std::max(options_.scale_tolerance, 1e-9),
+                   "alone it would have the template " + digits(one.own_scale, 4) + " times as large, and the others " +
+                       digits(others, 4) + " times: its size is off by " + digits(off, 3) + " %");
+        }
+        const double count = static_cast<double>(
+            std::count_if(one.landmarks.begin(), one.landmarks.end(), [](const LandmarkResidual& mark) { return mark.used; }));
+        const double spread = count > 0 ? std::sqrt(weight_of(pairs[k], one, true) / count) : 0;
+        if (spread > 0)
+            object(ObjectionKind::landmarks, number, -1, one.residual / (std::max(options_.residual, 1e-9) * spread),
+                   "its landmarks are " + digits(one.residual, 3) + " off those of the template (root mean square), " +
+                       digits(100 * one.residual / spread, 3) + " % of their spread");
+    }
+
     void judge() {
         std::size_t placed = 0;
+        std::vector<std::vector<LandmarkPair>> pairs;
+        for (const Fragment* one : fragments_) pairs.push_back(common_landmarks(mesh_, set_, one->mesh, one->annotations));
         for (std::size_t k = 0; k < fragments_.size(); ++k) {
             const FragmentPlacement& one = result_.placement.fragments[k];
-            const int number = static_cast<int>(k);
             if (!one.problem.empty()) {
-                result_.objections.push_back({number, -1, "not placed: " + one.problem});
+                object(ObjectionKind::placement, static_cast<int>(k), -1, 0, "not placed: " + one.problem);
                 continue;
             }
             ++placed;
-            const double off = 100 * std::abs(one.own_scale / result_.placement.scale - 1);
-            if (off > options_.scale_tolerance)
-                result_.objections.push_back({number, -1,
-                                              "alone it would have the template " + digits(one.own_scale, 4) +
-                                                  " times as large, and all together " + digits(result_.placement.scale, 4) +
-                                                  " times: its size is off by " + digits(off, 3) + " %"});
-            double spread = 0, count = 0;
-            const auto pairs = common_landmarks(mesh_, set_, fragments_[k]->mesh, fragments_[k]->annotations);
-            Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-            for (const auto& pair : pairs) middle += pair.on_fragment / static_cast<double>(pairs.size());
-            for (const auto& pair : pairs) spread += (pair.on_fragment - middle).squaredNorm(), ++count;
-            spread = count > 0 ? std::sqrt(spread / count) : 0;
-            if (spread > 0 && one.residual > options_.residual * spread)
-                result_.objections.push_back({number, -1,
-                                              "its landmarks are " + digits(one.residual, 3) +
-                                                  " off those of the template (root mean square), " +
-                                                  digits(100 * one.residual / spread, 3) + " % of their spread"});
+            judge_fragment(k, pairs);
         }
         bool tested = false;
         for (const ConstraintReport& constraint : result_.constraints) {
             tested = tested || constraint.used;
-            if (!constraint.used || constraint.verdict != Verdict::fails) continue;
+            if (!constraint.used) continue;
             std::string words;
-            for (const Deviation& d : constraint.deviations)
-                if (d.value && d.tolerance && *d.value > *d.tolerance)
+            double strain = 0;
+            for (const Deviation& d : constraint.deviations) {
+                if (!d.value || !d.tolerance) continue;
+                const double allowed = d.unit == "%" ? std::max(options_.slack, *d.tolerance) : *d.tolerance;
+                strain = std::max(strain, *d.value / std::max(allowed, 1e-12));
+                if (*d.value > allowed)
                     words += (words.empty() ? "" : "; ") + d.quantity + " " + digits(*d.value, 4) + ", at most " +
-                             digits(*d.tolerance, 4) + (d.unit.empty() ? "" : " " + d.unit);
-            result_.objections.push_back(
-                {-1, constraint.id, constraint.type + " does not hold" + (words.empty() ? "" : ": " + words)});
+                             digits(allowed, 4) + (d.unit.empty() ? "" : " " + d.unit);
+            }
+            strain = constraint.verdict == Verdict::fails ? strain : std::min(strain, 1.0);
+            object(ObjectionKind::constraint, -1, constraint.id, strain,
+                   constraint.type + " does not hold" + (words.empty() ? "" : ": " + words));
         }
-        const bool against = std::any_of(result_.objections.begin(), result_.objections.end(), [&](const Objection& one) {
-            return one.constraint >= 0 ||
-                   (one.fragment >= 0 && result_.placement.fragments[static_cast<std::size_t>(one.fragment)].problem.empty());
-        });
+        const bool against = std::any_of(result_.objections.begin(), result_.objections.end(),
+                                         [](const Objection& one) { return one.kind != ObjectionKind::placement; });
         if (against) {
             result_.verdict = Compatibility::incompatible;
         } else if (placed < fragments_.size()) {

@@ -21,6 +21,7 @@ struct ReconstructOptions {
     CompleteOptions completion;   ///< its tolerance is `observed`
     double observed = 0.02;       ///< farthest that an observed vertex lies from its match, as a share of the diagonal
     double scale_tolerance = 10;  ///< per cent by which a fragment's own scale may differ from that of all
+    double slack = 3;             ///< per cent by which a proportion or measure may be out of its range
     double residual = 0.25;       ///< of landmarks, as a share of the spread of a fragment's landmarks: more is rejected
     bool restore = true;          ///< constraints are solved for what was not observed
 
@@ -36,7 +37,12 @@ struct ReconstructOptions {
         visit("observed", observed, "vertices farther from the fragments than this share of the diagonal are not observed",
               Range{0, 1});
         visit("scale-tolerance", scale_tolerance,
-              "per cent by which the template's scale as one fragment alone has it may differ from that of all", Range{0, 1000});
+              "per cent by which the template's scale as one fragment alone has it may differ from that of the others",
+              Range{0, 1000});
+        visit("slack", slack,
+              "per cent that a constraint in per cent may be off before it speaks against the fragments: what scans and "
+              "measuring leave",
+              Range{0, 1000});
         visit("residual", residual,
               "root mean square of a fragment's landmarks, as a share of their spread, above which it does not fit",
               Range{0, 10});
@@ -44,10 +50,15 @@ struct ReconstructOptions {
     }
 };
 
+/// Causes before what follows from them.
+enum class ObjectionKind { placement, size, landmarks, constraint };
+std::string to_string(ObjectionKind kind);
 /// A finding that speaks against a fragment, or against all of them together.
 struct Objection {
+    ObjectionKind kind = ObjectionKind::placement;
     int fragment = -1;    ///< -1: none by itself
     int constraint = -1;  ///< id of a relationship of the graph; -1: geometry
+    double strain = 0;    ///< how far off, in times of what is allowed; 0: cannot be told
     std::string text;
 };
 
@@ -69,6 +80,7 @@ struct Reconstruction {
     std::size_t crossings = 0;        ///< pairs of the template's faces that cross after the fit, but did not before
     std::vector<ConstraintReport> constraints;
     std::vector<ConstraintConflict> conflicts;
+    double strain = 0;  ///< the largest of all that was tested, in times of what is allowed: above 1 something speaks against it
     Compatibility verdict = Compatibility::undecided;
     std::vector<Objection> objections;
     std::string undecided;                  ///< why
