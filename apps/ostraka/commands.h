@@ -15,6 +15,7 @@ void add_mesh_make(CLI::App& mesh, Session& session);                  // mesh_m
 void add_annotation(CLI::App& annotation, Session& session);           // annotation.cpp: apply, list, check
 void add_annotation_select(CLI::App& annotation, Session& session);    // annotation_select.cpp
 void add_annotation_creases(CLI::App& annotation, Session& session);   // annotation_creases.cpp
+void add_annotation_facets(CLI::App& annotation, Session& session);    // annotation_facets.cpp
 void add_annotation_segment(CLI::App& annotation, Session& session);   // annotation_segment.cpp
 void add_annotation_transfer(CLI::App& annotation, Session& session);  // annotation_transfer.cpp
 void add_annotation_survival(CLI::App& annotation, Session& session);  // annotation_survival.cpp
@@ -34,6 +35,7 @@ void add_cage(CLI::App& cage, Session& session);                       // cage.c
 void add_cage_make(CLI::App& cage, Session& session);                  // cage_make.cpp: make, check, edit
 void add_deform(CLI::App& tool, Session& session);                     // deform.cpp
 void add_fit(CLI::App& tool, Session& session);                        // fit.cpp
+void add_pair(CLI::App& tool, Session& session);                       // pair.cpp
 void add_render(CLI::App& tool, Session& session);                     // render.cpp
 void add_study_make_proportions(CLI::App& made, Session& session);     // study_make_proportions.cpp
 void add_study_landmarks(CLI::App& study, Session& session);           // study_landmarks.cpp

@@ -4,11 +4,13 @@
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/bundle/template.h"
 #include "ostraka/fitting/assembly.h"
+#include "ostraka/fitting/fragment_file.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/measure/measure.h"
 #include "ostraka/transfer/transfer.h"
 
+#include <array>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -24,14 +26,17 @@ struct Fit {
     std::vector<std::string> files;
     std::string output, assembly;
     ReconstructOptions options;
+    FragmentFileOptions reading;
     bool placed = false;
 
     int run(const Session& session) {
         check_options(options, "fit");
+        check_options(reading, "fit");
         if (files.size() < 2) fail_usage("there is no fragment", "give TEMPLATE FRAGMENT ...");
         if (output.empty()) fail_usage("there is no folder to write to", "give --output FOLDER");
         const TemplateFile bundle = read_template(files[0]);
         Provenance provenance{"fit", list_options(options), {}};
+        for (auto& option : list_options(reading)) provenance.options.push_back(std::move(option));
         provenance.add_input(files[0]);
         for (const TemplatePart& part : bundle.parts) provenance.add_input(part.file);
         Template loaded = load_template(bundle);
@@ -51,7 +56,7 @@ struct Fit {
         std::vector<std::vector<StatedMatch>> stated;
         std::set<std::string> taken;
         for (std::size_t k = 0; k < fragments.size(); ++k) {
-            read_fragment(files[k + 1], fragments[k], provenance);
+            read(files[k + 1], fragments[k], provenance, session);
             if (!taken.insert(fragments[k].name).second)
                 fail_usage("two fragments are called '" + printable(fragments[k].name) + "'", "rename one of the files");
             names.fragments.push_back(fragments[k].name);
@@ -66,18 +71,19 @@ struct Fit {
     }
 
 private:
-    static void read_fragment(const std::string& file, Fragment& fragment, Provenance& provenance) {
-        fragment.name = Path(file).stem().string();
-        MeshFile mesh = read_mesh(file);
-        provenance.add_input(file);
-        fragment.mesh = std::move(mesh.mesh);
-        const Path annotations = Path(file).parent_path() / (fragment.name + ".ant.json");
-        if (!fs::exists(annotations)) return;
-        AnnotationSet set = read_annotations(annotations, fragment.mesh);
-        provenance.add_input(annotations);
-        fragment.facets = in_file(annotations.string(), [&] { return facets_of(fragment.mesh, set); });
-        std::swap(fragment.annotations.annotations, set.annotations);
-        fragment.annotations.unit = set.unit;
+    void read(const std::string& file, Fragment& fragment, Provenance& provenance, const Session& session) const {
+        FragmentFile one = read_fragment(file, reading);
+        for (const Path& input : one.inputs) provenance.add_input(input);
+        for (const auto& note : one.notes) session.note("note: " + printable(file) + ": " + note);
+        fragment = std::move(one.fragment);
+        if (session.json || fragment.facets.empty()) return;
+        std::array<double, 3> area{};
+        for (const Face face : fragment.mesh.faces())
+            area.at(static_cast<std::size_t>(fragment.facets[face])) += face_area(fragment.mesh, face);
+        const double all = area[0] + area[1] + area[2];
+        std::cout << printable(fragment.name) << ": facets by " << one.facets_from << ": outer " << number(100 * area[0] / all, 3)
+                  << " %, inner " << number(100 * area[1] / all, 3) << " %, fracture " << number(100 * area[2] / all, 3)
+                  << " %\n";
     }
 
     /// The template's annotations on the completed object.
@@ -201,7 +207,8 @@ void add_fit(CLI::App& tool, Session& session) {
     command
         ->add_option(
             "files", fit->files,
-            "the template (.template.json), then a mesh file for each fragment; NAME.ant.json beside it are its "
+            "the template (.template.json), then a mesh file, or points without faces, for each fragment; NAME.ant.json beside "
+            "it are its "
             "annotations: points with the template's tags are landmarks, regions \"outer\", \"inner\", \"fracture\" its facets")
         ->required()
         ->expected(-1);
@@ -210,6 +217,7 @@ void add_fit(CLI::App& tool, Session& session) {
     command->add_option("--assembly", fit->assembly, "an assembly: its matches of annotations with \"stated\": true hold");
     command->add_flag("--placed", fit->placed, "also write each fragment where it lies: NAME.placed.ply");
     add_flags(command, fit->options);
+    add_flags(command, fit->reading);
 }
 
 }  // namespace ostraka::app

@@ -44,6 +44,7 @@ int main(int argc, char** argv) {
     app::add_annotation(*annotation, session);
     app::add_annotation_select(*annotation, session);
     app::add_annotation_creases(*annotation, session);
+    app::add_annotation_facets(*annotation, session);
     app::add_annotation_segment(*annotation, session);
     app::add_annotation_transfer(*annotation, session);
     app::add_annotation_survival(*annotation, session);
@@ -63,6 +64,7 @@ int main(int argc, char** argv) {
     app::add_cage(*cage, session);
     app::add_deform(tool, session);
     app::add_fit(tool, session);
+    app::add_pair(tool, session);
     app::add_render(tool, session);
     app::add_study_make_proportions(*made, session);
     app::add_study_landmarks(*study, session);

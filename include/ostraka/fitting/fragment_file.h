@@ -1,0 +1,42 @@
+// A fragment as its files tell: mesh or points, annotations, facets.
+#pragma once
+
+#include "ostraka/core/file.h"
+#include "ostraka/fitting/facets.h"
+#include "ostraka/fitting/point_cloud.h"
+
+namespace ostraka {
+
+struct FragmentFileOptions {
+    std::string facets = "either";  ///< where facets come from
+    FacetOptions finding;
+    CloudOptions cloud;
+
+    template <class Visitor>
+    void describe(Visitor& visit) {
+        visit("facets", facets,
+              "outer, inner and fracture surface: as annotated; auto: from the shape, annotations override; either: as "
+              "annotated where there are such annotations, else from the shape if it is closed; none: all outer",
+              Choices{"either", "annotated", "auto", "none"});
+        finding.describe(visit);
+        cloud.describe(visit);
+    }
+};
+
+struct FragmentFile {
+    Fragment fragment;
+    std::string facets_from;   ///< "annotations", "shape", "shape and annotations" or "nowhere"
+    Facets found;              ///< from the shape, where that was asked
+    bool points = false;       ///< the file has no faces: the mesh is a surface through its points
+    std::vector<Path> inputs;  ///< what was read
+    std::vector<std::string> notes;
+};
+
+/// Reads a mesh, or points without faces, and the annotations beside it (NAME.ant.json) if they are there; facets as the options
+/// say. A surface found in a solid counts as fracture only where it is surer than even. Throws Error (input).
+FragmentFile read_fragment(const Path& file, const FragmentFileOptions& options = {});
+
+/// The facets as three regions "outer", "inner" and "fracture" (those that are there), with area and confidence.
+AnnotationSet facet_annotations(const Facets& facets, const std::string& unit = {});
+
+}  // namespace ostraka

@@ -1,0 +1,180 @@
+#include "break_align.h"
+
+#include "ostraka/geom/eigen.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ostraka {
+
+using Eigen::Vector3d;
+
+namespace {
+
+std::vector<Point> points_of(const std::vector<Vector3d>& places) {
+    std::vector<Point> points;
+    for (const Vector3d& p : places) points.push_back(point_of(p));
+    return points;
+}
+std::vector<Point> places_of(const std::vector<RimFrame>& frames) {
+    std::vector<Point> points;
+    for (const RimFrame& frame : frames) points.push_back(point_of(frame.place));
+    return points;
+}
+
+/// Normals face each other, sides continue each other: cosines.
+constexpr double facing = 0.5, continued = 0.7;
+
+}  // namespace
+
+BreakAligner::BreakAligner(const Fragment& a, const BreakSide& side_a, const BreakSide& side_b, double reach, double last_reach,
+                           double edges)
+    : a_(side_a),
+      b_(side_b),
+      reach_(reach),
+      last_reach_(last_reach),
+      edges_(edges),
+      fractures_(points_of(side_a.fracture.places)),
+      frames_(places_of(side_a.frames)),
+      whole_(a.mesh),
+      surface_(whole_) {}
+
+Motion BreakAligner::align(const Motion& start, std::size_t samples, int steps) const {
+    using Row = Eigen::Matrix<double, 6, 1>;
+    Motion pose = start;
+    const std::size_t count = std::min(samples, b_.fracture.places.size());
+    for (int step = 0; step < steps; ++step) {
+        // The last third at the last reach.
+        const double share = std::min(1.0, 1.5 * step / std::max(1, steps - 1));
+        const double reach = reach_ * std::pow(last_reach_ / reach_, share);
+        Eigen::Matrix<double, 6, 6> matrix = Eigen::Matrix<double, 6, 6>::Zero();
+        Row right = Row::Zero();
+        Vector3d centre = Vector3d::Zero();
+        struct Plane {
+            Vector3d point, normal;
+            double off, weight;
+        };
+        std::vector<Plane> planes;
+        double all = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::size_t k = (2 * i + 1) * b_.fracture.places.size() / (2 * count);
+            const Vector3d p = pose(b_.fracture.places[k]), n = pose.turn * b_.fracture.normals[k];
+            const PointTree::Near near = fractures_.nearest(point_of(p), reach);
+            if (near.index == no_index) continue;
+            const Vector3d& normal = a_.fracture.normals[near.index];
+            const double against = -normal.dot(n);
+            if (against < facing) continue;
+            const double off = normal.dot(a_.fracture.places[near.index] - p), share_off = near.squared / (reach * reach);
+            planes.push_back({p, normal, off, (1 - share_off) * (1 - share_off)});
+            all += planes.back().weight;
+        }
+        std::vector<Plane> rims;
+        double rim = 0;
+        for (const RimFrame& frame : b_.frames) {
+            const Vector3d p = pose(frame.place);
+            const PointTree::Near near = frames_.nearest(point_of(p), 1.5 * reach);
+            if (near.index == no_index) continue;
+            const RimFrame& other = a_.frames[near.index];
+            if (other.facet != frame.facet || other.side.dot(pose.turn * frame.side) < continued ||
+                other.fracture.dot(pose.turn * frame.fracture) > -facing)
+                continue;
+            const double weight = std::pow(1 - near.squared / (2.25 * reach * reach), 2);
+            rims.push_back({p, other.side, other.side.dot(other.place - p), weight});
+            rims.push_back({p, other.fracture, other.fracture.dot(other.place - p), weight});
+            rim += weight;
+        }
+        if (planes.size() + rims.size() < 6) break;
+        const double per_rim = rim > 0 ? edges_ * (all > 0 ? all : 1) / rim * 0.5 : 0;
+        for (Plane& plane : rims) {
+            plane.weight *= per_rim;
+            planes.push_back(plane);
+        }
+        double total = 0;
+        for (const Plane& plane : planes) {
+            centre += plane.weight * plane.point;
+            total += plane.weight;
+        }
+        if (!(total > 0)) break;
+        centre /= total;
+        double unit = 0;
+        for (const Plane& plane : planes) unit += plane.weight / total * (plane.point - centre).squaredNorm();
+        unit = std::sqrt(unit);
+        if (!(unit > 0)) break;
+        for (const Plane& plane : planes) {
+            Row row;
+            row << ((plane.point - centre) / unit).cross(plane.normal), plane.normal;
+            matrix += plane.weight * row * row.transpose();
+            right += plane.weight * plane.off / unit * row;
+        }
+        // What is left open is not moved.
+        matrix.diagonal().array() += 1e-3 * matrix.trace() / 6;
+        const Row x = matrix.ldlt().solve(right);
+        Motion move;
+        const double angle = x.head<3>().norm();
+        if (angle > 0) move.turn = Eigen::AngleAxisd(angle, x.head<3>() / angle).toRotationMatrix();
+        move.shift = centre + unit * x.tail<3>() - move.turn * centre;
+        pose = move.after(pose);
+        pose.turn = Eigen::Quaterniond(pose.turn).normalized().toRotationMatrix();
+        if (share >= 1 && angle < 1e-7 && x.tail<3>().norm() < 1e-7) break;
+    }
+    return pose;
+}
+
+PairCandidate BreakAligner::judge(const Motion& pose, std::size_t samples, double close) const {
+    PairCandidate result;
+    result.pose = pose;
+    const double smaller = std::min(a_.fracture.area, b_.fracture.area), shorter = std::min(a_.rim_length, b_.rim_length);
+    const auto over = [&](const SurfaceSamples& from, auto&& visit) {
+        const std::size_t count = std::min(samples, from.places.size());
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::size_t k = (2 * i + 1) * from.places.size() / (2 * count);
+            visit(pose(from.places[k]), Vector3d(pose.turn * from.normals[k]), from.area / static_cast<double>(count));
+        }
+    };
+    double touching = 0, square = 0, inside = 0;
+    const auto penetrates = [&](const Vector3d& p, double area) {
+        const SurfaceHit hit = surface_.closest(point_of(p));
+        if (hit.face == no_index || hit.distance < last_reach_) return;
+        // Beyond an edge the nearest face may look either way: the place must be well below it.
+        const double above = eigen(surface_.normal(hit.face)).dot(p - eigen(hit.point));
+        if (above > -0.7 * hit.distance) return;
+        inside += area;
+        result.depth = std::max(result.depth, hit.distance);
+    };
+    over(b_.fracture, [&](const Vector3d& p, const Vector3d& n, double area) {
+        const PointTree::Near near = fractures_.nearest(point_of(p), last_reach_);
+        if (near.index != no_index) {
+            const double against = -a_.fracture.normals[near.index].dot(n);
+            if (against > facing) {
+                const double off = a_.fracture.normals[near.index].dot(p - a_.fracture.places[near.index]),
+                             share = off / (close * last_reach_);
+                touching += area * std::exp(-share * share / 2);
+                square += area * off * off;
+                result.contact += area;
+            }
+        }
+        penetrates(p, area);
+    });
+    over(b_.intact, [&](const Vector3d& p, const Vector3d&, double area) { penetrates(p, area); });
+    result.residual = result.contact > 0 ? std::sqrt(square / result.contact) : 0;
+    double rim = 0;
+    for (const RimFrame& frame : b_.frames) {
+        const Vector3d p = pose(frame.place);
+        const PointTree::Near near = frames_.nearest(point_of(p), 1.5 * last_reach_);
+        if (near.index == no_index) continue;
+        const RimFrame& other = a_.frames[near.index];
+        if (other.facet != frame.facet || other.side.dot(pose.turn * frame.side) < continued ||
+            other.fracture.dot(pose.turn * frame.fracture) > -facing)
+            continue;
+        // Across the side's plane counts, along the rim does not.
+        const double step = other.side.dot(p - other.place) / last_reach_;
+        rim += std::max(0.0, 1 - step * step);
+    }
+    result.rim = rim / static_cast<double>(b_.frames.size()) * b_.rim_length / shorter;
+    result.contact /= smaller;
+    result.penetration = inside / smaller;
+    result.score = touching / smaller + result.rim - result.penetration;
+    return result;
+}
+
+}  // namespace ostraka

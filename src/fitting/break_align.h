@@ -1,0 +1,29 @@
+// Poses of one break against another: refined and judged.
+#pragma once
+
+#include "break_side.h"
+#include "ostraka/fitting/break_pair.h"
+#include "ostraka/geom/surface_search.h"
+
+namespace ostraka {
+
+/// Lays the second fragment's fracture and rim onto those of the first.
+class BreakAligner {
+public:
+    BreakAligner(const Fragment& a, const BreakSide& side_a, const BreakSide& side_b, double reach, double last_reach,
+                 double edges);
+
+    /// Closest points, point to plane, with at most `samples` points of the fracture; the reach falls over `steps` steps.
+    [[nodiscard]] Motion align(const Motion& start, std::size_t samples, int steps) const;
+    /// In contact counts by how close it is: `close` times the last reach is a standard deviation.
+    [[nodiscard]] PairCandidate judge(const Motion& pose, std::size_t samples, double close) const;
+
+private:
+    const BreakSide &a_, &b_;
+    double reach_, last_reach_, edges_;
+    PointTree fractures_, frames_;
+    Mesh whole_;
+    SurfaceSearch surface_;
+};
+
+}  // namespace ostraka
