@@ -1,5 +1,6 @@
 // Experiments: how faithful transfer is, how sound cages are, what semantic constraints keep. Each prints Markdown tables and
 // writes the raw rows as CSV.
+#include "classes.h"
 #include "experiments.h"
 
 #include "ostraka/core/error.h"
@@ -135,6 +136,28 @@ int main(int argc, char** argv) {
     verdict_command->add_option("--vertices", broken.vertices, "of the template")->check(CLI::Range(4000, 1000000));
     verdict_command->add_option("--seed", broken.seed, "of members and breaks");
 
+    experiments::ClassMembershipOptions classes;
+    CLI::App* class_command = tool.add_subcommand("classes", "which class an object belongs to, leave one out");
+    class_command->add_option("models", classes.models, "folder with <class>/<number>.off")->required();
+    class_command->add_option("--output", classes.output, "folder for tables")->capture_default_str();
+    class_command->add_option("--members", classes.members, "of each class, at most");
+    class_command->add_option("--vertices", classes.template_vertices, "of the templates")->capture_default_str();
+    class_command->add_option("--object-vertices", classes.object_vertices, "of the objects, at most")->capture_default_str();
+    class_command->add_option("--tries", classes.tries, "placements that are fitted")->check(CLI::Range(1, 5));
+    class_command->add_option("--reach", classes.reach, "farthest match in the first level, as a share of the diagonal")
+        ->capture_default_str();
+
+    experiments::ClassCorrespondenceOptions known;
+    CLI::App* known_command = tool.add_subcommand("class-correspondence", "modes and fits of faces and bodies in correspondence");
+    known_command->add_option("--face", known.faces, "mesh files of faces with the same vertices, the neutral one first")
+        ->required();
+    known_command->add_option("--landmarks", known.landmarks, "vertices of a face, an index a line")->required();
+    known_command->add_option("--body", known.body, "mesh file of a body");
+    known_command->add_option("--target", known.targets, "what moves the body's vertices: 'vertex dx dy dz' a line");
+    known_command->add_option("--made", known.made, "faces made for the modes")
+        ->check(CLI::Range(2, 10000))
+        ->capture_default_str();
+
     experiments::SemanticOptions semantic;
     std::vector<std::pair<CLI::App*, void (*)(const experiments::SemanticOptions&)>> semantic_commands;
     const struct {
@@ -182,6 +205,8 @@ int main(int argc, char** argv) {
         if (technique_command->parsed()) experiments::technique(technique);
         if (fragment_command->parsed()) experiments::fragments(broken);
         if (verdict_command->parsed()) experiments::verdicts(broken);
+        if (known_command->parsed()) experiments::class_correspondence(known);
+        if (class_command->parsed()) experiments::class_membership(classes);
         if (mould_command->parsed()) experiments::moulds(heads);
         for (const auto& [command, run] : semantic_commands)
             if (command->parsed()) run(semantic);

@@ -30,6 +30,8 @@ void add_measure_map(CLI::App& measure, Session& session);             // measur
 void add_measure_clay(CLI::App& measure, Session& session);            // measure_clay.cpp
 void add_annotation_infer(CLI::App& annotation, Session& session);     // annotation_infer.cpp
 void add_template(CLI::App& bundle, Session& session);                 // template.cpp
+void add_template_learn(CLI::App& bundle, Session& session);           // template_learn.cpp: learn, classify
+void add_template_sample(CLI::App& bundle, Session& session);          // template_sample.cpp: sample, propagate
 void add_vocabulary(CLI::App& vocabulary, Session& session);           // vocabulary.cpp
 void add_cage(CLI::App& cage, Session& session);                       // cage.cpp: weights, influence
 void add_cage_make(CLI::App& cage, Session& session);                  // cage_make.cpp: make, check, edit

@@ -59,6 +59,8 @@ int main(int argc, char** argv) {
     app::add_measure_clay(*measure, session);
     app::add_annotation_infer(*annotation, session);
     app::add_template(*bundle, session);
+    app::add_template_learn(*bundle, session);
+    app::add_template_sample(*bundle, session);
     app::add_vocabulary(*vocabulary, session);
     app::add_cage_make(*cage, session);
     app::add_cage(*cage, session);

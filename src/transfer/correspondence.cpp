@@ -157,8 +157,8 @@ std::string known_ratio(double scale) {
 
 }  // namespace
 
-Alignment compare_alignment(const Mesh& source, const Mesh& target) {
-    Alignment result;
+Agreement compare_alignment(const Mesh& source, const Mesh& target) {
+    Agreement result;
     const double source_size = box_diagonal(source), target_size = box_diagonal(target);
     if (!(source_size > 0) || !(target_size > 0)) {
         result.problem = "one of the meshes has no extent";

@@ -345,7 +345,7 @@ TransferResult transfer(const Mesh& source, const AnnotationSet& annotations, co
     check_options(options, "transfer");
     check_annotations(source, annotations);
     if (!options.force) {
-        const Alignment alignment = compare_alignment(source, target.mesh());
+        const Agreement alignment = compare_alignment(source, target.mesh());
         if (!alignment.problem.empty()) fail_input("transfer", alignment.problem, "or --force if they are meant to differ");
     }
     if (options.refine && options.cover != "overlapping")

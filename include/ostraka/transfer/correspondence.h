@@ -49,12 +49,12 @@ std::vector<Correspondence> candidate_correspondences(const Mesh& source, Index 
                                                       const CorrespondenceOptions& options = {});
 
 /// Whether two meshes can be two resolutions of one object standing in one place.
-struct Alignment {
+struct Agreement {
     double scale = 1;     ///< target diagonal / source diagonal
     double offset = 0;    ///< distance of the box centres, as a share of the larger diagonal
     double rotation = 0;  ///< angle between the principal axes, in degrees; 0 where they are not distinct
     std::string problem;  ///< empty if the meshes agree; otherwise what differs, by how much and how to mend it
 };
-Alignment compare_alignment(const Mesh& source, const Mesh& target);
+Agreement compare_alignment(const Mesh& source, const Mesh& target);
 
 }  // namespace ostraka

@@ -1,0 +1,24 @@
+// A learnt class as files: NAME.class.json (doc/schema/class.schema.json), its mean and modes as NumPy arrays beside it.
+#pragma once
+
+#include "ostraka/bundle/template.h"
+#include "ostraka/family/classify.h"
+
+namespace ostraka {
+
+/// Writes FOLDER/NAME.class.json, NAME.mean.npy (a row a vertex) and, where there are modes, NAME.modes.npy (a row a mode), each
+/// atomically; `NAME` is the class's. Throws Error (usage) for a name that is no file's name.
+void write_class(const Path& folder, const ShapeClass& learnt, const Provenance& provenance);
+
+/// Reads a class; its arrays stand beside it. Throws Error (input) naming file and place: a schema that is not met, an array that
+/// is missing or has other sizes.
+ShapeClass read_class(const Path& file);
+
+/// Copies the parts of a template into a folder, flat, and returns the template there, checksums anew; `name` is the file it is
+/// to have. Written atomically. Throws Error (input) where two parts have one name.
+TemplateFile copy_template(const TemplateFile& file, const Path& folder, const std::string& name, const Provenance& provenance);
+
+/// The report of a classification (doc/schema/classification.schema.json).
+JsonValue classification_to_json(const Classification& answer, JsonAllocator& allocator);
+
+}  // namespace ostraka

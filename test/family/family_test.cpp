@@ -1,0 +1,327 @@
+#include "family/towers.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/family/class_file.h"
+#include "ostraka/family/propagate.h"
+#include "ostraka/geom/with_points.h"
+#include "ostraka/measure/measure.h"
+#include "ostraka/stats/random.h"
+#include "scratch.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace ostraka {
+namespace {
+
+using test::class_of;
+using test::member_of;
+using test::Tower;
+using test::tower;
+
+Motion far_away() {
+    Motion motion;
+    motion.turn = Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+    motion.shift = Eigen::Vector3d(1000, -2000, 500);
+    return motion;
+}
+
+/// Two planted modes without turn, shift or change of size: rows that are orthogonal to the rigid motions to first order.
+struct Planted {
+    Landmarks mean = Landmarks::Zero(60, 3), first = Landmarks::Zero(60, 3), second = Landmarks::Zero(60, 3);
+    Planted() {
+        Random random(3);
+        for (Eigen::Index i = 0; i < 30; ++i)
+            for (int k = 0; k < 3; ++k) mean(i, k) = random.uniform(0.2, 1);
+        // Points in mirrored pairs: odd fields have no moment.
+        for (Eigen::Index i = 0; i < 30; ++i) mean.row(30 + i) = -mean.row(i);
+        for (Eigen::Index i = 0; i < 30; ++i) {
+            const double along = random.normal(), across = random.normal();
+            first.row(i) << along, 0, 0;
+            first.row(30 + i) << along, 0, 0;
+            second.row(i) << 0, across, 0;
+            second.row(30 + i) << 0, across, 0;
+        }
+        first.rowwise() -= first.colwise().mean().eval();
+        second.rowwise() -= second.colwise().mean().eval();
+        first /= first.norm();
+        second -= (first.array() * second.array()).sum() * first;
+        second /= second.norm();
+    }
+};
+
+TEST(ShapeModes, KnownModesComeBack) {
+    const Planted planted;
+    std::vector<Landmarks> members;
+    // Coefficients that are uncorrelated: a cross.
+    for (const auto& [a, b] : {std::pair{0.3, 0.0}, {-0.3, 0.0}, {0.0, 0.1}, {0.0, -0.1}}) {
+        const Motion motion = far_away();
+        Landmarks shape = planted.mean + a * planted.first + b * planted.second;
+        shape = (shape * motion.turn.transpose()).rowwise() + motion.shift.transpose();
+        members.push_back(shape);
+    }
+    ModeOptions options;
+    options.sizes = true;
+    const ShapeModes modes = learn_modes(members, planted.mean, options);
+    ASSERT_GE(modes.variances.size(), 2U);
+    EXPECT_NEAR(modes.variances[0], 2 * 0.3 * 0.3 / 3, 1e-3);
+    EXPECT_NEAR(modes.variances[1], 2 * 0.1 * 0.1 / 3, 1e-3);
+    EXPECT_NEAR((modes.mean - planted.mean).norm(), 0, 0.02) << "the mean stands where the frame is";
+    const auto along = [&](Eigen::Index k, const Landmarks& field) {
+        double sum = 0;
+        for (Eigen::Index i = 0; i < field.rows(); ++i) sum += modes.modes.row(k).segment<3>(3 * i).dot(field.row(i));
+        return std::abs(sum);
+    };
+    EXPECT_GT(along(0, planted.first), 0.99);
+    EXPECT_GT(along(1, planted.second), 0.99);
+    EXPECT_LT((modes.modes * modes.modes.transpose() - Eigen::MatrixXd::Identity(modes.modes.rows(), modes.modes.rows())).norm(),
+              1e-9);
+    // A shape of the family is given by its coefficients; one off the family is not.
+    const ShapeCoordinates inside = coordinates_in(modes, members[0]);
+    EXPECT_LT(inside.outside, 1e-6);
+    EXPECT_NEAR((landmarks_of(points_of(shape_of(modes, inside.coefficients))) - inside.map.apply(members[0])).norm(), 0, 1e-6);
+    Landmarks off = members[0];
+    off(0, 2) += 0.5;
+    EXPECT_GT(coordinates_in(modes, off).outside, 0.01);
+}
+
+TEST(ShapeModes, OneAndEqualMembersHaveNoModes) {
+    const Planted planted;
+    const ShapeModes one = learn_modes({planted.mean}, planted.mean);
+    EXPECT_TRUE(one.variances.empty());
+    EXPECT_TRUE(one.left_out_distances.empty());
+    const ShapeModes same = learn_modes({planted.mean, 1e6 * planted.mean, planted.mean}, planted.mean);
+    EXPECT_TRUE(same.variances.empty()) << "sizes do not count";
+    EXPECT_NEAR(same.left_out_distances[1], 0, 1e-7);
+    EXPECT_THROW(static_cast<void>(learn_modes({}, planted.mean)), Error);
+}
+
+TEST(ShapeModes, WhatIsLeftOutIsMeasuredByTheOthers) {
+    const Planted planted;
+    const std::vector<Landmarks> members{planted.mean + 0.3 * planted.first, planted.mean - 0.3 * planted.first,
+                                         planted.mean + 0.1 * planted.first, planted.mean + 0.2 * planted.second};
+    ModeOptions options;
+    options.sizes = true;
+    const ShapeModes modes = learn_modes(members, planted.mean, options);
+    // The last one alone has the second field: all of it is outside of what the others span.
+    EXPECT_GT(modes.left_out_outside[3] * modes.mean_size, 0.19);
+    EXPECT_LT(modes.left_out_outside[0] * modes.mean_size, 0.05);
+}
+
+/// Members whose top is 0.9 to 1.1 of the base.
+std::vector<Member> usual(const Tower& known) {
+    std::vector<Member> members;
+    for (const auto& [name, top, width] :
+         {std::tuple{"a", 0.9, 1.0}, {"b", 1.0, 1.05}, {"c", 1.1, 0.95}, {"d", 0.95, 1.0}, {"e", 1.05, 1.02}})
+        members.push_back(member_of(known, name, 1, top, width, far_away()));
+    return members;
+}
+
+TEST(ShapeClass, LearnsTheRangesThatItsMembersHave) {
+    const Tower known = tower();
+    const ShapeClass learnt = class_of(known, usual(known));
+    const LearntRange* ratio = learnt.find("proportion 7 ");
+    ASSERT_NE(ratio, nullptr);
+    EXPECT_EQ(ratio->count, 5U);
+    EXPECT_NEAR(ratio->min, 0.9, 1e-9);
+    EXPECT_NEAR(ratio->max, 1.1, 1e-9);
+    EXPECT_NEAR(ratio->median, 1, 1e-9);
+    EXPECT_NEAR(ratio->overshoot, 0.05, 1e-9) << "0.9 lies 0.05 below the others";
+    EXPECT_NEAR(*ratio->high, 1.1 + 0.05 + 0.02 * 1.1, 1e-9);
+    const LearntRange* height = learnt.find("attribute 2 height");
+    ASSERT_NE(height, nullptr);
+    EXPECT_NEAR(height->mean, 1, 1e-9) << "heights stay the members' own, wherever they lie";
+    EXPECT_EQ(height->quantity.unit, "mm");
+    EXPECT_EQ(learnt.modes.distances[learnt.modes.archetype],
+              *std::min_element(learnt.modes.distances.begin(), learnt.modes.distances.end()));
+}
+
+TEST(Classify, NamesThePlantedProportion) {
+    const Tower known = tower();
+    const ShapeClass learnt = class_of(known, usual(known));
+    const ClassAnswer good = ask_class(learnt, known.known(), member_of(known, "good", 1, 1.02, 1.01));
+    EXPECT_EQ(good.verdict, Membership::member) << (good.against.empty() ? "" : good.reasons().front());
+    const ClassAnswer bad = ask_class(learnt, known.known(), member_of(known, "bad", 1, 1.6, 1, far_away()));
+    ASSERT_EQ(bad.verdict, Membership::other);
+    const QuantityCheck& first = bad.checks[bad.against.front()];
+    EXPECT_EQ(first.quantity.kind, QuantityKind::proportion);
+    EXPECT_EQ(first.quantity.id, 7);
+    EXPECT_NEAR(*first.quantity.value, 1.6, 1e-9);
+    EXPECT_NEAR(first.off, 1.6 - *first.high, 1e-9);
+    EXPECT_NE(bad.reasons().front().find("proportion 7"), std::string::npos);
+    const Classification decided = decide("bad", {bad});
+    EXPECT_EQ(decided.verdict, Membership::other);
+    EXPECT_EQ(decided.best, -1);
+    EXPECT_EQ(decide("good", {good}).best, 0);
+}
+
+TEST(Classify, SaysWhenItCannotDecide) {
+    const Tower known = tower();
+    const ShapeClass one = class_of(known, {usual(known).front()});
+    ASSERT_FALSE(one.notes.empty());
+    const ClassAnswer answer = ask_class(one, known.known(), member_of(known, "x", 1, 1, 1));
+    EXPECT_EQ(answer.verdict, Membership::undecided);
+    const Classification decided = decide("x", {answer});
+    EXPECT_EQ(decided.text.find("cannot decide, because"), 0U) << decided.text;
+    // Two classes that say the same cannot be told apart.
+    const ShapeClass learnt = class_of(known, usual(known));
+    const ClassAnswer yes = ask_class(learnt, known.known(), member_of(known, "x", 1, 1, 1));
+    const Classification both = decide("x", {yes, yes});
+    EXPECT_EQ(both.verdict, Membership::undecided) << both.text;
+    EXPECT_THROW(static_cast<void>(decide("x", {})), Error);
+    EXPECT_THROW(static_cast<void>(class_of(known, {})), Error);
+}
+
+TEST(Classify, WithoutConstraintsGeometryDecidesAndThatIsSaid) {
+    Tower known = tower();
+    known.graph.relationships.clear();
+    const ShapeClass learnt = class_of(known, usual(known));
+    EXPECT_NE(std::find_if(learnt.notes.begin(), learnt.notes.end(),
+                           [](const std::string& note) { return note.find("no constraint") != std::string::npos; }),
+              learnt.notes.end());
+    const ClassAnswer bad = ask_class(learnt, known.known(), member_of(known, "bad", 1, 1.6, 1));
+    EXPECT_EQ(bad.verdict, Membership::other);
+    EXPECT_EQ(bad.checks[bad.against.front()].quantity.kind, QuantityKind::geometry);
+}
+
+TEST(Classify, SizesCountWhereTold) {
+    const Tower known = tower();
+    Motion large;
+    large.scale = 3;
+    const Member big = member_of(known, "big", 1, 1, 1, large);
+    EXPECT_EQ(ask_class(class_of(known, usual(known)), known.known(), big).verdict, Membership::member);
+    LearnOptions options;
+    options.modes.sizes = true;
+    EXPECT_EQ(ask_class(class_of(known, usual(known), options), known.known(), big).verdict, Membership::other);
+}
+
+TEST(MemberFit, FitsATowerOfOtherTrianglesAndCarriesAnnotations) {
+    const Tower known = tower();
+    Member object = member_of(known, "object", 1, 1.3, 0.8, far_away());
+    // Other vertices: the box cut finer.
+    TriangleSoup fine = to_soup(member_of(known, "same", 1, 1.3, 0.8, far_away()).mesh);
+    const std::size_t before = fine.triangles.size();
+    for (std::size_t t = 0; t < before; ++t) {
+        const auto c = fine.triangles[t];
+        std::array<double, 3> middle{};
+        for (const Index v : c)
+            for (std::size_t k = 0; k < 3; ++k) middle[k] += fine.points[v][k] / 3;
+        const auto m = static_cast<Index>(fine.points.size());
+        fine.points.push_back(middle);
+        fine.triangles[t] = {c[0], c[1], m};
+        fine.triangles.push_back({c[1], c[2], m});
+        fine.triangles.push_back({c[2], c[0], m});
+    }
+    object.mesh = build_mesh(fine);
+    EXPECT_FALSE(in_correspondence(known.mesh, object.mesh));
+    EXPECT_THROW(static_cast<void>(member_in_correspondence(known.mesh, object)), Error);
+    const MemberFit fit = fit_member(known.mesh, known.set, object);
+    ASSERT_TRUE(fit.problem.empty()) << fit.problem;
+    ASSERT_TRUE(fit.residuals.has_value());
+    EXPECT_LT(fit.residuals->distance, 0.01);
+    EXPECT_LT(fit.residuals->unexplained, 0.05);
+    const Propagated carried = propagate(known.known(), object);
+    ASSERT_TRUE(carried.on_member.has_value());
+    double area = 0;
+    for (const Annotation& annotation : carried.on_member->annotations) {
+        ASSERT_EQ(annotation.type, AnnotationType::region) << annotation.tag;
+        for (const Index f : annotation.faces) area += face_area(object.mesh, Face(f));
+    }
+    EXPECT_NEAR(area / surface_area(object.mesh), 1, 0.15) << "the two halves cover it";
+}
+
+TEST(MemberFit, DistortionIsThatOfTheMap) {
+    const Tower known = tower();
+    const Member wide = member_of(known, "wide", 1, 1, 2);
+    std::vector<Point> points(wide.mesh.points().begin(), wide.mesh.points().end());
+    FitResiduals residuals;
+    measure_distortion(known.mesh, points, 2, residuals);
+    EXPECT_NEAR(residuals.stretch, 0, 1e-9) << "twice as large is the template's scale";
+    EXPECT_NEAR(residuals.bend, 0, 1e-6);
+    measure_distortion(known.mesh, points, 1, residuals);
+    EXPECT_NEAR(residuals.stretch, std::log(2.0), 1e-9);
+}
+
+TEST(Sample, HoldsTheConstraintsAndTheRanges) {
+    const Tower known = tower();
+    const ShapeClass learnt = class_of(known, usual(known));
+    SampleOptions options;
+    options.count = 5;
+    const Sampling sampling = sample_class(learnt, known.known(), options);
+    ASSERT_EQ(sampling.samples.size(), 5U) << (sampling.examples.empty() ? "" : sampling.examples.front());
+    const LearntRange* ratio = learnt.find("proportion 7 ");
+    for (const Sample& sample : sampling.samples) {
+        const Mesh mesh = with_points(known.mesh, sample.points);
+        const double top = evaluate(mesh, known.set.annotations[1], known.set.annotations[1].attributes[0].measure);
+        const double base = evaluate(mesh, known.set.annotations[0], known.set.annotations[0].attributes[0].measure);
+        EXPECT_GE(top / base, *ratio->low);
+        EXPECT_LE(top / base, *ratio->high);
+        Member object{"sample", mesh, {}};
+        EXPECT_EQ(compare_with(learnt, learn_member(known.known(), object)).against.empty(), true);
+    }
+    EXPECT_GT(sampling.diversity, 0);
+    // Told again, the same to the bit; another seed gives others.
+    const Sampling again = sample_class(learnt, known.known(), options);
+    EXPECT_EQ(again.samples[3].points, sampling.samples[3].points);
+    options.seed = 2;
+    EXPECT_NE(sample_class(learnt, known.known(), options).samples[0].points, sampling.samples[0].points);
+}
+
+TEST(Sample, RestoresAStatedProportionOrRejects) {
+    // The template allows 1.02 at most, its members have up to 1.1: draws beyond are brought back.
+    const Tower known = tower(1.02);
+    const ShapeClass learnt = class_of(known, usual(known));
+    SampleOptions options;
+    options.count = 4;
+    options.seed = 5;
+    const Sampling sampling = sample_class(learnt, known.known(), options);
+    for (const Sample& sample : sampling.samples) {
+        const Mesh mesh = with_points(known.mesh, in_template_frame(known.mesh, sample.points, false));
+        const double top = evaluate(mesh, known.set.annotations[1], known.set.annotations[1].attributes[0].measure);
+        const double base = evaluate(mesh, known.set.annotations[0], known.set.annotations[0].attributes[0].measure);
+        EXPECT_LE(top / base, 1.02 * 1.001 + 1e-3);
+    }
+    EXPECT_EQ(sampling.tried, sampling.samples.size() + sampling.by_constraints + sampling.by_ranges + sampling.by_intersections);
+}
+
+TEST(Sample, EditsAndBadInput) {
+    const Tower known = tower();
+    const ShapeClass learnt = class_of(known, usual(known));
+    SampleOptions options;
+    options.count = 2;
+    options.by = "edits";
+    options.edit = 0.02;
+    const Sampling sampling = sample_class(learnt, known.known(), options);
+    EXPECT_GT(sampling.tried, 0U);
+    for (const Sample& sample : sampling.samples) EXPECT_FALSE(sample.edits.empty());
+    options.by = "modes";
+    EXPECT_THROW(static_cast<void>(sample_class(class_of(known, {usual(known).front()}), known.known(), options)), Error);
+}
+
+TEST(ClassFile, ComesBackAsWritten) {
+    const test::Scratch scratch;
+    const Tower known = tower();
+    ShapeClass learnt = class_of(known, usual(known));
+    learnt.template_file = "tower.template.json";
+    write_class(scratch.path(), learnt, Provenance{"test", {}, {}});
+    const ShapeClass read = read_class(scratch / "tower.class.json");
+    EXPECT_EQ(read.modes.modes, learnt.modes.modes);
+    EXPECT_EQ(read.modes.mean, learnt.modes.mean);
+    EXPECT_EQ(read.modes.coefficients, learnt.modes.coefficients);
+    ASSERT_EQ(read.ranges.size(), learnt.ranges.size());
+    for (std::size_t i = 0; i < read.ranges.size(); ++i) {
+        EXPECT_EQ(read.ranges[i].quantity.key(), learnt.ranges[i].quantity.key());
+        EXPECT_EQ(read.ranges[i].high, learnt.ranges[i].high);
+        EXPECT_EQ(read.ranges[i].values, learnt.ranges[i].values);
+    }
+    const Member object = member_of(known, "bad", 1, 1.6, 1);
+    EXPECT_EQ(ask_class(read, known.known(), object).reasons(), ask_class(learnt, known.known(), object).reasons());
+    std::filesystem::remove(scratch / "tower.modes.npy");
+    EXPECT_THROW(static_cast<void>(read_class(scratch / "tower.class.json")), Error);
+    learnt.name = "../up";
+    EXPECT_THROW(write_class(scratch.path(), learnt, Provenance{"test", {}, {}}), Error);
+}
+
+}  // namespace
+}  // namespace ostraka
