@@ -206,7 +206,7 @@ MemberFit fit_member(const Mesh& mesh, const AnnotationSet& set, const Member& m
     if (!options.ignore_landmarks) {
         const auto pairs = common_landmarks(mesh, set, member.mesh, member.annotations, &best.notes);
         if (pairs.size() >= 3) {
-            const Placement placement = place_by_landmarks({pairs}, options.placement);
+            const CommonPlacement placement = place_by_landmarks({pairs}, options.placement);
             const FragmentPlacement& one = placement.fragments.front();
             if (one.problem.empty()) {
                 places.push_back({placement.scale, one.pose, 1});

@@ -137,4 +137,12 @@ ShapeClass learn_class(const ClassTemplate& known, const std::vector<LearntMembe
     return learnt;
 }
 
+ShapePrior prior_of(const ShapeModes& modes) {
+    ShapePrior prior;
+    for (Eigen::Index i = 0; i < modes.mean.rows(); ++i) prior.mean.emplace_back(modes.mean.row(i).transpose());
+    prior.modes = modes.modes.transpose();
+    for (const double variance : modes.variances) prior.deviations.push_back(std::sqrt(variance));
+    return prior;
+}
+
 }  // namespace ostraka

@@ -3,6 +3,7 @@
 
 #include "ostraka/core/provenance.h"
 #include "ostraka/family/quantities.h"
+#include "ostraka/fitting/shape_prior.h"
 
 namespace ostraka {
 
@@ -87,5 +88,8 @@ void learn_range(LearntRange& range, double margin, double least);
 /// Mean distance between all pairs of shapes in correspondence, each laid onto the mean of the class, as a share of its mean
 /// size.
 double mean_distance(const ShapeModes& modes, const std::vector<Landmarks>& shapes);
+
+/// What `fit` takes for the shape of what fragments do not show.
+ShapePrior prior_of(const ShapeModes& modes);
 
 }  // namespace ostraka
