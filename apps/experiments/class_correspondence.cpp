@@ -51,8 +51,8 @@ AnnotationSet landmarks_on(const std::vector<Index>& vertices) {
 
 /// Of a fit whose truth is known: how far each vertex is from its own place, and from the tangent of it.
 void report_fit(const std::string& name, const Mesh& from, const AnnotationSet& set, const Member& to, bool guides) {
-    Member object = to;
-    if (!guides) object.annotations = AnnotationSet();
+    const Member bare{to.name, to.mesh, {}};
+    const Member& object = guides ? to : bare;
     const Stopwatch watch;
     const MemberFit fit = fit_member(from, set, object);
     const double seconds = watch.seconds().processor;

@@ -135,7 +135,9 @@ void add_attributes(const Mesh& shape, const AnnotationSet& set, std::vector<Qua
 std::vector<Quantity> measure_quantities(const ClassTemplate& known, const std::vector<Point>& points, bool sizes) {
     std::vector<Quantity> list;
     const std::vector<Point> normal = in_template_frame(known.mesh, points, sizes);
-    const Mesh framed = with_points(known.mesh, normal), shape = with_points(known.mesh, points);
+    // Attributes of the object's own size, but where the template stands: measures have directions.
+    const Mesh framed = with_points(known.mesh, normal),
+               shape = with_points(known.mesh, in_template_frame(known.mesh, points, true));
     std::map<int, ConstraintReport> constraints;
     for (ConstraintReport& report : measure_constraints(known.mesh, known.set, known.graph, normal)) {
         const int id = report.id;

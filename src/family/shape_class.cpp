@@ -59,7 +59,10 @@ void learn_range(LearntRange& range, double margin, double least) {
     // Only the least and the greatest lie outside of the range of the others.
     const double above = known.back() - known[known.size() - 2], below = known[1] - known[0];
     range.overshoot = range.quantity.one_sided ? above : std::max(above, below);
-    const double more = margin * range.overshoot + least * std::max(std::abs(range.min), std::abs(range.max));
+    // Rounding is no overshoot; nor is what a range in per cent tolerates (solver: a tenth).
+    const bool per_cent = range.quantity.kind == QuantityKind::constraint && range.quantity.unit == "%";
+    const double more =
+        margin * range.overshoot + least * std::max(std::abs(range.min), std::abs(range.max)) + (per_cent ? 0.1 : 1e-6);
     range.high = range.max + more;
     if (!range.quantity.one_sided) range.low = range.min - more;
 }

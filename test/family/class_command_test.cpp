@@ -18,7 +18,7 @@ std::string quoted(const Path& path) { return "'" + path.string() + "'"; }
 class ClassCommand : public ::testing::Test {
 protected:
     void SetUp() override {
-        ASSERT_EQ(run_command("study make proportions --objects 4 --vertices 1500 --seed 1 " + quoted(scratch / "made")).code, 0);
+        ASSERT_EQ(run_command("study make proportions --objects 4 --vertices 4000 --seed 1 " + quoted(scratch / "made")).code, 0);
         ASSERT_EQ(run_command("template pack " + quoted(scratch / "made" / "s.template.json") + " --mesh " +
                               quoted(scratch / "made" / "statuette-1.ply") + " --annotations " +
                               quoted(scratch / "made" / "statuette-1.ant.json"))
