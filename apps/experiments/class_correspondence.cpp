@@ -50,9 +50,9 @@ AnnotationSet landmarks_on(const std::vector<Index>& vertices) {
 }
 
 /// Of a fit whose truth is known: how far each vertex is from its own place, and from the tangent of it.
-void report_fit(const std::string& name, const Mesh& from, const AnnotationSet& set, const Member& to, bool guides) {
-    const Member bare{to.name, to.mesh, {}};
-    const Member& object = guides ? to : bare;
+void report_fit(const std::string& name, const Mesh& from, const AnnotationSet& set, const WholeObject& to, bool guides) {
+    const WholeObject bare{to.name, to.mesh, {}};
+    const WholeObject& object = guides ? to : bare;
     const Stopwatch watch;
     const MemberFit fit = fit_member(from, set, object);
     const double seconds = watch.seconds().processor;
@@ -93,7 +93,7 @@ void head(const char* title) {
 
 void class_correspondence(const ClassCorrespondenceOptions& options) {
     if (options.faces.size() < 3) fail_usage("there are too few faces", "give the neutral one, then two or more identities");
-    std::vector<Member> faces;
+    std::vector<WholeObject> faces;
     std::vector<Index> old;
     for (const std::string& file : options.faces) {
         SubMesh part = shell(read_mesh(file).mesh, options.face_vertices);
@@ -106,7 +106,7 @@ void class_correspondence(const ClassCorrespondenceOptions& options) {
         if (found != old.end()) marks.push_back(static_cast<Index>(found - old.begin()));
     }
     const AnnotationSet set = landmarks_on(marks);
-    for (Member& face : faces) face.annotations = landmarks_on(marks);
+    for (WholeObject& face : faces) face.annotations = landmarks_on(marks);
 
     // Members neutral + sum a_i (identity_i - neutral): the span of the modes is that of the identities, but for turns and sizes.
     std::vector<Landmarks> basis, members;
@@ -171,7 +171,7 @@ void class_correspondence(const ClassCorrespondenceOptions& options) {
                 continue;
             moved[place[v]] = moved[place[v]] + Vector(x, y, z);
         }
-        const Member body{Path(file).stem().string(), with_points(skin.mesh, moved), landmarks_on(spread)};
+        const WholeObject body{Path(file).stem().string(), with_points(skin.mesh, moved), landmarks_on(spread)};
         for (const bool guides : {false, true}) report_fit("base, " + body.name, skin.mesh, body_set, body, guides);
     }
 }

@@ -22,7 +22,7 @@ namespace {
 
 struct Object {
     std::string family;
-    Member member;
+    WholeObject member;
     WholeShape whole;
 };
 
@@ -103,7 +103,7 @@ void class_membership(const ClassMembershipOptions& options) {
                 source.fits[i] = learn_member(known, objects[i].member, how, &objects[i].whole);
                 const LearntMember& fit = source.fits[i];
                 csv << objects[source.object].member.name << ',' << objects[i].member.name << ',';
-                for (const Quantity& quantity : fit.quantities) csv << format("%.5f,", quantity.value.value_or(-1));
+                for (const ClassQuantity& quantity : fit.quantities) csv << format("%.5f,", quantity.value.value_or(-1));
                 csv << format("%.4f,%.4f,%.2f\n", fit.fit.scale, fit.fit.share_placed, watch.seconds().processor) << std::flush;
             }
         }

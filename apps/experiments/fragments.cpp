@@ -1,6 +1,7 @@
 // Fragments broken off deformed copies of a template, fitted: what is found again of pose, of the observed part and of the rest.
 #include "ostraka/shapes/fragments.h"
 #include "ostraka/collection/statuette_annotations.h"
+#include "ostraka/family/shape_class.h"
 #include "ostraka/fitting/reconstruct.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/surface_search.h"
@@ -99,7 +100,28 @@ struct Row {
     double seconds = 0;
 };
 
-Row run(const Canon& canon, const Case& what, std::uint64_t seed) {
+/// The class as twenty members show it: taller and shorter ones, wider and narrower, leaning forward or back.
+ShapePrior learn_canon(const Canon& canon) {
+    Random random(7);
+    std::vector<Landmarks> members;
+    const Mesh& mesh = canon.statuette.mesh;
+    const double high = bounding_box(mesh).zmax();
+    constexpr int count = 20;
+    for (int i = 0; i < count; ++i) {
+        const double tall = 1 + 0.1 * random.normal(), wide = 1 + 0.05 * random.normal(), lean = 0.08 * random.normal();
+        Landmarks shape(static_cast<Eigen::Index>(mesh.number_of_vertices()), 3);
+        for (const Vertex v : mesh.vertices()) {
+            const Vector3d p = eigen(mesh.point(v));
+            const double t = p.z() / high;
+            shape.row(static_cast<Eigen::Index>(v)) =
+                Eigen::RowVector3d(wide * p.x() + lean * high * t * t, wide * p.y(), tall * p.z());
+        }
+        members.push_back(std::move(shape));
+    }
+    return prior_of(learn_modes(members, members.front()));
+}
+
+Row run(const Canon& canon, const ShapePrior* prior, const Case& what, std::uint64_t seed) {
     const Mesh& mesh = canon.statuette.mesh;
     const double high = bounding_box(mesh).zmax(), strength = 1 + 0.25 * (static_cast<double>(seed % 4) - 1.5);
     Mesh whole = mesh;
@@ -140,7 +162,7 @@ Row run(const Canon& canon, const Case& what, std::uint64_t seed) {
         fragment.annotations.annotations.push_back(std::move(point));
     }
     const Stopwatch watch;
-    const Reconstruction result = reconstruct(mesh, canon.set, canon.graph, {&fragment});
+    const Reconstruction result = reconstruct(mesh, canon.set, canon.graph, {&fragment}, {}, {}, prior);
     Row row;
     row.seconds = watch.seconds().wall;
     row.placed = result.placement.any();
@@ -292,30 +314,37 @@ void verdicts(const FragmentExperiment& options) {
 
 void fragments(const FragmentExperiment& options) {
     const Canon canon = make_canon(options.vertices);
+    const ShapePrior prior = learn_canon(canon);
     TextTable table({"deformation", "at", "share", "noise", "erosion", "placed", "angle", "shift", "observed", "missing", "rigid",
-                     "missing/rigid", "constraint before", "after", "crossings", "seconds"});
+                     "missing/rigid", "missing with class", "with class/rigid", "constraint before", "after", "crossings",
+                     "seconds"});
     for (const std::string deformation : {"none", "stretch", "squash", "bend"})
         for (const std::string at : {"head", "base"})
             for (const double share : options.shares)
                 for (const double noise : {0.001, 0.005}) {
                     const Case what{deformation, at, share, noise, noise == 0.005 ? 0.01 : 0.0};
-                    Row sum;
+                    Row sum, with_class;
                     int placed = 0;
                     for (int seed = 1; seed <= options.seeds; ++seed) {
-                        const Row row = run(canon, what, static_cast<std::uint64_t>(seed));
+                        const Row row = run(canon, nullptr, what, static_cast<std::uint64_t>(seed));
                         if (!row.placed) continue;
                         ++placed;
+                        const Row other = run(canon, &prior, what, static_cast<std::uint64_t>(seed));
+                        with_class.missing += other.missing;
+                        with_class.rigid += other.rigid;
                         sum.angle += row.angle, sum.shift += row.shift, sum.observed += row.observed, sum.missing += row.missing;
                         sum.rigid += row.rigid, sum.before += row.before, sum.after += row.after, sum.crossings += row.crossings;
                         sum.seconds += row.seconds;
                     }
                     const double n = std::max(1, placed);
-                    table.add(
-                        {deformation, at, percent_cell(share, 0), percent_cell(noise), percent_cell(what.erosion),
-                         format("%d of %d", placed, options.seeds), fixed_cell(sum.angle / n, 2), percent_cell(sum.shift / n, 2),
-                         percent_cell(sum.observed / n, 3), percent_cell(sum.missing / n, 2), percent_cell(sum.rigid / n, 2),
-                         fixed_cell(sum.missing / sum.rigid, 2), fixed_cell(sum.before / n, 2), fixed_cell(sum.after / n, 2),
-                         fixed_cell(static_cast<double>(sum.crossings) / n, 1), fixed_cell(sum.seconds / n, 2)});
+                    table.add({deformation, at, percent_cell(share, 0), percent_cell(noise), percent_cell(what.erosion),
+                               format("%d of %d", placed, options.seeds), fixed_cell(sum.angle / n, 2),
+                               percent_cell(sum.shift / n, 2), percent_cell(sum.observed / n, 3),
+                               percent_cell(sum.missing / n, 2), percent_cell(sum.rigid / n, 2),
+                               fixed_cell(sum.missing / sum.rigid, 2), percent_cell(with_class.missing / n, 2),
+                               fixed_cell(with_class.missing / sum.rigid, 2), fixed_cell(sum.before / n, 2),
+                               fixed_cell(sum.after / n, 2), fixed_cell(static_cast<double>(sum.crossings) / n, 1),
+                               fixed_cell(sum.seconds / n, 2)});
                 }
     std::cout << table.markdown();
     write_file(Path(options.output) / "fragments.csv", table.csv());

@@ -100,7 +100,7 @@ private:
         auto& allocator = document.GetAllocator();
         JsonValue result(rapidjson::kObjectType), list(rapidjson::kArrayType);
         std::vector<std::vector<std::string>> rows;
-        for (const Placement& placement : placed.placements) {
+        for (const PlacedAnnotation& placement : placed.placements) {
             JsonValue entry(rapidjson::kObjectType);
             add_member(entry, "id", JsonValue(placement.id), allocator);
             add_member(entry, "tag", placement.tag, allocator);

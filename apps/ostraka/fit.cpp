@@ -3,6 +3,7 @@
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/bundle/template.h"
+#include "ostraka/family/class_file.h"
 #include "ostraka/fitting/assembly.h"
 #include "ostraka/fitting/fragment_file.h"
 #include "ostraka/geom/eigen.h"
@@ -24,7 +25,7 @@ namespace fs = std::filesystem;
 
 struct Fit {
     std::vector<std::string> files;
-    std::string output, assembly;
+    std::string output, assembly, class_file;
     ReconstructOptions options;
     FragmentFileOptions reading;
     bool placed = false;
@@ -64,7 +65,13 @@ struct Fit {
             stated.push_back(assembly.empty() ? std::vector<StatedMatch>() : stated_matches(said, fragments[k].name));
         }
         const RelationGraph graph = loaded.graph ? std::move(*loaded.graph) : RelationGraph();
-        const Reconstruction result = reconstruct(loaded.mesh->mesh, *loaded.annotations, graph, pointers, options, stated);
+        std::optional<ShapePrior> prior;
+        if (!class_file.empty()) {
+            prior = prior_of(read_class(class_file).modes);
+            provenance.add_input(class_file);
+        }
+        const Reconstruction result =
+            reconstruct(loaded.mesh->mesh, *loaded.annotations, graph, pointers, options, stated, prior ? &*prior : nullptr);
         write(*loaded.mesh, *loaded.annotations, fragments, names, result, provenance, session);
         print(session, provenance, names, result);
         return result.verdict == Compatibility::compatible ? done : answer_is_no;
@@ -215,6 +222,10 @@ void add_fit(CLI::App& tool, Session& session) {
     command->add_option("--output", fit->output,
                         "folder for completed.ply, completed.ant.json and fit.assembly.json; made if it is missing");
     command->add_option("--assembly", fit->assembly, "an assembly: its matches of annotations with \"stated\": true hold");
+    command->add_option(
+        "--class", fit->class_file,
+        "a class learnt with this template (NAME.class.json of 'template learn'): what no fragment shows is as in its "
+        "members that look so where one does");
     command->add_flag("--placed", fit->placed, "also write each fragment where it lies: NAME.placed.ply");
     add_flags(command, fit->options);
     add_flags(command, fit->reading);

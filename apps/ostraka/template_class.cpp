@@ -19,8 +19,8 @@ LoadedTemplate load_class_template(const std::string& file, Provenance& provenan
     return result;
 }
 
-Member read_member(const std::string& file, Provenance& provenance) {
-    Member member;
+WholeObject read_member(const std::string& file, Provenance& provenance) {
+    WholeObject member;
     member.name = Path(file).stem().string();
     member.mesh = read_mesh(file).mesh;
     provenance.add_input(file);

@@ -19,7 +19,7 @@ struct LoadedTemplate {
 LoadedTemplate load_class_template(const std::string& file, Provenance& provenance);
 
 /// A mesh file and the annotations beside it (NAME.ant.json), if there are.
-Member read_member(const std::string& file, Provenance& provenance);
+WholeObject read_member(const std::string& file, Provenance& provenance);
 
 /// Makes the folder. Throws Error (failure).
 void make_folder(const std::string& folder);

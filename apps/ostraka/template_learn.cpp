@@ -38,7 +38,7 @@ struct Learn {
         std::replace(name.begin(), name.end(), ' ', '-');
         std::vector<LearntMember> learnt;
         for (const std::string& file : members) {
-            const Member member = read_member(file, provenance);
+            const WholeObject member = read_member(file, provenance);
             learnt.push_back(in_file(file, [&] { return learn_member(loaded.known(), member, options); }));
             session.note(printable(member.name) + ": " +
                          (learnt.back().fit.problem.empty() ? "laid on by " + learnt.back().fit.placed_by
@@ -142,7 +142,7 @@ struct Classify {
         check_outputs({files.begin(), files.end()}, report.empty() ? std::vector<Path>() : std::vector<Path>{report});
         std::vector<Classification> answers;
         for (const std::string& file : objects) {
-            const Member object = read_member(file, provenance);
+            const WholeObject object = read_member(file, provenance);
             const WholeShape whole = in_file(file, [&] { return measure_whole_shape(object.mesh); });
             std::vector<ClassAnswer> list;
             for (std::size_t k = 0; k < classes.size(); ++k) {

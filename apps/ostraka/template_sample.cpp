@@ -82,7 +82,7 @@ private:
         add_member(report, "diversity", JsonValue(result.diversity), allocator);
         add_member(report, "diversityOfMembers", JsonValue(result.of_members), allocator);
         for (std::size_t i = 0; i < result.samples.size(); ++i) {
-            const Sample& sample = result.samples[i];
+            const ClassSample& sample = result.samples[i];
             JsonValue item(rapidjson::kObjectType), list(rapidjson::kArrayType);
             add_member(item, "name", name_of(learnt, i, result.samples.size()), allocator);
             add_member(item, "moved", JsonValue(sample.moved), allocator);
@@ -142,7 +142,7 @@ struct Propagate {
         bool all = true;
         for (const std::string& file : members) {
             Provenance own = provenance;
-            const Member member = read_member(file, own);
+            const WholeObject member = read_member(file, own);
             const Propagated result = in_file(file, [&] { return propagate(loaded.known(), member, options); });
             JsonValue item(rapidjson::kObjectType), notes(rapidjson::kArrayType);
             add_member(item, "name", member.name, allocator);
@@ -171,7 +171,7 @@ struct Propagate {
     }
 
 private:
-    void write(const std::string& file, const LoadedTemplate& loaded, const Member& member, const Propagated& result,
+    void write(const std::string& file, const LoadedTemplate& loaded, const WholeObject& member, const Propagated& result,
                const Provenance& provenance) const {
         const Path folder(output);
         const Mesh fitted = with_points(loaded.mesh, result.fit.points);

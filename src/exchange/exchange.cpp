@@ -60,7 +60,7 @@ PlacedAnnotations added_to(const AnnotationSet& onto, PlacedAnnotations read) {
         }
         result.set.annotations.push_back(std::move(annotation));
     }
-    for (Placement& placement : result.placements)
+    for (PlacedAnnotation& placement : result.placements)
         if (const auto found = renamed.find(placement.id); found != renamed.end()) placement.id = found->second;
     return result;
 }

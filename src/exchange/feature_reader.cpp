@@ -84,7 +84,7 @@ private:
     }
 
     /// The vertex of the mesh for a vertex of a primitive; no_index if it is too far and such are left out.
-    Index vertex_of(const Primitive& primitive, std::size_t vertex, Placement& placement) {
+    Index vertex_of(const Primitive& primitive, std::size_t vertex, PlacedAnnotation& placement) {
         ++placement.points;
         if (same_mesh_ && !primitive.origins.empty()) {
             const double origin = primitive.origins[vertex];
@@ -114,7 +114,7 @@ private:
 
     JsonValue annotation(std::size_t row, const Feature& feature) {
         JsonValue result(rapidjson::kObjectType);
-        Placement placement;
+        PlacedAnnotation placement;
         placement.tag = row < file_.tags.size() ? file_.tags[row] : "feature " + std::to_string(row);
         placement.id = file_.ours ? file_.ids[row] : static_cast<int>(std::min<std::size_t>(row, 2147483647));
         placement.how = same_mesh_ ? "indices" : "places";
@@ -144,7 +144,7 @@ private:
         return result;
     }
 
-    bool select(std::size_t row, const Feature& feature, JsonValue& result, Placement& placement) {
+    bool select(std::size_t row, const Feature& feature, JsonValue& result, PlacedAnnotation& placement) {
         if (file_.ours && file_.kinds[row] == 3) {
             add_member(result, "type", "region", a());
             add_member(result, "all", JsonValue(true), a());
@@ -263,7 +263,7 @@ private:
     std::map<Index, Point> positions_;
     std::set<int> used_;
     std::unique_ptr<Placer> placer_;
-    std::vector<Placement> placements_;
+    std::vector<PlacedAnnotation> placements_;
 };
 
 }  // namespace

@@ -132,7 +132,7 @@ private:
     }
 
     void count(std::size_t at, const Placed& placed) {
-        Placement& placement = result_.placements[at];
+        PlacedAnnotation& placement = result_.placements[at];
         ++placement.points;
         placement.to_surface = std::max(placement.to_surface, placed.to_surface);
         placement.to_vertex = std::max(placement.to_vertex, placed.to_vertex);

@@ -137,7 +137,7 @@ std::vector<bool> Placer::component(Index face) const {
 
 PlacedAnnotations placed_annotations(Json& native, JsonValue list, const JsonValue* about, const Mesh& mesh,
                                      const std::string& where, bool same_mesh, std::vector<std::string> notes,
-                                     std::vector<Placement> placements) {
+                                     std::vector<PlacedAnnotation> placements) {
     auto& allocator = native.GetAllocator();
     JsonValue made_for(rapidjson::kObjectType);
     add_member(made_for, "vertices", JsonValue(static_cast<std::uint64_t>(mesh.number_of_vertices())), allocator);

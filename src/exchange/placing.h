@@ -61,6 +61,6 @@ private:
 /// class, the unit and the way up. Measures are taken anew where the mesh is not the one they were taken on.
 PlacedAnnotations placed_annotations(Json& native, JsonValue list, const JsonValue* about, const Mesh& mesh,
                                      const std::string& where, bool same_mesh, std::vector<std::string> notes,
-                                     std::vector<Placement> placements);
+                                     std::vector<PlacedAnnotation> placements);
 
 }  // namespace ostraka::exchange

@@ -165,7 +165,7 @@ private:
             if (const JsonValue* value = find_member(data, name)) add_member(result, name, JsonValue(*value, a()), a());
         JsonValue attributes(rapidjson::kArrayType);
         if (const JsonValue* value = find_member(data, "attributes")) attributes.CopyFrom(*value, a());
-        Placement placement{id, tag, 0, 0, 0, "indices"};
+        PlacedAnnotation placement{id, tag, 0, 0, 0, "indices"};
 
         const bool same_mesh = source != nullptr && text_member(*source, "sha256") == checksum_;
         if (by_index != nullptr && same_mesh) {
@@ -210,7 +210,7 @@ private:
     }
 
     /// Nothing where a point is too far and such may be left out.
-    std::optional<std::vector<Placed>> placed(const JsonValue& list, Placement& placement, const std::string& pointer) {
+    std::optional<std::vector<Placed>> placed(const JsonValue& list, PlacedAnnotation& placement, const std::string& pointer) {
         std::vector<Placed> result;
         const double limit = options_.tolerance * placer().diagonal();
         for (const auto& entry : list.GetArray()) {
@@ -249,7 +249,7 @@ private:
         return list;
     }
 
-    bool place(const JsonValue& places, JsonValue& result, JsonValue& attributes, Placement& placement,
+    bool place(const JsonValue& places, JsonValue& result, JsonValue& attributes, PlacedAnnotation& placement,
                const std::string& pointer) {
         placement.how = "places";
         if (const JsonValue* points = find_member(places, "points")) {
@@ -311,7 +311,7 @@ private:
             const JsonValue* id = find_member(attribute, "id");
             const JsonValue* list = id != nullptr && id->IsInt() ? find_member(pins, std::to_string(id->GetInt())) : nullptr;
             if (list == nullptr || !attribute.HasMember("measure") || !attribute["measure"].IsObject()) continue;
-            Placement pinned;  // pins may lie within faces: how far vertices are says nothing
+            PlacedAnnotation pinned;  // pins may lie within faces: how far vertices are says nothing
             const auto found = placed(*list, pinned, pointer);
             JsonValue& measure = attribute["measure"];
             if (!found) continue;
@@ -349,7 +349,7 @@ private:
     std::unique_ptr<Placer> placer_;
     Json native_;
     std::vector<std::string> notes_;
-    std::vector<Placement> placements_;
+    std::vector<PlacedAnnotation> placements_;
     std::set<int> ids_;
     std::size_t left_out_ = 0;
     bool by_place_ = false;

@@ -28,7 +28,7 @@ JsonValue texts(const std::vector<std::string>& list, JsonAllocator& allocator) 
     return list_of(list, allocator, [&](const std::string& text) { return json_string(text, allocator); });
 }
 
-void add_quantity(JsonValue& object, const Quantity& quantity, JsonAllocator& allocator) {
+void add_quantity(JsonValue& object, const ClassQuantity& quantity, JsonAllocator& allocator) {
     add_member(object, "kind", to_string(quantity.kind), allocator);
     if (quantity.id >= 0) add_member(object, "id", JsonValue(quantity.id), allocator);
     add_member(object, "name", quantity.name, allocator);

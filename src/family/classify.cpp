@@ -42,7 +42,7 @@ QuantityCheck check_of(const LearntRange& range, const std::optional<double>& va
 }
 
 std::string words(const QuantityCheck& check) {
-    const Quantity& quantity = check.quantity;
+    const ClassQuantity& quantity = check.quantity;
     const std::string unit = quantity.unit.empty() ? "" : " " + quantity.unit;
     std::string text = quantity.text() + ": " + digits(quantity.value.value_or(0), 4) + unit;
     const bool above = check.high && *quantity.value > *check.high;
@@ -57,10 +57,10 @@ double score_of(const ShapeClass& learnt, const LearntMember& object, const Shap
         score = 10 * (r.distance + r.back) + r.unmatched + r.unexplained + r.stretch + r.bend;
     }
     // What no fit changes: by how much the object's own surface differs from the members' mean.
-    for (const Quantity& quantity : geometry_quantities(WholeShape())) {
+    for (const ClassQuantity& quantity : geometry_quantities(WholeShape())) {
         const LearntRange* range = learnt.find(quantity.key());
         const auto own = std::find_if(object.quantities.begin(), object.quantities.end(),
-                                      [&](const Quantity& one) { return one.key() == quantity.key(); });
+                                      [&](const ClassQuantity& one) { return one.key() == quantity.key(); });
         if (range != nullptr && range->count > 0 && range->mean > 0 && own != object.quantities.end() && own->value &&
             *own->value > 0)
             score += 2 * std::abs(std::log(*own->value / range->mean));
@@ -88,7 +88,7 @@ ClassAnswer compare_with(const ShapeClass& learnt, const LearntMember& object, c
     }
     answer.coordinates = coordinates_in(learnt.modes, landmarks_of(object.fit.points));
     answer.score = score_of(learnt, object, answer.coordinates);
-    std::vector<Quantity> quantities = object.quantities;
+    std::vector<ClassQuantity> quantities = object.quantities;
     const auto add = [&](const char* name, double value) {
         quantities.emplace_back().name = name;
         quantities.back().value = value;
@@ -99,7 +99,7 @@ ClassAnswer compare_with(const ShapeClass& learnt, const LearntMember& object, c
     bool any = false;
     for (const LearntRange& range : learnt.ranges) {
         const auto found = std::find_if(quantities.begin(), quantities.end(),
-                                        [&](const Quantity& one) { return one.key() == range.quantity.key(); });
+                                        [&](const ClassQuantity& one) { return one.key() == range.quantity.key(); });
         answer.checks.push_back(
             check_of(range, found == quantities.end() ? std::optional<double>() : found->value, options.attributes));
         const QuantityCheck& check = answer.checks.back();
@@ -122,7 +122,7 @@ ClassAnswer compare_with(const ShapeClass& learnt, const LearntMember& object, c
     return answer;
 }
 
-ClassAnswer ask_class(const ShapeClass& learnt, const ClassTemplate& known, const Member& object,
+ClassAnswer ask_class(const ShapeClass& learnt, const ClassTemplate& known, const WholeObject& object,
                       const ClassifyOptions& options) {
     LearnOptions how;
     how.fit = options.fit;

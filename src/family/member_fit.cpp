@@ -23,7 +23,7 @@ bool in_correspondence(const Mesh& mesh, const Mesh& member) {
                        [&](Face face) { return corners(mesh, face) == corners(member, face); });
 }
 
-MemberFit member_in_correspondence(const Mesh& mesh, const Member& member) {
+MemberFit member_in_correspondence(const Mesh& mesh, const WholeObject& member) {
     if (!in_correspondence(mesh, member.mesh))
         fail_input(
             member.name,
@@ -122,7 +122,7 @@ struct Place {
     double overlap = 1;
 };
 
-std::vector<Place> places_by_surface(const Mesh& mesh, const Member& member, const MemberFitOptions& options) {
+std::vector<Place> places_by_surface(const Mesh& mesh, const WholeObject& member, const MemberFitOptions& options) {
     const AlignSurface object(member.mesh, options.alignment.samples), rest(mesh, options.alignment.samples);
     const double ratio = object.size() / rest.size();
     const Mesh scaled = scaled_by(mesh, ratio);
@@ -197,7 +197,7 @@ void measure_distortion(const Mesh& mesh, const std::vector<Point>& points, doub
     residuals.bend = length > 0 ? std::sqrt(turned / length) : 0;
 }
 
-MemberFit fit_member(const Mesh& mesh, const AnnotationSet& set, const Member& member, const MemberFitOptions& options) {
+MemberFit fit_member(const Mesh& mesh, const AnnotationSet& set, const WholeObject& member, const MemberFitOptions& options) {
     check_options(options, "fit");
     if (!(surface_area(mesh) > 0)) fail_input("template", "has no area", "is it the right file?");
     if (!(surface_area(member.mesh) > 0)) fail_input(member.name, "has no area", "is it the right file?");

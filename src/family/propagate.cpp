@@ -19,7 +19,7 @@ AnnotationSet copy_of(const AnnotationSet& set) {
 
 }  // namespace
 
-Propagated propagate(const ClassTemplate& known, const Member& member, const PropagateOptions& options) {
+Propagated propagate(const ClassTemplate& known, const WholeObject& member, const PropagateOptions& options) {
     Propagated result;
     result.fit = fit_as_told(known, member, options.correspondence, options.fit);
     if (!result.fit.problem.empty()) return result;

@@ -33,11 +33,11 @@ QuantityKind quantity_kind(const std::string& word) {
     fail_usage("'" + word + "' is no kind of quantity", "use proportion, constraint, relation, attribute or geometry");
 }
 
-std::string Quantity::key() const {
+std::string ClassQuantity::key() const {
     return to_string(kind) + (id >= 0 ? " " + std::to_string(id) : "") + " " + (kind == QuantityKind::proportion ? "" : name);
 }
 
-std::string Quantity::text() const {
+std::string ClassQuantity::text() const {
     switch (kind) {
         case QuantityKind::geometry:
             return name;
@@ -89,14 +89,14 @@ const Attribute* named(const JsonValue& parameters, const char* member, const An
 }
 
 /// The ratio of a proportion's two measures.
-std::optional<Quantity> ratio_of(const Mesh& shape, const AnnotationSet& set, const Relationship& relationship) {
+std::optional<ClassQuantity> ratio_of(const Mesh& shape, const AnnotationSet& set, const Relationship& relationship) {
     if (relationship.annotations.size() != 2) return {};
     const Annotation *a = set.find(relationship.annotations[0]), *b = set.find(relationship.annotations[1]);
     if (a == nullptr || b == nullptr) return {};
     const Json parameters = parse_json(relationship.constraint.empty() ? "{}" : relationship.constraint, "constraint");
     const Attribute *first = named(parameters, "measure1", *a), *second = named(parameters, "measure2", *b);
     if (first == nullptr || second == nullptr) return {};
-    Quantity quantity;
+    ClassQuantity quantity;
     quantity.kind = QuantityKind::proportion;
     quantity.id = relationship.id;
     quantity.of = relationship.type;
@@ -106,10 +106,10 @@ std::optional<Quantity> ratio_of(const Mesh& shape, const AnnotationSet& set, co
     return quantity;
 }
 
-void add_attributes(const Mesh& shape, const AnnotationSet& set, std::vector<Quantity>& list) {
+void add_attributes(const Mesh& shape, const AnnotationSet& set, std::vector<ClassQuantity>& list) {
     for (const Annotation& annotation : set.annotations)
         for (const Attribute& attribute : annotation.attributes) {
-            Quantity quantity;
+            ClassQuantity quantity;
             quantity.kind = QuantityKind::attribute;
             quantity.id = annotation.id;
             quantity.name = attribute.name;
@@ -132,8 +132,8 @@ void add_attributes(const Mesh& shape, const AnnotationSet& set, std::vector<Qua
 
 }  // namespace
 
-std::vector<Quantity> measure_quantities(const ClassTemplate& known, const std::vector<Point>& points, bool sizes) {
-    std::vector<Quantity> list;
+std::vector<ClassQuantity> measure_quantities(const ClassTemplate& known, const std::vector<Point>& points, bool sizes) {
+    std::vector<ClassQuantity> list;
     const std::vector<Point> normal = in_template_frame(known.mesh, points, sizes);
     // Attributes of the object's own size, but where the template stands: measures have directions.
     const Mesh framed = with_points(known.mesh, normal),
@@ -148,7 +148,7 @@ std::vector<Quantity> measure_quantities(const ClassTemplate& known, const std::
         const Relationship& relationship = known.graph.relationships[i];
         const auto add = [&](QuantityKind kind, const std::vector<Deviation>& deviations) {
             for (const Deviation& deviation : deviations) {
-                Quantity quantity;
+                ClassQuantity quantity;
                 quantity.kind = kind;
                 quantity.id = relationship.id;
                 quantity.of = relationship.type;
@@ -172,10 +172,10 @@ std::vector<Quantity> measure_quantities(const ClassTemplate& known, const std::
     return list;
 }
 
-std::vector<Quantity> geometry_quantities(const std::optional<FitResiduals>& residuals) {
-    std::vector<Quantity> list;
+std::vector<ClassQuantity> geometry_quantities(const std::optional<FitResiduals>& residuals) {
+    std::vector<ClassQuantity> list;
     const auto add = [&](const char* name, double FitResiduals::*value) {
-        Quantity quantity;
+        ClassQuantity quantity;
         quantity.name = name;
         quantity.one_sided = true;
         if (residuals) quantity.value = (*residuals).*value;
@@ -190,8 +190,8 @@ std::vector<Quantity> geometry_quantities(const std::optional<FitResiduals>& res
     return list;
 }
 
-std::vector<Quantity> geometry_quantities(const WholeShape& shape) {
-    std::vector<Quantity> list;
+std::vector<ClassQuantity> geometry_quantities(const WholeShape& shape) {
+    std::vector<ClassQuantity> list;
     const auto add = [&](const char* name, const std::optional<double>& value) {
         list.emplace_back().name = name;
         list.back().value = value;

@@ -71,7 +71,7 @@ public:
         std::vector<Landmarks> shapes;
         while (result.samples.size() < static_cast<std::size_t>(options_.count) && result.tried < most) {
             Random random(options_.seed, result.tried++);
-            Sample sample;
+            ClassSample sample;
             Landmarks shape = options_.by == "modes" ? by_modes(random, sample) : by_edits(random, sample);
             if (!keep(shape, sample, result)) continue;
             shapes.push_back(landmarks_of(sample.points));
@@ -94,7 +94,7 @@ private:
         return shape * (size / learnt_.modes.mean_size);
     }
 
-    Landmarks by_modes(Random& random, Sample& sample) const {
+    Landmarks by_modes(Random& random, ClassSample& sample) const {
         for (std::size_t k = 0; k < learnt_.modes.variances.size(); ++k) {
             const auto column = learnt_.modes.coefficients.col(static_cast<Eigen::Index>(k));
             const double low = options_.spread * column.minCoeff(), high = options_.spread * column.maxCoeff();
@@ -108,7 +108,7 @@ private:
         return sized(shape_of(learnt_.modes, sample.coefficients), random);
     }
 
-    Landmarks by_edits(Random& random, Sample& sample) const {
+    Landmarks by_edits(Random& random, ClassSample& sample) const {
         Landmarks shape = learnt_.modes.mean;
         const std::size_t edits = 1 + random.below(3);
         for (std::size_t e = 0; e < edits; ++e) {
@@ -133,7 +133,7 @@ private:
     }
 
     /// Restores the constraints and looks whether the shape may stay.
-    bool keep(const Landmarks& shape, Sample& sample, Sampling& result) {
+    bool keep(const Landmarks& shape, ClassSample& sample, Sampling& result) {
         const auto reject = [&](std::size_t& count, const std::string& why) {
             if (count++ == 0) result.examples.push_back(why);
             return false;

@@ -15,14 +15,14 @@ const LearntRange* ShapeClass::find(const std::string& key) const {
     return nullptr;
 }
 
-MemberFit fit_as_told(const ClassTemplate& known, const Member& member, const std::string& correspondence,
+MemberFit fit_as_told(const ClassTemplate& known, const WholeObject& member, const std::string& correspondence,
                       const MemberFitOptions& options) {
     if (correspondence == "given" || (correspondence == "auto" && in_correspondence(known.mesh, member.mesh)))
         return member_in_correspondence(known.mesh, member);
     return fit_member(known.mesh, known.set, member, options);
 }
 
-LearntMember learn_member(const ClassTemplate& known, const Member& member, const LearnOptions& options,
+LearntMember learn_member(const ClassTemplate& known, const WholeObject& member, const LearnOptions& options,
                           const WholeShape* whole) {
     check_options(options, "learn");
     LearntMember learnt;
@@ -30,8 +30,8 @@ LearntMember learn_member(const ClassTemplate& known, const Member& member, cons
     learnt.fit = fit_as_told(known, member, options.correspondence, options.fit);
     if (!learnt.fit.problem.empty()) return learnt;
     learnt.quantities = measure_quantities(known, learnt.fit.points, options.modes.sizes);
-    for (Quantity& quantity : geometry_quantities(learnt.fit.residuals)) learnt.quantities.push_back(std::move(quantity));
-    for (Quantity& quantity : geometry_quantities(whole != nullptr ? *whole : measure_whole_shape(member.mesh)))
+    for (ClassQuantity& quantity : geometry_quantities(learnt.fit.residuals)) learnt.quantities.push_back(std::move(quantity));
+    for (ClassQuantity& quantity : geometry_quantities(whole != nullptr ? *whole : measure_whole_shape(member.mesh)))
         learnt.quantities.push_back(std::move(quantity));
     return learnt;
 }
@@ -82,7 +82,7 @@ namespace {
 void add_ranges(ShapeClass& learnt, const std::vector<const LearntMember*>& members, const LearnOptions& options) {
     std::map<std::string, std::size_t> known;
     for (std::size_t i = 0; i < members.size(); ++i)
-        for (const Quantity& quantity : members[i]->quantities) {
+        for (const ClassQuantity& quantity : members[i]->quantities) {
             const auto [entry, fresh] = known.try_emplace(quantity.key(), learnt.ranges.size());
             if (fresh) {
                 learnt.ranges.emplace_back().quantity = quantity;

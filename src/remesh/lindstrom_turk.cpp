@@ -71,7 +71,7 @@ class LindstromTurkMetric final : public CollapseMetric {
 public:
     explicit LindstromTurkMetric(const Frame& frame) : frame_(frame) {}
 
-    [[nodiscard]] std::optional<Placement> best(const Mesh& mesh, Halfedge h) const override {
+    [[nodiscard]] std::optional<CollapsePlace> best(const Mesh& mesh, Halfedge h) const override {
         const Surroundings s = look_around(mesh, h);
         Conditions conditions;
         conditions.add(s.normal_sum, s.volume_sum);  // volume preservation
@@ -97,7 +97,7 @@ public:
         }
         if (!conditions.full()) return {};
         const Vector x = conditions.solve();
-        return Placement{s.origin + x, cost(s, x)};
+        return CollapsePlace{s.origin + x, cost(s, x)};
     }
     [[nodiscard]] double cost(const Mesh& mesh, Halfedge h, const Vector& position) const override {
         const Surroundings s = look_around(mesh, h);

@@ -24,7 +24,7 @@ struct Marks {
     std::vector<bool> vertices;  ///< annotated points
 };
 
-struct Placement {
+struct CollapsePlace {
     Vector position{0, 0, 0};  ///< in the frame
     double cost = 0;
 };
@@ -33,7 +33,7 @@ class CollapseMetric {
 public:
     virtual ~CollapseMetric() = default;
     /// The best place for the vertex that replaces the ends of h, if there is one.
-    [[nodiscard]] virtual std::optional<Placement> best(const Mesh& mesh, Halfedge h) const = 0;
+    [[nodiscard]] virtual std::optional<CollapsePlace> best(const Mesh& mesh, Halfedge h) const = 0;
     /// The cost of a given place.
     [[nodiscard]] virtual double cost(const Mesh& mesh, Halfedge h, const Vector& position) const = 0;
     /// To be called when `removed` has been merged into `kept`.

@@ -23,11 +23,11 @@ public:
         }
     }
 
-    [[nodiscard]] std::optional<Placement> best(const Mesh& mesh, Halfedge h) const override {
+    [[nodiscard]] std::optional<CollapsePlace> best(const Mesh& mesh, Halfedge h) const override {
         const Quadric q = sum(mesh, h);
         const std::optional<Vector> x = q.minimum();
         if (!x) return {};
-        return Placement{*x, std::max(0.0, q(*x))};
+        return CollapsePlace{*x, std::max(0.0, q(*x))};
     }
     [[nodiscard]] double cost(const Mesh& mesh, Halfedge h, const Vector& position) const override {
         return std::max(0.0, sum(mesh, h)(position));

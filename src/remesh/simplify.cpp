@@ -82,10 +82,10 @@ private:
 
     /// The places to try, the best first.
     struct Places {
-        std::array<Placement, 4> list;
+        std::array<CollapsePlace, 4> list;
         std::size_t count = 0;
-        [[nodiscard]] const Placement& front() const { return list[0]; }
-        void add(const Placement& p) { list[count++] = p; }
+        [[nodiscard]] const CollapsePlace& front() const { return list[0]; }
+        void add(const CollapsePlace& p) { list[count++] = p; }
     };
     [[nodiscard]] Places places(const CollapsePlan& plan) const {
         Places result;
@@ -96,7 +96,7 @@ private:
         }
         const Vector u = frame_.local(mesh_.point(mesh_.source(plan.halfedge)));
         const Vector middle = u + (v - u) / 2;
-        const std::optional<Placement> best = metric_->best(mesh_, plan.halfedge);
+        const std::optional<CollapsePlace> best = metric_->best(mesh_, plan.halfedge);
         // An ill-determined place far away would only be refused later.
         if (best && (best->position - middle).squared_length() <= 4 * (v - u).squared_length()) {
             result.add(*best);
@@ -104,7 +104,7 @@ private:
         }
         for (const Vector& x : {middle, u, v}) result.add({x, metric_->cost(mesh_, plan.halfedge, x)});
         std::stable_sort(result.list.begin(), result.list.begin() + 3,
-                         [](const Placement& a, const Placement& b) { return a.cost < b.cost; });
+                         [](const CollapsePlace& a, const CollapsePlace& b) { return a.cost < b.cost; });
         return result;
     }
 
@@ -119,7 +119,7 @@ private:
             const Vector a = frame_.local(mesh_.point(u)), b = frame_.local(mesh_.point(v));
             for (const Vector& x : {Vector(a + (b - a) / 2), a, b}) candidates.add({x, 0});
         }
-        const Placement* chosen = nullptr;
+        const CollapsePlace* chosen = nullptr;
         for (std::size_t i = 0; i < candidates.count && chosen == nullptr; ++i)
             if (keeps_shape(h, candidates.list[i].position, plan->pinned)) chosen = &candidates.list[i];
         if (chosen == nullptr) return ++refused_shape_, false;

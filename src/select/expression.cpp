@@ -62,12 +62,12 @@ std::pair<std::string, const JsonValue*> ExpressionEvaluator::only_kind(const Js
     return found;
 }
 
-Frame ExpressionEvaluator::frame_of(const JsonValue& object, Frame around) {
+PlaceFrame ExpressionEvaluator::frame_of(const JsonValue& object, PlaceFrame around) {
     const JsonValue* frame = find_member(object, "frame");
-    return frame == nullptr ? around : Frame{std::string(frame->GetString()) == "box"};
+    return frame == nullptr ? around : PlaceFrame{std::string(frame->GetString()) == "box"};
 }
 
-Point ExpressionEvaluator::point(const JsonValue& list, Frame frame, const std::string& at) const {
+Point ExpressionEvaluator::point(const JsonValue& list, PlaceFrame frame, const std::string& at) const {
     const double x = list[0].GetDouble(), y = list[1].GetDouble(), z = list[2].GetDouble();
     const Point place = frame.box ? Point(bounds_.xmin() + x * (bounds_.xmax() - bounds_.xmin()),
                                           bounds_.ymin() + y * (bounds_.ymax() - bounds_.ymin()),
@@ -78,7 +78,7 @@ Point ExpressionEvaluator::point(const JsonValue& list, Frame frame, const std::
     return place;
 }
 
-Index ExpressionEvaluator::vertex(const JsonValue& pick, Frame frame, const std::string& at) const {
+Index ExpressionEvaluator::vertex(const JsonValue& pick, PlaceFrame frame, const std::string& at) const {
     if (pick.IsArray()) return nearest_vertex(mesh_, point(pick, frame, at));
     if (pick.IsObject()) {
         const SurfaceHit hit = seen(pick, frame, at);
@@ -94,7 +94,7 @@ Index ExpressionEvaluator::vertex(const JsonValue& pick, Frame frame, const std:
     return pick.GetUint();
 }
 
-Index ExpressionEvaluator::face(const JsonValue& pick, Frame frame, const std::string& at) const {
+Index ExpressionEvaluator::face(const JsonValue& pick, PlaceFrame frame, const std::string& at) const {
     if (pick.IsArray()) return nearest_face(mesh_, point(pick, frame, at));
     if (pick.IsObject()) return seen(pick, frame, at).face;
     if (pick.GetUint() >= mesh_.number_of_faces())
@@ -103,13 +103,13 @@ Index ExpressionEvaluator::face(const JsonValue& pick, Frame frame, const std::s
     return pick.GetUint();
 }
 
-std::vector<Index> ExpressionEvaluator::picks(const JsonValue& list, Frame frame, const std::string& at) const {
+std::vector<Index> ExpressionEvaluator::picks(const JsonValue& list, PlaceFrame frame, const std::string& at) const {
     std::vector<Index> vertices;
     for (rapidjson::SizeType i = 0; i < list.Size(); ++i) vertices.push_back(vertex(list[i], frame, at + '/' + to_string(i)));
     return vertices;
 }
 
-std::function<bool(const Point&)> ExpressionEvaluator::volume(const std::string& kind, const JsonValue& value, Frame frame,
+std::function<bool(const Point&)> ExpressionEvaluator::volume(const std::string& kind, const JsonValue& value, PlaceFrame frame,
                                                               const std::string& at) const {
     if (kind == "box") {
         const Point min = point(value["min"], frame, at + "/box/min"), max = point(value["max"], frame, at + "/box/max");
@@ -141,8 +141,8 @@ const Annotation& ExpressionEvaluator::earlier(const JsonValue& id, AnnotationTy
     return *found;
 }
 
-std::vector<bool> ExpressionEvaluator::faces(const JsonValue& expression, Frame around, const std::string& at) const {
-    const Frame frame = frame_of(expression, around);
+std::vector<bool> ExpressionEvaluator::faces(const JsonValue& expression, PlaceFrame around, const std::string& at) const {
+    const PlaceFrame frame = frame_of(expression, around);
     const auto [kind, value] = only_kind(expression, at);
     if (is_volume(kind)) return faces_within(mesh_, volume(kind, *value, frame, at));
     if (is_drawn(kind)) {
@@ -208,8 +208,8 @@ std::vector<bool> ExpressionEvaluator::faces(const JsonValue& expression, Frame 
     return result;
 }
 
-std::vector<Index> ExpressionEvaluator::vertices(const JsonValue& expression, Frame around, const std::string& at) const {
-    const Frame frame = frame_of(expression, around);
+std::vector<Index> ExpressionEvaluator::vertices(const JsonValue& expression, PlaceFrame around, const std::string& at) const {
+    const PlaceFrame frame = frame_of(expression, around);
     const auto [kind, value] = only_kind(expression, at);
     if (is_volume(kind)) return vertices_within(mesh_, volume(kind, *value, frame, at));
     if (is_drawn(kind)) {
@@ -246,9 +246,9 @@ std::vector<Index> ExpressionEvaluator::vertices(const JsonValue& expression, Fr
     return result;
 }
 
-std::vector<std::vector<Index>> ExpressionEvaluator::polylines(const JsonValue& expression, Frame around,
+std::vector<std::vector<Index>> ExpressionEvaluator::polylines(const JsonValue& expression, PlaceFrame around,
                                                                const std::string& at) const {
-    const Frame frame = frame_of(expression, around);
+    const PlaceFrame frame = frame_of(expression, around);
     const auto [kind, value] = only_kind(expression, at);
     if (kind == "path") {
         const JsonValue* closed = find_member(*value, "closed");

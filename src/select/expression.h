@@ -19,14 +19,14 @@ namespace ostraka {
 
 /// Where coordinates of a recipe lie: in the mesh's own coordinates, or between the corners of its box (0 to 1 along each axis;
 /// lengths in diagonals).
-struct Frame {
+struct PlaceFrame {
     bool box = false;
 };
 
 /// What a recipe says once for all its expressions.
 struct Surroundings {
     const JsonValue* cameras = nullptr;  ///< named ones
-    Frame frame;                         ///< of those
+    PlaceFrame frame;                    ///< of those
     std::array<double, 3> up{0, 0, 1};   ///< of cameras that do not say
     Path folder;                         ///< of the files that expressions name
 };
@@ -39,43 +39,43 @@ public:
     /// Named cameras; `surroundings.cameras` must outlive the evaluator.
     void look_from(const Surroundings& surroundings) { surroundings_ = surroundings; }
 
-    std::vector<bool> faces(const JsonValue& expression, Frame frame, const std::string& at) const;
-    std::vector<Index> vertices(const JsonValue& expression, Frame frame, const std::string& at) const;
-    std::vector<std::vector<Index>> polylines(const JsonValue& expression, Frame frame, const std::string& at) const;
+    std::vector<bool> faces(const JsonValue& expression, PlaceFrame frame, const std::string& at) const;
+    std::vector<Index> vertices(const JsonValue& expression, PlaceFrame frame, const std::string& at) const;
+    std::vector<std::vector<Index>> polylines(const JsonValue& expression, PlaceFrame frame, const std::string& at) const;
 
     /// A vertex given by index or as the one nearest to a point.
-    Index vertex(const JsonValue& pick, Frame frame, const std::string& at) const;
+    Index vertex(const JsonValue& pick, PlaceFrame frame, const std::string& at) const;
     /// The frame an object asks for, or the one around it.
-    static Frame frame_of(const JsonValue& object, Frame around);
+    static PlaceFrame frame_of(const JsonValue& object, PlaceFrame around);
 
 private:
-    Point point(const JsonValue& list, Frame frame, const std::string& at) const;
-    Index face(const JsonValue& pick, Frame frame, const std::string& at) const;
-    std::vector<Index> picks(const JsonValue& list, Frame frame, const std::string& at) const;
-    std::function<bool(const Point&)> volume(const std::string& kind, const JsonValue& value, Frame frame,
+    Point point(const JsonValue& list, PlaceFrame frame, const std::string& at) const;
+    Index face(const JsonValue& pick, PlaceFrame frame, const std::string& at) const;
+    std::vector<Index> picks(const JsonValue& list, PlaceFrame frame, const std::string& at) const;
+    std::function<bool(const Point&)> volume(const std::string& kind, const JsonValue& value, PlaceFrame frame,
                                              const std::string& at) const;
     /// The camera of an expression or pick, by name or in place.
-    [[nodiscard]] ScreenCamera camera(const JsonValue& owner, Frame frame, const std::string& at) const;
+    [[nodiscard]] ScreenCamera camera(const JsonValue& owner, PlaceFrame frame, const std::string& at) const;
     /// What a pick by pixel sees.
-    SurfaceHit seen(const JsonValue& pick, Frame frame, const std::string& at) const;
+    SurfaceHit seen(const JsonValue& pick, PlaceFrame frame, const std::string& at) const;
     ScreenArea screen_area(const std::string& kind, const JsonValue& value, const ScreenCamera& camera,
                            const std::string& at) const;
     /// Built when the first ray is needed.
     const SurfaceSearch& search(const std::string& at) const;
     /// brush, threshold, segments, grow and shrink
-    [[nodiscard]] std::vector<bool> reckoned_faces(const std::string& kind, const JsonValue& value, Frame frame,
+    [[nodiscard]] std::vector<bool> reckoned_faces(const std::string& kind, const JsonValue& value, PlaceFrame frame,
                                                    const std::string& at) const;
-    [[nodiscard]] std::vector<Index> reckoned_vertices(const std::string& kind, const JsonValue& value, Frame frame,
+    [[nodiscard]] std::vector<Index> reckoned_vertices(const std::string& kind, const JsonValue& value, PlaceFrame frame,
                                                        const std::string& at) const;
     /// A length of the recipe in the mesh's unit.
-    [[nodiscard]] double length(double value, Frame frame) const;
+    [[nodiscard]] double length(double value, PlaceFrame frame) const;
     /// Picked vertices that have faces.
-    std::vector<Index> surface_picks(const JsonValue& list, Frame frame, const std::string& at) const;
-    std::vector<Index> brush_centres(const JsonValue& value, Frame frame, const std::string& at) const;
-    ScalarMap scalar(const JsonValue& value, Frame frame, const std::string& at) const;
+    std::vector<Index> surface_picks(const JsonValue& list, PlaceFrame frame, const std::string& at) const;
+    std::vector<Index> brush_centres(const JsonValue& value, PlaceFrame frame, const std::string& at) const;
+    ScalarMap scalar(const JsonValue& value, PlaceFrame frame, const std::string& at) const;
     const ScalarMap& thickness_map() const;
-    Interval interval(const JsonValue& value, const ScalarMap& map, const std::string& at) const;
-    std::vector<bool> segments(const JsonValue& value, Frame frame, const std::string& at) const;
+    ScalarRange interval(const JsonValue& value, const ScalarMap& map, const std::string& at) const;
+    std::vector<bool> segments(const JsonValue& value, PlaceFrame frame, const std::string& at) const;
     bool by_distance(const JsonValue& value, const std::string& at) const;
     /// Calls `work`; what it finds wrong with the mesh is said with the place in the recipe.
     void in_place(const std::string& at, const std::function<void()>& work) const;

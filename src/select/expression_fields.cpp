@@ -32,9 +32,11 @@ double number(const JsonValue& object, const char* name, double otherwise) {
 
 }  // namespace
 
-double ExpressionEvaluator::length(double value, Frame frame) const { return frame.box ? value * box_diagonal(mesh_) : value; }
+double ExpressionEvaluator::length(double value, PlaceFrame frame) const {
+    return frame.box ? value * box_diagonal(mesh_) : value;
+}
 
-std::vector<Index> ExpressionEvaluator::surface_picks(const JsonValue& list, Frame frame, const std::string& at) const {
+std::vector<Index> ExpressionEvaluator::surface_picks(const JsonValue& list, PlaceFrame frame, const std::string& at) const {
     const std::vector<Index> vertices = picks(list, frame, at);
     for (std::size_t i = 0; i < vertices.size(); ++i)
         if (mesh_.is_isolated(Vertex(vertices[i])))
@@ -42,14 +44,14 @@ std::vector<Index> ExpressionEvaluator::surface_picks(const JsonValue& list, Fra
     return vertices;
 }
 
-std::vector<Index> ExpressionEvaluator::brush_centres(const JsonValue& value, Frame frame, const std::string& at) const {
+std::vector<Index> ExpressionEvaluator::brush_centres(const JsonValue& value, PlaceFrame frame, const std::string& at) const {
     const std::vector<Index> centres = surface_picks(value["points"], frame, at + "/points");
     const JsonValue* stroke = find_member(value, "stroke");
     if (stroke == nullptr || !stroke->GetBool() || centres.size() < 2) return centres;
     return path_through(mesh_, centres, false, PathMetric::combined, where_ + ", at " + at);
 }
 
-ScalarMap ExpressionEvaluator::scalar(const JsonValue& value, Frame frame, const std::string& at) const {
+ScalarMap ExpressionEvaluator::scalar(const JsonValue& value, PlaceFrame frame, const std::string& at) const {
     std::string chosen;
     for (const char* name : {"coordinate", "curvature", "thickness", "distance", "map"}) {
         if (find_member(value, name) == nullptr) continue;
@@ -121,8 +123,8 @@ void ExpressionEvaluator::in_place(const std::string& at, const std::function<vo
     }
 }
 
-Interval ExpressionEvaluator::interval(const JsonValue& value, const ScalarMap& map, const std::string& at) const {
-    Interval result;
+ScalarRange ExpressionEvaluator::interval(const JsonValue& value, const ScalarMap& map, const std::string& at) const {
+    ScalarRange result;
     if (find_member(value, "above") == nullptr && find_member(value, "below") == nullptr)
         fail(at, "a threshold with neither above nor below", "give one of them, or both");
     const JsonValue* quantiles = find_member(value, "quantiles");
@@ -140,7 +142,7 @@ Interval ExpressionEvaluator::interval(const JsonValue& value, const ScalarMap& 
     return result;
 }
 
-std::vector<bool> ExpressionEvaluator::segments(const JsonValue& value, Frame frame, const std::string& at) const {
+std::vector<bool> ExpressionEvaluator::segments(const JsonValue& value, PlaceFrame frame, const std::string& at) const {
     SegmentOptions options;
     options.clusters = static_cast<int>(number(value, "clusters", options.clusters));
     options.smoothing = number(value, "smoothing", options.smoothing);
@@ -169,7 +171,7 @@ std::vector<bool> ExpressionEvaluator::segments(const JsonValue& value, Frame fr
     return faces;
 }
 
-std::vector<bool> ExpressionEvaluator::reckoned_faces(const std::string& kind, const JsonValue& value, Frame frame,
+std::vector<bool> ExpressionEvaluator::reckoned_faces(const std::string& kind, const JsonValue& value, PlaceFrame frame,
                                                       const std::string& at) const {
     if (kind == "brush") return brushed_faces(mesh_, brush_centres(value, frame, at), length(value["radius"].GetDouble(), frame));
     if (kind == "threshold") {
@@ -187,7 +189,7 @@ std::vector<bool> ExpressionEvaluator::reckoned_faces(const std::string& kind, c
     return larger ? grow(mesh_, part, rings) : shrink(mesh_, part, rings);
 }
 
-std::vector<Index> ExpressionEvaluator::reckoned_vertices(const std::string& kind, const JsonValue& value, Frame frame,
+std::vector<Index> ExpressionEvaluator::reckoned_vertices(const std::string& kind, const JsonValue& value, PlaceFrame frame,
                                                           const std::string& at) const {
     if (kind == "brush")
         return brushed_vertices(mesh_, brush_centres(value, frame, at), length(value["radius"].GetDouble(), frame));

@@ -33,9 +33,9 @@ const SurfaceSearch& ExpressionEvaluator::search(const std::string& at) const {
     return *search_;
 }
 
-ScreenCamera ExpressionEvaluator::camera(const JsonValue& owner, Frame frame, const std::string& at) const {
-    const auto read = [&](const JsonValue& value, Frame around, const std::string& here) {
-        const Frame own = frame_of(value, around);
+ScreenCamera ExpressionEvaluator::camera(const JsonValue& owner, PlaceFrame frame, const std::string& at) const {
+    const auto read = [&](const JsonValue& value, PlaceFrame around, const std::string& here) {
+        const PlaceFrame own = frame_of(value, around);
         const auto place = [&](const JsonValue& list) { return point(list, own, here); };
         ScreenCamera result;
         in_place(here, [&] { result = read_camera(value, mesh_, surroundings_.up, place, where_ + ", at " + here); });
@@ -52,7 +52,7 @@ ScreenCamera ExpressionEvaluator::camera(const JsonValue& owner, Frame frame, co
     return cameras_.emplace(name, read(*named, surroundings_.frame, "/cameras/" + name)).first->second;
 }
 
-SurfaceHit ExpressionEvaluator::seen(const JsonValue& pick, Frame frame, const std::string& at) const {
+SurfaceHit ExpressionEvaluator::seen(const JsonValue& pick, PlaceFrame frame, const std::string& at) const {
     const ScreenCamera from = camera(pick, frame, at);
     const Pixel pixel = pixel_of(pick["pixel"]);
     if (!within(pixel, from))

@@ -38,7 +38,7 @@ public:
         if (const JsonValue* name = find_member(recipe, "class")) set_.object_class = name->GetString();
         if (const JsonValue* unit = find_member(recipe, "unit")) set_.unit = unit->GetString();
         if (const JsonValue* up = find_member(recipe, "up")) set_.up = vector_of(*up);
-        const Frame frame = ExpressionEvaluator::frame_of(recipe, Frame{});
+        const PlaceFrame frame = ExpressionEvaluator::frame_of(recipe, PlaceFrame{});
         evaluator_.look_from({find_member(recipe, "cameras"), frame, set_.up.value_or(std::array<double, 3>{0, 0, 1}), folder_});
         const JsonValue& steps = recipe["annotations"];
         for (rapidjson::SizeType i = 0; i < steps.Size(); ++i) step(steps[i], frame, "/annotations/" + to_string(i));
@@ -54,8 +54,8 @@ private:
         fail_input(where_, "at " + at + ": " + what, remedy);
     }
 
-    void step(const JsonValue& step, Frame around, const std::string& at) {
-        const Frame frame = ExpressionEvaluator::frame_of(step, around);
+    void step(const JsonValue& step, PlaceFrame around, const std::string& at) {
+        const PlaceFrame frame = ExpressionEvaluator::frame_of(step, around);
         const JsonValue* given = find_member(step, "action");
         const std::string action = given == nullptr ? "make" : given->GetString();
         if (action == "make") make(step, frame, at);
@@ -63,7 +63,7 @@ private:
     }
 
     /// Faces, poly-lines or points of a step, in an annotation of this type.
-    Annotation selected(AnnotationType type, const JsonValue& select, Frame frame, const std::string& here) {
+    Annotation selected(AnnotationType type, const JsonValue& select, PlaceFrame frame, const std::string& here) {
         Annotation annotation;
         annotation.type = type;
         if (type == AnnotationType::region) {
@@ -88,7 +88,7 @@ private:
             for (rapidjson::SizeType k = 0; k < 3; ++k) annotation.colour[k] = (*colour)[k].GetInt();
     }
 
-    void make(const JsonValue& step, Frame frame, const std::string& at) {
+    void make(const JsonValue& step, PlaceFrame frame, const std::string& at) {
         for (const char* name : {"tag", "type", "select"})
             if (find_member(step, name) == nullptr)
                 fail(at, std::string("a new annotation without \"") + name + "\"",
@@ -107,7 +107,7 @@ private:
         set_.annotations.push_back(std::move(annotation));
     }
 
-    void edit(const std::string& action, const JsonValue& step, Frame frame, const std::string& at) {
+    void edit(const std::string& action, const JsonValue& step, PlaceFrame frame, const std::string& at) {
         const int id = step["id"].GetInt();
         Annotation* found = set_.find(id);
         if (found == nullptr)
@@ -212,7 +212,7 @@ private:
 
     /// Attributes stand as in annotation files, except that pins may be given by coordinates, and those of a bounding measure may
     /// be left out.
-    void add_attributes(Annotation& annotation, const JsonValue& source, Frame frame, const std::string& at) {
+    void add_attributes(Annotation& annotation, const JsonValue& source, PlaceFrame frame, const std::string& at) {
         Json list;
         list.CopyFrom(source, list.GetAllocator());
         for (rapidjson::SizeType i = 0; i < list.Size(); ++i) {

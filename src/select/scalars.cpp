@@ -36,13 +36,13 @@ ScalarMap coordinate_map(const Mesh& mesh, const Vector& direction, bool share, 
     return map;
 }
 
-std::vector<bool> faces_between(const Mesh& mesh, const ScalarMap& map, const Interval& interval) {
+std::vector<bool> faces_between(const Mesh& mesh, const ScalarMap& map, const ScalarRange& interval) {
     std::vector<bool> faces(mesh.number_of_faces(), false);
     for (const Face face : mesh.faces()) faces[face] = interval.contains(face_value(mesh, map, face));
     return faces;
 }
 
-std::vector<Index> vertices_between(const Mesh& mesh, const ScalarMap& map, const Interval& interval) {
+std::vector<Index> vertices_between(const Mesh& mesh, const ScalarMap& map, const ScalarRange& interval) {
     std::vector<Index> vertices;
     for (const Vertex v : mesh.vertices()) {
         if (mesh.is_isolated(v)) continue;

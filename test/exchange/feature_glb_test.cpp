@@ -65,7 +65,7 @@ TEST(FeatureGlb, ComesBackWhole) {
     const std::string glb = written(mesh, set);
     const PlacedAnnotations read = read_feature_glb(glb, mesh, "file");
     EXPECT_EQ(as_file(read.set, mesh), as_file(set, mesh));
-    for (const Placement& placement : read.placements) EXPECT_EQ(placement.how, "indices");
+    for (const PlacedAnnotation& placement : read.placements) EXPECT_EQ(placement.how, "indices");
     EXPECT_EQ(written(mesh, set), glb);
     EXPECT_EQ(as_file(read_feature_glb(written(mesh, {}), mesh, "f").set, mesh), as_file({}, mesh));
 }

@@ -163,7 +163,7 @@ TEST(Landmarks, PointsAndLinesOfASetComeBack) {
         for (const auto& a : set.annotations) before.insert(before.end(), a.points.begin(), a.points.end());
         for (const auto& a : placed.set.annotations) after.insert(after.end(), a.points.begin(), a.points.end());
         EXPECT_EQ(after, before);
-        for (const Placement& placement : placed.placements) EXPECT_EQ(placement.to_vertex, 0);
+        for (const PlacedAnnotation& placement : placed.placements) EXPECT_EQ(placement.to_vertex, 0);
         if (format == LandmarkFormat::csv) {  // keeps ids, so that points of one annotation stay together
             ASSERT_NE(placed.set.find(3), nullptr);
             const auto several = std::find_if(set.annotations.begin(), set.annotations.end(),

@@ -60,7 +60,7 @@ TEST(WebAnnotation, ComesBackWholeByIndices) {
     const std::string text = web_annotations(mesh, set, "m <1>.ply", {});
     const PlacedAnnotations read = read_web_annotations(text, mesh, "file");
     EXPECT_EQ(as_file(read.set, mesh), as_file(set, mesh));
-    for (const Placement& placement : read.placements) EXPECT_EQ(placement.how, "indices");
+    for (const PlacedAnnotation& placement : read.placements) EXPECT_EQ(placement.how, "indices");
     EXPECT_EQ(web_annotations(mesh, set, "m <1>.ply", {}), text);
 }
 

@@ -110,16 +110,16 @@ TEST(ShapeModes, WhatIsLeftOutIsMeasuredByTheOthers) {
 }
 
 /// Members whose top is 0.9 to 1.1 of the base.
-std::vector<Member> usual(const Tower& known) {
-    std::vector<Member> members;
+std::vector<WholeObject> usual(const Tower& known) {
+    std::vector<WholeObject> members;
     for (const auto& [name, top, width] :
          {std::tuple{"a", 0.9, 1.0}, {"b", 1.0, 1.05}, {"c", 1.1, 0.95}, {"d", 0.95, 1.0}, {"e", 1.05, 1.02}})
         members.push_back(member_of(known, name, 1, top, width, far_away()));
     return members;
 }
 
-std::vector<Member> one_alone(const Tower& known) {
-    std::vector<Member> members;
+std::vector<WholeObject> one_alone(const Tower& known) {
+    std::vector<WholeObject> members;
     members.push_back(member_of(known, "a", 1, 0.9, 1));
     return members;
 }
@@ -195,7 +195,7 @@ TEST(Classify, SizesCountWhereTold) {
     const Tower known = tower();
     Motion large;
     large.scale = 3;
-    const Member big = member_of(known, "big", 1, 1, 1, large);
+    const WholeObject big = member_of(known, "big", 1, 1, 1, large);
     EXPECT_EQ(ask_class(class_of(known, usual(known)), known.known(), big).verdict, Membership::member);
     LearnOptions options;
     options.modes.sizes = true;
@@ -206,7 +206,7 @@ TEST(MemberFit, FitsATowerOfOtherTrianglesAndCarriesAnnotations) {
     const Tower known = tower();
     Motion shifted;
     shifted.shift = Eigen::Vector3d(10, -20, 5);
-    Member object = member_of(known, "object", 0.5, 0.6, 0.95, shifted);
+    WholeObject object = member_of(known, "object", 0.5, 0.6, 0.95, shifted);
     // Other vertices: the box cut finer.
     TriangleSoup fine = to_soup(member_of(known, "same", 0.5, 0.6, 0.95, shifted).mesh);
     const std::size_t before = fine.triangles.size();
@@ -241,7 +241,7 @@ TEST(MemberFit, FitsATowerOfOtherTrianglesAndCarriesAnnotations) {
 
 TEST(MemberFit, DistortionIsThatOfTheMap) {
     const Tower known = tower();
-    const Member wide = member_of(known, "wide", 1, 1, 2);
+    const WholeObject wide = member_of(known, "wide", 1, 1, 2);
     std::vector<Point> points(wide.mesh.points().begin(), wide.mesh.points().end());
     FitResiduals residuals;
     measure_distortion(known.mesh, points, 2, residuals);
@@ -251,7 +251,7 @@ TEST(MemberFit, DistortionIsThatOfTheMap) {
     EXPECT_NEAR(residuals.stretch, std::log(2.0), 1e-9);
 }
 
-TEST(Sample, HoldsTheConstraintsAndTheRanges) {
+TEST(ClassSample, HoldsTheConstraintsAndTheRanges) {
     const Tower known = tower();
     const ShapeClass learnt = class_of(known, usual(known));
     SampleOptions options;
@@ -259,13 +259,13 @@ TEST(Sample, HoldsTheConstraintsAndTheRanges) {
     const Sampling sampling = sample_class(learnt, known.known(), options);
     ASSERT_EQ(sampling.samples.size(), 5U) << (sampling.examples.empty() ? "" : sampling.examples.front());
     const LearntRange* ratio = learnt.find("proportion 7 ");
-    for (const Sample& sample : sampling.samples) {
+    for (const ClassSample& sample : sampling.samples) {
         const Mesh mesh = with_points(known.mesh, sample.points);
         const double top = evaluate(mesh, known.set.annotations[1], known.set.annotations[1].attributes[0].measure);
         const double base = evaluate(mesh, known.set.annotations[0], known.set.annotations[0].attributes[0].measure);
         EXPECT_GE(top / base, *ratio->low);
         EXPECT_LE(top / base, *ratio->high);
-        Member object{"sample", mesh, {}};
+        WholeObject object{"sample", mesh, {}};
         EXPECT_EQ(compare_with(learnt, learn_member(known.known(), object)).against.empty(), true);
     }
     EXPECT_GT(sampling.diversity, 0);
@@ -276,7 +276,7 @@ TEST(Sample, HoldsTheConstraintsAndTheRanges) {
     EXPECT_NE(sample_class(learnt, known.known(), options).samples[0].points, sampling.samples[0].points);
 }
 
-TEST(Sample, RestoresAStatedProportionOrRejects) {
+TEST(ClassSample, RestoresAStatedProportionOrRejects) {
     // The template allows 1.02 at most, its members have up to 1.1: draws beyond are brought back.
     const Tower known = tower(1.02);
     const ShapeClass learnt = class_of(known, usual(known));
@@ -284,7 +284,7 @@ TEST(Sample, RestoresAStatedProportionOrRejects) {
     options.count = 4;
     options.seed = 5;
     const Sampling sampling = sample_class(learnt, known.known(), options);
-    for (const Sample& sample : sampling.samples) {
+    for (const ClassSample& sample : sampling.samples) {
         const Mesh mesh = with_points(known.mesh, in_template_frame(known.mesh, sample.points, false));
         const double top = evaluate(mesh, known.set.annotations[1], known.set.annotations[1].attributes[0].measure);
         const double base = evaluate(mesh, known.set.annotations[0], known.set.annotations[0].attributes[0].measure);
@@ -293,7 +293,7 @@ TEST(Sample, RestoresAStatedProportionOrRejects) {
     EXPECT_EQ(sampling.tried, sampling.samples.size() + sampling.by_constraints + sampling.by_ranges + sampling.by_intersections);
 }
 
-TEST(Sample, EditsAndBadInput) {
+TEST(ClassSample, EditsAndBadInput) {
     const Tower known = tower();
     const ShapeClass learnt = class_of(known, usual(known));
     SampleOptions options;
@@ -302,7 +302,7 @@ TEST(Sample, EditsAndBadInput) {
     options.edit = 0.02;
     const Sampling sampling = sample_class(learnt, known.known(), options);
     EXPECT_GT(sampling.tried, 0U);
-    for (const Sample& sample : sampling.samples) EXPECT_FALSE(sample.edits.empty());
+    for (const ClassSample& sample : sampling.samples) EXPECT_FALSE(sample.edits.empty());
     options.by = "modes";
     EXPECT_THROW(static_cast<void>(sample_class(class_of(known, one_alone(known)), known.known(), options)), Error);
 }
@@ -323,7 +323,7 @@ TEST(ClassFile, ComesBackAsWritten) {
         EXPECT_EQ(read.ranges[i].high, learnt.ranges[i].high);
         EXPECT_EQ(read.ranges[i].values, learnt.ranges[i].values);
     }
-    const Member object = member_of(known, "bad", 1, 1.6, 1);
+    const WholeObject object = member_of(known, "bad", 1, 1.6, 1);
     EXPECT_EQ(ask_class(read, known.known(), object).reasons(), ask_class(learnt, known.known(), object).reasons());
     std::filesystem::remove(scratch / "tower.modes.npy");
     EXPECT_THROW(static_cast<void>(read_class(scratch / "tower.class.json")), Error);

@@ -62,9 +62,9 @@ inline Tower tower(double most = 5) {
 }
 
 /// The tower with the heights of its halves and its width given, turned and moved by `motion`.
-inline Member member_of(const Tower& tower, const std::string& name, double base, double top, double width,
-                        const Motion& motion = {}) {
-    Member member;
+inline WholeObject member_of(const Tower& tower, const std::string& name, double base, double top, double width,
+                             const Motion& motion = {}) {
+    WholeObject member;
     member.name = name;
     member.mesh = tower.mesh;
     for (const Vertex v : member.mesh.vertices()) {
@@ -76,9 +76,9 @@ inline Member member_of(const Tower& tower, const std::string& name, double base
     return member;
 }
 
-inline ShapeClass class_of(const Tower& tower, const std::vector<Member>& members, const LearnOptions& options = {}) {
+inline ShapeClass class_of(const Tower& tower, const std::vector<WholeObject>& members, const LearnOptions& options = {}) {
     std::vector<LearntMember> learnt;
-    for (const Member& member : members) learnt.push_back(learn_member(tower.known(), member, options));
+    for (const WholeObject& member : members) learnt.push_back(learn_member(tower.known(), member, options));
     ShapeClass result = learn_class(tower.known(), learnt, options);
     result.name = "tower";
     return result;

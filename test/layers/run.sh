@@ -30,6 +30,15 @@ refuses src/io/a.cpp '#include "ostraka/nowhere/a.h"' 'module nowhere is not in 
 refuses src/io/a.cpp '#include "../render/canvas.h"' 'by a path'
 refuses src/nowhere/a.cpp '#include <vector>' 'module nowhere is not in the table'
 refuses src/a.cpp '#include <vector>' 'belongs to no module'
+mkdir -p "$scratch/include/ostraka/io"
+printf 'namespace ostraka {\nstruct Same {\n};\n}\n' >"$scratch/include/ostraka/core/same.h"
+refuses src/io/same.h 'namespace ostraka {
+struct Same : Other {' 'ostraka::Same is also defined in include/ostraka/core/same.h'
+accepts src/io/same.h 'namespace ostraka::io {
+struct Same {'
+accepts src/io/same.h 'namespace ostraka {
+struct Same;'
+rm "$scratch/include/ostraka/core/same.h"
 accepts src/io/a.cpp '#include "ostraka/geom/surface_search.h"'
 accepts src/io/a.cpp '#include "ostraka/io/mesh_file.h"'
 echo "all found"

@@ -83,7 +83,7 @@ struct PlaceOptions {
 };
 
 /// Where something of the file came to lie on the mesh.
-struct Placement {
+struct PlacedAnnotation {
     int id = 0;  ///< of the annotation
     std::string tag;
     std::size_t points = 0;      ///< how many of its points were placed
@@ -94,7 +94,7 @@ struct Placement {
 
 struct PlacedAnnotations {
     AnnotationSet set;
-    std::vector<Placement> placements;
+    std::vector<PlacedAnnotation> placements;
 };
 
 /// Annotations from landmarks: each landmark becomes a point at the nearest vertex (lower index of equally near ones), those of

@@ -26,7 +26,7 @@ struct ClassifyOptions {
 
 /// One quantity of the object against what was learnt of it.
 struct QuantityCheck {
-    Quantity quantity;  ///< with the object's value
+    ClassQuantity quantity;  ///< with the object's value
     std::optional<double> low, high;
     double off = 0;       ///< how far the value is out of what is accepted, in its unit; 0 inside
     double excess = 0;    ///< the same as a share of the accepted range's width (of a residual: of its threshold)
@@ -53,7 +53,7 @@ struct ClassAnswer {
 };
 
 /// Lays the class's template onto the object and compares.
-ClassAnswer ask_class(const ShapeClass& learnt, const ClassTemplate& known, const Member& object,
+ClassAnswer ask_class(const ShapeClass& learnt, const ClassTemplate& known, const WholeObject& object,
                       const ClassifyOptions& options = {});
 /// The same for what was fitted and measured already.
 ClassAnswer compare_with(const ShapeClass& learnt, const LearntMember& object, const ClassifyOptions& options = {});

@@ -40,7 +40,7 @@ struct MemberFitOptions {
 };
 
 /// A whole object.
-struct Member {
+struct WholeObject {
     std::string name;
     Mesh mesh;
     AnnotationSet annotations;  ///< may be empty
@@ -75,10 +75,10 @@ bool in_correspondence(const Mesh& mesh, const Mesh& member);
 /// by the surfaces: scaled to the object's area, from the four ways of the principal axes and from the way the files have it,
 /// trimmed iterative closest points both ways (`align`, the size free within `shrinkage`). Then `fit_template`. The residuals are
 /// measured on the surfaces. Throws Error (input) for an object or a template without area.
-MemberFit fit_member(const Mesh& mesh, const AnnotationSet& set, const Member& member, const MemberFitOptions& options = {});
+MemberFit fit_member(const Mesh& mesh, const AnnotationSet& set, const WholeObject& member, const MemberFitOptions& options = {});
 
 /// A member in correspondence: its own points.
-MemberFit member_in_correspondence(const Mesh& mesh, const Member& member);
+MemberFit member_in_correspondence(const Mesh& mesh, const WholeObject& member);
 
 /// Stretch and bend of `points` against the mesh times `scale`, as in FitResiduals.
 void measure_distortion(const Mesh& mesh, const std::vector<Point>& points, double scale, FitResiduals& residuals);

@@ -26,6 +26,6 @@ struct Propagated {
 
 /// Lays the template onto the member (fit_as_told) and transfers its annotations to the member's surface (`transfer`); in
 /// correspondence they are the same ones. Measures are taken anew.
-Propagated propagate(const ClassTemplate& known, const Member& member, const PropagateOptions& options = {});
+Propagated propagate(const ClassTemplate& known, const WholeObject& member, const PropagateOptions& options = {});
 
 }  // namespace ostraka

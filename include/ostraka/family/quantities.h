@@ -15,7 +15,7 @@ std::string to_string(QuantityKind kind);
 QuantityKind quantity_kind(const std::string& word);
 
 /// One number of a member.
-struct Quantity {
+struct ClassQuantity {
     QuantityKind kind = QuantityKind::geometry;
     int id = -1;             ///< of the relationship, or of the annotation an attribute belongs to
     std::string name;        ///< "little finger / ring finger", "height", "distance" ...
@@ -47,12 +47,12 @@ std::vector<Point> points_of(const Landmarks& landmarks);
 /// what it is out of range (per cent), of the other constraints and of the geometric relations their deviations (these in the
 /// frame of the template), of attributes the values of measures and descriptors of one number, in the points' own unit. The list
 /// and its order are those of the template, whatever the points. What cannot be measured has no value.
-std::vector<Quantity> measure_quantities(const ClassTemplate& known, const std::vector<Point>& points, bool sizes);
+std::vector<ClassQuantity> measure_quantities(const ClassTemplate& known, const std::vector<Point>& points, bool sizes);
 
 /// The residuals of a fit as quantities of kind geometry: "distance", "distance back", "unmatched", "unexplained", "stretch",
 /// "bend"; without values in correspondence.
-std::vector<Quantity> geometry_quantities(const std::optional<FitResiduals>& residuals);
+std::vector<ClassQuantity> geometry_quantities(const std::optional<FitResiduals>& residuals);
 /// The same of an object's own surface: "compactness", "geodesic mean", "geodesic most", "geodesic variation".
-std::vector<Quantity> geometry_quantities(const WholeShape& shape);
+std::vector<ClassQuantity> geometry_quantities(const WholeShape& shape);
 
 }  // namespace ostraka

@@ -27,7 +27,7 @@ struct SampleOptions {
     }
 };
 
-struct Sample {
+struct ClassSample {
     std::vector<Point> points;
     std::vector<double> coefficients;  ///< as drawn; empty of edits
     std::vector<std::string> edits;    ///< in words
@@ -35,7 +35,7 @@ struct Sample {
 };
 
 struct Sampling {
-    std::vector<Sample> samples;
+    std::vector<ClassSample> samples;
     std::size_t tried = 0;
     std::size_t by_constraints = 0;        ///< rejected: a constraint does not hold after restoring
     std::size_t by_ranges = 0;             ///< rejected: a proportion, relation or distance outside of what the class accepts

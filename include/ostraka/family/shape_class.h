@@ -34,7 +34,7 @@ struct LearnOptions {
 
 /// The values that one quantity has on the members, and what is accepted of another object.
 struct LearntRange {
-    Quantity quantity;                          ///< without value
+    ClassQuantity quantity;                     ///< without value
     std::vector<std::optional<double>> values;  ///< of each member; geometry against the others: each left out
     std::size_t count = 0;
     double min = 0, max = 0, mean = 0;
@@ -66,17 +66,17 @@ struct ShapeClass {
 };
 
 /// Whether the template is laid onto `member` as it is or by a fit.
-MemberFit fit_as_told(const ClassTemplate& known, const Member& member, const std::string& correspondence,
+MemberFit fit_as_told(const ClassTemplate& known, const WholeObject& member, const std::string& correspondence,
                       const MemberFitOptions& options);
 
 struct LearntMember {
     std::string name;
     MemberFit fit;
-    std::vector<Quantity> quantities;  ///< all but what refers to the other members
+    std::vector<ClassQuantity> quantities;  ///< all but what refers to the other members
 };
 /// The fit of one member and all that is measured of it alone. `whole` spares measuring the surface anew where many templates are
 /// laid onto one object.
-LearntMember learn_member(const ClassTemplate& known, const Member& member, const LearnOptions& options = {},
+LearntMember learn_member(const ClassTemplate& known, const WholeObject& member, const LearnOptions& options = {},
                           const WholeShape* whole = nullptr);
 
 /// Puts the members together. Those with a problem are left out and said. Throws Error (input) if none is left.

@@ -17,7 +17,7 @@ struct ScalarMap {
 };
 
 /// From `above` to `below`, both included.
-struct Interval {
+struct ScalarRange {
     double above = -std::numeric_limits<double>::infinity(), below = std::numeric_limits<double>::infinity();
     [[nodiscard]] bool contains(double x) const { return above <= x && x <= below; }
 };
@@ -27,9 +27,9 @@ struct Interval {
 ScalarMap coordinate_map(const Mesh& mesh, const Vector& direction, bool share, const std::string& where);
 
 /// Faces whose value (of a map on vertices: the mean of its corners) lies in the interval.
-std::vector<bool> faces_between(const Mesh& mesh, const ScalarMap& map, const Interval& interval);
+std::vector<bool> faces_between(const Mesh& mesh, const ScalarMap& map, const ScalarRange& interval);
 /// Vertices that have a face and whose value (of a map on faces: the mean around them, weighted by area) lies in the interval.
-std::vector<Index> vertices_between(const Mesh& mesh, const ScalarMap& map, const Interval& interval);
+std::vector<Index> vertices_between(const Mesh& mesh, const ScalarMap& map, const ScalarRange& interval);
 
 /// The value below which the map lies on this share of the area (0 to 1). Throws Error (input) without any value.
 double quantile_of(const Mesh& mesh, const ScalarMap& map, double share, const std::string& where);
