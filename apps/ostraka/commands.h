@@ -32,6 +32,7 @@ void add_annotation_infer(CLI::App& annotation, Session& session);     // annota
 void add_template(CLI::App& bundle, Session& session);                 // template.cpp
 void add_template_learn(CLI::App& bundle, Session& session);           // template_learn.cpp: learn, classify
 void add_template_sample(CLI::App& bundle, Session& session);          // template_sample.cpp: sample, propagate
+void add_template_turn(CLI::App& bundle, Session& session);            // template_turn.cpp
 void add_vocabulary(CLI::App& vocabulary, Session& session);           // vocabulary.cpp
 void add_cage(CLI::App& cage, Session& session);                       // cage.cpp: weights, influence
 void add_cage_make(CLI::App& cage, Session& session);                  // cage_make.cpp: make, check, edit

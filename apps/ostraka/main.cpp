@@ -61,6 +61,7 @@ int main(int argc, char** argv) {
     app::add_template(*bundle, session);
     app::add_template_learn(*bundle, session);
     app::add_template_sample(*bundle, session);
+    app::add_template_turn(*bundle, session);
     app::add_vocabulary(*vocabulary, session);
     app::add_cage_make(*cage, session);
     app::add_cage(*cage, session);

@@ -1,0 +1,225 @@
+#include "ostraka/registration/freedoms.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ostraka {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+std::string to_string(FreedomKind kind) {
+    switch (kind) {
+        case FreedomKind::turn:
+            return "turn";
+        case FreedomKind::shift:
+            return "shift";
+        case FreedomKind::screw:
+            return "screw";
+        case FreedomKind::tube:
+            return "tube";
+        case FreedomKind::ball:
+            return "ball";
+        case FreedomKind::plane:
+            return "plane";
+        case FreedomKind::more:
+            return "more";
+        default:
+            return "none";
+    }
+}
+
+std::string Freedom::text() const {
+    switch (kind) {
+        case FreedomKind::turn:
+            return "turn about a line";
+        case FreedomKind::shift:
+            return "shift along a line";
+        case FreedomKind::screw:
+            return "screw along a line";
+        case FreedomKind::tube:
+            return "turn about a line and shift along it";
+        case FreedomKind::ball:
+            return "turn about a point";
+        case FreedomKind::plane:
+            return "shift in a plane and turn about its normal";
+        case FreedomKind::more:
+            return "nearly any motion";
+        default:
+            return "none";
+    }
+}
+
+namespace {
+
+Motion turned(const Vector3d& point, const Vector3d& direction, double angle, double along = 0) {
+    Motion motion;
+    motion.turn = Eigen::AngleAxisd(angle, direction).toRotationMatrix();
+    motion.shift = point - motion.turn * point + along * direction;
+    return motion;
+}
+
+Vector3d across(const Vector3d& direction) {
+    return direction.cross(std::abs(direction.x()) < 0.6 ? Vector3d::UnitX() : Vector3d::UnitY()).normalized();
+}
+
+}  // namespace
+
+std::vector<std::vector<Freedom::Step>> Freedom::ways(double turn, double shift, int steps) const {
+    std::vector<std::vector<Step>> all;
+    const auto add_turn = [&](const Vector3d& axis, double sign, double along) {
+        auto& way = all.emplace_back();
+        for (int k = 1; k <= steps; ++k) {
+            const double angle = sign * turn * k / steps;
+            way.push_back({true, turned(point, axis, angle, along * angle), angle});
+        }
+    };
+    const auto add_shift = [&](const Vector3d& axis, double sign) {
+        auto& way = all.emplace_back();
+        for (int k = 1; k <= steps; ++k) {
+            const double length = sign * shift * k / steps;
+            Motion motion;
+            motion.shift = length * axis;
+            way.push_back({false, motion, length});
+        }
+    };
+    const Vector3d u = across(direction), w = direction.cross(u);
+    for (const double sign : {1.0, -1.0}) {
+        switch (kind) {
+            case FreedomKind::turn:
+                add_turn(direction, sign, 0);
+                break;
+            case FreedomKind::screw:
+                add_turn(direction, sign, pitch);
+                break;
+            case FreedomKind::shift:
+                add_shift(direction, sign);
+                break;
+            case FreedomKind::tube:
+                add_turn(direction, sign, 0);
+                add_shift(direction, sign);
+                break;
+            case FreedomKind::ball:
+                for (const Vector3d& axis : {direction, u, w}) add_turn(axis, sign, 0);
+                break;
+            case FreedomKind::plane:
+                add_turn(direction, sign, 0);
+                for (const Vector3d& axis : {u, w}) add_shift(axis, sign);
+                break;
+            default:
+                break;
+        }
+    }
+    return all;
+}
+
+bool Freedom::contains(const Motion& motion, const Vector3d& around, double angle, double length) const {
+    const Vector3d moved = motion(point) - point, image = motion.turn * direction;
+    const double lean = std::acos(std::clamp(image.dot(direction), -1.0, 1.0)), along = moved.dot(direction);
+    const Eigen::AngleAxisd turn(motion.turn);
+    switch (kind) {
+        case FreedomKind::turn:
+            return lean < angle && moved.norm() < length;
+        case FreedomKind::tube:
+            return lean < angle && (moved - along * direction).norm() < length;
+        case FreedomKind::shift:
+            return turn.angle() < angle && [&] {
+                const Vector3d way = motion(around) - around;
+                return (way - way.dot(direction) * direction).norm() < length;
+            }();
+        case FreedomKind::screw: {
+            const double by = turn.angle() * (turn.axis().dot(direction) < 0 ? -1 : 1);
+            return lean < angle && (moved - pitch * by * direction).norm() < length;
+        }
+        case FreedomKind::ball:
+            return moved.norm() < length;
+        case FreedomKind::plane:
+            return lean < angle && std::abs((motion(around) - around).dot(image)) < length;
+        default:
+            return false;
+    }
+}
+
+Freedom freedom_of(const std::vector<Vector3d>& places, const std::vector<Vector3d>& normals, double tolerance) {
+    Freedom freedom;
+    if (places.size() < 6) {
+        freedom.kind = FreedomKind::more;
+        return freedom;
+    }
+    const auto count = static_cast<double>(places.size());
+    Vector3d middle = Vector3d::Zero();
+    for (const Vector3d& p : places) middle += p / count;
+    double size = 0;
+    for (const Vector3d& p : places) size += (p - middle).squaredNorm() / count;
+    size = std::sqrt(size);
+    freedom.point = middle;
+    if (!(size > 0)) {
+        freedom.kind = FreedomKind::more;
+        return freedom;
+    }
+    // The square along the normals against that of the whole motion: a generalised eigenvalue problem.
+    using Matrix6 = Eigen::Matrix<double, 6, 6>;
+    Matrix6 along = Matrix6::Zero(), whole = Matrix6::Zero();
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const Vector3d p = (places[i] - middle) / size;
+        Eigen::Matrix<double, 6, 1> row;
+        row << p.cross(normals[i]), normals[i];
+        along += row * row.transpose() / count;
+        Eigen::Matrix<double, 3, 6> move;
+        move.leftCols<3>() << 0, p.z(), -p.y(), -p.z(), 0, p.x(), p.y(), -p.x(), 0;
+        move.rightCols<3>() = Matrix3d::Identity();
+        whole += move.transpose() * move / count;
+    }
+    whole.diagonal().array() += 1e-9;
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6> solver(along, whole);
+    int open = 0;
+    while (open < 6 && solver.eigenvalues()[open] < tolerance * tolerance) ++open;
+    if (open == 0) return freedom;
+    const auto motions = solver.eigenvectors().leftCols(open).eval();
+    // Which of the open motions are shifts: those whose turn vanishes.
+    const Eigen::JacobiSVD<Eigen::MatrixXd> turns(motions.topRows<3>(), Eigen::ComputeThinU | Eigen::ComputeFullV);
+    const auto& singular = turns.singularValues();
+    const double part = 0.15 * motions.colwise().norm().maxCoeff();
+    const int rotations = static_cast<int>((singular.array() > part).count()), shifts = open - rotations;
+    const auto motion_of = [&](int k) -> Eigen::Matrix<double, 6, 1> { return motions * turns.matrixV().col(k); };
+    // The line of a motion: w about it, v at the middle.
+    const auto line_of = [&](const Eigen::Matrix<double, 6, 1>& motion) {
+        const Vector3d w = motion.head<3>(), v = motion.tail<3>();
+        freedom.direction = w.normalized();
+        freedom.point = middle + size * w.cross(v) / w.squaredNorm();
+        freedom.pitch = size * w.dot(v) / w.squaredNorm();
+    };
+    if (open == 1 && rotations == 0) {
+        freedom.kind = FreedomKind::shift;
+        freedom.direction = motion_of(0).tail<3>().normalized();
+    } else if (open == 1) {
+        line_of(motion_of(0));
+        freedom.kind = std::abs(freedom.pitch) < 0.1 * size ? FreedomKind::turn : FreedomKind::screw;
+        if (freedom.kind == FreedomKind::turn) freedom.pitch = 0;
+    } else if (open == 2 && rotations == 1 && shifts == 1) {
+        line_of(motion_of(0));
+        freedom.kind = FreedomKind::tube;
+        freedom.pitch = 0;
+    } else if (open == 3 && rotations == 3) {
+        // The middle stays: v + w x c = 0 for each of the three.
+        Eigen::Matrix<double, 9, 3> A;
+        Eigen::Matrix<double, 9, 1> b;
+        for (int k = 0; k < 3; ++k) {
+            const Vector3d w = motion_of(k).head<3>(), v = motion_of(k).tail<3>();
+            A.block<3, 3>(3 * k, 0) << 0, -w.z(), w.y(), w.z(), 0, -w.x(), -w.y(), w.x(), 0;
+            b.segment<3>(3 * k) = -v;
+        }
+        freedom.point = middle + size * A.colPivHouseholderQr().solve(b);
+        freedom.kind = FreedomKind::ball;
+    } else if (open == 3 && rotations == 1) {
+        line_of(motion_of(0));
+        freedom.point = middle;
+        freedom.pitch = 0;
+        freedom.kind = FreedomKind::plane;
+    } else {
+        freedom.kind = FreedomKind::more;
+    }
+    return freedom;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,44 @@
+// The nearest of a surface's points, looked up in a grid: for the many poses of a search.
+#pragma once
+
+#include "ostraka/registration/surface_points.h"
+
+#include <vector>
+
+namespace ostraka::detail {
+
+/// Each cell within `reach` of a point knows the nearest point of its middle, and the nearest one that faces another way: on a
+/// thin wall the other side.
+class NearestGrid {
+public:
+    NearestGrid(const SurfacePoints& points, double reach);
+
+    /// The nearest point of the surface whose normal is less than a right angle from `normal`; -1 if none is near.
+    [[nodiscard]] int find(const Eigen::Vector3d& place, const Eigen::Vector3d& normal) const {
+        const Eigen::Vector3d at = (place - low_) / side_;
+        if (!(at.minCoeff() >= 0 && at.x() < count_[0] && at.y() < count_[1] && at.z() < count_[2])) return -1;
+        const std::size_t cell = index(static_cast<int>(at.x()), static_cast<int>(at.y()), static_cast<int>(at.z()));
+        for (const int i : {nearest_[cell], other_[cell]})
+            if (i >= 0 && points_.normals[static_cast<std::size_t>(i)].dot(normal) > 0.3) return i;
+        return -1;
+    }
+    [[nodiscard]] const SurfacePoints& points() const { return points_; }
+    [[nodiscard]] double reach() const { return reach_; }
+
+private:
+    [[nodiscard]] std::size_t index(int x, int y, int z) const {
+        return (static_cast<std::size_t>(x) * static_cast<std::size_t>(count_[1]) + static_cast<std::size_t>(y)) *
+                   static_cast<std::size_t>(count_[2]) +
+               static_cast<std::size_t>(z);
+    }
+    template <class Visit>
+    void around(std::size_t point, Visit&& visit) const;
+
+    const SurfacePoints& points_;
+    double reach_, side_ = 0;
+    Eigen::Vector3d low_;
+    Eigen::Vector3i count_;
+    std::vector<int> nearest_, other_;
+};
+
+}  // namespace ostraka::detail

@@ -1,0 +1,185 @@
+#include "ostraka/registration/pair_votes.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/stats/random.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace ostraka {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr int angles = 12;                     ///< bins from 0 to pi
+constexpr int turns = 36;                      ///< bins of the turn about a normal
+constexpr std::size_t most_entries = 1000000;  ///< that one reference point of the part looks at
+
+/// A frame whose third axis is the normal.
+Matrix3d frame(const Vector3d& normal) {
+    const Vector3d other = std::abs(normal.x()) < 0.6 ? Vector3d::UnitX() : Vector3d::UnitY();
+    Matrix3d m;
+    m.col(0) = other.cross(normal).normalized();
+    m.col(1) = normal.cross(m.col(0));
+    m.col(2) = normal;
+    return m;
+}
+
+/// Bins of angles by their cosines, looked up: bounds of bins are off by less than the table's steps.
+class AngleBins {
+public:
+    AngleBins() {
+        for (int k = 0; k < size; ++k)
+            bin_[static_cast<std::size_t>(k)] =
+                static_cast<std::int8_t>(std::min(angles - 1.0, std::acos(2 * (k + 0.5) / size - 1) / pi * angles));
+    }
+    int operator()(double cosine) const {
+        return bin_[static_cast<std::size_t>(std::clamp(static_cast<int>((cosine + 1) * (size / 2)), 0, size - 1))];
+    }
+
+private:
+    static constexpr int size = 4096;
+    std::array<std::int8_t, size> bin_{};
+};
+
+const AngleBins angle_bin;
+
+}  // namespace
+
+long PairTable::key(const Vector3d& p, const Vector3d& n, const Vector3d& q, const Vector3d& m) const {
+    const Vector3d d = q - p;
+    const double length = d.norm();
+    if (!(length > 0.5 * step_ && length < reach_)) return -1;
+    const int bin = std::min(distances_ - 1, static_cast<int>(length / step_));
+    return ((static_cast<long>(bin) * angles + angle_bin(n.dot(d) / length)) * angles + angle_bin(m.dot(d) / length)) * angles +
+           angle_bin(n.dot(m));
+}
+
+PairTable::PairTable(SurfacePoints points, double reach, double step) : points_(std::move(points)), reach_(reach), step_(step) {
+    if (points_.size() > 4096) fail_usage("pairs of " + std::to_string(points_.size()) + " points are too many", "4096 at most");
+    if (!(reach > 0 && step > 0)) fail_usage("pairs of points need lengths above 0");
+    distances_ = static_cast<int>(std::min(1000.0, std::ceil(reach / step)));
+    const std::size_t n = points_.size();
+    std::vector<std::int32_t> keys(n * n, -1);
+    parallel_for(
+        n,
+        [&](std::size_t i) {
+            for (std::size_t j = 0; j < n; ++j)
+                if (j != i)
+                    keys[i * n + j] = static_cast<std::int32_t>(
+                        key(points_.places[i], points_.normals[i], points_.places[j], points_.normals[j]));
+        },
+        16);
+    starts_.assign(static_cast<std::size_t>(distances_) * angles * angles * angles + 1, 0);
+    for (const std::int32_t k : keys)
+        if (k >= 0) ++starts_[static_cast<std::size_t>(k) + 1];
+    for (std::size_t i = 1; i < starts_.size(); ++i) starts_[i] += starts_[i - 1];
+    entries_.resize(starts_.back());
+    std::vector<std::size_t> next(starts_.begin(), starts_.end() - 1);
+    for (std::size_t i = 0; i < n; ++i) {
+        const Matrix3d axes = frame(points_.normals[i]);
+        for (std::size_t j = 0; j < n; ++j) {
+            const std::int32_t k = keys[i * n + j];
+            if (k < 0) continue;
+            const Vector3d d = points_.places[j] - points_.places[i];
+            const double turn = std::atan2(axes.col(1).dot(d), axes.col(0).dot(d));
+            entries_[next[static_cast<std::size_t>(k)]++] = {
+                static_cast<std::uint16_t>(i), static_cast<std::int16_t>(std::clamp(turn / pi * 32768, -32768.0, 32767.0))};
+        }
+    }
+}
+
+std::vector<VotedMotion> PairTable::vote(const SurfacePoints& part, int references, int partners, int kept,
+                                         std::uint64_t seed) const {
+    const std::size_t n = part.size(), whole = points_.size();
+    if (n < 2 || whole == 0) return {};
+    const std::size_t count = std::min(n, static_cast<std::size_t>(references));
+    std::vector<std::vector<VotedMotion>> found(count);
+    parallel_for(
+        count,
+        [&](std::size_t r) {
+            const std::size_t i = r * n / count;
+            Random random(seed, i);
+            std::vector<std::size_t> others(n);
+            for (std::size_t k = 0; k < n; ++k) others[k] = k;
+            if (n > static_cast<std::size_t>(partners)) {
+                random.shuffle(others);
+                others.resize(static_cast<std::size_t>(partners));
+            }
+            const Matrix3d axes = frame(part.normals[i]);
+            std::vector<float> votes(whole * turns, 0.0F);
+            // Rare kinds of pairs first, as many as there is time for: on a ball or a plane all pairs are of few kinds.
+            struct Kind {
+                std::size_t begin, end, partner;
+            };
+            std::vector<Kind> kinds;
+            for (const std::size_t j : others) {
+                const long k = j == i ? -1 : key(part.places[i], part.normals[i], part.places[j], part.normals[j]);
+                if (k < 0) continue;
+                const std::size_t begin = starts_[static_cast<std::size_t>(k)], end = starts_[static_cast<std::size_t>(k) + 1];
+                if (begin < end) kinds.push_back({begin, end, j});
+            }
+            std::stable_sort(kinds.begin(), kinds.end(),
+                             [](const Kind& a, const Kind& b) { return a.end - a.begin < b.end - b.begin; });
+            std::size_t seen = 0;
+            for (const auto& [begin, end, j] : kinds) {
+                if (seen > most_entries) break;
+                seen += end - begin;
+                const Vector3d d = part.places[j] - part.places[i];
+                const double mine = std::atan2(axes.col(1).dot(d), axes.col(0).dot(d)) / (2 * pi) * turns;
+                const auto weight = static_cast<float>(1 / std::sqrt(static_cast<double>(end - begin)));
+                for (std::size_t e = begin; e < end; ++e) {
+                    const double turn = entries_[e].angle * (turns / 65536.0) - mine + turns;
+                    int bin = static_cast<int>(turn + 0.5);
+                    if (bin >= turns) bin -= turns;
+                    if (bin >= turns) bin -= turns;
+                    votes[entries_[e].reference * static_cast<std::size_t>(turns) + static_cast<std::size_t>(bin)] += weight;
+                }
+            }
+            // The best turn of each point of the whole (with its neighbours' votes), then the best points.
+            struct Best {
+                float votes;
+                std::uint32_t reference;
+                double turn;
+            };
+            std::vector<Best> best;
+            best.reserve(whole);
+            for (std::size_t p = 0; p < whole; ++p) {
+                const float* v = &votes[p * turns];
+                float most = 0;
+                int at = 0;
+                for (int b = 0; b < turns; ++b) {
+                    const float sum = v[b] + 0.5F * (v[(b + 1) % turns] + v[(b + turns - 1) % turns]);
+                    if (sum > most) most = sum, at = b;
+                }
+                const float before = v[(at + turns - 1) % turns], after = v[(at + 1) % turns];
+                const double shift = v[at] + before + after > 0 ? double(after - before) / double(v[at] + before + after) : 0;
+                if (most > 0) best.push_back({most, static_cast<std::uint32_t>(p), at + shift});
+            }
+            const auto better = [](const Best& a, const Best& b) {
+                return a.votes != b.votes ? a.votes > b.votes : a.reference < b.reference;
+            };
+            const std::size_t take = std::min(best.size(), static_cast<std::size_t>(kept));
+            std::partial_sort(best.begin(), best.begin() + static_cast<long>(take), best.end(), better);
+            for (std::size_t k = 0; k < take; ++k) {
+                const double angle = 2 * pi * best[k].turn / turns;
+                Motion motion;
+                motion.turn = frame(points_.normals[best[k].reference]) *
+                              Eigen::AngleAxisd(angle, Vector3d::UnitZ()).toRotationMatrix() * axes.transpose();
+                motion.shift = points_.places[best[k].reference] - motion.turn * part.places[i];
+                found[r].push_back({motion, best[k].votes});
+            }
+        },
+        1);
+    std::vector<VotedMotion> all;
+    for (auto& list : found) all.insert(all.end(), list.begin(), list.end());
+    return all;
+}
+
+}  // namespace ostraka

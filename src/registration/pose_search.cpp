@@ -1,0 +1,435 @@
+#include "ostraka/registration/pose_search.h"
+
+#include "nearest_grid.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/core/text.h"
+#include "ostraka/geom/eigen.h"
+#include "ostraka/registration/pair_votes.h"
+#include "ostraka/registration/part_alignment.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+namespace ostraka {
+
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr double scale_step = 1.0 / 12;
+// Places that differ by less are one: radians, shares of the part's size, logarithm of the ratio.
+constexpr double angle_apart = pi / 15, length_apart = 0.1, scale_apart = 0.15;
+
+/// Middle and size of a cloud of points: three times the root mean square distance from the middle, near its diameter.
+struct Extent {
+    Vector3d middle = Vector3d::Zero();
+    double size = 0;
+};
+
+Extent extent_of(const SurfacePoints& points) {
+    Extent extent;
+    const auto count = static_cast<double>(points.size());
+    for (const Vector3d& p : points.places) extent.middle += p / count;
+    for (const Vector3d& p : points.places) extent.size += (p - extent.middle).squaredNorm() / count;
+    extent.size = 3 * std::sqrt(extent.size);
+    return extent;
+}
+
+/// At most `count` of the points, evenly chosen.
+SurfacePoints thinned(const SurfacePoints& points, std::size_t count) {
+    if (points.size() <= count) return points;
+    SurfacePoints some;
+    some.spacing = points.spacing;
+    for (std::size_t k = 0; k < count; ++k) {
+        some.places.push_back(points.places[k * points.size() / count]);
+        some.normals.push_back(points.normals[k * points.size() / count]);
+    }
+    return some;
+}
+
+/// How near is near, on a logarithmic scale.
+struct Nearness {
+    double low, high;
+    explicit Nearness(double tolerance) : low(0.25 * tolerance), high(2.5 * tolerance) {}
+    [[nodiscard]] double operator()(double distance) const {
+        return distance >= high ? 0 : distance <= low ? 1 : std::log(high / distance) / std::log(high / low);
+    }
+};
+
+double score_on(const detail::NearestGrid& grid, const SurfacePoints& part, const Motion& pose, const Nearness& near) {
+    double sum = 0;
+    for (std::size_t i = 0; i < part.size(); ++i) {
+        const Vector3d p = pose(part.places[i]), n = pose.turn * part.normals[i];
+        const int j = grid.find(p, n);
+        if (j < 0) continue;
+        const auto k = static_cast<std::size_t>(j);
+        const Vector3d& m = grid.points().normals[k];
+        const Vector3d d = p - grid.points().places[k];
+        // The distance from the tangent plane, unless the point is off to the side: beyond a border.
+        const double off = d.dot(m), aside = (d - off * m).norm();
+        sum += near(std::hypot(off, std::max(0.0, aside - grid.points().spacing))) * std::clamp(2 * n.dot(m) - 1, 0.0, 1.0);
+    }
+    return sum / static_cast<double>(part.size());
+}
+
+/// Iterative closest points, point to plane, on the grid; with `scale` that as well.
+Motion refined_on(const detail::NearestGrid& grid, const SurfacePoints& part, Motion pose, double tolerance, int rounds,
+                  bool scale) {
+    const int n = scale ? 7 : 6;
+    for (int round = 0; round < rounds; ++round) {
+        const double t = static_cast<double>(round) / std::max(1, rounds - 1);
+        const double reach = std::pow(grid.reach(), 1 - t) * std::pow(std::min(grid.reach(), 1.5 * tolerance), t);
+        const Vector3d centre = pose(Vector3d::Zero());
+        Eigen::Matrix<double, 7, 7> m = Eigen::Matrix<double, 7, 7>::Zero();
+        Eigen::Matrix<double, 7, 1> r = Eigen::Matrix<double, 7, 1>::Zero();
+        const double unit = grid.reach();
+        for (std::size_t i = 0; i < part.size(); ++i) {
+            const Vector3d p = pose(part.places[i]), normal = pose.turn * part.normals[i];
+            const int j = grid.find(p, normal);
+            if (j < 0) continue;
+            const auto k = static_cast<std::size_t>(j);
+            const Vector3d& to = grid.points().normals[k];
+            const double off = to.dot(grid.points().places[k] - p), ratio = (grid.points().places[k] - p).norm() / reach;
+            if (ratio >= 1 || normal.dot(to) < 0.5) continue;
+            const double weight = (1 - ratio * ratio) * (1 - ratio * ratio);
+            const Vector3d arm = (p - centre) / unit;
+            Eigen::Matrix<double, 7, 1> row;
+            row << arm.cross(to), to, arm.dot(to);
+            m += weight * row * row.transpose();
+            r += weight * off / unit * row;
+        }
+        m.diagonal().array() += 1e-6 * m.trace() + 1e-30;
+        const Eigen::VectorXd x = m.topLeftCorner(n, n).ldlt().solve(r.head(n));
+        Motion move;
+        const Vector3d w = x.head<3>();
+        const double angle = std::min(w.norm(), 0.5);
+        if (angle > 0) move.turn = Eigen::AngleAxisd(angle, w.normalized()).toRotationMatrix();
+        if (scale) move.scale = std::exp(std::clamp(x[6], -0.05, 0.05));
+        move.shift = centre + unit * x.segment<3>(3) - move.scale * (move.turn * centre);
+        pose = move.after(pose);
+    }
+    return pose;
+}
+
+struct Proposal {
+    Motion pose;  ///< of the part, made as small as the whole's scale asks, onto the whole as it is
+    double scale = 1, score = 0;
+};
+
+double angle_between(const Motion& a, const Motion& b) {
+    return std::acos(std::clamp(((a.turn.transpose() * b.turn).trace() - 1) / 2, -1.0, 1.0));
+}
+
+// How often the best place was the right one among pieces broken off objects, off others of their class and off strangers
+// (ostraka_experiments pose-search; doc/pose-search.md), by logistic regression on the margin and the score.
+constexpr double confidence_at_rest = -6.5, confidence_of_margin = 14, confidence_of_score = 6, most_margin = 3;
+
+}  // namespace
+
+struct PoseSearch::State {
+    const SurfaceSearch& whole;
+    PoseSearchOptions options;
+    double spacing = 0, radius = 0;
+    SurfacePoints fine;
+    std::unique_ptr<detail::NearestGrid> grid;
+    std::unique_ptr<PairTable> table;
+
+    State(const SurfaceSearch& search, const PoseSearchOptions& given) : whole(search), options(given) {}
+
+    [[nodiscard]] std::vector<double> scales(double least, double most) const {
+        if (!(most > least * (1 + 1e-9))) return {least};
+        const int steps = std::max(1, static_cast<int>(std::ceil(std::log(most / least) / std::log(1 + scale_step))));
+        std::vector<double> list;
+        for (int k = 0; k <= steps; ++k) list.push_back(least * std::pow(most / least, static_cast<double>(k) / steps));
+        return list;
+    }
+
+    /// The part's points in its own unit, as dense as the whole's, about its middle.
+    [[nodiscard]] SurfacePoints points_of(const Mesh& part, const std::vector<bool>& of_part, double scale) const {
+        constexpr double least = 300;
+        const double own = std::sqrt(0.7 * marked_area(part, of_part) / least);
+        return spread_points(part, of_part, std::min(spacing * scale, own), radius * scale, options.seed);
+    }
+
+    void propose(const SurfacePoints& points, const Extent& extent, double scale, bool free, std::vector<Proposal>& all) const {
+        constexpr std::size_t refined = 300, judged = 300;
+        SurfacePoints small = thinned(points, 1500);
+        small.spacing /= scale;
+        for (Vector3d& p : small.places) p = (p - extent.middle) / scale;
+        const SurfacePoints some = thinned(small, judged);
+        const double tolerance = options.tolerance * extent.size / scale;
+        const Nearness near(tolerance);
+        const auto voted = table->vote(small, options.references, options.partners, 8, options.seed);
+        std::vector<std::pair<double, std::size_t>> order(voted.size());
+        const Nearness wide(2 * tolerance);
+        parallel_for(
+            voted.size(),
+            [&](std::size_t i) {
+                order[i] = {-score_on(*grid, some, voted[i].motion, wide), i};
+            },
+            16);
+        std::sort(order.begin(), order.end());
+        if (order.size() > refined) order.resize(refined);
+        const std::size_t first = all.size();
+        all.resize(first + order.size());
+        parallel_for(
+            order.size(),
+            [&](std::size_t k) {
+                Proposal& one = all[first + k];
+                one.pose = refined_on(*grid, some, voted[order[k].second].motion, tolerance, 14, free);
+                one.scale = scale / one.pose.scale;
+                one.score = score_on(*grid, some, one.pose, near);
+            },
+            8);
+    }
+
+    /// Whether two places of the part are really different ones.
+    [[nodiscard]] static bool differ(const Motion& a, const Motion& b, const Vector3d& middle, double size) {
+        return angle_between(a, b) > angle_apart || (a(middle) - b(middle)).norm() > length_apart * size ||
+               std::abs(std::log(a.scale / b.scale)) > scale_apart;
+    }
+
+    void judge(PoseCandidate& one, const SurfacePoints& points, double tolerance, double scale) const {
+        const Nearness near(tolerance / scale);
+        struct Sample {
+            double score = 0, squared = -1;
+            bool inside = false;
+        };
+        std::vector<Sample> samples(points.size());
+        Motion onto = one.pose;
+        onto.scale /= scale;
+        onto.shift /= scale;
+        parallel_for(points.size(), [&](std::size_t i) {
+            const Vector3d p = onto(points.places[i]), n = onto.turn * points.normals[i];
+            const auto hit = whole.closest_compatible(point_of(p), vector_of(n), 0.5, 2.5 * tolerance / scale);
+            if (hit) {
+                samples[i].score = near(hit->distance);
+                if (hit->distance < tolerance / scale) samples[i].squared = hit->distance * hit->distance;
+            }
+            if (samples[i].squared < 0) {
+                const SurfaceHit any = whole.closest(point_of(p));
+                samples[i].inside =
+                    any.distance > tolerance / scale && eigen(whole.normal(any.face)).dot(p - eigen(any.point)) < 0;
+            }
+        });
+        double squares = 0;
+        std::size_t on = 0, inside = 0;
+        one.score = 0;
+        for (const Sample& sample : samples) {
+            one.score += sample.score / static_cast<double>(samples.size());
+            if (sample.squared >= 0) squares += sample.squared, ++on;
+            if (sample.inside) ++inside;
+        }
+        one.share = static_cast<double>(on) / static_cast<double>(samples.size());
+        one.inside = static_cast<double>(inside) / static_cast<double>(samples.size());
+        one.residual = on > 0 ? scale * std::sqrt(squares / static_cast<double>(on)) : 0;
+    }
+
+    /// Laid onto the faces, if that is better.
+    void settle(const Mesh& part, const std::vector<bool>& of_part, const SurfacePoints& judges, double tolerance,
+                PoseCandidate& one) const {
+        PartAlignmentOptions how;
+        how.samples = 500;
+        how.iterations = 12;
+        how.angle = 95;  // faces of a rough scan lean any way; only the other side of a wall must stay out
+        how.reach = std::min(10.0, 2.5 * tolerance / one.scale / whole.diagonal());
+        Motion start = one.pose;
+        start.scale /= one.scale;
+        start.shift /= one.scale;
+        PoseCandidate other = one;
+        const PartAlignment aligned = align_part(part, of_part, whole, start, {}, how);
+        other.pose.turn = aligned.pose.turn;
+        other.pose.shift = one.scale * aligned.pose.shift;
+        judge(other, judges, tolerance, one.scale);
+        if (other.score > one.score) one = other;
+    }
+
+    /// What the shape of the part leaves open and the whole bears out from this place on: in the part's frame. `ways`, if asked
+    /// for, are on the scaled whole.
+    [[nodiscard]] Freedom open_freedom(const SurfacePoints& points, const PoseCandidate& at, double tolerance,
+                                       std::vector<FreeWay>* ways) const {
+        constexpr double least_turn = pi / 12;
+        const SurfacePoints some = thinned(points, 300);
+        const Extent extent = extent_of(points);
+        const Nearness near(tolerance / at.scale);
+        Motion onto = at.pose;
+        onto.scale /= at.scale;
+        onto.shift /= at.scale;
+        // Told by the whole's points under the part: those are many, and smoother than what a scan of a sherd is.
+        std::vector<Vector3d> places, normals;
+        const Motion back = onto.inverse();
+        for (std::size_t i = 0; i < some.size(); ++i) {
+            const Vector3d p = onto(some.places[i]);
+            const int j = grid->find(p, onto.turn * some.normals[i]);
+            if (j < 0 || (grid->points().places[static_cast<std::size_t>(j)] - p).norm() > 0.5 * grid->reach()) continue;
+            places.push_back(back(grid->points().places[static_cast<std::size_t>(j)]));
+            normals.push_back(back.turn * grid->points().normals[static_cast<std::size_t>(j)]);
+        }
+        Freedom freedom;
+        // A flat bowl is nearly a plane and nearly a ball: what it leaves open at all is told by looking closer.
+        for (const double slide : {0.1, 0.06, 0.035}) {
+            freedom = freedom_of(places, normals, slide);
+            if (freedom.kind != FreedomKind::more) break;
+        }
+        if (freedom.kind == FreedomKind::none || freedom.kind == FreedomKind::more) return freedom;
+        const double missing = 1 - score_on(*grid, some, onto, near);
+        const auto list = freedom.ways(pi, whole.diagonal() * at.scale, 72);
+        bool any_turn = false, any_shift = false;
+        for (const auto& way : list) {
+            double reached = 0;
+            for (const Freedom::Step& step : way) {
+                if (1 - score_on(*grid, some, onto.after(step.motion), near) > 1.2 * missing + 0.03) break;
+                reached = step.amount;
+            }
+            const bool turns = way.front().turns;
+            if (std::abs(reached) >= (turns ? least_turn : length_apart * extent.size)) (turns ? any_turn : any_shift) = true;
+            if (ways == nullptr) continue;
+            // Ways come for one sign, then for the other.
+            const auto number = static_cast<std::size_t>(&way - list.data());
+            if (number >= list.size() / 2) {
+                (*ways)[number - list.size() / 2].least = reached;
+            } else {
+                FreeWay& one = ways->emplace_back();
+                one.turns = turns;
+                one.most = reached;
+                one.point = at.pose(freedom.point);
+                one.direction = at.pose.turn * (turns ? Vector3d(Eigen::AngleAxisd(way.front().motion.turn).axis())
+                                                      : Vector3d(way.front().motion.shift.normalized()));
+            }
+        }
+        if (freedom.kind == FreedomKind::tube && any_turn != any_shift)
+            freedom.kind = any_turn ? FreedomKind::turn : FreedomKind::shift;
+        if (!any_turn && !any_shift) freedom.kind = FreedomKind::none;
+        if (ways != nullptr)
+            std::erase_if(*ways, [&](const FreeWay& one) {
+                return one.most - one.least < (one.turns ? least_turn : length_apart * extent.size);
+            });
+        return freedom;
+    }
+
+    void decide(const SurfacePoints& points, double tolerance, PoseSearchResult& result) const;
+};
+
+void PoseSearch::State::decide(const SurfacePoints& points, double tolerance, PoseSearchResult& result) const {
+    const PoseCandidate& best = result.candidates.front();
+    const Freedom open = open_freedom(points, best, tolerance, &result.ways);
+    result.freedom = open;
+    result.freedom.point = best.pose(open.point);
+    result.freedom.direction = best.pose.turn * open.direction;
+    const bool alone = result.candidates.size() < 2;
+    const double second = alone ? 0 : result.candidates[1].score;
+    result.margin = std::min(most_margin, std::log((1 - second + 0.02) / (1 - best.score + 0.02)));
+    const double rated = confidence_at_rest + confidence_of_margin * result.margin + confidence_of_score * best.score;
+    result.confidence = 1 / (1 + std::exp(-rated));
+    const auto per_cent = [](double share) { return digits(100 * share, 3) + " %"; };
+    if (open.kind == FreedomKind::more || points.size() < 30) {
+        result.confidence = 0;
+        result.reason = "it has too little shape: it lies as well nearly anywhere";
+    } else if (result.confidence >= options.least_confidence) {
+        result.decided = true;
+    } else if (!alone && result.margin < 0.1) {
+        const PoseCandidate& other = result.candidates[1];
+        result.reason = "it lies as well in another place, turned by " +
+                        digits(angle_between(best.pose, other.pose) * 180 / pi, 3) + " degrees: " + per_cent(best.share) +
+                        " of it within the tolerance here, " + per_cent(other.share) + " there";
+    } else {
+        result.reason = "the best place explains " + per_cent(best.share) + " of it (score " + digits(best.score, 3) +
+                        "), another one nearly as much (score " + digits(second, 3) + "): too little to tell";
+    }
+}
+
+PoseSearch::~PoseSearch() = default;
+PoseSearch::PoseSearch(PoseSearch&&) noexcept = default;
+
+PoseSearch::PoseSearch(const SurfaceSearch& whole, const PoseSearchOptions& options) {
+    check_options(options, "pose search");
+    if (options.least_scale > options.most_scale)
+        fail_usage("the smallest scale searched is larger than the largest", "exchange them");
+    state_ = std::make_unique<State>(whole, options);
+    State& s = *state_;
+    const double area = surface_area(whole.mesh());
+    if (!(area > 0)) fail_input("template", "has no area, so that nothing can be laid onto it", "is it the right file?");
+    s.spacing = std::sqrt(0.7 * area / options.points);
+    s.radius = s.spacing;
+    SurfacePoints coarse = spread_points(whole.mesh(), {}, s.spacing, s.radius, options.seed);
+    s.fine = spread_points(whole.mesh(), {}, s.spacing / 2, s.radius, options.seed);
+    s.grid = std::make_unique<detail::NearestGrid>(s.fine, 0.06 * whole.diagonal());
+    if (coarse.size() > 4096) coarse = thinned(coarse, 4096);
+    s.table = std::make_unique<PairTable>(std::move(coarse), whole.diagonal(), 0.03 * whole.diagonal());
+}
+
+PoseSearchResult PoseSearch::find(const Mesh& part, const std::vector<bool>& of_part) const {
+    return find(part, of_part, state_->options.least_scale, state_->options.most_scale);
+}
+
+PoseSearchResult PoseSearch::find(const Mesh& part, const std::vector<bool>& of_part, double least_scale,
+                                  double most_scale) const {
+    const State& s = *state_;
+    if (!(least_scale > 0 && most_scale >= least_scale)) fail_usage("the range of scales is empty", "give two scales above 0");
+    if (!of_part.empty() && of_part.size() != part.number_of_faces())
+        fail_usage("there are " + std::to_string(of_part.size()) + " marks for " + std::to_string(part.number_of_faces()) +
+                   " faces");
+    if (!(marked_area(part, of_part) > 0))
+        fail_input("fragment", "has no area that could be laid onto a template", "look at its faces and facets");
+    const auto scales = s.scales(least_scale, most_scale);
+    const bool free = scales.size() > 1;
+
+    std::vector<Proposal> all;
+    const SurfacePoints middling = s.points_of(part, of_part, std::sqrt(least_scale * most_scale));
+    const Extent extent = extent_of(middling);
+    for (const double scale : scales) {
+        if (scales.size() == 1) s.propose(middling, extent, scale, free, all);
+        else s.propose(s.points_of(part, of_part, scale), extent, scale, free, all);
+    }
+    std::stable_sort(all.begin(), all.end(), [](const Proposal& a, const Proposal& b) { return a.score > b.score; });
+
+    // Proposals are about the part's middle and in the whole's unit: back to the part's file, onto the scaled whole.
+    const auto in_file = [&](const Motion& proposal, double scale) {
+        Motion pose;
+        pose.turn = proposal.turn;
+        pose.shift = scale * proposal.shift - pose.turn * extent.middle;
+        return pose;
+    };
+    const auto really_different = [&](const PoseCandidate& a, const PoseCandidate& b) {
+        Motion at = a.pose, bt = b.pose;
+        // Compared on the whole as it is.
+        at.scale /= a.scale, at.shift /= a.scale, bt.scale /= b.scale, bt.shift /= b.scale;
+        return State::differ(at, bt, extent.middle, extent.size / std::sqrt(a.scale * b.scale));
+    };
+    const double tolerance = s.options.tolerance * extent.size;
+    const auto pose_of = [&](const Proposal& one) {
+        return PoseCandidate{in_file(one.pose, one.scale), one.scale, one.score, 0, 0, 0};
+    };
+    // What the part's shape leaves open, as far as the place proposed first bears it out: those places are one.
+    const Freedom open = s.open_freedom(middling, pose_of(all.front()), tolerance, nullptr);
+    const auto another = [&](const PoseCandidate& one, const PoseCandidate& than) {
+        if (!really_different(one, than)) return false;
+        if (open.kind == FreedomKind::none || std::abs(std::log(one.scale / than.scale)) > scale_apart) return true;
+        return !open.contains(than.pose.inverse().after(one.pose), extent.middle, angle_apart, length_apart * extent.size);
+    };
+    const auto keep_others = [&](std::vector<PoseCandidate>& list, const PoseCandidate& one) {
+        if (std::all_of(list.begin(), list.end(), [&](const auto& other) { return another(one, other); })) list.push_back(one);
+    };
+    PoseSearchResult result;
+    std::vector<PoseCandidate> kept;
+    for (const Proposal& proposal : all)
+        if (kept.size() < static_cast<std::size_t>(s.options.candidates)) keep_others(kept, pose_of(proposal));
+    const SurfacePoints judges = thinned(middling, 800);
+    const auto sort_kept = [&] {
+        std::stable_sort(kept.begin(), kept.end(), [](const auto& a, const auto& b) { return a.score > b.score; });
+    };
+    for (PoseCandidate& one : kept) s.judge(one, judges, tolerance, one.scale);
+    sort_kept();
+    for (std::size_t k = 0; k < std::min<std::size_t>(4, kept.size()); ++k) s.settle(part, of_part, judges, tolerance, kept[k]);
+    sort_kept();
+    for (const PoseCandidate& one : kept) keep_others(result.candidates, one);
+    s.decide(middling, tolerance, result);
+    return result;
+}
+
+}  // namespace ostraka
