@@ -2,6 +2,7 @@
 
 #include "ostraka/annotation/annotation.h"
 #include "ostraka/core/mesh.h"
+#include "ostraka/registration/pose_search.h"
 
 #include <cstdint>
 #include <string>
@@ -125,5 +126,20 @@ struct MouldExperimentOptions {
     std::uint64_t vertices = 10000;
 };
 void moulds(const MouldExperimentOptions& options);
+
+/// Pieces broken off objects, and where a search lays them.
+struct PoseSearchExperiment {
+    std::vector<std::string> wholes;     ///< mesh files, or made:NAME; pieces of the object itself
+    std::vector<std::string> members;    ///< TEMPLATE=MEMBER: pieces of another member of the class, both in one frame
+    std::vector<std::string> strangers;  ///< TEMPLATE=OTHER: pieces that are of no such object
+    std::vector<double> shares{0.1, 0.25, 0.5}, noises{0.001, 0.005};
+    double erosion = 0.005;
+    int pieces = 10;
+    bool corresponding = true;  ///< meshes with the same number of vertices are in correspondence
+    std::uint64_t vertices = 25000;
+    PoseSearchOptions search;
+    std::string csv;
+};
+void pose_search(const PoseSearchExperiment& options);
 
 }  // namespace ostraka::experiments

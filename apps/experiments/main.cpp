@@ -102,6 +102,20 @@ int main(int argc, char** argv) {
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();
 
+    experiments::PoseSearchExperiment poses;
+    CLI::App* pose_command = tool.add_subcommand("pose-search", "pieces broken off objects, and where a search lays them");
+    pose_command->add_option("--whole", poses.wholes, "mesh files, or made:NAME")->delimiter(',');
+    pose_command->add_option("--member", poses.members, "TEMPLATE=MEMBER: pieces of another member of the class")->delimiter(',');
+    pose_command->add_option("--stranger", poses.strangers, "TEMPLATE=OTHER: pieces of no such object")->delimiter(',');
+    pose_command->add_option("--shares", poses.shares, "of the surface")->delimiter(',');
+    pose_command->add_option("--noises", poses.noises, "shares of the diagonal")->delimiter(',');
+    pose_command->add_option("--erosion", poses.erosion, "share of the diagonal")->capture_default_str();
+    pose_command->add_option("--pieces", poses.pieces, "of each kind")->capture_default_str();
+    pose_command->add_option("--vertices", poses.vertices, "of made objects")->capture_default_str();
+    pose_command->add_option("--least-scale", poses.search.least_scale, "of the template")->capture_default_str();
+    pose_command->add_option("--most-scale", poses.search.most_scale, "of the template")->capture_default_str();
+    pose_command->add_option("--csv", poses.csv, "raw rows");
+
     experiments::MouldExperimentOptions heads;
     CLI::App* mould_command = tool.add_subcommand("moulds", "moulds of made heads and of mixes of faces, found again");
     mould_command->add_option("output", heads.output, "folder for tables and plots")->capture_default_str();
@@ -208,6 +222,7 @@ int main(int argc, char** argv) {
         if (known_command->parsed()) experiments::class_correspondence(known);
         if (class_command->parsed()) experiments::class_membership(classes);
         if (mould_command->parsed()) experiments::moulds(heads);
+        if (pose_command->parsed()) experiments::pose_search(poses);
         for (const auto& [command, run] : semantic_commands)
             if (command->parsed()) run(semantic);
         return 0;

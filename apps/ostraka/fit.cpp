@@ -147,6 +147,11 @@ private:
         transaction.commit();
     }
 
+    static std::string searched(const PoseSearchResult& one) {
+        return "found, confidence " + number(one.confidence, 3) +
+               (one.freedom.kind == FreedomKind::none ? "" : "; open: " + one.freedom.text());
+    }
+
     static void print(const Session& session, const Provenance& provenance, const AssemblyNames& names,
                       const Reconstruction& result) {
         if (session.json) {
@@ -167,7 +172,10 @@ private:
                 used += landmark.used ? 1 : 0;
                 if (!landmark.used && one.problem.empty()) wrong += (wrong.empty() ? "" : ", ") + printable(landmark.name);
             }
-            rows.push_back({printable(names.fragments[k]), one.problem.empty() ? "placed" : "left out",
+            rows.push_back({printable(names.fragments[k]),
+                            !one.problem.empty()                                           ? "left out"
+                            : k < result.searched.size() && result.searched[k].has_value() ? searched(*result.searched[k])
+                                                                                           : "placed",
                             std::to_string(used) + " of " + std::to_string(one.landmarks.size()),
                             one.problem.empty() ? number(one.residual, 3) : "-",
                             one.own_scale > 0 ? number(one.own_scale, 4) : "-", wrong});

@@ -39,6 +39,40 @@ JsonValue placement_of(const FragmentPlacement& one, JsonAllocator& allocator) {
     return entry;
 }
 
+/// What a search had to say of a fragment's pose.
+JsonValue search_of(const PoseSearchResult& one, JsonAllocator& allocator) {
+    JsonValue entry(rapidjson::kObjectType), freedom(rapidjson::kObjectType), ways(rapidjson::kArrayType);
+    const auto triple = [&](const Eigen::Vector3d& v) {
+        JsonValue list(rapidjson::kArrayType);
+        for (int i = 0; i < 3; ++i) list.PushBack(v[i], allocator);
+        return list;
+    };
+    add_member(entry, "decided", JsonValue(one.decided), allocator);
+    add_member(entry, "confidence", JsonValue(one.confidence), allocator);
+    add_member(entry, "margin", JsonValue(one.margin), allocator);
+    if (!one.candidates.empty()) {
+        add_member(entry, "score", JsonValue(one.candidates.front().score), allocator);
+        add_member(entry, "share", JsonValue(one.candidates.front().share), allocator);
+    }
+    if (!one.reason.empty()) add_member(entry, "reason", one.reason, allocator);
+    add_member(freedom, "kind", to_string(one.freedom.kind), allocator);
+    if (one.freedom.kind != FreedomKind::none) {
+        add_member(freedom, "text", one.freedom.text(), allocator);
+        add_member(freedom, "point", triple(one.freedom.point), allocator);
+        add_member(freedom, "direction", triple(one.freedom.direction), allocator);
+    }
+    for (const FreeWay& way : one.ways) {
+        JsonValue item(rapidjson::kObjectType);
+        add_member(item, "turns", JsonValue(way.turns), allocator);
+        add_member(item, "least", JsonValue(way.least), allocator);
+        add_member(item, "most", JsonValue(way.most), allocator);
+        ways.PushBack(item, allocator);
+    }
+    add_member(freedom, "ways", std::move(ways), allocator);
+    add_member(entry, "freedom", std::move(freedom), allocator);
+    return entry;
+}
+
 JsonValue constraint_of(const ConstraintReport& constraint, JsonAllocator& allocator) {
     JsonValue entry(rapidjson::kObjectType), deviations(rapidjson::kArrayType);
     add_member(entry, "id", JsonValue(constraint.id), allocator);
@@ -74,6 +108,10 @@ JsonValue assembly_to_json(const Reconstruction& result, const AssemblyNames& na
         JsonValue entry = placement_of(result.placement.fragments[k], allocator), matches(rapidjson::kArrayType),
                   notes(rapidjson::kArrayType);
         add_member(entry, "name", k < names.fragments.size() ? names.fragments[k] : std::to_string(k + 1), allocator);
+        const bool searched = k < result.searched.size() && result.searched[k].has_value();
+        if (searched || result.placement.fragments[k].problem.empty())
+            add_member(entry, "source", searched ? "search" : "landmarks", allocator);
+        if (searched) add_member(entry, "search", search_of(*result.searched[k], allocator), allocator);
         if (k < result.annotations.size())
             for (const AnnotationMatch& match : result.annotations[k]) {
                 JsonValue item(rapidjson::kObjectType);

@@ -86,6 +86,8 @@ private:
         for (std::size_t k = 0; k < fragments_.size(); ++k)
             pairs.push_back(common_landmarks(mesh_, set_, fragments_[k]->mesh, fragments_[k]->annotations, &result_.notes[k]));
         result_.placement = place_by_landmarks(pairs, options_.placement);
+        result_.searched =
+            place_by_search(mesh_, fragments_, options_.search, result_.placement.scale, result_.placement.fragments);
     }
 
     void refine() {
@@ -101,16 +103,18 @@ private:
             std::vector<Anchor> anchors;
             const auto pairs = common_landmarks(mesh_, set_, fragment.mesh, fragment.annotations);
             for (std::size_t i = 0; i < pairs.size(); ++i)
-                if (placement.landmarks[i].used) anchors.push_back({pairs[i].on_fragment, on_scaled(pairs[i])});
+                if (i < placement.landmarks.size() && placement.landmarks[i].used)
+                    anchors.push_back({pairs[i].on_fragment, on_scaled(pairs[i])});
             result_.alignment[k] = align_part(fragment.mesh, counts, whole, placement.pose, anchors, options_.alignment);
             placement.pose = result_.alignment[k].pose;
             double squares = 0;
-            for (std::size_t i = 0; i < pairs.size(); ++i) {
+            for (std::size_t i = 0; i < std::min(pairs.size(), placement.landmarks.size()); ++i) {
                 LandmarkResidual& landmark = placement.landmarks[i];
                 landmark.distance = (placement.pose(pairs[i].on_fragment) - on_scaled(pairs[i])).norm();
                 if (landmark.used) squares += landmark.distance * landmark.distance;
             }
-            placement.residual = std::sqrt(squares / static_cast<double>(anchors.size()));
+            placement.residual =
+                anchors.empty() ? result_.alignment[k].residual : std::sqrt(squares / static_cast<double>(anchors.size()));
         }
     }
 

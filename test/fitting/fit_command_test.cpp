@@ -96,7 +96,7 @@ TEST_F(FitCommand, WrongWordsAndFilesAreSaid) {
                           " --annotations-out " + quoted(scratch / "base.ant.json"))
                   .code,
               0);
-    const auto two = fit(quoted(scratch / "base.ply"));
+    const auto two = fit(quoted(scratch / "base.ply") + " --search never");
     EXPECT_EQ(two.code, 3);
     EXPECT_NE(two.out.find("cannot decide"), std::string::npos) << two.out;
     EXPECT_NE(two.out.find("landmark"), std::string::npos) << two.out;

@@ -159,7 +159,9 @@ TEST(Fit, WithoutLandmarksItCannotDecide) {
     const AnnotationSet set = landmarks_of(mesh);
     Cut one = cut(mesh, set, Point(0, 0, 1.8), {});
     one.fragment.annotations.annotations.clear();
-    const Reconstruction result = reconstruct(mesh, set, {}, {&one.fragment});
+    ReconstructOptions never;
+    never.search.search = "never";
+    const Reconstruction result = reconstruct(mesh, set, {}, {&one.fragment}, never);
     EXPECT_EQ(result.verdict, Compatibility::undecided);
     EXPECT_NE(result.undecided, "");
     ASSERT_EQ(result.objections.size(), 1U);

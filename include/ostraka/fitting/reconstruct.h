@@ -3,6 +3,7 @@
 
 #include "ostraka/fitting/complete.h"
 #include "ostraka/fitting/placement.h"
+#include "ostraka/fitting/search_placement.h"
 #include "ostraka/fitting/shape_prior.h"
 #include "ostraka/registration/part_alignment.h"
 #include "ostraka/semantic/deform.h"
@@ -13,6 +14,7 @@ namespace ostraka {
 
 struct ReconstructOptions {
     PlacementOptions placement;
+    SearchOptions search;
     bool refine = true;  ///< poses are refined by the surface, with the landmarks as anchors
     PartAlignmentOptions alignment;
     AnnotationMatchOptions annotations;
@@ -28,6 +30,7 @@ struct ReconstructOptions {
     template <class Visitor>
     void describe(Visitor& visit) {
         placement.describe(visit);
+        search.describe(visit);
         visit("refine", refine, "poses are refined by closest points of the surface, landmarks as anchors", Anything{});
         alignment.describe(visit);
         annotations.describe(visit);
@@ -67,6 +70,7 @@ std::string to_string(Compatibility compatibility);
 
 struct Reconstruction {
     CommonPlacement placement;
+    std::vector<std::optional<PoseSearchResult>> searched;  ///< of each fragment whose pose was searched
     std::vector<PartAlignment> alignment;                   ///< of each fragment placed, where poses were refined
     std::vector<std::vector<AnnotationMatch>> annotations;  ///< of each fragment
     std::vector<std::vector<std::string>> notes;            ///< of each fragment

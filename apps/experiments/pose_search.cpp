@@ -1,0 +1,184 @@
+// How often a search finds the place of a broken piece, and how often it says so rightly.
+#include "experiments.h"
+#include "report.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/file.h"
+#include "ostraka/geom/eigen.h"
+#include "ostraka/io/mesh_file.h"
+#include "ostraka/registration/part_alignment.h"
+#include "ostraka/registration/pose_search.h"
+#include "ostraka/shapes/fragments.h"
+#include "ostraka/shapes/make_mesh.h"
+#include "ostraka/stats/random.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <map>
+#include <numbers>
+#include <sstream>
+
+namespace ostraka::experiments {
+
+namespace {
+
+using Eigen::Vector3d;
+
+Mesh read_or_make(const std::string& name, std::uint64_t vertices, std::uint64_t seed) {
+    if (name.starts_with("made:")) {
+        MakeOptions options;
+        options.vertices = vertices;
+        options.seed = seed;
+        return make_mesh(made_object(name.substr(5)), options).mesh;
+    }
+    return read_mesh(name).mesh;
+}
+
+struct Case {
+    std::string name, whole, from;  ///< the whole, and what the piece is broken from
+    enum class Kind { same, member, stranger } kind = Kind::same;
+};
+
+/// How far a pose is from the truth: degrees, and the way of the piece's middle as per cent of the diagonal.
+struct PoseError {
+    double degrees = 180, percent = 100;
+};
+
+PoseError error_of(const Motion& found, const Motion& truth, const Vector3d& middle, double diagonal, const Freedom& freedom) {
+    // What the shape leaves open does not count: the turn about a line, where there is one.
+    const Motion between = found.after(truth.inverse());
+    const Vector3d there = truth(middle);
+    PoseError error{Eigen::AngleAxisd(between.turn).angle() * 180 / std::numbers::pi,
+                    100 * (between(there) - there).norm() / diagonal};
+    if (freedom.kind != FreedomKind::none && freedom.contains(between, there, 5 * std::numbers::pi / 180, 0.02 * diagonal))
+        error = {0, 0};
+    return error;
+}
+
+}  // namespace
+
+void pose_search(const PoseSearchExperiment& options) {
+    std::vector<Case> cases;
+    for (const std::string& name : options.wholes) cases.push_back({name, name, name, Case::Kind::same});
+    for (const std::string& pair : options.members) {
+        const auto at = pair.find('=');
+        if (at == std::string::npos) fail_usage("--member is '" + pair + "'", "give TEMPLATE=MEMBER");
+        cases.push_back({pair, pair.substr(0, at), pair.substr(at + 1), Case::Kind::member});
+    }
+    for (const std::string& pair : options.strangers) {
+        const auto at = pair.find('=');
+        if (at == std::string::npos) fail_usage("--stranger is '" + pair + "'", "give TEMPLATE=OTHER");
+        cases.push_back({pair, pair.substr(0, at), pair.substr(at + 1), Case::Kind::stranger});
+    }
+    std::ostringstream csv;
+    csv << "case,kind,share,noise,erosion,seed,degrees,percent,right,found,score,share_on,second,margin,confidence,decided,"
+           "freedom,"
+           "seconds,rank\n";
+    struct Count {
+        int all = 0, right = 0, found = 0, decided = 0, decided_right = 0;
+        double seconds = 0;
+    };
+    std::map<std::string, Count> table;
+    for (const Case& one : cases) {
+        const Mesh whole = read_or_make(one.whole, options.vertices, 1);
+        Mesh other = read_or_make(one.from, options.vertices, 2);
+        if (one.kind == Case::Kind::stranger) {
+            // As large as the whole, so that its size does not give it away.
+            const double ratio = std::sqrt(surface_area(whole) / surface_area(other));
+            for (const Vertex v : other.vertices()) other.point(v) = point_of(ratio * eigen(other.point(v)));
+        }
+        const double diagonal = box_diagonal(whole);
+        const SurfaceSearch surface(whole);
+        PoseSearchOptions how = options.search;
+        const Stopwatch building;
+        const PoseSearch search(surface, how);
+        std::cerr << one.name << ": prepared in " << building.seconds().processor << " s\n";
+        for (const double share : options.shares)
+            for (const double noise : options.noises)
+                for (int k = 0; k < options.pieces; ++k) {
+                    const auto seed = static_cast<std::uint64_t>(1 + k);
+                    Random random(seed, 77);
+                    const Mesh& source = one.kind == Case::Kind::same ? whole : other;
+                    const Point centre = source.point(Vertex(static_cast<Index>(random.below(source.number_of_vertices()))));
+                    BreakOptions breaking;
+                    breaking.share = share;
+                    breaking.noise = noise;
+                    breaking.erosion = options.erosion;
+                    breaking.seed = seed;
+                    BrokenPiece piece;
+                    try {
+                        piece = break_off(source, centre, breaking);
+                    } catch (const Error&) {
+                        continue;
+                    }
+                    Vector3d middle = Vector3d::Zero();
+                    double area = 0;
+                    for (const Face f : piece.mesh.faces()) {
+                        const double a = face_area(piece.mesh, f);
+                        middle += a * eigen(centroid(piece.mesh, f));
+                        area += a;
+                    }
+                    middle /= area;
+                    Motion truth = piece.pose;
+                    if (one.kind == Case::Kind::member) {
+                        if (whole.number_of_vertices() == other.number_of_vertices() && options.corresponding) {
+                            std::vector<Vector3d> from, to;
+                            for (const Vertex v : piece.mesh.vertices()) {
+                                from.push_back(eigen(piece.mesh.point(v)));
+                                to.push_back(eigen(whole.point(Vertex(piece.vertices[v]))));
+                            }
+                            truth = fit_motion(from, to);
+                        } else {
+                            PartAlignmentOptions aligning;
+                            aligning.samples = 600;
+                            aligning.iterations = 30;
+                            aligning.angle = 95;
+                            truth = align_part(piece.mesh, {}, surface, truth, {}, aligning).pose;
+                        }
+                    }
+                    const Stopwatch watch;
+                    const PoseSearchResult result = search.find(piece.mesh);
+                    const double seconds = watch.seconds().processor;
+                    const PoseCandidate& best = result.candidates.front();
+                    const PoseError error = error_of(best.pose, truth, middle, diagonal, result.freedom);
+                    const bool right = one.kind != Case::Kind::stranger &&
+                                       error.degrees < (one.kind == Case::Kind::member ? 15 : 5) &&
+                                       error.percent < (one.kind == Case::Kind::member ? 5 : 2);
+                    int rank = -1;
+                    for (std::size_t c = 0; c < result.candidates.size() && rank < 0; ++c) {
+                        const PoseError e = error_of(result.candidates[c].pose, truth, middle, diagonal, {});
+                        if (e.degrees < 15 && e.percent < 5) rank = static_cast<int>(c);
+                    }
+                    Count& count = table[one.name + " | " + format("%g", 100 * share) + " | " + format("%g", 100 * noise)];
+                    ++count.all;
+                    count.right += right ? 1 : 0;
+                    count.found += rank >= 0 ? 1 : 0;
+                    count.decided += result.decided ? 1 : 0;
+                    count.decided_right += result.decided && right ? 1 : 0;
+                    count.seconds += seconds;
+                    csv << one.name << ','
+                        << (one.kind == Case::Kind::same     ? "same"
+                            : one.kind == Case::Kind::member ? "member"
+                                                             : "stranger")
+                        << ',' << share << ',' << noise << ',' << options.erosion << ',' << seed << ',' << error.degrees << ','
+                        << error.percent << ',' << right << ',' << (rank >= 0) << ',' << best.score << ',' << best.share << ','
+                        << (result.candidates.size() > 1 ? result.candidates[1].score : 0) << ',' << result.margin << ','
+                        << result.confidence << ',' << result.decided << ',' << to_string(result.freedom.kind) << ',' << seconds
+                        << ',' << rank << '\n';
+                }
+    }
+    std::cout << "| piece of | % of the surface | noise % | pieces | right % | among the candidates % | decided % | of these "
+                 "right % | s "
+                 "each |\n|---|---|---|---|---|---|---|---|---|\n";
+    for (const auto& [name, count] : table)
+        std::cout << "| " << name << " | " << count.all << " | "
+                  << format("%.0f | %.0f | %.0f | %s | %.2f |\n", 100.0 * count.right / count.all,
+                            100.0 * count.found / count.all, 100.0 * count.decided / count.all,
+                            count.decided > 0 ? format("%.0f", 100.0 * count.decided_right / count.decided).c_str() : "-",
+                            count.seconds / count.all);
+    if (!options.csv.empty()) write_file(options.csv, csv.str());
+}
+
+}  // namespace ostraka::experiments

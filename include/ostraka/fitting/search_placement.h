@@ -1,0 +1,35 @@
+// Fragments that landmarks do not place, placed by a search (doc/pose-search.md).
+#pragma once
+
+#include "ostraka/fitting/fragment.h"
+#include "ostraka/fitting/placement.h"
+#include "ostraka/registration/pose_search.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace ostraka {
+
+struct SearchOptions {
+    std::string search = "auto";  ///< "auto": where a fragment has fewer than three landmarks; "always"; "never"
+    PoseSearchOptions poses;
+
+    template <class Visitor>
+    void describe(Visitor& visit) {
+        visit("search", search, "poses are searched without landmarks: auto is where a fragment has fewer than three",
+              Choices{"auto", "always", "never"});
+        poses.describe(visit);
+    }
+};
+
+/// Searches the poses of fragments that have fewer than three landmarks (of all, with "always") on the template and writes them
+/// into `placed`; one that cannot be decided keeps a `problem` that says why. `scale` is that of the landmarks where some
+/// fragment is placed by them; else it is searched in the range of the options, becomes the middle one of the fragments decided,
+/// and all are searched again with it. Breaks (`Facet::fracture`) do not count. The results, one a fragment: nothing where none
+/// was searched.
+std::vector<std::optional<PoseSearchResult>> place_by_search(const Mesh& mesh, const std::vector<const Fragment*>& fragments,
+                                                             const SearchOptions& options, double& scale,
+                                                             std::vector<FragmentPlacement>& placed);
+
+}  // namespace ostraka

@@ -1,0 +1,118 @@
+#include "ostraka/fitting/search_placement.h"
+
+#include "meshes.h"
+
+#include "ostraka/fitting/reconstruct.h"
+#include "ostraka/geom/eigen.h"
+#include "ostraka/shapes/fragments.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace ostraka {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Nothing of it looks like another part.
+Mesh potato() {
+    Mesh mesh = build_mesh(test::octahedron_sphere(5));
+    for (const Vertex v : mesh.vertices()) {
+        const Vector3d p = eigen(mesh.point(v));
+        const double r =
+            1 + 0.15 * std::sin(3 * p.x() + 1) * std::cos(2 * p.y()) + 0.1 * p.z() * p.x() + 0.05 * std::sin(7 * p.z());
+        mesh.point(v) = point_of(Vector3d(r * p.x(), 1.2 * r * p.y(), 1.8 * r * p.z()));
+    }
+    return mesh;
+}
+
+struct Cut {
+    Fragment fragment;
+    Motion pose;
+};
+
+Cut cut(const Mesh& whole, const Point& at) {
+    BreakOptions options;
+    options.share = 0.35;
+    BrokenPiece piece = break_off(whole, at, options);
+    Cut one;
+    one.fragment.name = "piece";
+    one.fragment.mesh = std::move(piece.mesh);
+    one.pose = piece.pose;
+    return one;
+}
+
+std::vector<FragmentPlacement> without_landmarks(std::size_t count) {
+    std::vector<FragmentPlacement> placed(count);
+    for (FragmentPlacement& one : placed) one.problem = "has 0 landmarks";
+    return placed;
+}
+
+TEST(SearchPlacement, PlacesWhatHasNoLandmarks) {
+    const Mesh mesh = potato();
+    Cut one = cut(mesh, Point(0, 0.5, 1.6));
+    const Reconstruction result = reconstruct(mesh, {}, {}, {&one.fragment});
+    ASSERT_TRUE(result.placement.any()) << result.placement.fragments[0].problem;
+    ASSERT_EQ(result.searched.size(), 1U);
+    ASSERT_TRUE(result.searched[0].has_value());
+    EXPECT_TRUE(result.searched[0]->decided);
+    EXPECT_LT((result.placement.fragments[0].pose.turn - one.pose.turn).norm(), 0.01);
+    EXPECT_EQ(result.placement.scale, 1);
+    EXPECT_NEAR(result.observed_share, 0.35, 0.05);
+    EXPECT_TRUE(std::isfinite(result.placement.fragments[0].residual));
+    EXPECT_EQ(result.verdict, Compatibility::undecided) << "one fragment, no constraint";
+}
+
+TEST(SearchPlacement, IsAskedOnlyWhereItShould) {
+    const Mesh mesh = potato();
+    Cut one = cut(mesh, Point(0, 0.5, 1.6));
+    SearchOptions options;
+    double scale = 1;
+    auto placed = without_landmarks(1);
+    options.search = "never";
+    EXPECT_FALSE(place_by_search(mesh, {&one.fragment}, options, scale, placed)[0].has_value());
+    EXPECT_EQ(placed[0].problem, "has 0 landmarks");
+    // A mirror image, say, has landmarks enough: another pose would be no answer.
+    options.search = "auto";
+    placed[0].landmarks.resize(4);
+    EXPECT_FALSE(place_by_search(mesh, {&one.fragment}, options, scale, placed)[0].has_value());
+    placed[0].landmarks.clear();
+    one.fragment.facets.assign(one.fragment.mesh.number_of_faces(), Facet::fracture);
+    EXPECT_FALSE(place_by_search(mesh, {&one.fragment}, options, scale, placed)[0].has_value());
+    EXPECT_NE(placed[0].problem.find("break"), std::string::npos);
+}
+
+TEST(SearchPlacement, TakesTheScaleOfLandmarks) {
+    const Mesh mesh = potato();
+    Cut known = cut(mesh, Point(0, -0.5, -1.6)), one = cut(mesh, Point(0, 0.5, 1.6));
+    Motion larger;
+    larger.scale = 1.5;
+    one.fragment.mesh = moved(one.fragment.mesh, larger);
+    auto placed = without_landmarks(2);
+    placed[0].problem.clear();
+    double scale = 1.5;
+    const auto found = place_by_search(mesh, {&known.fragment, &one.fragment}, {}, scale, placed);
+    EXPECT_FALSE(found[0].has_value());
+    ASSERT_TRUE(found[1].has_value());
+    EXPECT_EQ(scale, 1.5);
+    ASSERT_TRUE(placed[1].problem.empty()) << placed[1].problem;
+    EXPECT_LT((placed[1].pose.turn - one.pose.turn).norm(), 0.01);
+}
+
+TEST(SearchPlacement, AStrangerStaysOut) {
+    const Mesh mesh = potato();
+    Fragment stranger;
+    stranger.mesh = build_mesh(test::torus(120, 60));
+    for (const Vertex v : stranger.mesh.vertices()) {
+        const Vector3d p = eigen(stranger.mesh.point(v));
+        stranger.mesh.point(v) = point_of(Vector3d((0.5 + 0.1 * std::sin(5 * p.y())) * p.x(), 0.4 * p.y(), 0.5 * p.z()));
+    }
+    double scale = 1;
+    auto placed = without_landmarks(1);
+    (void)place_by_search(mesh, {&stranger}, {}, scale, placed);
+    EXPECT_NE(placed[0].problem.find("cannot decide"), std::string::npos) << placed[0].problem;
+}
+
+}  // namespace
+}  // namespace ostraka
