@@ -21,10 +21,11 @@ struct Break {
 
     int run(const Session& session) const {
         check_options(options, "mesh break");
-        if (annotations.empty() != annotations_out.empty())
-            fail_usage("--annotations and --annotations-out belong together", "give both");
+        if (annotations.empty() && !annotations_out.empty())
+            fail_usage("--annotations-out is given without --annotations", "give those of the whole too");
         std::vector<Path> inputs{input}, outputs{output};
-        if (!annotations.empty()) inputs.emplace_back(annotations), outputs.emplace_back(annotations_out);
+        if (!annotations.empty()) inputs.emplace_back(annotations);
+        if (!annotations_out.empty()) outputs.emplace_back(annotations_out);
         if (!pose_out.empty()) outputs.emplace_back(pose_out);
         check_outputs(inputs, outputs);
         Provenance provenance{"mesh break", list_options(options), {}};
@@ -47,7 +48,7 @@ struct Break {
         take(whole.extras.face_colours, piece.faces, extras.face_colours);
         take(whole.extras.face_labels, piece.faces, extras.face_labels);
         write_mesh(output, piece.mesh, extras);
-        if (set) {
+        if (!annotations_out.empty()) {
             const auto inverse = [](const std::vector<Index>& kept, std::size_t count) {
                 std::vector<Index> map(count, no_index);
                 for (std::size_t i = 0; i < kept.size(); ++i) map[kept[i]] = static_cast<Index>(i);
@@ -95,10 +96,18 @@ private:
                 for (const Index v : vertices) sum += eigen(mesh.point(Vertex(v)));
                 if (!vertices.empty()) return point_of(sum / static_cast<double>(vertices.size()));
             }
-        const auto numbers = numbers_of<double>(at, "--at");
+        std::vector<double> numbers;
+        try {
+            numbers = numbers_of<double>(at, "--at");
+        } catch (const Error&) {
+            numbers.clear();  // said below, with what else it may be
+        }
         if (numbers.size() != 3)
-            fail_usage("--at is '" + printable(at, 60) + "'",
-                       set != nullptr ? "give the tag of an annotation, or three numbers" : "give three numbers, like 0,0,10");
+            fail_usage("--at is '" + printable(at, 60) + (set != nullptr ? "', and no annotation has this tag" : "'"),
+                       set != nullptr ? "give the tag of an annotation, or three numbers like 0,0,10"
+                                      : "give three numbers like 0,0,10, or --annotations that have this tag");
+        if (set != nullptr && annotations_out.empty())
+            fail_usage("--annotations are neither needed for --at nor written", "give --annotations-out, or leave them away");
         for (const double x : numbers)
             if (!std::isfinite(x)) fail_usage("--at is not finite", "give a place on the object");
         return {numbers[0], numbers[1], numbers[2]};

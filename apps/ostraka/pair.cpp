@@ -23,6 +23,7 @@ struct Pair {
         check_options(options, "pair");
         check_options(reading, "pair");
         if (output.empty()) fail_usage("there is no folder to write to", "give --output FOLDER");
+        check_folder();
         Provenance provenance{"pair", list_options(options), {}};
         for (auto& option : list_options(reading)) provenance.options.push_back(std::move(option));
         std::array<FragmentFile, 2> files{read_fragment(first, reading), read_fragment(second, reading)};
@@ -44,6 +45,14 @@ struct Pair {
 
 private:
     static std::string name(const std::string& file) { return Path(file).filename().string(); }
+
+    /// What is there under a name that this command uses is replaced or, if an earlier run wrote it, removed: it is no input.
+    void check_folder() const {
+        std::error_code code;
+        const Path folder(output);
+        if (!std::filesystem::is_directory(folder, code)) return;
+        check_outputs({first, second}, {folder / "first.ply", folder / "second.ply", folder / "pair.json"});
+    }
 
     void write(const std::array<FragmentFile, 2>& files, const BreakPair& pair, const Provenance& provenance) const {
         std::error_code code;

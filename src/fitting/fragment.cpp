@@ -23,7 +23,7 @@ std::vector<Facet> facets_of(const Mesh& mesh, const AnnotationSet& set, Facet o
     std::vector<Facet> facets(mesh.number_of_faces(), other);
     std::vector<int> owner(facets.size(), -1);
     for (const Annotation& annotation : set.annotations) {
-        if (annotation.type != AnnotationType::region || annotation.all) continue;
+        if (annotation.type != AnnotationType::region) continue;
         std::string tag = annotation.tag;
         std::transform(tag.begin(), tag.end(), tag.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
         for (const Facet facet : {Facet::outer, Facet::inner, Facet::fracture}) {

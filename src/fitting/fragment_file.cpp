@@ -12,12 +12,14 @@ namespace ostraka {
 
 namespace {
 
-bool names_facets(const Annotation& annotation) {
-    if (annotation.type != AnnotationType::region || annotation.all) return false;
+/// What a region's tag calls it, "outer", "inner" or "fracture"; empty for any other annotation.
+std::string facet_named(const Annotation& annotation) {
+    if (annotation.type != AnnotationType::region) return {};
     std::string tag = annotation.tag;
     std::transform(tag.begin(), tag.end(), tag.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return tag == "outer" || tag == "inner" || tag == "fracture";
+    return tag == "outer" || tag == "inner" || tag == "fracture" ? tag : std::string();
 }
+bool names_facets(const Annotation& annotation) { return !facet_named(annotation).empty(); }
 
 bool has_border(const Mesh& mesh) {
     return std::any_of(mesh.edges().begin(), mesh.edges().end(), [&](Edge e) { return mesh.is_border(e); });
@@ -48,6 +50,9 @@ FragmentFile read_fragment(const Path& file, const FragmentFileOptions& options)
     }
     bool annotated = false;
     const Path beside = file.parent_path() / (fragment.name + ".ant.json");
+    if (result.points && std::filesystem::exists(beside))
+        result.notes.push_back(beside.filename().string() +
+                               " is not read: annotations beside points say nothing of the surface through them; give a mesh");
     if (!result.points && std::filesystem::exists(beside)) {
         AnnotationSet set = read_annotations(beside, fragment.mesh);
         result.inputs.push_back(beside);
@@ -121,6 +126,37 @@ AnnotationSet facet_annotations(const Facets& facets, const std::string& unit) {
         set.annotations.push_back(std::move(annotation));
     }
     return set;
+}
+
+void update_facet_annotations(AnnotationSet& set, const Facets& facets) {
+    AnnotationSet found = facet_annotations(facets, set.unit);
+    std::erase_if(set.annotations, [&](Annotation& old) {
+        const std::string name = facet_named(old);
+        if (name.empty()) return false;
+        const auto match = std::find_if(found.annotations.begin(), found.annotations.end(),
+                                        [&](const Annotation& one) { return one.tag == name; });
+        if (match == found.annotations.end()) return true;
+        std::vector<Quantity> quantities;
+        for (const Attribute& attribute : match->attributes) {
+            Quantity quantity;
+            quantity.name = attribute.name;
+            quantity.values = attribute.descriptor.values;
+            quantity.power = attribute.name == "area" ? 2 : 0;
+            quantities.push_back(quantity);
+        }
+        if (old.faces != match->faces)
+            for (Attribute& attribute : old.attributes)
+                if (attribute.type == AttributeType::descriptor) attribute.descriptor.stale = true;
+        old.faces = std::move(match->faces);
+        old.all = false;
+        store(old, quantities, set.unit);
+        found.annotations.erase(match);
+        return false;
+    });
+    for (Annotation& one : found.annotations) {
+        if (set.find(one.id) != nullptr) one.id = free_id(set);
+        set.annotations.push_back(std::move(one));
+    }
 }
 
 }  // namespace ostraka

@@ -187,6 +187,19 @@ TEST(PairCommand, MovesTheSecondToTheFirst) {
     for (const Vertex v : second.mesh.vertices())
         EXPECT_LT((eigen(second.mesh.point(v)) - eigen(above.mesh.point(v))).norm(), 0.05);
     EXPECT_EQ(test::run_command(command).code, 2) << "no folder";
+    // Names of outputs that are inputs.
+    std::filesystem::create_directory(scratch / "own");
+    for (const char* name : {"first.ply", "second.ply"}) {
+        std::filesystem::copy(scratch / "b.ply", scratch / "own" / name);
+        const std::string before = read_file(scratch / "own" / name);
+        const auto own =
+            test::run_command("pair " + quoted(scratch / "a.ply") + " " + quoted(scratch / "own" / name) +
+                              " --frames 60 --samples 500 --starts 40 --refined 6 --output " + quoted(scratch / "own"));
+        EXPECT_EQ(own.code, 2);
+        EXPECT_NE(own.err.find("also an input"), std::string::npos) << own.err;
+        EXPECT_EQ(read_file(scratch / "own" / name), before);
+        std::filesystem::remove(scratch / "own" / name);
+    }
     EXPECT_EQ(test::run_command(command + " --reach 2 --output " + quoted(scratch / "out2")).code, 2);
     const auto none = test::run_command(command + " --facets none --output " + quoted(scratch / "out2"));
     EXPECT_EQ(none.code, 1);

@@ -143,10 +143,50 @@ TEST(FacetsCommand, WritesThreeRegions) {
     const AnnotationSet set = read_annotations(scratch / "sherd.ant.json", sherd.mesh);
     ASSERT_EQ(set.annotations.size(), 3U);
     EXPECT_GT(agreement(sherd, facets_of(sherd.mesh, set)), 0.95);
+    // Again, with landmarks and other regions there, one facet under a name of a person's own spelling and one twice.
+    AnnotationSet more = read_annotations(scratch / "sherd.ant.json", sherd.mesh);
+    Annotation mark, handle;
+    mark.id = free_id(more);
+    mark.tag = "outer";
+    mark.type = AnnotationType::point;
+    mark.points = {7};
+    handle.id = mark.id + 1;
+    handle.tag = "handle";
+    handle.faces = {1, 2, 3};
+    const int outer = more.annotations[0].id, again = handle.id + 1;
+    more.annotations[0].tag = "Outer";
+    more.annotations[0].faces = {0};
+    more.annotations[0].attributes.emplace_back();
+    more.annotations[0].attributes.back().id = 9;
+    more.annotations[0].attributes.back().name = "glaze";
+    more.annotations[0].attributes.back().note = "brown";
+    more.annotations.erase(more.annotations.begin() + 1);
+    Annotation twice = more.annotations[0];
+    twice.id = again;
+    more.annotations.insert(more.annotations.end(), {mark, handle, twice});
+    write_annotations(scratch / "sherd.ant.json", more, sherd.mesh, "sherd.ply", {});
+    const std::string update = "annotation facets " + quoted(scratch / "sherd.ply") + " " + quoted(scratch / "sherd.ant.json");
+    EXPECT_EQ(test::run_command(update + " --unit cm").code, 2) << "the file says mm";
+    ASSERT_EQ(test::run_command(update).code, 0);
+    const AnnotationSet updated = read_annotations(scratch / "sherd.ant.json", sherd.mesh);
+    EXPECT_EQ(updated.unit, "mm");
+    EXPECT_EQ(updated.annotations.size(), 5U);
+    EXPECT_EQ(facets_of(sherd.mesh, updated), facets_of(sherd.mesh, set));
+    ASSERT_NE(updated.find(outer), nullptr);
+    EXPECT_EQ(updated.find(outer)->tag, "Outer");
+    EXPECT_EQ(updated.find(outer)->faces, set.annotations[0].faces);
+    EXPECT_EQ(updated.find(outer)->attributes.size(), set.annotations[0].attributes.size() + 1) << "the glaze is kept";
+    EXPECT_EQ(updated.find(again), nullptr);
+    ASSERT_NE(updated.find(mark.id), nullptr);
+    EXPECT_EQ(updated.find(mark.id)->points, mark.points);
+    ASSERT_NE(updated.find(handle.id), nullptr);
+    EXPECT_EQ(updated.find(handle.id)->faces, handle.faces);
+
     write_mesh(scratch / "whole.ply", build_mesh(test::octahedron_sphere(3)));
     EXPECT_EQ(
         test::run_command("annotation facets " + quoted(scratch / "whole.ply") + " " + quoted(scratch / "whole.ant.json")).code,
         3);
+    EXPECT_FALSE(std::filesystem::exists(scratch / "whole.ant.json")) << "no fracture, nothing written";
     EXPECT_EQ(test::run_command("annotation facets " + quoted(scratch / "whole.ply") + " " + quoted(scratch / "x.ant.json") +
                                 " --facet-edge 0")
                   .code,

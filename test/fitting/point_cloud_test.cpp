@@ -11,6 +11,7 @@
 #include "sherds.h"
 
 #include <cstring>
+#include <numeric>
 #include <sstream>
 
 namespace ostraka {
@@ -146,7 +147,11 @@ TEST(FragmentFile, PointsBecomeAFragmentWithFacets) {
     std::ostringstream text;
     text.precision(17);
     for (const Vertex v : bar.mesh.vertices()) text << bar.mesh.point(v) << '\n';
+    EXPECT_TRUE(read_fragment(scratch.file("alone.xyz", text.str())).notes.empty());
+    write_file(scratch / "bar.ant.json", "{}");
     const FragmentFile file = read_fragment(scratch.file("bar.xyz", text.str()));
+    ASSERT_FALSE(file.notes.empty());
+    EXPECT_NE(file.notes.back().find("bar.ant.json is not read"), std::string::npos) << file.notes.back();
     EXPECT_TRUE(file.points);
     EXPECT_EQ(file.facets_from, "shape");
     double broken = 0, truth = 0;
@@ -181,6 +186,14 @@ TEST(FragmentFile, AnnotationsOverrideTheShape) {
         EXPECT_EQ(either.fragment.facets[f], f % 10 == 0 ? Facet::fracture : Facet::outer);
         EXPECT_EQ(both.fragment.facets[f], f % 10 == 0 ? Facet::fracture : both.found.of_face[f]);
     }
+    // The whole mesh is a region too.
+    set.annotations[0].all = true;
+    set.annotations[0].faces.resize(sherd.facets.size());
+    std::iota(set.annotations[0].faces.begin(), set.annotations[0].faces.end(), 0U);
+    write_annotations(scratch / "sherd.ant.json", set, sherd.mesh, "sherd.ply", {});
+    const FragmentFile whole = read_fragment(scratch / "sherd.ply", options);
+    EXPECT_EQ(whole.facets_from, "shape and annotations");
+    EXPECT_EQ(whole.fragment.facets, std::vector<Facet>(sherd.facets.size(), Facet::fracture));
     options.facets = "annotated";
     std::filesystem::remove(scratch / "sherd.ant.json");
     EXPECT_EQ(read_fragment(scratch / "sherd.ply", options).facets_from, "nowhere");

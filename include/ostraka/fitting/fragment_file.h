@@ -32,11 +32,17 @@ struct FragmentFile {
     std::vector<std::string> notes;
 };
 
-/// Reads a mesh, or points without faces, and the annotations beside it (NAME.ant.json) if they are there; facets as the options
-/// say. A surface found in a solid counts as fracture only where it is surer than even. Throws Error (input).
+/// Reads a mesh and the annotations beside it (NAME.ant.json) if they are there, or points without faces (with a note where there
+/// are annotations beside them: those are not read); facets as the options say. A surface found in a solid counts as fracture
+/// only where it is surer than even. Throws Error (input).
 FragmentFile read_fragment(const Path& file, const FragmentFileOptions& options = {});
 
 /// The facets as three regions "outer", "inner" and "fracture" (those that are there), with area and confidence.
 AnnotationSet facet_annotations(const Facets& facets, const std::string& unit = {});
+
+/// Brings a set up to date with the facets: its first region of each name (capital letters or not) keeps id, tag, colour and
+/// what else is said of it, and gets the faces, area and confidence found; further ones and those not found go; others stay.
+/// What is measured of a region whose faces change is stale.
+void update_facet_annotations(AnnotationSet& set, const Facets& facets);
 
 }  // namespace ostraka
