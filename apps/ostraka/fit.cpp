@@ -11,6 +11,7 @@
 #include "ostraka/measure/measure.h"
 #include "ostraka/transfer/transfer.h"
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <iostream>
@@ -38,8 +39,12 @@ struct Fit {
         const TemplateFile bundle = read_template(files[0]);
         Provenance provenance{"fit", list_options(options), {}};
         for (auto& option : list_options(reading)) provenance.options.push_back(std::move(option));
-        provenance.add_input(files[0]);
-        for (const TemplatePart& part : bundle.parts) provenance.add_input(part.file);
+        const auto take = [&](const Path& file) {
+            provenance.add_input(file);
+            inputs.push_back(file);
+        };
+        take(files[0]);
+        for (const TemplatePart& part : bundle.parts) take(part.file);
         Template loaded = load_template(bundle);
         for (const Finding& finding : loaded.findings)
             if (finding.defect) fail_input(files[0] + ", " + finding.where, finding.text, "mend it: 'template check' tells all");
@@ -48,7 +53,7 @@ struct Fit {
         const Json said = assembly.empty() ? Json() : read_json(assembly);
         if (!assembly.empty()) {
             validate(said, "assembly", assembly);
-            provenance.add_input(assembly);
+            take(assembly);
         }
 
         AssemblyNames names{Path(files[0]).filename().string(), {}};
@@ -64,23 +69,36 @@ struct Fit {
             pointers.push_back(&fragments[k]);
             stated.push_back(assembly.empty() ? std::vector<StatedMatch>() : stated_matches(said, fragments[k].name));
         }
+        for (std::size_t k = 0; k < fragments.size(); ++k)
+            if (const std::string& ours = loaded.annotations->unit, &theirs = fragments[k].annotations.unit;
+                !ours.empty() && !theirs.empty() && ours != theirs)
+                fail_input(files[k + 1], "is in " + printable(theirs) + ", and the template in " + printable(ours),
+                           "bring all files to one unit");
         const RelationGraph graph = loaded.graph ? std::move(*loaded.graph) : RelationGraph();
         std::optional<ShapePrior> prior;
         if (!class_file.empty()) {
             prior = prior_of(read_class(class_file).modes);
-            provenance.add_input(class_file);
+            take(class_file);
         }
         const Reconstruction result =
             reconstruct(loaded.mesh->mesh, *loaded.annotations, graph, pointers, options, stated, prior ? &*prior : nullptr);
+        if (const double scale = result.placement.scale;
+            result.placement.any() && (scale > options.placement.unit_ratio || scale * options.placement.unit_ratio < 1))
+            session.note("note: the template is scaled by " + number(scale, 4) + ": are all files in one unit?");
         write(*loaded.mesh, *loaded.annotations, fragments, names, result, provenance, session);
         print(session, provenance, names, result);
         return result.verdict == Compatibility::compatible ? done : answer_is_no;
     }
 
 private:
-    void read(const std::string& file, Fragment& fragment, Provenance& provenance, const Session& session) const {
+    std::vector<Path> inputs;
+
+    void read(const std::string& file, Fragment& fragment, Provenance& provenance, const Session& session) {
         FragmentFile one = read_fragment(file, reading);
-        for (const Path& input : one.inputs) provenance.add_input(input);
+        for (const Path& input : one.inputs) {
+            provenance.add_input(input);
+            inputs.push_back(input);
+        }
         for (const auto& note : one.notes) session.note("note: " + printable(file) + ": " + note);
         fragment = std::move(one.fragment);
         if (session.json || fragment.facets.empty()) return;
@@ -110,6 +128,11 @@ private:
         std::error_code code;
         fs::create_directories(output, code);
         if (code) throw Error(ErrorKind::failure, output, "the folder cannot be made: " + code.message(), "name another one");
+        std::vector<Path> outputs{in("fit.assembly.json"), in("completed.ply"), in("completed.ant.json")};
+        for (const std::string& name : names.fragments) outputs.push_back(in(name + ".placed.ply"));
+        check_outputs(inputs, outputs);
+        const std::vector<Path> before = written_before();
+        std::vector<Path> written;
         OutputTransaction transaction;
         Json document(rapidjson::kObjectType);
         JsonValue report = assembly_to_json(result, names, document.GetAllocator());
@@ -134,17 +157,41 @@ private:
             }
             how.face_values = {std::move(fragment), std::move(distance), std::move(confidence)};
             write_mesh(in("completed.ply"), object.mesh, extras, how);
-            for (const std::string& note : object.notes) session.note("note: " + note);
+            for (const CompletionNote& note : object.notes)
+                session.note("note: " + printable(names.fragments[static_cast<std::size_t>(note.fragment)]) + ": " + note.text +
+                             "; the template's triangles show what was seen of it");
             AnnotationSet carried = carry(file.mesh, set, result);
             for (const auto& note : refresh_measures(object.mesh, carried).notes) session.note("note: " + note);
             write_annotations(in("completed.ant.json"), carried, object.mesh, "completed.ply", provenance);
+            written = {in("completed.ply"), in("completed.ant.json")};
         }
-        if (placed)
-            for (std::size_t k = 0; k < fragments.size(); ++k)
-                if (result.placement.fragments[k].problem.empty())
-                    write_mesh(in(fragments[k].name + ".placed.ply"),
-                               moved(fragments[k].mesh, result.placement.fragments[k].pose));
+        for (std::size_t k = 0; placed && k < fragments.size(); ++k) {
+            if (!result.placement.fragments[k].problem.empty()) continue;
+            written.push_back(in(fragments[k].name + ".placed.ply"));
+            write_mesh(written.back(), moved(fragments[k].mesh, result.placement.fragments[k].pose));
+        }
         transaction.commit();
+        // What an earlier run left does not stand beside another answer.
+        for (const Path& old : before)
+            if (std::find(written.begin(), written.end(), old) == written.end()) fs::remove(old, code);
+    }
+
+    /// Files of an earlier fit in the folder, by its assembly.
+    [[nodiscard]] std::vector<Path> written_before() const {
+        std::vector<Path> earlier;
+        if (!fs::exists(in("fit.assembly.json"))) return earlier;
+        earlier = {in("completed.ply"), in("completed.ant.json")};
+        try {
+            const Json old = read_json(in("fit.assembly.json"));
+            validate(old, "assembly", "fit.assembly.json");
+            for (const auto& entry : old["fragments"].GetArray()) {
+                const std::string name = entry["name"].GetString();
+                if (name.find('/') == std::string::npos) earlier.push_back(in(name + ".placed.ply"));
+            }
+        } catch (const Error&) {  // not one of ours: the files are left alone
+            earlier.clear();
+        }
+        return earlier;
     }
 
     static std::string searched(const PoseSearchResult& one) {
@@ -185,8 +232,8 @@ private:
                   << number(100 * result.observed_share, 3) << " % of the surface\n";
         if (result.crossings > 0)
             std::cout << result.crossings
-                      << " pairs of faces of the template cross each other now: a lower --detail or --smoothing "
-                      << "may help\n";
+                      << " pairs of faces cross each other that did not in the template: look at the picture; a larger "
+                      << "--detail may help\n";
         std::vector<std::vector<std::string>> constraints;
         for (const ConstraintReport& constraint : result.constraints) {
             std::string words = constraint.text;
@@ -196,8 +243,14 @@ private:
                          number(i < constraint.before_values.size() ? constraint.before_values[i] : 0, 4) + ", at most " +
                          number(d.tolerance.value_or(0), 4) + ")" + (d.unit.empty() ? "" : " " + d.unit);
             }
+            const bool objected = std::any_of(result.objections.begin(), result.objections.end(), [&](const Objection& one) {
+                return one.kind == ObjectionKind::constraint && one.constraint == constraint.id;
+            });
             constraints.push_back({std::to_string(constraint.id), constraint.type,
-                                   constraint.used ? to_string(constraint.verdict) : "left out", words});
+                                   !constraint.used                                    ? "left out"
+                                   : constraint.verdict == Verdict::fails && !objected ? "holds within --slack"
+                                                                                       : to_string(constraint.verdict),
+                                   words});
         }
         if (!constraints.empty()) std::cout << table({"id", "constraint", "verdict", "how well"}, constraints);
         for (const Objection& objection : result.objections)

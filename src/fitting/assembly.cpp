@@ -146,7 +146,9 @@ JsonValue assembly_to_json(const Reconstruction& result, const AssemblyNames& na
     add_member(assembly, "observedShare", JsonValue(result.observed_share), allocator);
     add_member(assembly, "crossings", JsonValue(static_cast<std::uint64_t>(result.crossings)), allocator);
     JsonValue completion(rapidjson::kArrayType);
-    for (const std::string& note : result.object.notes) completion.PushBack(JsonValue(note, allocator), allocator);
+    for (const CompletionNote& note : result.object.notes)
+        completion.PushBack(JsonValue(names.fragments[static_cast<std::size_t>(note.fragment)] + ": " + note.text, allocator),
+                            allocator);
     add_member(assembly, "completionNotes", std::move(completion), allocator);
     for (const ConstraintReport& constraint : result.constraints)
         constraints.PushBack(constraint_of(constraint, allocator), allocator);

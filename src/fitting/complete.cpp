@@ -63,22 +63,37 @@ public:
 
 private:
     /// Where each vertex of the fragment lies on the object, as far as that is still the template's.
-    std::vector<std::optional<SurfaceHit>> places(const PlacedFragment& fragment, const std::vector<Vector>& normals) const {
+    std::vector<std::optional<SurfaceHit>> places(int number, const std::vector<Vector>& normals) {
+        const PlacedFragment& fragment = fragments_[static_cast<std::size_t>(number)];
         const SurfaceSearch search(object_.mesh);
         const double least = std::cos(options_.angle * std::numbers::pi / 180), reach = options_.tolerance * diagonal_;
         std::vector<std::optional<SurfaceHit>> hits(fragment.mesh.number_of_vertices());
         parallel_for(hits.size(), [&](std::size_t v) {
             if (!(normals[v].squared_length() > 0)) return;
             auto hit = search.closest_compatible(fragment.mesh.point(Vertex(static_cast<Index>(v))), normals[v], least, reach);
-            if (hit && object_.template_face[hit->face] != no_index) hits[v] = hit;
+            if (hit) hits[v] = hit;
         });
+        double whole = 0, lying = 0, shared = 0;
+        for (const Face face : fragment.mesh.faces()) {
+            if (!fragment.facets.empty() && fragment.facets[face] != Facet::outer) continue;
+            const double area = face_area(fragment.mesh, face);
+            whole += area;
+            const auto c = corners(fragment.mesh, face);
+            if (!std::all_of(c.begin(), c.end(), [&](Vertex v) { return hits[v].has_value(); })) continue;
+            lying += area;
+            if (std::all_of(c.begin(), c.end(), [&](Vertex v) { return object_.fragment[hits[v]->face] >= 0; })) shared += area;
+        }
+        object_.lying.push_back(whole > 0 ? lying / whole : 0);
+        object_.shared.push_back(whole > 0 ? shared / whole : 0);
+        for (auto& hit : hits)
+            if (hit && object_.template_face[hit->face] == no_index) hit.reset();
         return hits;
     }
 
     void join(int number) {
         const PlacedFragment& fragment = fragments_[static_cast<std::size_t>(number)];
         const std::vector<Vector> normals = outer_normals(fragment);
-        const std::vector<std::optional<SurfaceHit>> hits = places(fragment, normals);
+        const std::vector<std::optional<SurfaceHit>> hits = places(number, normals);
         if (!options_.join) {
             show(number, fragment, hits);
             return;
@@ -95,7 +110,7 @@ private:
         Patch patch(fragment.mesh, std::move(keep), options_.least);
         const Joint joint = join_patch(object_.mesh, patch, hits, options_.blend * diagonal_, frozen());
         if (!joint.problem.empty()) {
-            object_.notes.push_back("fragment " + std::to_string(number + 1) + ": " + joint.problem);
+            object_.notes.push_back({number, joint.problem});
             show(number, fragment, hits);
             return;
         }
@@ -111,6 +126,8 @@ private:
         }
         next.notes = std::move(object_.notes);
         next.joined = std::move(object_.joined);
+        next.lying = std::move(object_.lying);
+        next.shared = std::move(object_.shared);
         next.joined[static_cast<std::size_t>(number)] = patch.size();
         object_ = std::move(next);
     }

@@ -331,6 +331,9 @@ Points follow(const Mesh& fine, const Mesh& coarse, const Fitter& fitter) {
 NonRigidFit fit_template(const Mesh& scaled, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments,
                          const NonRigidOptions& options) {
     check_options(options, "fit");
+    if (options.counterparts != "surface" &&
+        !(options.vertices.boundary + options.vertices.distance + options.vertices.outline > 0))
+        fail_usage("all three weights of equation 5.1 are zero", "give --distance-weight or another one");
     if (scaled.number_of_faces() == 0) fail_input("template", "has no faces", "is it the right file?");
     constexpr std::size_t few = 4000;  // vertices that show every shape of the first levels
     constexpr double edges = 0.8;      // least smoothing length of a level on the coarse mesh, in its edges

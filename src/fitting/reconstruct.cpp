@@ -5,6 +5,8 @@
 #include "ostraka/geom/eigen.h"
 #include "ostraka/io/diagnose.h"
 
+#include <CGAL/boost/graph/helpers.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -19,6 +21,10 @@ std::string to_string(ObjectionKind kind) {
             return "size";
         case ObjectionKind::landmarks:
             return "landmarks";
+        case ObjectionKind::surface:
+            return "surface";
+        case ObjectionKind::overlap:
+            return "overlap";
         default:
             return "constraint";
     }
@@ -41,6 +47,15 @@ Mesh scaled_by(const Mesh& mesh, double scale) {
     Motion motion;
     motion.scale = scale;
     return moved(mesh, motion);
+}
+
+/// Of a closed mesh: its volume is negative.
+bool inside_out(const Mesh& mesh) {
+    if (mesh.number_of_faces() == 0 || !CGAL::is_closed(mesh)) return false;
+    const Point origin = mesh.point(*mesh.vertices().begin());
+    double volume = 0;
+    for (const Face face : mesh.faces()) volume += (centroid(mesh, face) - origin) * area_vector(mesh, face);
+    return volume < 0;
 }
 
 class Reconstructor {
@@ -190,9 +205,14 @@ private:
             if (object.origin[face] == Origin::observed) seen += a;
         }
         result_.observed_share = area > 0 ? seen / area : 0;
-        const auto before = self_intersections(to_soup(scaled_)).pairs, after = self_intersections(to_soup(fitted)).pairs;
+        for (CompletionNote& note : object.notes) note.fragment = number_[static_cast<std::size_t>(note.fragment)];
+        const auto before = self_intersections(to_soup(scaled_)).pairs, after = self_intersections(to_soup(object.mesh)).pairs;
         result_.crossings = static_cast<std::size_t>(std::count_if(after.begin(), after.end(), [&](const auto& pair) {
-            return !std::binary_search(before.begin(), before.end(), pair);
+            const auto [a, b] = pair;
+            const Index f = object.template_face[a], g = object.template_face[b];
+            if (f != no_index && g != no_index)
+                return !std::binary_search(before.begin(), before.end(), std::pair(std::min(f, g), std::max(f, g)));
+            return f != no_index || g != no_index || object.fragment[a] != object.fragment[b];
         }));
     }
 
@@ -313,6 +333,17 @@ private:
             ++placed;
             judge_fragment(k, pairs);
         }
+        for (std::size_t i = 0; i < number_.size(); ++i) {
+            const double lying = 100 * result_.object.lying[i], shared = 100 * result_.object.shared[i];
+            const int k = number_[i];
+            object(ObjectionKind::surface, k, -1, (100 - lying) / std::max(100 - options_.lying, 1e-9),
+                   digits(lying, 3) + " % of its outer surface lies on the fitted template, at least " +
+                       digits(options_.lying, 3) +
+                       " %: another shape, a wrong place, or faces that are inside out or of its break");
+            object(ObjectionKind::overlap, k, -1, shared / std::max(options_.overlap, 1e-9),
+                   digits(shared, 3) + " % of its outer surface lies where fragments before it are seen, at most " +
+                       digits(options_.overlap, 3) + " %: two fragments of one object have none in common");
+        }
         bool tested = false;
         for (const ConstraintReport& constraint : result_.constraints) {
             tested = tested || constraint.used;
@@ -367,6 +398,9 @@ Reconstruction reconstruct(const Mesh& mesh, const AnnotationSet& set, const Rel
     check_options(options, "fit");
     if (fragments.empty()) fail_usage("there is no fragment", "give one or more");
     if (prior != nullptr) prior->check(mesh.number_of_vertices());
+    if (inside_out(mesh)) fail_input("template", "is inside out", "run: ostraka mesh repair");
+    for (const Fragment* one : fragments)
+        if (inside_out(one->mesh)) fail_input("fragment '" + one->name + "'", "is inside out", "run: ostraka mesh repair");
     return Reconstructor(mesh, set, graph, fragments, options, stated, prior).run();
 }
 

@@ -129,9 +129,10 @@ private:
             squares += areas_[i] * off * off;
             add(i, n, off, areas_[i] / weight);
         }
+        constexpr double weight_of_landmark = 0.05;  // against that of the whole surface
         for (const Guide& guide : search_.guides()) {
             const Vector3d off = guide.place - now.col(static_cast<Eigen::Index>(guide.vertex));
-            for (int axis = 0; axis < 3; ++axis) add(guide.vertex, Vector3d::Unit(axis), off[axis], 1.0 / options_.samples);
+            for (int axis = 0; axis < 3; ++axis) add(guide.vertex, Vector3d::Unit(axis), off[axis], weight_of_landmark);
         }
         fit.residual = std::sqrt(squares / weight);
         normal = normal.selfadjointView<Eigen::Lower>();

@@ -297,6 +297,8 @@ private:
 VertexAssignment assign_vertices(const Mesh& mesh, const Annotation& part, const Mesh& fragment, const Annotation& of_fragment,
                                  const std::vector<std::pair<Index, Index>>& landmarks, const VertexAssignmentOptions& options) {
     check_options(options, "correspondence");
+    if (!(options.boundary + options.distance + options.outline > 0))
+        fail_usage("all three weights of equation 5.1 are zero", "give one of them");
     std::vector<Index> ours, theirs;
     for (const auto& [a, b] : landmarks) {
         if (a >= mesh.number_of_vertices() || b >= fragment.number_of_vertices())

@@ -105,11 +105,14 @@ TEST(Complete, PiecesWithHolesAndSeveralFragmentsThatOverlap) {
     const PlacedFragment front =
         part(ring, [](const Point& p) { return p.y() > 0.05 && std::hypot(p.x() + 0.6, p.y() - 0.6) > 0.2; });
     const CompletedObject object = complete(ring, {half, front});
-    EXPECT_TRUE(object.notes.empty()) << object.notes.front();
+    EXPECT_TRUE(object.notes.empty()) << object.notes.front().text;
     expect_sound(object, true, 0);
     EXPECT_EQ(object.joined[0], half.mesh.number_of_faces());
     EXPECT_GT(object.joined[1], 0U);
     EXPECT_LT(object.joined[1], front.mesh.number_of_faces());
+    EXPECT_NEAR(object.lying[0], 1, 1e-12);
+    EXPECT_EQ(object.shared[0], 0);
+    EXPECT_NEAR(object.shared[1], 0.5, 0.1);
     EXPECT_NEAR(surface_area(object.mesh), surface_area(ring), 1e-6 * surface_area(ring));
     // In the other order it is as sound.
     expect_sound(complete(ring, {front, half}), true, 0);
@@ -138,7 +141,7 @@ TEST(Complete, RoughBordersAreEvenedUntilTheyAreSimple) {
     for (const Vertex v : cap.mesh.vertices())
         cap.mesh.point(v) = point_of(eigen(cap.mesh.point(v)) + 0.02 * Vector3d(draw(), draw(), draw()));
     const CompletedObject object = complete(ball, {cap});
-    EXPECT_TRUE(object.notes.empty()) << object.notes.front();
+    EXPECT_TRUE(object.notes.empty()) << object.notes.front().text;
     const MeshDiagnosis what = diagnose(to_soup(object.mesh));
     EXPECT_TRUE(what.manifold());
     EXPECT_TRUE(what.closed());
@@ -158,7 +161,7 @@ TEST(Complete, WhatIsFarOrTurnedAwayOrAFractureIsNotTaken) {
         const CompletedObject object = complete(ball, {*one});
         EXPECT_EQ(object.mesh.number_of_faces(), ball.number_of_faces());
         ASSERT_EQ(object.notes.size(), 1U);
-        EXPECT_NE(object.notes[0].find("nothing of it lies on the fitted template"), std::string::npos);
+        EXPECT_NE(object.notes[0].text.find("nothing of it lies on the fitted template"), std::string::npos);
         for (const Origin origin : object.origin) EXPECT_EQ(origin, Origin::hypothesis);
         for (const double d : object.distance) EXPECT_EQ(d, -1);
     }

@@ -102,6 +102,49 @@ TEST_F(FitCommand, WrongWordsAndFilesAreSaid) {
     EXPECT_NE(two.out.find("landmark"), std::string::npos) << two.out;
 }
 
+TEST_F(FitCommand, WhatNothingSupportsIsNotCompatible) {
+    // The same fragment twice.
+    std::filesystem::copy(scratch / "top.ply", scratch / "again.ply");
+    std::filesystem::copy(scratch / "top.ant.json", scratch / "again.ant.json");
+    const auto twice = fit(quoted(scratch / "top.ply") + " " + quoted(scratch / "again.ply"));
+    EXPECT_EQ(twice.code, 3);
+    EXPECT_NE(twice.out.find("against again: "), std::string::npos) << twice.out;
+    EXPECT_NE(twice.out.find("where fragments before it are seen"), std::string::npos) << twice.out;
+    EXPECT_NE(twice.out.find("incompatible"), std::string::npos);
+    // Another unit, stated.
+    Json annotations = read_json(scratch / "again.ant.json");
+    annotations["unit"].SetString("cm");
+    write_json(scratch / "again.ant.json", annotations);
+    const auto unit = fit(quoted(scratch / "again.ply"));
+    EXPECT_EQ(unit.code, 1);
+    EXPECT_NE(unit.err.find("is in cm, and the template in mm"), std::string::npos) << unit.err;
+}
+
+TEST_F(FitCommand, NeitherInputsNorOldAnswersAreMixedUp) {
+    ASSERT_EQ(fit(quoted(scratch / "top.ply") + " --placed").code, 3);
+    EXPECT_TRUE(std::filesystem::exists(scratch / "out" / "top.placed.ply"));
+    EXPECT_EQ(
+        fit(quoted(scratch / "top.ply") + " --counterparts best --distance-weight 0 --boundary-weight 0 --outline-weight 0").code,
+        2);
+    // A fragment that lies where the result would be written.
+    std::filesystem::copy(scratch / "top.ant.json", scratch / "out" / "completed.ant.json",
+                          std::filesystem::copy_options::overwrite_existing);
+    std::filesystem::copy(scratch / "top.ply", scratch / "out" / "completed.ply",
+                          std::filesystem::copy_options::overwrite_existing);
+    const std::string before = read_file(scratch / "out" / "completed.ply");
+    const auto over = fit(quoted(scratch / "out" / "completed.ply"));
+    EXPECT_NE(over.code, 0);
+    EXPECT_EQ(read_file(scratch / "out" / "completed.ply"), before) << over.err;
+    // Nothing placed: what an earlier run left goes.
+    Json annotations = read_json(scratch / "top.ant.json");
+    annotations["annotations"].Clear();
+    write_json(scratch / "top.ant.json", annotations);
+    EXPECT_EQ(fit(quoted(scratch / "top.ply") + " --search never").code, 3);
+    EXPECT_TRUE(std::filesystem::exists(scratch / "out" / "fit.assembly.json"));
+    EXPECT_FALSE(std::filesystem::exists(scratch / "out" / "completed.ply"));
+    EXPECT_FALSE(std::filesystem::exists(scratch / "out" / "top.placed.ply"));
+}
+
 TEST_F(FitCommand, BreakRefusesWhatItCannotDo) {
     const std::string mesh = "mesh break " + quoted(scratch / "made" / "statuette-2.ply") + " " + quoted(scratch / "x.ply");
     EXPECT_EQ(run_command(mesh).code, 2);

@@ -35,6 +35,12 @@ struct CompleteOptions {
     }
 };
 
+/// Why a fragment could not be joined.
+struct CompletionNote {
+    int fragment = 0;
+    std::string text;
+};
+
 struct CompletedObject {
     Mesh mesh;  ///< closed and manifold if the template is
     // Of each face:
@@ -44,8 +50,11 @@ struct CompletedObject {
     std::vector<Index> template_face;  ///< that the face is or is cut from; no_index: it is a fragment's
     std::vector<double> distance;      ///< of its centre from the nearest observed face; 0 where observed, -1 where nothing was
     std::vector<double> confidence;    ///< 1 where observed, halved with every `halving` of distance
-    std::vector<std::string> notes;    ///< what could not be joined, and why
-    std::vector<std::size_t> joined;   ///< faces of each fragment that are in it
+    std::vector<CompletionNote> notes;
+    // Of each fragment:
+    std::vector<std::size_t> joined;  ///< its faces that are in the mesh
+    std::vector<double> lying;        ///< share of its outer area that lies on the fitted template; 0 of none
+    std::vector<double> shared;       ///< share of its outer area that lies where a fragment before it is seen
 };
 
 /// Each fragment's faces that lie on `fitted` (all corners within the tolerance, normals agree, no fracture) and form pieces with

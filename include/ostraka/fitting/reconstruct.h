@@ -25,6 +25,8 @@ struct ReconstructOptions {
     double scale_tolerance = 10;  ///< per cent by which a fragment's own scale may differ from that of all
     double slack = 3;             ///< per cent by which a proportion or measure may be out of its range
     double residual = 0.25;       ///< of landmarks, as a share of the spread of a fragment's landmarks: more is rejected
+    double lying = 50;            ///< per cent of a fragment's outer surface that lies on the fitted template, at least
+    double overlap = 20;          ///< per cent of it that lies where another fragment is seen, at most
     bool restore = true;          ///< constraints are solved for what was not observed
 
     template <class Visitor>
@@ -49,12 +51,15 @@ struct ReconstructOptions {
         visit("residual", residual,
               "root mean square of a fragment's landmarks, as a share of their spread, above which it does not fit",
               Range{0, 10});
+        visit("lying", lying, "per cent of a fragment's outer surface that lies on the fitted template, at least", Range{0, 100});
+        visit("overlap", overlap, "per cent of a fragment's outer surface that lies where another one is seen, at most",
+              Range{0, 100});
         visit("restore", restore, "constraints of the graph are solved for what was not observed", Anything{});
     }
 };
 
 /// Causes before what follows from them.
-enum class ObjectionKind { placement, size, landmarks, constraint };
+enum class ObjectionKind { placement, size, landmarks, surface, overlap, constraint };
 std::string to_string(ObjectionKind kind);
 /// A finding that speaks against a fragment, or against all of them together.
 struct Objection {
@@ -81,7 +86,7 @@ struct Reconstruction {
     CompletedObject object;
     std::vector<std::size_t> joined;  ///< faces of each fragment that are in it
     double observed_share = 0;        ///< of the completed object's area
-    std::size_t crossings = 0;        ///< pairs of the template's faces that cross after the fit, but did not before
+    std::size_t crossings = 0;  ///< pairs of faces of the object that cross, but for those of the template and of each fragment
     std::vector<ConstraintReport> constraints;
     std::vector<ConstraintConflict> conflicts;
     double strain = 0;  ///< the largest of all that was tested, in times of what is allowed: above 1 something speaks against it
