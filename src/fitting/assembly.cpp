@@ -2,6 +2,9 @@
 
 #include "ostraka/core/error.h"
 
+#include <algorithm>
+#include <map>
+
 namespace ostraka {
 
 namespace {
@@ -170,19 +173,96 @@ JsonValue assembly_to_json(const Reconstruction& result, const AssemblyNames& na
     return assembly;
 }
 
-std::vector<StatedMatch> stated_matches(const JsonValue& assembly, const std::string& fragment) {
-    validate(assembly, "assembly", "assembly");
-    std::vector<StatedMatch> list;
-    for (const auto& entry : assembly["fragments"].GetArray()) {
-        if (fragment != entry["name"].GetString() || !entry.HasMember("annotations")) continue;
-        for (const auto& item : entry["annotations"].GetArray()) {
-            if (!item.HasMember("stated") || !item["stated"].GetBool()) continue;
+namespace {
+
+struct Statement {
+    StatedMatch match;
+    std::string place;  ///< JSON pointer
+};
+
+/// What is stated of the fragment of this name, with its place in the file.
+std::vector<Statement> statements(const JsonValue& assembly, const std::string& fragment, const std::string& file) {
+    validate(assembly, "assembly", file);
+    std::map<std::string, std::string> entries;
+    std::map<int, std::string> settled;
+    std::vector<Statement> list;
+    const auto fragments = assembly["fragments"].GetArray();
+    for (unsigned k = 0; k < fragments.Size(); ++k) {
+        const std::string place = "/fragments/" + std::to_string(k), name = fragments[k]["name"].GetString();
+        if (const auto [other, fresh] = entries.emplace(name, place); !fresh)
+            fail_input(file, "at " + place + ": fragment '" + name + "' has an entry already, at " + other->second,
+                       "keep one of them");
+        const JsonValue* matches = find_member(fragments[k], "annotations");
+        if (name != fragment || matches == nullptr) continue;
+        for (unsigned i = 0; i < matches->Size(); ++i) {
+            const JsonValue& item = (*matches)[i];
+            const JsonValue *stated = find_member(item, "stated"), *of_template = find_member(item, "ofTemplate");
+            if (stated == nullptr || !stated->GetBool()) continue;
             StatedMatch match{item["ofFragment"].GetInt(), {}};
-            if (item.HasMember("ofTemplate") && item["ofTemplate"].IsInt()) match.of_template = item["ofTemplate"].GetInt();
-            list.push_back(match);
+            const std::string at = place + "/annotations/" + std::to_string(i), what = "at " + at + ": annotation " +
+                                                                                       std::to_string(match.of_fragment) +
+                                                                                       " of fragment '" + name + "'";
+            if (of_template == nullptr)
+                fail_input(file, what + " is stated without \"ofTemplate\"",
+                           "give the id of the template's annotation, or null for none");
+            if (const auto [other, fresh] = settled.emplace(match.of_fragment, at); !fresh)
+                fail_input(file, what + " is stated already, at " + other->second, "keep one of them");
+            if (!of_template->IsNull()) match.of_template = of_template->GetInt();
+            list.push_back({match, at});
         }
     }
     return list;
+}
+
+}  // namespace
+
+std::vector<StatedMatch> stated_matches(const JsonValue& assembly, const std::string& fragment, const std::string& file) {
+    std::vector<StatedMatch> list;
+    for (const Statement& one : statements(assembly, fragment, file)) list.push_back(one.match);
+    return list;
+}
+
+std::vector<StatedMatch> stated_matches(const JsonValue& assembly, const Fragment& fragment, const AnnotationSet& of_template,
+                                        const std::string& file) {
+    std::vector<StatedMatch> list;
+    for (const auto& [match, place] : statements(assembly, fragment.name, file)) {
+        const std::string at = "at " + place + ": ", whose = "fragment '" + fragment.name + "'";
+        const auto find = [&](const AnnotationSet& set, int id, const std::string& owner) {
+            const Annotation* annotation = set.find(id);
+            if (annotation == nullptr)
+                fail_input(file, at + owner + " has no annotation " + std::to_string(id),
+                           "look at its ids with 'annotation list'");
+            return annotation->type;
+        };
+        const AnnotationType theirs = find(fragment.annotations, match.of_fragment, whose);
+        if (match.of_template) {
+            const AnnotationType ours = find(of_template, *match.of_template, "for " + whose + ", the template");
+            if (ours != theirs)
+                fail_input(file,
+                           at + "matches a " + to_string(theirs) + " (annotation " + std::to_string(match.of_fragment) + " of " +
+                               whose + ") with a " + to_string(ours) + " (annotation " + std::to_string(*match.of_template) +
+                               " of the template)",
+                           "match annotations of one type");
+        }
+        list.push_back(match);
+    }
+    return list;
+}
+
+std::vector<std::string> unused_statements(const JsonValue& assembly, const std::vector<std::string>& fragments) {
+    validate(assembly, "assembly", "assembly");
+    std::vector<std::string> names;
+    for (const auto& entry : assembly["fragments"].GetArray()) {
+        const std::string name = entry["name"].GetString();
+        const JsonValue* matches = find_member(entry, "annotations");
+        if (matches == nullptr || std::find(fragments.begin(), fragments.end(), name) != fragments.end()) continue;
+        const auto stated = [](const JsonValue& item) {
+            const JsonValue* flag = find_member(item, "stated");
+            return flag != nullptr && flag->GetBool();
+        };
+        if (std::any_of(matches->Begin(), matches->End(), stated)) names.push_back(name);
+    }
+    return names;
 }
 
 }  // namespace ostraka
