@@ -67,8 +67,12 @@ struct Fit {
                 fail_usage("two fragments are called '" + printable(fragments[k].name) + "'", "rename one of the files");
             names.fragments.push_back(fragments[k].name);
             pointers.push_back(&fragments[k]);
-            stated.push_back(assembly.empty() ? std::vector<StatedMatch>() : stated_matches(said, fragments[k].name));
+            stated.push_back(assembly.empty() ? std::vector<StatedMatch>()
+                                              : stated_matches(said, fragments[k], *loaded.annotations, assembly));
         }
+        if (!assembly.empty())
+            for (const std::string& name : unused_statements(said, names.fragments))
+                session.note("note: " + assembly + " states matches of '" + printable(name) + "', which is no fragment here");
         for (std::size_t k = 0; k < fragments.size(); ++k)
             if (const std::string& ours = loaded.annotations->unit, &theirs = fragments[k].annotations.unit;
                 !ours.empty() && !theirs.empty() && ours != theirs)
