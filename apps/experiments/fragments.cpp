@@ -121,6 +121,34 @@ ShapePrior learn_canon(const Canon& canon) {
     return prior_of(learn_modes(members, members.front()));
 }
 
+/// A piece of `whole` around a part, with the landmarks that it has.
+struct Broken {
+    BrokenPiece piece;
+    Fragment fragment;
+};
+
+Broken make_fragment(const Canon& canon, const Mesh& whole, const std::string& name, const std::string& at,
+                     const BreakOptions& options) {
+    const Annotation* middle = canon.set.find(find_tag(canon.set, at));
+    Vector3d centre = Vector3d::Zero();
+    for (const Index f : middle->faces) centre += eigen(centroid(whole, Face(f))) / static_cast<double>(middle->faces.size());
+    Broken broken{break_off(whole, point_of(centre), options), {}};
+    broken.fragment.name = name;
+    broken.fragment.mesh = broken.piece.mesh;
+    std::map<Index, Index> of_piece;
+    for (Index i = 0; i < broken.piece.vertices.size(); ++i) of_piece.emplace(broken.piece.vertices[i], i);
+    for (const Annotation& one : canon.set.annotations) {
+        if (one.type != AnnotationType::point || !of_piece.contains(one.points.front())) continue;
+        Annotation point;
+        point.id = one.id;
+        point.tag = one.tag;
+        point.type = one.type;
+        point.points = {of_piece.at(one.points.front())};
+        broken.fragment.annotations.annotations.push_back(std::move(point));
+    }
+    return broken;
+}
+
 Row run(const Canon& canon, const ShapePrior* prior, const Case& what, std::uint64_t seed) {
     const Mesh& mesh = canon.statuette.mesh;
     const double high = bounding_box(mesh).zmax(), strength = 1 + 0.25 * (static_cast<double>(seed % 4) - 1.5);
@@ -134,35 +162,17 @@ Row run(const Canon& canon, const ShapePrior* prior, const Case& what, std::uint
         whole.point(v) = point_of(p);
     }
     const double diagonal = box_diagonal(whole);
-    const Annotation* middle = canon.set.find(find_tag(canon.set, what.at));
-    Vector3d centre = Vector3d::Zero();
-    for (const Index f : middle->faces) centre += eigen(centroid(whole, Face(f))) / static_cast<double>(middle->faces.size());
     BreakOptions options;
     options.share = what.share;
     options.noise = what.noise;
     options.erosion = what.erosion;
     options.seed = seed;
-    const BrokenPiece piece = break_off(whole, point_of(centre), options);
-    Fragment fragment;
-    fragment.name = "fragment";
-    fragment.mesh = piece.mesh;
+    const Broken broken = make_fragment(canon, whole, "fragment", what.at, options);
+    const BrokenPiece& piece = broken.piece;
     std::vector<bool> seen(mesh.number_of_vertices(), false);
-    std::vector<Index> of_piece(mesh.number_of_vertices(), no_index);
-    for (Index i = 0; i < piece.vertices.size(); ++i) {
-        seen[piece.vertices[i]] = true;
-        of_piece[piece.vertices[i]] = i;
-    }
-    for (const Annotation& one : canon.set.annotations) {
-        if (one.type != AnnotationType::point || of_piece[one.points.front()] == no_index) continue;
-        Annotation point;
-        point.id = one.id;
-        point.tag = one.tag;
-        point.type = one.type;
-        point.points = {of_piece[one.points.front()]};
-        fragment.annotations.annotations.push_back(std::move(point));
-    }
+    for (const Index v : piece.vertices) seen[v] = true;
     const Stopwatch watch;
-    const Reconstruction result = reconstruct(mesh, canon.set, canon.graph, {&fragment}, {}, {}, prior);
+    const Reconstruction result = reconstruct(mesh, canon.set, canon.graph, {&broken.fragment}, {}, {}, prior);
     Row row;
     row.seconds = watch.seconds().wall;
     row.placed = result.placement.any();
@@ -227,33 +237,6 @@ Mesh make_member(const Canon& canon, Random& random, double size, bool other_can
     return member;
 }
 
-Fragment make_fragment(const Canon& canon, const Mesh& whole, const std::string& name, const std::string& at, double share,
-                       double noise, std::uint64_t seed) {
-    const Annotation* middle = canon.set.find(find_tag(canon.set, at));
-    Vector3d centre = Vector3d::Zero();
-    for (const Index f : middle->faces) centre += eigen(centroid(whole, Face(f))) / static_cast<double>(middle->faces.size());
-    BreakOptions options;
-    options.share = share;
-    options.noise = noise;
-    options.seed = seed;
-    const BrokenPiece piece = break_off(whole, point_of(centre), options);
-    Fragment fragment;
-    fragment.name = name;
-    fragment.mesh = piece.mesh;
-    std::map<Index, Index> of_piece;
-    for (Index i = 0; i < piece.vertices.size(); ++i) of_piece.emplace(piece.vertices[i], i);
-    for (const Annotation& one : canon.set.annotations) {
-        if (one.type != AnnotationType::point || !of_piece.contains(one.points.front())) continue;
-        Annotation point;
-        point.id = one.id;
-        point.tag = one.tag;
-        point.type = one.type;
-        point.points = {of_piece.at(one.points.front())};
-        fragment.annotations.annotations.push_back(std::move(point));
-    }
-    return fragment;
-}
-
 }  // namespace
 
 void verdicts(const FragmentExperiment& options) {
@@ -272,9 +255,16 @@ void verdicts(const FragmentExperiment& options) {
         const Mesh first = make_member(canon, random, size, planted == Planted::proportion);
         Mesh second = planted == Planted::size ? make_member(canon, random, size * factor, false) : first;
         const auto seed = static_cast<std::uint64_t>(pair) + 1;
-        const Fragment top = make_fragment(canon, first, "top", "head", 0.3, 0.001, seed),
-                       bottom = make_fragment(canon, second, "bottom", "base", 0.3, 0.001, seed + 100000);
-        const Reconstruction result = reconstruct(canon.statuette.mesh, canon.set, canon.graph, {&top, &bottom});
+        BreakOptions options_top;
+        options_top.share = 0.3;
+        options_top.noise = 0.001;
+        options_top.seed = seed;
+        BreakOptions options_bottom = options_top;
+        options_bottom.seed = seed + 100000;
+        const Broken top = make_fragment(canon, first, "top", "head", options_top),
+                     bottom = make_fragment(canon, second, "bottom", "base", options_bottom);
+        const Reconstruction result =
+            reconstruct(canon.statuette.mesh, canon.set, canon.graph, {&top.fragment, &bottom.fragment});
         const bool compatible = result.verdict == Compatibility::compatible;
         truth.push_back(planted == Planted::nothing);
         evidence.push_back(-result.strain);

@@ -96,11 +96,10 @@ private:
     }
 
     void place() {
-        std::vector<std::vector<LandmarkPair>> pairs;
         result_.notes.resize(fragments_.size());
         for (std::size_t k = 0; k < fragments_.size(); ++k)
-            pairs.push_back(common_landmarks(mesh_, set_, fragments_[k]->mesh, fragments_[k]->annotations, &result_.notes[k]));
-        result_.placement = place_by_landmarks(pairs, options_.placement);
+            pairs_.push_back(common_landmarks(mesh_, set_, fragments_[k]->mesh, fragments_[k]->annotations, &result_.notes[k]));
+        result_.placement = place_by_landmarks(pairs_, options_.placement);
         result_.searched =
             place_by_search(mesh_, fragments_, options_.search, result_.placement.scale, result_.placement.fragments);
     }
@@ -116,7 +115,7 @@ private:
             for (std::size_t f = 0; f < counts.size(); ++f) counts[f] = fragment.facets[f] != Facet::fracture;
             if (!counts.empty() && std::find(counts.begin(), counts.end(), true) == counts.end()) continue;
             std::vector<Anchor> anchors;
-            const auto pairs = common_landmarks(mesh_, set_, fragment.mesh, fragment.annotations);
+            const std::vector<LandmarkPair>& pairs = pairs_[k];
             for (std::size_t i = 0; i < pairs.size(); ++i)
                 if (i < placement.landmarks.size() && placement.landmarks[i].used)
                     anchors.push_back({pairs[i].on_fragment, on_scaled(pairs[i])});
@@ -293,14 +292,14 @@ private:
     }
 
     /// A fragment's size against that of the others, and its landmarks against the template's.
-    void judge_fragment(std::size_t k, const std::vector<std::vector<LandmarkPair>>& pairs) {
+    void judge_fragment(std::size_t k) {
         const FragmentPlacement& one = result_.placement.fragments[k];
         const int number = static_cast<int>(k);
         double sum = 0, weights = 0;
         for (std::size_t j = 0; j < fragments_.size(); ++j) {
             const FragmentPlacement& other = result_.placement.fragments[j];
             if (j == k || !other.problem.empty() || !(other.own_scale > 0)) continue;
-            const double weight = weight_of(pairs[j], other, false);
+            const double weight = weight_of(pairs_[j], other, false);
             sum += weight * other.own_scale;
             weights += weight;
         }
@@ -313,7 +312,7 @@ private:
         }
         const double count = static_cast<double>(
             std::count_if(one.landmarks.begin(), one.landmarks.end(), [](const LandmarkResidual& mark) { return mark.used; }));
-        const double spread = count > 0 ? std::sqrt(weight_of(pairs[k], one, true) / count) : 0;
+        const double spread = count > 0 ? std::sqrt(weight_of(pairs_[k], one, true) / count) : 0;
         if (spread > 0)
             object(ObjectionKind::landmarks, number, -1, one.residual / (std::max(options_.residual, 1e-9) * spread),
                    "its landmarks are " + digits(one.residual, 3) + " off those of the template (root mean square), " +
@@ -322,8 +321,6 @@ private:
 
     void judge() {
         std::size_t placed = 0;
-        std::vector<std::vector<LandmarkPair>> pairs;
-        for (const Fragment* one : fragments_) pairs.push_back(common_landmarks(mesh_, set_, one->mesh, one->annotations));
         for (std::size_t k = 0; k < fragments_.size(); ++k) {
             const FragmentPlacement& one = result_.placement.fragments[k];
             if (!one.problem.empty()) {
@@ -331,7 +328,7 @@ private:
                 continue;
             }
             ++placed;
-            judge_fragment(k, pairs);
+            judge_fragment(k);
         }
         for (std::size_t i = 0; i < number_.size(); ++i) {
             const double lying = 100 * result_.object.lying[i], shared = 100 * result_.object.shared[i];
@@ -384,6 +381,7 @@ private:
     const ShapePrior* prior_;
     Mesh scaled_;
     double diagonal_ = 0;
+    std::vector<std::vector<LandmarkPair>> pairs_;  ///< of each fragment
     std::vector<PlacedFragment> placed_;
     std::vector<int> number_;  ///< of each placed fragment
     std::vector<bool> held_;
