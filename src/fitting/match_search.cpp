@@ -162,6 +162,25 @@ std::vector<VertexMatch> MatchSearch::matches(const Points& now, const Mesh& con
     return found;
 }
 
+std::vector<FragmentSample> MatchSearch::samples(int count) const {
+    double area = 0;
+    for (const auto& [label, parts] : parts_)
+        for (const auto& part : parts) area += surface_area(part->mesh);
+    std::vector<FragmentSample> samples;
+    const double each = area / count;
+    double sum = 0, next = 0.5 * each;
+    for (const auto& [label, parts] : parts_)
+        for (const auto& part : parts)
+            for (const Face face : part->mesh.faces()) {
+                sum += face_area(part->mesh, face);
+                if (next >= sum) continue;
+                const Vector3d normal = eigen(area_vector(part->mesh, face));
+                samples.push_back({eigen(centroid(part->mesh, face)), normal.normalized(), label});
+                while (next < sum) next += each;
+            }
+    return samples;
+}
+
 void MatchSearch::assign(const Points& now, const Mesh& connectivity, const Labels& labels,
                          const VertexAssignmentOptions& options, std::vector<VertexMatch>& matches) const {
     Mesh mesh = connectivity;

@@ -19,6 +19,12 @@ struct Guide {
     double length = 0;  ///< of the outline that it stands for; 0 for a landmark
 };
 
+/// A place of a fragment's outer surface, each for the same area.
+struct FragmentSample {
+    Eigen::Vector3d place, normal;
+    int label = -1;  ///< of the template's faces among which its counterpart is
+};
+
 /// Like is looked for among like: vertices in a matched annotation on the faces of its counterpart, all others on faces in none.
 class MatchSearch {
 public:
@@ -42,6 +48,8 @@ public:
     /// options say; none where the counterpart is where the fragment ends.
     void assign(const Points& now, const Mesh& connectivity, const Labels& labels, const VertexAssignmentOptions& options,
                 std::vector<VertexMatch>& matches) const;
+    /// About this many places of all fragments together.
+    [[nodiscard]] std::vector<FragmentSample> samples(int count) const;
     /// Landmarks of matched point annotations.
     [[nodiscard]] std::vector<Guide> guides() const { return guides_; }
 

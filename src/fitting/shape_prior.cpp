@@ -5,10 +5,14 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/geom/eigen.h"
+#include "ostraka/geom/submesh.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <optional>
 
 namespace ostraka {
 
@@ -30,25 +34,79 @@ void ShapePrior::check(std::size_t vertices) const {
 
 namespace {
 
+/// A place of the class's shape and how far the fragment lies off its plane.
+struct Residual {
+    Vector3d place, normal;
+    double off = 0, weight = 0;
+    std::array<Index, 3> corners{};  ///< of the template
+    std::array<double, 3> barycentric{};
+};
+
+/// As how many independent places residuals count, `least` at least: those of a rough surface are independent of each other,
+/// those of a shape that the class does not have agree with their neighbours. The surface is halved across its longest side until
+/// there are patches enough; the mean residual of a patch varies by as much less than one residual does as the patch has
+/// independent ones.
+double independent_samples(std::vector<Residual> residuals, std::size_t unknowns, double least) {
+    const auto wanted = std::max(static_cast<std::size_t>(least), 2 * unknowns);
+    std::erase_if(residuals, [](const Residual& one) { return !(one.weight > 0); });
+    if (residuals.size() < 4 * wanted) return least;
+    std::vector<std::pair<std::size_t, std::size_t>> patches{{0, residuals.size()}};
+    while (patches.size() < wanted) {
+        std::vector<std::pair<std::size_t, std::size_t>> halves;
+        for (const auto& [from, to] : patches) {
+            Eigen::AlignedBox3d box;
+            for (std::size_t i = from; i < to; ++i) box.extend(residuals[i].place);
+            Eigen::Index axis = 0;
+            box.sizes().maxCoeff(&axis);
+            const std::size_t middle = from + (to - from) / 2;
+            const auto begin = residuals.begin();
+            std::nth_element(begin + static_cast<std::ptrdiff_t>(from), begin + static_cast<std::ptrdiff_t>(middle),
+                             begin + static_cast<std::ptrdiff_t>(to),
+                             [axis](const Residual& a, const Residual& b) { return a.place[axis] < b.place[axis]; });
+            halves.emplace_back(from, middle);
+            halves.emplace_back(middle, to);
+        }
+        patches = std::move(halves);
+    }
+    double squares = 0, of_means = 0;
+    for (const auto& [from, to] : patches) {
+        double sum = 0, weight = 0;
+        for (std::size_t i = from; i < to; ++i) {
+            sum += residuals[i].weight * residuals[i].off;
+            weight += residuals[i].weight;
+            squares += residuals[i].weight * residuals[i].off * residuals[i].off;
+        }
+        if (weight > 0) of_means += sum * sum / weight;
+    }
+    const auto count = static_cast<double>(patches.size());
+    // What is fitted takes its share of the means' variance.
+    of_means *= count / (count - static_cast<double>(unknowns));
+    const double most = static_cast<double>(residuals.size());
+    return of_means > 0 ? std::clamp(count * squares / of_means, least, std::max(least, most)) : least;
+}
+
 class PriorFitter {
 public:
     PriorFitter(const Mesh& scaled, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments,
                 const ShapePrior& prior, const PriorOptions& options)
-        : scaled_(scaled), prior_(prior), options_(options), search_(scaled, set, fragments), diagonal_(box_diagonal(scaled)) {
+        : scaled_(scaled), prior_(prior), options_(options), diagonal_(box_diagonal(scaled)) {
         std::vector<Vector3d> there;
         for (const Vertex v : scaled.vertices()) there.push_back(eigen(scaled.point(v)));
         FitOptions free;
         free.scale = true;
         place_ = fit_motion(prior.mean, there, {}, free);
         coefficients_ = VectorXd::Zero(prior.modes.cols());
-        labels_ = search_.labels(scaled, {});
-        constexpr std::size_t most = 4000;
-        const std::size_t step = std::max<std::size_t>(1, labels_.of_vertex.size() / most);
-        for (std::size_t i = 0; i < labels_.of_vertex.size(); ++i)
-            if (i % step != 0) labels_.of_vertex[i].clear();
-        areas_.assign(scaled.number_of_vertices(), 0);
-        for (const Face face : scaled.faces())
-            for (const Vertex v : corners(scaled, face)) areas_[v] += face_area(scaled, face) / 3;
+        const MatchSearch search(scaled, set, fragments);
+        guides_ = search.guides();
+        constexpr int most = 3000;
+        samples_ = search.samples(most);
+        const MatchSearch::Labels labels = search.labels(scaled, {});
+        for (const FragmentSample& sample : samples_) parts_.try_emplace(sample.label);
+        for (auto& [label, part] : parts_) {
+            std::vector<bool> keep(labels.of_face.size());
+            for (std::size_t f = 0; f < keep.size(); ++f) keep[f] = labels.of_face[f] == label;
+            part = keep_faces(scaled, keep);
+        }
     }
 
     PriorFit run() {
@@ -77,68 +135,102 @@ private:
         return points;
     }
 
+    /// Where the fragments' samples are on the class's shape, in its planes: that is smooth, and they are not.
+    [[nodiscard]] std::vector<Residual> residuals(const Points& now) {
+        std::vector<Residual> found;
+        const double cosine = std::cos(options_.angle * std::numbers::pi / 180), reach = options_.reach * diagonal_;
+        for (auto& [label, part] : parts_) {
+            if (part.faces.empty()) continue;
+            for (const Vertex v : part.mesh.vertices())
+                part.mesh.point(v) = point_of(now.col(static_cast<Eigen::Index>(part.vertices[v])));
+            const SurfaceSearch search(part.mesh);
+            std::vector<std::optional<Residual>> of_sample(samples_.size());
+            parallel_for(samples_.size(), [&, label = label, part = &part](std::size_t i) {
+                const FragmentSample& sample = samples_[i];
+                if (sample.label != label) return;
+                const auto hit = search.closest_compatible(point_of(sample.place), vector_of(sample.normal), cosine, reach);
+                if (!hit) return;
+                Residual one;
+                one.place = eigen(hit->point);
+                one.normal = eigen(search.normal(hit->face));
+                one.off = one.normal.dot(sample.place - one.place);
+                const auto c = corners(part->mesh, Face(hit->face));
+                for (std::size_t k = 0; k < 3; ++k) one.corners[k] = part->vertices[c[k]];
+                one.barycentric = hit->barycentric;
+                of_sample[i] = one;
+            });
+            for (const auto& one : of_sample)
+                if (one) found.push_back(*one);
+        }
+        return found;
+    }
+
     /// False where nothing is matched.
     bool step(const Points& now, PriorFit& fit) {
-        const auto matches =
-            search_.matches(now, scaled_, labels_, options_.reach * diagonal_, std::cos(options_.angle * std::numbers::pi / 180));
-        std::vector<Vector3d> normals(areas_.size(), Vector3d::Zero());
-        for (const Face face : scaled_.faces()) {
-            const auto c = corners(scaled_, face);
-            const Vector3d a = now.col(static_cast<Eigen::Index>(c[0])), b = now.col(static_cast<Eigen::Index>(c[1])),
-                           d = now.col(static_cast<Eigen::Index>(c[2]));
-            for (const Vertex v : c) normals[v] += (b - a).cross(d - a);
-        }
-        Vector3d centre = Vector3d::Zero();
+        std::vector<Residual> matches = residuals(now);
+        fit.matched = matches.size();
+        if (matches.size() < 3) return false;
+        // Who is off by far more than most does not count (Tukey's biweight).
+        std::vector<double> sizes;
+        for (const Residual& one : matches) sizes.push_back(std::abs(one.off));
+        const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+        std::nth_element(sizes.begin(), middle, sizes.end());
+        const double least_error = 1e-4 * diagonal_, limit = 4.685 * std::max(1.4826 * *middle, least_error);
         double weight = 0;
-        fit.matched = 0;
-        for (std::size_t i = 0; i < matches.size(); ++i) {
-            if (matches[i].fragment < 0 || !(normals[i].norm() > 0)) continue;
-            centre += areas_[i] * now.col(static_cast<Eigen::Index>(i));
-            weight += areas_[i];
-            ++fit.matched;
+        for (Residual& one : matches) {
+            const double t = one.off / limit;
+            one.weight = std::abs(t) < 1 ? (1 - t * t) * (1 - t * t) : 0;
+            weight += one.weight;
         }
-        if (fit.matched < 3 || !(weight > 0)) return false;
-        centre /= weight;
-        double spread = 0;
-        for (std::size_t i = 0; i < matches.size(); ++i)
-            if (matches[i].fragment >= 0) spread += areas_[i] * (now.col(static_cast<Eigen::Index>(i)) - centre).squaredNorm();
-        spread = std::sqrt(spread / weight);
+        if (!(weight > 0)) return false;
+        Vector3d centre = Vector3d::Zero();
+        double squares = 0, spread = 0;
+        for (Residual& one : matches) {
+            one.weight /= weight;
+            centre += one.weight * one.place;
+            squares += one.weight * one.off * one.off;
+        }
+        for (const Residual& one : matches) spread += one.weight * (one.place - centre).squaredNorm();
+        spread = std::sqrt(spread);
         if (!(spread > 0)) return false;
         // Unknown: turn and scale (times the spread), shift, coefficients (in deviations).
         const Eigen::Index modes = coefficients_.size(), unknowns = 7 + modes;
         MatrixXd normal = MatrixXd::Zero(unknowns, unknowns);
         VectorXd right = VectorXd::Zero(unknowns), row(unknowns);
         const Matrix3d linear = place_.scale * place_.turn;
-        const auto add = [&](std::size_t i, const Vector3d& n, double off, double w) {
-            const Vector3d arm = (now.col(static_cast<Eigen::Index>(i)) - centre) / spread;
-            row.head<3>() = arm.cross(n);
-            row[3] = n.dot(arm);
-            row.segment<3>(4) = n;
-            const Eigen::RowVector3d turned = n.transpose() * linear;
-            for (Eigen::Index k = 0; k < modes; ++k)
-                row[7 + k] = prior_.deviations[static_cast<std::size_t>(k)] *
-                             turned.dot(prior_.modes.col(k).segment<3>(3 * static_cast<Eigen::Index>(i)));
-            normal.selfadjointView<Eigen::Lower>().rankUpdate(row, w);
-            right += w * off * row;
+        const auto add = [&](const Residual& one) {
+            const Vector3d arm = (one.place - centre) / spread;
+            row.head<3>() = arm.cross(one.normal);
+            row[3] = one.normal.dot(arm);
+            row.segment<3>(4) = one.normal;
+            const Eigen::RowVector3d turned = one.normal.transpose() * linear;
+            row.tail(modes).setZero();
+            for (std::size_t c = 0; c < 3; ++c)
+                for (Eigen::Index k = 0; k < modes && one.barycentric[c] > 0; ++k)
+                    row[7 + k] += one.barycentric[c] * prior_.deviations[static_cast<std::size_t>(k)] *
+                                  turned.dot(prior_.modes.col(k).segment<3>(3 * static_cast<Eigen::Index>(one.corners[c])));
+            normal.selfadjointView<Eigen::Lower>().rankUpdate(row, one.weight);
+            right += one.weight * one.off * row;
         };
-        double squares = 0;
-        for (std::size_t i = 0; i < matches.size(); ++i) {
-            if (matches[i].fragment < 0 || !(normals[i].norm() > 0)) continue;
-            const Vector3d n = normals[i].normalized();
-            const double off = n.dot(matches[i].place - now.col(static_cast<Eigen::Index>(i)));
-            squares += areas_[i] * off * off;
-            add(i, n, off, areas_[i] / weight);
+        for (const Residual& one : matches)
+            if (one.weight > 0) add(one);
+        fit.residual = std::sqrt(squares);
+        fit.samples = independent_samples(matches, static_cast<std::size_t>(unknowns), options_.samples);
+        // A landmark is one place more, less sure where the landmarks are off by more than the surface.
+        double apart = 0;
+        for (const Guide& guide : guides_)
+            apart += (guide.place - now.col(static_cast<Eigen::Index>(guide.vertex))).squaredNorm() /
+                     (3 * static_cast<double>(guides_.size()));
+        const double of_landmark = (apart > squares ? squares / apart : 1) / fit.samples;
+        for (const Guide& guide : guides_) {
+            const Vector3d p = now.col(static_cast<Eigen::Index>(guide.vertex));
+            for (int axis = 0; axis < 3; ++axis)
+                add({p, Vector3d::Unit(axis), guide.place[axis] - p[axis], of_landmark, {guide.vertex, 0, 0}, {1, 0, 0}});
         }
-        constexpr double weight_of_landmark = 0.05;  // against that of the whole surface
-        for (const Guide& guide : search_.guides()) {
-            const Vector3d off = guide.place - now.col(static_cast<Eigen::Index>(guide.vertex));
-            for (int axis = 0; axis < 3; ++axis) add(guide.vertex, Vector3d::Unit(axis), off[axis], weight_of_landmark);
-        }
-        fit.residual = std::sqrt(squares / weight);
         normal = normal.selfadjointView<Eigen::Lower>();
-        // The observed surface counts as `samples` places with the residual as their error, which is never taken for less than
+        // The observed surface counts as so many places with the residual as their error, which is never taken for less than
         // what registration leaves; each coefficient is off by one deviation at will.
-        const double error = std::max(fit.residual, 1e-4 * diagonal_), stiffness = error * error / options_.samples;
+        const double error = std::max(fit.residual, least_error), stiffness = error * error / fit.samples;
         for (Eigen::Index k = 0; k < modes; ++k) {
             const double b = coefficients_[k] / prior_.deviations[static_cast<std::size_t>(k)];
             normal(7 + k, 7 + k) += stiffness;
@@ -166,10 +258,10 @@ private:
     const Mesh& scaled_;
     const ShapePrior& prior_;
     const PriorOptions& options_;
-    MatchSearch search_;
     double diagonal_;
-    MatchSearch::Labels labels_;
-    std::vector<double> areas_;
+    std::vector<Guide> guides_;
+    std::vector<FragmentSample> samples_;
+    std::map<int, SubMesh> parts_;  ///< of the template, by label
     Motion place_;
     VectorXd coefficients_;
 };

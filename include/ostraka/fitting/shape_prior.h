@@ -24,7 +24,7 @@ struct ShapePrior {
 struct PriorOptions {
     int iterations = 40;
     double most = 3;      ///< standard deviations that a coefficient may go
-    double samples = 20;  ///< independent places that the observed surface counts as, against the prior
+    double samples = 20;  ///< least number of independent places that the observed surface counts as, against the prior
     double reach = 0.1;   ///< farthest match, as a share of the diagonal
     double angle = 60;    ///< of the normals of matches, degrees
 
@@ -32,8 +32,8 @@ struct PriorOptions {
     void describe(Visitor& visit) {
         visit("class-iterations", iterations, "most steps of the fit of a class's modes", Range{1, 1000});
         visit("class-limit", most, "standard deviations that a mode may go from the mean", Range{0, 100});
-        visit("class-samples", samples, "independent places that the observed surface counts as, against what the class says",
-              Range{1, 1e9});
+        visit("class-samples", samples,
+              "least number of independent places that the observed surface counts as, against the class", Range{1, 1e9});
     }
 };
 
@@ -41,6 +41,7 @@ struct PriorFit {
     Mesh mesh;                         ///< the template in the shape that the class would give it, where the scaled template is
     std::vector<double> coefficients;  ///< in standard deviations
     double residual = 0;               ///< root mean square distance of matched vertices from the fragments' planes
+    double samples = 0;                ///< independent places that the matched surface counted as, by how its residuals vary
     std::size_t matched = 0;
     int iterations = 0;
 };
