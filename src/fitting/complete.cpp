@@ -107,8 +107,8 @@ private:
                 return hits[v] && area_vector(fragment.mesh, face) * area_vector(object_.mesh, Face(hits[v]->face)) > 0;
             });
         }
-        Patch patch(fragment.mesh, std::move(keep), options_.least);
-        const Joint joint = join_patch(object_.mesh, patch, hits, options_.blend * diagonal_, frozen());
+        const Joint joint = join_patch(object_.mesh, Patch(fragment.mesh, std::move(keep), options_.least), hits,
+                                       options_.blend * diagonal_, frozen());
         if (!joint.problem.empty()) {
             object_.notes.push_back({number, joint.problem});
             show(number, fragment, hits);
@@ -128,7 +128,7 @@ private:
         next.joined = std::move(object_.joined);
         next.lying = std::move(object_.lying);
         next.shared = std::move(object_.shared);
-        next.joined[static_cast<std::size_t>(number)] = patch.size();
+        next.joined[static_cast<std::size_t>(number)] = joint.patch_faces;
         object_ = std::move(next);
     }
 

@@ -2,6 +2,7 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/geom/eigen.h"
+#include "ostraka/io/diagnose.h"
 #include "ostraka/remesh/insert_curves.h"
 
 #include <algorithm>
@@ -218,8 +219,9 @@ Sides part(const InsertedCurves& cut, const Patch& patch, const std::vector<std:
 }
 
 /// Vertices of the surface near the seam shifted by displacements that are harmonic between the seam and those `fixed`.
-void follow(const Mesh& mesh, const std::vector<bool>& gone, const std::map<Index, Vector3d>& seam, double width,
-            const std::vector<bool>& frozen, std::vector<Vector3d>& points) {
+/// Gives marks of those vertices.
+std::vector<bool> follow(const Mesh& mesh, const std::vector<bool>& gone, const std::map<Index, Vector3d>& seam, double width,
+                         const std::vector<bool>& frozen, std::vector<Vector3d>& points) {
     const double edge = mean_edge_length(mesh);
     const int rings = edge > 0 ? static_cast<int>(std::clamp(std::ceil(width / edge), 1.0, 40.0)) : 1;
     std::vector<int> ring(mesh.number_of_vertices(), -1);
@@ -258,7 +260,12 @@ void follow(const Mesh& mesh, const std::vector<bool>& gone, const std::map<Inde
         }
         for (std::size_t i = 0; i < band.size(); ++i) shift[band[i]] = next[i];
     }
-    for (std::size_t v = 0; v < points.size(); ++v) points[v] += shift[v];
+    std::vector<bool> near(points.size(), false);
+    for (std::size_t v = 0; v < points.size(); ++v) {
+        points[v] += shift[v];
+        near[v] = ring[v] >= 0;
+    }
+    return near;
 }
 
 using Splits = std::map<std::pair<Index, Index>, std::vector<Index>>;
@@ -280,9 +287,55 @@ void cut_triangle(std::array<Index, 3> t, const Splits& splits, std::vector<std:
     out.push_back(t);
 }
 
-/// `failed` gets the border vertices at edges that patch and surface both have, on either side of the seam.
-Joint stitch(const Patch& patch, const InsertedCurves& cut, const Drawing& drawing, const std::vector<bool>& gone, double width,
-             const std::vector<bool>& frozen, std::vector<Vertex>& failed) {
+/// Vertices of the patch that few edges part from its border.
+std::vector<bool> near_border(const Patch& patch) {
+    constexpr int rings = 4;
+    const Mesh& mesh = patch.mesh();
+    std::vector<bool> near(mesh.number_of_vertices(), false);
+    std::vector<Vertex> front;
+    for (const auto& loop : patch.loops()) front.insert(front.end(), loop.begin(), loop.end());
+    for (const Vertex v : front) near[v] = true;
+    for (int r = 0; r < rings; ++r) {
+        std::vector<Vertex> then;
+        for (const Vertex v : front)
+            for (const Halfedge h : mesh.halfedges_around_target(mesh.halfedge(v))) {
+                const Vertex other = mesh.source(h);
+                if (near[other]) continue;
+                near[other] = true;
+                then.push_back(other);
+            }
+        front = std::move(then);
+    }
+    return near;
+}
+
+/// Two surfaces with a seam, and what they are near it.
+struct Stitched {
+    Joint joint;
+    std::vector<bool> near;  ///< marks of the faces near the seam
+    /// Border vertices at edges that patch and surface both have, on either side of the seam: there is no joint.
+    std::vector<Vertex> failed;
+};
+
+/// Crossings of the patch's faces with others near the seam: the border vertices nearest to them.
+std::vector<Vertex> crossings_at_seam(const Stitched& stitched, const Patch& patch) {
+    const SubMesh near = keep_faces(stitched.joint.mesh, stitched.near);
+    std::vector<Vertex> found;
+    for (const auto& [a, b] : self_intersections(to_soup(near.mesh)).pairs) {
+        const Index f = stitched.joint.patch_face[near.faces[a]], g = stitched.joint.patch_face[near.faces[b]];
+        if ((f == no_index) == (g == no_index)) continue;  // each had them before
+        const Point place = centroid(patch.mesh(), Face(f == no_index ? g : f));
+        Vertex nearest = patch.loops().front().front();
+        for (const auto& loop : patch.loops())
+            for (const Vertex v : loop)
+                if (CGAL::has_smaller_distance_to_point(place, patch.mesh().point(v), patch.mesh().point(nearest))) nearest = v;
+        found.push_back(nearest);
+    }
+    return found;
+}
+
+Stitched stitch(const Patch& patch, const InsertedCurves& cut, const Drawing& drawing, const std::vector<bool>& gone,
+                double width, const std::vector<bool>& frozen) {
     const Mesh& surface = cut.mesh;
     constexpr Index none = no_index;
     TriangleSoup soup;
@@ -327,9 +380,11 @@ Joint stitch(const Patch& patch, const InsertedCurves& cut, const Drawing& drawi
     }
     std::vector<Vector3d> points;
     for (const Vertex v : surface.vertices()) points.push_back(eigen(surface.point(v)));
-    follow(surface, gone, seam, width, frozen, points);
+    const std::vector<bool> surface_near = follow(surface, gone, seam, width, frozen, points), patch_near = near_border(patch);
 
-    Joint joint;
+    Stitched result;
+    Joint& joint = result.joint;
+    joint.patch_faces = patch.size();
     for (const Face face : surface.faces()) {
         if (gone[face]) continue;
         std::array<Index, 3> triangle{};
@@ -341,6 +396,7 @@ Joint stitch(const Patch& patch, const InsertedCurves& cut, const Drawing& drawi
         soup.triangles.push_back(triangle);
         joint.old_face.push_back(cut.face_origin[face]);
         joint.patch_face.push_back(none);
+        result.near.push_back(std::any_of(c.begin(), c.end(), [&](Vertex v) { return surface_near[v]; }));
     }
     for (const Face face : patch.mesh().faces()) {
         if (!patch.has(face)) continue;
@@ -349,6 +405,7 @@ Joint stitch(const Patch& patch, const InsertedCurves& cut, const Drawing& drawi
         cut_triangle({of_patch[c[0]], of_patch[c[1]], of_patch[c[2]]}, splits, soup.triangles);
         joint.old_face.resize(joint.old_face.size() + soup.triangles.size() - before, none);
         joint.patch_face.resize(joint.patch_face.size() + soup.triangles.size() - before, face);
+        result.near.resize(soup.triangles.size(), std::any_of(c.begin(), c.end(), [&](Vertex v) { return patch_near[v]; }));
     }
     std::vector<std::pair<Index, Index>> edges;
     for (const auto& t : soup.triangles)
@@ -357,21 +414,24 @@ Joint stitch(const Patch& patch, const InsertedCurves& cut, const Drawing& drawi
     std::sort(edges.begin(), edges.end());
     for (auto twice = std::adjacent_find(edges.begin(), edges.end()); twice != edges.end();
          twice = std::adjacent_find(twice + 1, edges.end())) {
-        failed.push_back(border.at(twice->first));
-        failed.push_back(border.at(twice->second));
+        result.failed.push_back(border.at(twice->first));
+        result.failed.push_back(border.at(twice->second));
     }
-    if (failed.empty()) joint.mesh = build_mesh(soup);
-    return joint;
+    if (result.failed.empty()) joint.mesh = build_mesh(soup);
+    return result;
 }
 
 }  // namespace
 
-Joint join_patch(const Mesh& surface, Patch& patch, const std::vector<std::optional<SurfaceHit>>& places, double width,
+Joint join_patch(const Mesh& surface, Patch patch, const std::vector<std::optional<SurfaceHit>>& places, double width,
                  const std::vector<bool>& frozen) {
-    constexpr int most_attempts = 40;
-    Joint none;
+    constexpr int most_attempts = 40, most_crossed = 12;
+    Joint none, best;
+    std::size_t fewest = 0;
+    int crossed_attempts = 0;
     for (int attempt = 0; attempt < most_attempts; ++attempt) {
         if (patch.size() == 0) {
+            if (crossed_attempts > 0) return best;
             none.problem = attempt == 0 ? "nothing of it lies on the fitted template" : "its border is not simple anywhere";
             return none;
         }
@@ -390,11 +450,20 @@ Joint join_patch(const Mesh& surface, Patch& patch, const std::vector<std::optio
             patch.erode(sides.failed);
             continue;
         }
-        std::vector<Vertex> failed;
-        Joint joint = stitch(patch, cut, drawing, sides.left, width, frozen, failed);
-        if (failed.empty()) return joint;
-        patch.erode(failed);
+        Stitched stitched = stitch(patch, cut, drawing, sides.left, width, frozen);
+        if (!stitched.failed.empty()) {
+            patch.erode(stitched.failed);
+            continue;
+        }
+        const std::vector<Vertex> at = patch.loops().empty() ? std::vector<Vertex>() : crossings_at_seam(stitched, patch);
+        if (crossed_attempts == 0 || at.size() < fewest) {
+            fewest = at.size();
+            best = std::move(stitched.joint);
+        }
+        if (at.empty() || ++crossed_attempts == most_crossed) return best;
+        patch.erode(at);
     }
+    if (crossed_attempts > 0) return best;
     none.problem = "its border crosses itself on the template";
     return none;
 }

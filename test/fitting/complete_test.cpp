@@ -149,6 +149,24 @@ TEST(Complete, RoughBordersAreEvenedUntilTheyAreSimple) {
     EXPECT_GT(own_area(object, 0), 0.5 * surface_area(cap.mesh));
 }
 
+TEST(Complete, NoiseMakesNothingCrossAtTheSeam) {
+    const Mesh ball = build_mesh(test::octahedron_sphere(4));
+    std::uint64_t state = 1;
+    const auto draw = [&] {
+        state = state * 6364136223846793005ULL + 1442695040888963407ULL;
+        return static_cast<double>(state >> 11) * 0x1p-53 - 0.5;
+    };
+    for (int k = 0; k < 6; ++k) {
+        PlacedFragment cap = part(other_sphere(80, 1), [](const Point& p) { return p.z() + 0.1 * std::sin(9 * p.x()) > 0.1; });
+        for (const Vertex v : cap.mesh.vertices()) cap.mesh.point(v) = point_of((1 + 0.05 * draw()) * eigen(cap.mesh.point(v)));
+        const CompletedObject object = complete(ball, {cap});
+        EXPECT_TRUE(object.notes.empty());
+        EXPECT_GT(own_area(object, 0), 0.8 * surface_area(cap.mesh));
+        for (const auto& [a, b] : self_intersections(to_soup(object.mesh)).pairs)
+            EXPECT_TRUE(object.template_face[a] == no_index && object.template_face[b] == no_index);
+    }
+}
+
 TEST(Complete, WhatIsFarOrTurnedAwayOrAFractureIsNotTaken) {
     const Mesh ball = build_mesh(test::octahedron_sphere(4));
     const PlacedFragment far_away = part(grown(ball, 1.2), [](const Point& p) { return p.z() > 0; });
