@@ -14,22 +14,30 @@ namespace ostraka {
 using Eigen::Vector3d;
 
 Patch::Patch(const Mesh& mesh, std::vector<bool> keep, double least) : mesh_(mesh), keep_(std::move(keep)), least_(least) {
-    regularise();
+    regularise({mesh.vertices().begin(), mesh.vertices().end()});
 }
 
 std::size_t Patch::size() const { return static_cast<std::size_t>(std::count(keep_.begin(), keep_.end(), true)); }
 
-void Patch::erode(const std::vector<Vertex>& vertices) {
-    for (const Vertex v : vertices)
-        for (const Face face : mesh_.faces_around_target(mesh_.halfedge(v)))
-            if (face != Mesh::null_face()) keep_[face] = false;
-    regularise();
+void Patch::erode(std::vector<Vertex> vertices, int rings) {
+    std::vector<Vertex> touched;
+    for (; rings > 0; --rings) {
+        std::vector<Vertex> next;
+        for (const Vertex v : vertices)
+            for (const Face face : mesh_.faces_around_target(mesh_.halfedge(v))) {
+                if (face == Mesh::null_face() || !keep_[face]) continue;
+                keep_[face] = false;
+                for (const Vertex corner : corners(mesh_, face)) next.push_back(corner);
+            }
+        touched.insert(touched.end(), next.begin(), next.end());
+        vertices = std::move(next);
+    }
+    regularise(std::move(touched));
 }
 
-void Patch::regularise() {
+void Patch::regularise(std::vector<Vertex> stack) {
     const auto kept = [&](Halfedge h) { return !mesh_.is_border(h) && keep_[mesh_.face(h)]; };
     // Vertices at which the patch has several fans lose their faces, which may make others such.
-    std::vector<Vertex> stack(mesh_.vertices().begin(), mesh_.vertices().end());
     while (!stack.empty()) {
         const Vertex v = stack.back();
         stack.pop_back();
@@ -162,7 +170,7 @@ std::vector<Vertex> crossed(const InsertedCurves& cut, const Patch& patch, const
 /// The surface parted by the curves: faces to their left and to their right.
 struct Sides {
     std::vector<bool> left;      ///< marks of faces, among them the whole pieces of the surface under pieces without a border
-    std::vector<Vertex> failed;  ///< of the shortest border of each region that is left of some and right of others
+    std::vector<Vertex> failed;  ///< of borders that have a region on another side than its longest border has it
 };
 
 Sides part(const InsertedCurves& cut, const Patch& patch, const std::vector<std::optional<SurfaceHit>>& places) {
@@ -192,16 +200,18 @@ Sides part(const InsertedCurves& cut, const Patch& patch, const std::vector<std:
         }
         ++count;
     }
-    std::vector<bool> left(count, false), right(count, false);
-    std::vector<std::size_t> shortest(count, none);
+    std::vector<bool> left(count, false);
+    std::vector<std::size_t> longest(count, none);
+    std::vector<std::pair<std::size_t, std::size_t>> on_left, on_right;  // region and loop
     for (std::size_t l = 0; l < cut.node_vertex.size(); ++l)
         for (std::size_t i = 0; i + 1 < cut.node_vertex[l].size(); ++i) {
             const Halfedge h = along(l, i);
             for (const Halfedge half : {h, mesh.opposite(h)}) {
                 if (mesh.is_border(half)) continue;
                 const std::size_t r = region[mesh.face(half)];
-                (half == h ? left : right)[r] = true;
-                if (shortest[r] == none || patch.loops()[l].size() < patch.loops()[shortest[r]].size()) shortest[r] = l;
+                auto& side = half == h ? on_left : on_right;
+                if (side.empty() || side.back() != std::pair(r, l)) side.emplace_back(r, l);
+                if (longest[r] == none || patch.loops()[l].size() > patch.loops()[longest[r]].size()) longest[r] = l;
             }
         }
     for (const Face face : patch.closed()) {
@@ -209,10 +219,13 @@ Sides part(const InsertedCurves& cut, const Patch& patch, const std::vector<std:
         const auto found = std::find(cut.face_origin.begin(), cut.face_origin.end(), old);
         left[region[static_cast<std::size_t>(found - cut.face_origin.begin())]] = true;
     }
+    for (const auto& [r, l] : on_left) left[r] = left[r] || l == longest[r];
+    std::vector<bool> wrong(patch.loops().size(), false);
+    for (const auto& [r, l] : on_left) wrong[l] = wrong[l] || !left[r];
+    for (const auto& [r, l] : on_right) wrong[l] = wrong[l] || left[r];
     Sides sides;
-    for (std::size_t r = 0; r < count; ++r)
-        if (left[r] && right[r])
-            sides.failed.insert(sides.failed.end(), patch.loops()[shortest[r]].begin(), patch.loops()[shortest[r]].end());
+    for (std::size_t l = 0; l < wrong.size(); ++l)
+        if (wrong[l]) sides.failed.insert(sides.failed.end(), patch.loops()[l].begin(), patch.loops()[l].end());
     sides.left.resize(region.size());
     for (std::size_t f = 0; f < region.size(); ++f) sides.left[f] = left[region[f]];
     return sides;
@@ -430,6 +443,8 @@ Joint join_patch(const Mesh& surface, Patch patch, const std::vector<std::option
     std::size_t fewest = 0;
     int crossed_attempts = 0;
     for (int attempt = 0; attempt < most_attempts; ++attempt) {
+        // Where little does not help, more is taken: a ring of a fine mesh is next to nothing.
+        const int rings = 1 << (attempt / 8);
         if (patch.size() == 0) {
             if (crossed_attempts > 0) return best;
             none.problem = attempt == 0 ? "nothing of it lies on the fitted template" : "its border is not simple anywhere";
@@ -437,22 +452,22 @@ Joint join_patch(const Mesh& surface, Patch patch, const std::vector<std::option
         }
         const Drawing drawing = draw(surface, patch, places);
         if (!drawing.failed.empty()) {
-            patch.erode(drawing.failed);
+            patch.erode(drawing.failed, rings);
             continue;
         }
         const InsertedCurves cut = insert_curves(surface, drawing.curves);
         if (const std::vector<Vertex> failed = crossed(cut, patch, drawing); !failed.empty()) {
-            patch.erode(failed);
+            patch.erode(failed, rings);
             continue;
         }
         const Sides sides = part(cut, patch, places);
         if (!sides.failed.empty()) {
-            patch.erode(sides.failed);
+            patch.erode(sides.failed, rings);
             continue;
         }
         Stitched stitched = stitch(patch, cut, drawing, sides.left, width, frozen);
         if (!stitched.failed.empty()) {
-            patch.erode(stitched.failed);
+            patch.erode(stitched.failed, rings);
             continue;
         }
         const std::vector<Vertex> at = patch.loops().empty() ? std::vector<Vertex>() : crossings_at_seam(stitched, patch);
@@ -461,7 +476,7 @@ Joint join_patch(const Mesh& surface, Patch patch, const std::vector<std::option
             best = std::move(stitched.joint);
         }
         if (at.empty() || ++crossed_attempts == most_crossed) return best;
-        patch.erode(at);
+        patch.erode(at, rings);
     }
     if (crossed_attempts > 0) return best;
     none.problem = "its border crosses itself on the template";

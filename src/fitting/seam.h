@@ -23,11 +23,12 @@ public:
     [[nodiscard]] const std::vector<std::vector<Vertex>>& loops() const { return loops_; }
     /// A face of each piece that has no border.
     [[nodiscard]] const std::vector<Face>& closed() const { return closed_; }
-    /// Takes away all faces at these vertices.
-    void erode(const std::vector<Vertex>& vertices);
+    /// Takes away all faces at these vertices, and so on for as many rings.
+    void erode(std::vector<Vertex> vertices, int rings);
 
 private:
-    void regularise();
+    /// `stack`: vertices whose faces may be in several fans.
+    void regularise(std::vector<Vertex> stack);
 
     const Mesh& mesh_;
     std::vector<bool> keep_;

@@ -1,5 +1,7 @@
 #include "ostraka/geom/surface_search.h"
 
+#include "face_tree.h"
+
 #include "ostraka/core/error.h"
 
 #include <CGAL/AABB_face_graph_triangle_primitive.h>
@@ -8,6 +10,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <mutex>
 
 namespace ostraka {
 
@@ -30,41 +34,51 @@ struct Obstacle {
         return tree.traits().do_intersect_object()(segment, node.bbox());
     }
 };
-}  // namespace
 
-struct SurfaceSearch::Tree {
-    const Mesh* mesh;
-    AabbTree aabb;
-    double typical_edge = 0;
-    double diagonal = 0;
-
-    /// Nearest-point queries start from a near place on the surface, looked up in a k-d tree. One face in four gives such a
-    /// place: all of them would take 250 bytes a vertex more while the tree is built and make queries no faster.
-    void prepare_hints(const std::vector<Face>& faces) {
-        constexpr std::size_t step = 4;
-        std::vector<AabbTree::Point_and_primitive_id> hints;
-        hints.reserve(faces.size() / step + 1);
-        for (std::size_t i = 0; i < faces.size(); i += step)
-            hints.emplace_back(mesh->point(mesh->target(mesh->halfedge(faces[i]))), faces[i]);
-        aabb.accelerate_distance_queries(hints.begin(), hints.end());
-    }
-};
-
-SurfaceSearch::SurfaceSearch(const Mesh& mesh, bool closest) : tree_(std::make_unique<Tree>()) {
-    tree_->mesh = &mesh;
-    // Triangles without area meet no line and stop none; the exact predicates would answer for them as for segments.
+/// Triangles without area meet no line and stop none, and are nearest to nothing that another one is not; the exact predicates
+/// would answer for them as for segments.
+std::vector<Face> faces_with_area(const Mesh& mesh) {
     std::vector<Face> faces;
     faces.reserve(mesh.number_of_faces());
     for (const Face f : mesh.faces())
         if (area_vector(mesh, f).squared_length() > 0) faces.push_back(f);
-    if (faces.empty()) fail_input("mesh", "has no face with an area", "check its scale or repair it");
-    tree_->aabb.insert(faces.begin(), faces.end(), mesh);
-    tree_->aabb.build();
-    tree_->aabb.do_not_accelerate_distance_queries();
-    if (closest) tree_->prepare_hints(faces);
-    const double mean_area = surface_area(mesh) / static_cast<double>(faces.size());
+    return faces;
+}
+}  // namespace
+
+struct SurfaceSearch::Tree {
+    const Mesh* mesh = nullptr;
+    double typical_edge = 0;
+    double diagonal = 0;
+
+    const FaceTree& nearest() {
+        std::call_once(nearest_once_, [this] { nearest_.emplace(*mesh, faces_with_area(*mesh)); });
+        return *nearest_;
+    }
+    const AabbTree& lines() {
+        std::call_once(lines_once_, [this] {
+            const std::vector<Face> faces = faces_with_area(*mesh);
+            lines_.insert(faces.begin(), faces.end(), *mesh);
+            lines_.build();
+            lines_.do_not_accelerate_distance_queries();
+        });
+        return lines_;
+    }
+
+private:
+    std::once_flag nearest_once_, lines_once_;
+    std::optional<FaceTree> nearest_;
+    AabbTree lines_;
+};
+
+SurfaceSearch::SurfaceSearch(const Mesh& mesh, bool closest) : tree_(std::make_unique<Tree>()) {
+    tree_->mesh = &mesh;
+    const std::size_t count = faces_with_area(mesh).size();
+    if (count == 0) fail_input("mesh", "has no face with an area", "check its scale or repair it");
+    const double mean_area = surface_area(mesh) / static_cast<double>(count);
     tree_->typical_edge = std::sqrt(mean_area * 4 / std::sqrt(3.0));
     tree_->diagonal = box_diagonal(mesh);
+    if (closest) tree_->nearest();
 }
 
 SurfaceSearch::~SurfaceSearch() = default;
@@ -83,8 +97,8 @@ Vector SurfaceSearch::normal(Index face) const {
 std::vector<SurfaceHit> SurfaceSearch::line_hits(const Point& origin, const Vector& direction, double reach) const {
     const Mesh& mesh = *tree_->mesh;
     std::vector<Face> faces;
-    tree_->aabb.all_intersected_primitives(Kernel::Segment_3(origin - reach * direction, origin + reach * direction),
-                                           std::back_inserter(faces));
+    tree_->lines().all_intersected_primitives(Kernel::Segment_3(origin - reach * direction, origin + reach * direction),
+                                              std::back_inserter(faces));
     std::vector<SurfaceHit> hits;
     hits.reserve(faces.size());
     for (const Face f : faces) {
@@ -112,49 +126,18 @@ std::vector<SurfaceHit> SurfaceSearch::line_hits(const Point& origin, const Vect
 }
 
 bool SurfaceSearch::blocked(const Point& from, const Point& to, const std::function<bool(Index)>& ignored) const {
-    Obstacle obstacle{tree_->aabb, ignored};
-    tree_->aabb.traversal(Kernel::Segment_3(from, to), obstacle);
+    Obstacle obstacle{tree_->lines(), ignored};
+    tree_->lines().traversal(Kernel::Segment_3(from, to), obstacle);
     return obstacle.met;
 }
 
 SurfaceHit SurfaceSearch::closest(const Point& query) const {
-    const auto [point, face] = tree_->aabb.closest_point_and_primitive(query);
-    const Mesh& mesh = *tree_->mesh;
-    const auto [a, b, c] = corners(mesh, face);
-    SurfaceHit hit;
-    hit.face = face;
-    hit.barycentric = nearest_barycentric(mesh.point(a), mesh.point(b), mesh.point(c), query);
-    hit.point = point_at(mesh, hit.face, hit.barycentric);
-    hit.distance = std::sqrt(CGAL::squared_distance(hit.point, query));
-    return hit;
+    return *tree_->nearest().closest(query, Vector(0, 0, 0), -1, std::numeric_limits<double>::infinity());
 }
 
 std::optional<SurfaceHit> SurfaceSearch::closest_compatible(const Point& query, const Vector& normal, double min_cosine,
                                                             double reach) const {
-    const SurfaceHit nearest = closest(query);
-    if (nearest.distance > reach) return std::nullopt;
-    if (this->normal(nearest.face) * normal >= min_cosine) return nearest;
-    const Mesh& mesh = *tree_->mesh;
-    // Widening boxes: the first that holds a compatible face within its inscribed sphere has the answer.
-    for (double radius = std::min(reach, 1.5 * nearest.distance + tree_->typical_edge);; radius = std::min(reach, 2 * radius)) {
-        const CGAL::Bbox_3 box(query.x() - radius, query.y() - radius, query.z() - radius, query.x() + radius, query.y() + radius,
-                               query.z() + radius);
-        std::vector<Face> faces;
-        tree_->aabb.all_intersected_primitives(Kernel::Iso_cuboid_3(box), std::back_inserter(faces));
-        std::optional<SurfaceHit> best;
-        for (const Face f : faces) {
-            if (this->normal(f) * normal < min_cosine) continue;
-            const auto [a, b, c] = corners(mesh, f);
-            SurfaceHit hit;
-            hit.face = f;
-            hit.barycentric = nearest_barycentric(mesh.point(a), mesh.point(b), mesh.point(c), query);
-            hit.point = point_at(mesh, hit.face, hit.barycentric);
-            hit.distance = std::sqrt(CGAL::squared_distance(hit.point, query));
-            if (hit.distance > radius) continue;
-            if (!best || std::make_pair(hit.distance, hit.face) < std::make_pair(best->distance, best->face)) best = hit;
-        }
-        if (best || radius >= reach) return best;
-    }
+    return tree_->nearest().closest(query, normal, min_cosine, reach);
 }
 
 std::array<double, 3> nearest_barycentric(const Point& a, const Point& b, const Point& c, const Point& p) {

@@ -167,6 +167,29 @@ TEST(Complete, NoiseMakesNothingCrossAtTheSeam) {
     }
 }
 
+TEST(Complete, ManyPiecesThatLieOnTheFragmentItselfAreLeftOut) {
+    // A scan with flakes: 30 small pieces just above the rest.
+    const Mesh ball = build_mesh(test::octahedron_sphere(4));
+    TriangleSoup soup = to_soup(part(other_sphere(80, 1), [](const Point& p) { return p.z() > -0.1; }).mesh);
+    const Mesh fine = other_sphere(300, 1.004);
+    for (int k = 0; k < 30; ++k) {
+        const double a = 2.399963 * k, z = 0.15 + 0.7 * k / 30, r = std::sqrt(1 - z * z);
+        const Vector3d centre(r * std::cos(a), r * std::sin(a), z);
+        const TriangleSoup flake = to_soup(part(fine, [&](const Point& p) { return (eigen(p) - centre).norm() < 0.09; }).mesh);
+        const auto first = static_cast<Index>(soup.points.size());
+        soup.points.insert(soup.points.end(), flake.points.begin(), flake.points.end());
+        for (const auto& t : flake.triangles) soup.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    }
+    PlacedFragment scan;
+    scan.mesh = build_mesh(soup);
+    CompleteOptions options;
+    options.least = 1e-4;
+    const CompletedObject object = complete(ball, {scan}, options);
+    EXPECT_TRUE(object.notes.empty()) << object.notes.front().text;
+    expect_sound(object, true, 2);
+    EXPECT_NEAR(own_area(object, 0), 2.2 * M_PI, 0.1);
+}
+
 TEST(Complete, WhatIsFarOrTurnedAwayOrAFractureIsNotTaken) {
     const Mesh ball = build_mesh(test::octahedron_sphere(4));
     const PlacedFragment far_away = part(grown(ball, 1.2), [](const Point& p) { return p.z() > 0; });

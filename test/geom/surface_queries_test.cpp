@@ -63,6 +63,36 @@ TEST(SurfaceSearch, CompatibleNormalChoosesTheSheet) {
     EXPECT_FALSE(search.closest_compatible(query, Vector(0, 0, 1), 0, 0.01));
 }
 
+TEST(SurfaceSearch, NearestFacesAreThoseOfAllFacesOneByOne) {
+    std::mt19937_64 random(11);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    for (const auto& [name, soup] : group()) {
+        const Mesh mesh = build_mesh(soup);
+        const SurfaceSearch search(mesh);
+        const CGAL::Bbox_3 box = bounding_box(mesh);
+        const double diagonal = box_diagonal(mesh);
+        const Point middle((box.xmin() + box.xmax()) / 2, (box.ymin() + box.ymax()) / 2, (box.zmin() + box.zmax()) / 2);
+        for (int i = 0; i < 60; ++i) {
+            const Point query = middle + 0.7 * diagonal * Vector(uniform(random), uniform(random), uniform(random));
+            Vector normal(uniform(random), uniform(random), uniform(random));
+            normal = normal / std::sqrt(normal.squared_length());
+            const double min_cosine = i % 5 == 0 ? -1 : uniform(random), reach = i % 3 == 0 ? 0.2 * diagonal : 2 * diagonal;
+            double nearest = std::numeric_limits<double>::infinity();
+            for (const Face f : mesh.faces()) {
+                if (!(area_vector(mesh, f).squared_length() > 0) || search.normal(f) * normal < min_cosine) continue;
+                const auto [a, b, c] = corners(mesh, f);
+                const auto place = nearest_barycentric(mesh.point(a), mesh.point(b), mesh.point(c), query);
+                nearest = std::min(nearest, distance(point_at(mesh, f, place), query));
+            }
+            const auto hit = search.closest_compatible(query, normal, min_cosine, reach);
+            ASSERT_EQ(hit.has_value(), nearest <= reach) << name;
+            if (!hit) continue;
+            EXPECT_NEAR(hit->distance, nearest, 1e-12 * diagonal) << name;
+            EXPECT_GE(search.normal(hit->face) * normal, min_cosine - 1e-12) << name;
+        }
+    }
+}
+
 TEST(SurfaceSearch, RefusesAMeshWithoutArea) {
     TriangleSoup soup;
     soup.points = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
