@@ -161,6 +161,9 @@ private:
             }
             how.face_values = {std::move(fragment), std::move(distance), std::move(confidence)};
             write_mesh(in("completed.ply"), object.mesh, extras, how);
+            for (std::size_t k = 0; k < result.notes.size(); ++k)
+                for (const std::string& note : result.notes[k])
+                    session.note("note: " + printable(names.fragments[k]) + ": " + note);
             for (const CompletionNote& note : object.notes)
                 session.note("note: " + printable(names.fragments[static_cast<std::size_t>(note.fragment)]) + ": " + note.text +
                              "; the template's triangles show what was seen of it");

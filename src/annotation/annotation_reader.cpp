@@ -277,7 +277,8 @@ void check_mesh(const JsonValue& document, const Mesh& mesh, const std::string& 
     const std::string what = "made for another mesh" + (name.empty() ? std::string() : " ('" + name + "')") + ": " + differences;
     if (!force)
         fail(where, "/mesh", what,
-             "give that mesh, carry the annotations over with 'ostraka annotation transfer', or override with --force-mesh");
+             "give that mesh, carry the annotations over with 'ostraka annotation transfer', or override with --force-mesh where "
+             "the command has it");
     notes.push_back(what + "; used all the same, as asked");
 }
 

@@ -5,6 +5,8 @@
 #include "ostraka/geom/eigen.h"
 #include "ostraka/stats/random.h"
 
+#include <boost/algorithm/string/predicate.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -21,19 +23,30 @@ std::vector<LandmarkPair> common_landmarks(const Mesh& template_mesh, const Anno
     const auto collect = [](const AnnotationSet& set) {
         Tags tags;
         for (const Annotation& annotation : set.annotations)
-            if (annotation.type == AnnotationType::point && annotation.points.size() == 1 && !annotation.tag.empty())
+            if (annotation.type == AnnotationType::point && !annotation.points.empty() && !annotation.tag.empty())
                 tags[annotation.tag].push_back(&annotation);
         return tags;
     };
     const Tags ours = collect(of_template), theirs = collect(of_fragment);
+    const auto note = [&](const std::string& tag, const std::string& text) {
+        if (notes != nullptr) notes->push_back("landmark '" + tag + "' " + text);
+    };
+    const auto several = [](const std::vector<const Annotation*>& list) {
+        return std::any_of(list.begin(), list.end(), [](const Annotation* one) { return one->points.size() > 1; });
+    };
     std::vector<LandmarkPair> pairs;
     for (const auto& [tag, list] : theirs) {
         const auto found = ours.find(tag);
         if (found == ours.end()) {
-            if (notes != nullptr) notes->push_back("landmark '" + tag + "' is not on the template");
+            const auto alike = std::find_if(ours.begin(), ours.end(),
+                                            [&tag = tag](const auto& one) { return boost::algorithm::iequals(one.first, tag); });
+            note(tag, "is not on the template" +
+                          (alike == ours.end() ? std::string()
+                                               : ", which has '" + alike->first + "': small and large letters are told apart"));
         } else if (list.size() > 1 || found->second.size() > 1) {
-            if (notes != nullptr)
-                notes->push_back("landmark '" + tag + "' is there more than once, and not used: which is which is not known");
+            note(tag, "is there more than once, and not used: which is which is not known");
+        } else if (several(list) || several(found->second)) {
+            note(tag, "has several points, and is not used: give it one");
         } else {
             pairs.push_back({tag, eigen(template_mesh.point(Vertex(found->second.front()->points.front()))),
                              eigen(fragment.point(Vertex(list.front()->points.front()))), found->second.front()->points.front()});
@@ -174,6 +187,20 @@ public:
         }
     }
 
+    /// Pairs of landmarks of which one at least was left out and that would fit each other's places.
+    [[nodiscard]] std::vector<std::pair<std::string, std::string>> swapped() const {
+        const Motion motion = similarity();
+        const auto off = [&](std::size_t i, std::size_t j) {
+            return (motion(pairs_[i].on_template) - pairs_[j].on_fragment).norm();
+        };
+        std::vector<std::pair<std::string, std::string>> found;
+        for (std::size_t i = 0; i < pairs_.size(); ++i)
+            for (std::size_t j = i + 1; j < pairs_.size(); ++j)
+                if ((!used[i] || !used[j]) && 3 * std::hypot(off(i, j), off(j, i)) < std::hypot(off(i, i), off(j, j)))
+                    found.emplace_back(pairs_[i].name, pairs_[j].name);
+        return found;
+    }
+
 private:
     template <class Visit>
     static void for_triples(std::size_t n, Visit&& visit) {
@@ -279,6 +306,7 @@ CommonPlacement place_by_landmarks(const std::vector<std::vector<LandmarkPair>>&
         const Landmarks::Moments m = all[k].moments();
         one.pose.turn = turns[k];
         one.pose.shift = placement.scale * m.from - turns[k] * m.to;
+        one.swapped = all[k].swapped();
         double sum = 0;
         for (std::size_t i = 0; i < pairs[k].size(); ++i) {
             const double off = (one.pose(pairs[k][i].on_fragment) - placement.scale * pairs[k][i].on_template).norm();

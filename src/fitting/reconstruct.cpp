@@ -100,6 +100,10 @@ private:
         for (std::size_t k = 0; k < fragments_.size(); ++k)
             pairs_.push_back(common_landmarks(mesh_, set_, fragments_[k]->mesh, fragments_[k]->annotations, &result_.notes[k]));
         result_.placement = place_by_landmarks(pairs_, options_.placement);
+        for (std::size_t k = 0; k < fragments_.size(); ++k)
+            for (const auto& [one, other] : result_.placement.fragments[k].swapped)
+                result_.notes[k].push_back("landmarks '" + one + "' and '" + other +
+                                           "' would fit each other's places: are their tags exchanged?");
         result_.searched =
             place_by_search(mesh_, fragments_, options_.search, result_.placement.scale, result_.placement.fragments);
     }

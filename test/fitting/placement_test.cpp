@@ -95,6 +95,19 @@ TEST(Placement, OneWrongPairInSixIsFound) {
     }
 }
 
+TEST(Placement, ExchangedTagsAreNamed) {
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+        Random random(seed);
+        auto pairs = landmarks(random, 12, 1, random_motion(random), 0.01);
+        const std::size_t first = random.below(11);
+        std::swap(pairs[first].on_fragment, pairs[first + 1].on_fragment);
+        if ((pairs[first].on_template - pairs[first + 1].on_template).norm() < 0.8) continue;
+        const FragmentPlacement found = place_by_landmarks({pairs}).fragments[0];
+        ASSERT_EQ(found.swapped.size(), 1U) << seed;
+        EXPECT_EQ(found.swapped[0], std::pair(pairs[first].name, pairs[first + 1].name));
+    }
+}
+
 // Another shape than the template's is no mistake.
 TEST(Placement, ProportionsOfAnotherMemberAreNotLeftOut) {
     Random random(9);
@@ -108,6 +121,7 @@ TEST(Placement, ProportionsOfAnotherMemberAreNotLeftOut) {
     }
     const CommonPlacement found = place_by_landmarks({pairs});
     for (const LandmarkResidual& landmark : found.fragments[0].landmarks) EXPECT_TRUE(landmark.used);
+    EXPECT_TRUE(found.fragments[0].swapped.empty());
 }
 
 TEST(Placement, SaysWhyAFragmentIsNotPlaced) {
@@ -159,16 +173,23 @@ TEST(Placement, CommonLandmarksAreThoseOfOneTagOnEitherSide) {
         return set;
     };
     std::vector<std::string> notes;
-    const auto pairs = common_landmarks(mesh, set_of({{"nose", 0}, {"eye", 1}, {"eye", 2}, {"chin", 3}}), mesh,
-                                        set_of({{"chin", 5}, {"eye", 4}, {"nose", 3}, {"horn", 1}}), &notes);
+    const auto pairs = common_landmarks(mesh, set_of({{"nose", 0}, {"eye", 1}, {"eye", 2}, {"chin", 3}, {"Ear", 5}}), mesh,
+                                        set_of({{"chin", 5}, {"eye", 4}, {"nose", 3}, {"horn", 1}, {"ear", 2}}), &notes);
     ASSERT_EQ(pairs.size(), 2U);
     EXPECT_EQ(pairs[0].name, "chin");
     EXPECT_EQ(pairs[1].name, "nose");
     EXPECT_EQ(pairs[1].on_template, Vector3d(1, 0, 0));
     EXPECT_EQ(pairs[1].on_fragment, Vector3d(0, -1, 0));
-    ASSERT_EQ(notes.size(), 2U);
-    EXPECT_NE(notes[0].find("'eye' is there more than once"), std::string::npos);
-    EXPECT_NE(notes[1].find("'horn' is not on the template"), std::string::npos);
+    ASSERT_EQ(notes.size(), 3U);
+    EXPECT_NE(notes[0].find("'ear' is not on the template, which has 'Ear'"), std::string::npos);
+    EXPECT_NE(notes[1].find("'eye' is there more than once"), std::string::npos);
+    EXPECT_NE(notes[2].find("'horn' is not on the template"), std::string::npos);
+    AnnotationSet path = set_of({{"chin", 5}, {"nose", 3}});
+    path.annotations[0].points.push_back(4);
+    notes.clear();
+    EXPECT_EQ(common_landmarks(mesh, set_of({{"nose", 0}, {"chin", 3}}), mesh, path, &notes).size(), 1U);
+    ASSERT_EQ(notes.size(), 1U);
+    EXPECT_NE(notes[0].find("'chin' has several points"), std::string::npos);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "ostraka/geom/rigid_fit.h"
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace ostraka {
@@ -53,7 +54,8 @@ struct FragmentPlacement {
     std::vector<LandmarkResidual> landmarks;
     double residual = 0;    ///< root mean square over the landmarks used, in the fragment's unit
     bool mirrored = false;  ///< its mirror image fits far better than itself
-    std::string problem;    ///< why it is not placed, in words with the remedy; empty if it is
+    std::vector<std::pair<std::string, std::string>> swapped;  ///< landmarks whose tags look exchanged
+    std::string problem;                                       ///< why it is not placed, in words with the remedy; empty if it is
 };
 
 struct CommonPlacement {
