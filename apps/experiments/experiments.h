@@ -142,4 +142,16 @@ struct PoseSearchExperiment {
 };
 void pose_search(const PoseSearchExperiment& options);
 
+/// Fragments laid together by their breaks.
+struct BreakExperiment {
+    std::string output = "experiments-output/breaks";
+    std::string data = "../shared/data";  ///< folder with fragments-bottle-pair and fragments-vessel-sherds
+    int motions = 3;                      ///< random ones of all sherds
+    int pots = 4;                         ///< made vessels of each kind
+};
+/// The sherds on the template turned from them: axes, heights and turns.
+void sherd_turns(const BreakExperiment& options);
+/// Made vessels, broken: turns by breaks with wear, noise, a piece that is missing, one of another vessel.
+void broken_pots(const BreakExperiment& options);
+
 }  // namespace ostraka::experiments

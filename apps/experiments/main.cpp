@@ -116,6 +116,22 @@ int main(int argc, char** argv) {
     pose_command->add_option("--most-scale", poses.search.most_scale, "of the template")->capture_default_str();
     pose_command->add_option("--csv", poses.csv, "raw rows");
 
+    experiments::BreakExperiment breaks;
+    const auto add_breaks = [&](const char* name, const char* text) {
+        CLI::App* command = tool.add_subcommand(name, text);
+        command->add_option("output", breaks.output, "folder for tables and meshes")->capture_default_str();
+        command->add_option("--data", breaks.data, "folder with the scanned fragments")->capture_default_str();
+        command->add_option("--motions", breaks.motions, "random ones of all sherds")
+            ->check(CLI::Range(1, 1000))
+            ->capture_default_str();
+        command->add_option("--pots", breaks.pots, "made vessels of each kind")
+            ->check(CLI::Range(1, 1000))
+            ->capture_default_str();
+        return command;
+    };
+    CLI::App* sherd_turns_command = add_breaks("sherd-turns", "scanned sherds on the template turned from them, turns by breaks");
+    CLI::App* broken_pots_command = add_breaks("broken-pots", "made vessels, broken: turns by breaks");
+
     experiments::MouldExperimentOptions heads;
     CLI::App* mould_command = tool.add_subcommand("moulds", "moulds of made heads and of mixes of faces, found again");
     mould_command->add_option("output", heads.output, "folder for tables and plots")->capture_default_str();
@@ -223,6 +239,8 @@ int main(int argc, char** argv) {
         if (class_command->parsed()) experiments::class_membership(classes);
         if (mould_command->parsed()) experiments::moulds(heads);
         if (pose_command->parsed()) experiments::pose_search(poses);
+        if (sherd_turns_command->parsed()) experiments::sherd_turns(breaks);
+        if (broken_pots_command->parsed()) experiments::broken_pots(breaks);
         for (const auto& [command, run] : semantic_commands)
             if (command->parsed()) run(semantic);
         return 0;

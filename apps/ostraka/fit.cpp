@@ -1,5 +1,6 @@
 // ostraka fit: from fragments to the whole object.
 #include "command.h"
+#include "turns_text.h"
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/bundle/template.h"
@@ -235,6 +236,7 @@ private:
                             one.own_scale > 0 ? number(one.own_scale, 4) : "-", wrong});
         }
         std::cout << table({"fragment", "", "landmarks", "residual", "own scale", "wrong landmarks"}, rows);
+        if (result.turns) std::cout << turns_text(*result.turns, names.fragments);
         std::cout << "scale of the template " << number(result.placement.scale, 4) << "; observed "
                   << number(100 * result.observed_share, 3) << " % of the surface\n";
         if (result.crossings > 0)

@@ -1,6 +1,9 @@
 #include "ostraka/fitting/assembly.h"
 
+#include "turn_report.h"
+
 #include "ostraka/core/error.h"
+#include "ostraka/fitting/pose_json.h"
 
 #include <algorithm>
 #include <map>
@@ -9,25 +12,12 @@ namespace ostraka {
 
 namespace {
 
-JsonValue numbers(const Eigen::Matrix4d& matrix, JsonAllocator& allocator) {
-    JsonValue rows(rapidjson::kArrayType);
-    for (int i = 0; i < 4; ++i) {
-        JsonValue row(rapidjson::kArrayType);
-        for (int j = 0; j < 4; ++j) row.PushBack(matrix(i, j), allocator);
-        rows.PushBack(row, allocator);
-    }
-    return rows;
-}
-
 JsonValue placement_of(const FragmentPlacement& one, JsonAllocator& allocator) {
     JsonValue entry(rapidjson::kObjectType), landmarks(rapidjson::kArrayType);
     if (!one.problem.empty()) {
         add_member(entry, "problem", one.problem, allocator);
     } else {
-        Eigen::Matrix4d pose = Eigen::Matrix4d::Identity();
-        pose.topLeftCorner<3, 3>() = one.pose.turn;
-        pose.topRightCorner<3, 1>() = one.pose.shift;
-        add_member(entry, "pose", numbers(pose, allocator), allocator);
+        add_member(entry, "pose", pose_to_json(one.pose, allocator), allocator);
         add_member(entry, "residual", JsonValue(one.residual), allocator);
     }
     if (one.own_scale > 0) add_member(entry, "ownScale", JsonValue(one.own_scale), allocator);
@@ -115,6 +105,8 @@ JsonValue assembly_to_json(const Reconstruction& result, const AssemblyNames& na
         if (searched || result.placement.fragments[k].problem.empty())
             add_member(entry, "source", searched ? "search" : "landmarks", allocator);
         if (searched) add_member(entry, "search", search_of(*result.searched[k], allocator), allocator);
+        if (result.turns && result.turns->group[k] >= 0)
+            add_member(entry, "turn", turn_to_json(*result.turns, k, names.fragments, allocator), allocator);
         if (k < result.annotations.size())
             for (const AnnotationMatch& match : result.annotations[k]) {
                 JsonValue item(rapidjson::kObjectType);
@@ -137,6 +129,10 @@ JsonValue assembly_to_json(const Reconstruction& result, const AssemblyNames& na
         fragments.PushBack(entry, allocator);
     }
     add_member(assembly, "fragments", std::move(fragments), allocator);
+    if (result.turns) {
+        add_member(assembly, "joints", joints_to_json(*result.turns, names.fragments, allocator), allocator);
+        add_member(assembly, "wall", JsonValue(result.turns->wall), allocator);
+    }
     for (const NonRigidFit::Level& level : result.fit.levels) {
         JsonValue item(rapidjson::kObjectType);
         add_member(item, "smoothing", JsonValue(level.smoothing), allocator);

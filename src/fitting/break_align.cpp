@@ -27,7 +27,7 @@ constexpr double facing = 0.5, continued = 0.7;
 
 }  // namespace
 
-BreakAligner::BreakAligner(const Fragment& a, const BreakSide& side_a, const BreakSide& side_b, double reach, double last_reach,
+BreakAligner::BreakAligner(const Mesh& a, const BreakSide& side_a, const BreakSide& side_b, double reach, double last_reach,
                            double edges)
     : a_(side_a),
       b_(side_b),
@@ -36,10 +36,10 @@ BreakAligner::BreakAligner(const Fragment& a, const BreakSide& side_a, const Bre
       edges_(edges),
       fractures_(points_of(side_a.fracture.places)),
       frames_(places_of(side_a.frames)),
-      whole_(a.mesh),
-      surface_(whole_) {}
+      whole_(a),
+      surface_(a.number_of_faces() > 0 ? std::make_unique<SurfaceSearch>(whole_) : nullptr) {}
 
-Motion BreakAligner::align(const Motion& start, std::size_t samples, int steps) const {
+Motion BreakAligner::align(const Motion& start, std::size_t samples, int steps, double hold) const {
     using Row = Eigen::Matrix<double, 6, 1>;
     Motion pose = start;
     const std::size_t count = std::min(samples, b_.fracture.places.size());
@@ -90,6 +90,14 @@ Motion BreakAligner::align(const Motion& start, std::size_t samples, int steps) 
             planes.push_back(plane);
         }
         double total = 0;
+        for (const Plane& plane : planes) total += plane.weight;
+        const std::size_t held = hold > 0 ? std::min<std::size_t>(200, b_.intact.places.size()) : 0;
+        for (std::size_t i = 0; i < held; ++i) {
+            const std::size_t k = (2 * i + 1) * b_.intact.places.size() / (2 * held);
+            const Vector3d p = pose(b_.intact.places[k]), normal = start.turn * b_.intact.normals[k];
+            planes.push_back({p, normal, normal.dot(start(b_.intact.places[k]) - p), hold * total / static_cast<double>(held)});
+        }
+        total = 0;
         for (const Plane& plane : planes) {
             centre += plane.weight * plane.point;
             total += plane.weight;
@@ -133,10 +141,11 @@ PairCandidate BreakAligner::judge(const Motion& pose, std::size_t samples, doubl
     };
     double touching = 0, square = 0, inside = 0;
     const auto penetrates = [&](const Vector3d& p, double area) {
-        const SurfaceHit hit = surface_.closest(point_of(p));
+        if (!surface_) return;
+        const SurfaceHit hit = surface_->closest(point_of(p));
         if (hit.face == no_index || hit.distance < last_reach_) return;
         // Beyond an edge the nearest face may look either way: the place must be well below it.
-        const double above = eigen(surface_.normal(hit.face)).dot(p - eigen(hit.point));
+        const double above = eigen(surface_->normal(hit.face)).dot(p - eigen(hit.point));
         if (above > -0.7 * hit.distance) return;
         inside += area;
         result.depth = std::max(result.depth, hit.distance);

@@ -119,7 +119,7 @@ BreakPair pair_breaks(const Fragment& a, const Fragment& b, const PairOptions& o
     poses = distinct(poses, static_cast<std::size_t>(options.starts), middle, 0.5 * reach, 6 * std::numbers::pi / 180);
 
     // The best refined: quickly, then to the end.
-    const BreakAligner aligner(a, side_a, side_b, reach, options.last_reach * result.size, options.edges);
+    const BreakAligner aligner(a.mesh, side_a, side_b, reach, options.last_reach * result.size, options.edges);
     parallel_for(
         poses.size(),
         [&](std::size_t i) {

@@ -11,9 +11,7 @@ namespace ostraka {
 
 using Eigen::Vector3d;
 
-namespace {
-
-SurfaceSamples samples_of(const Mesh& mesh, const std::vector<Vector>& normals, const std::vector<bool>& chosen, int count) {
+SurfaceSamples sample_faces(const Mesh& mesh, const std::vector<Vector>& normals, const std::vector<bool>& chosen, int count) {
     SurfaceSamples samples;
     for (const Face face : mesh.faces())
         if (chosen[face]) samples.area += face_area(mesh, face);
@@ -37,8 +35,6 @@ SurfaceSamples samples_of(const Mesh& mesh, const std::vector<Vector>& normals, 
     }
     return samples;
 }
-
-}  // namespace
 
 Eigen::Matrix3d RimFrame::axes() const {
     Eigen::Matrix3d axes;
@@ -66,11 +62,11 @@ BreakSide::BreakSide(const Fragment& fragment, double radius, int frame_count, i
         broken[f] = fragment.facets[f] == Facet::fracture;
         whole[f] = !broken[f];
     }
-    fracture = samples_of(mesh, normals, broken, sample_count);
+    fracture = sample_faces(mesh, normals, broken, sample_count);
     if (fracture.places.empty())
         fail_input(where, "has no fracture that could be laid against another one",
                    "annotate a region \"fracture\", or look for it with --facets auto");
-    intact = samples_of(mesh, normals, whole, sample_count);
+    intact = sample_faces(mesh, normals, whole, sample_count);
 
     std::vector<Point> centroids;
     for (const Face face : mesh.faces()) centroids.push_back(centroid(mesh, face));
@@ -132,6 +128,20 @@ BreakSide::BreakSide(const Fragment& fragment, double radius, int frame_count, i
     for (std::size_t i = 0; i < found.size(); ++i)
         if (sound[i] != 0) frames.push_back(found[i]);
     if (frames.empty()) fail_input(where, "has a rim whose surfaces have no normals", "repair it: run 'ostraka mesh repair'");
+}
+
+BreakSide BreakSide::moved(const Motion& motion) const {
+    BreakSide result = *this;
+    for (RimFrame& frame : result.frames) {
+        frame.place = motion(frame.place);
+        frame.side = motion.turn * frame.side;
+        frame.fracture = motion.turn * frame.fracture;
+    }
+    for (SurfaceSamples* samples : {&result.fracture, &result.intact}) {
+        for (Vector3d& p : samples->places) p = motion(p);
+        for (Vector3d& n : samples->normals) n = motion.turn * n;
+    }
+    return result;
 }
 
 SampleGrid::SampleGrid(const std::vector<Vector3d>& places, double margin) {

@@ -26,12 +26,17 @@ struct SurfaceSamples {
     double area = 0;  ///< of all
 };
 
+/// About `count` points on the chosen faces, with the faces' `normals`.
+SurfaceSamples sample_faces(const Mesh& mesh, const std::vector<Vector>& normals, const std::vector<bool>& chosen, int count);
+
 struct BreakSide {
+    BreakSide() = default;
     BreakSide(const Fragment& fragment, double radius, int frame_count, int sample_count);
 
     std::vector<RimFrame> frames;
     SurfaceSamples fracture, intact;
     double rim_length = 0;
+    [[nodiscard]] BreakSide moved(const Motion& motion) const;
 };
 
 /// Square root of the surface's area.

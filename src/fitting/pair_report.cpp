@@ -1,5 +1,6 @@
 // What a pair mode found, as a file.
 #include "ostraka/fitting/break_pair.h"
+#include "ostraka/fitting/pose_json.h"
 
 namespace ostraka {
 
@@ -17,17 +18,8 @@ JsonValue pair_to_json(const BreakPair& pair, const std::string& a, const std::s
     add_member(result, "fractureOfSecond", JsonValue(pair.fracture_b), allocator);
     add_member(result, "tried", JsonValue(static_cast<std::uint64_t>(pair.tried)), allocator);
     for (const PairCandidate& candidate : pair.candidates) {
-        JsonValue entry(rapidjson::kObjectType), rows(rapidjson::kArrayType);
-        for (int i = 0; i < 4; ++i) {
-            JsonValue row(rapidjson::kArrayType);
-            for (int j = 0; j < 4; ++j)
-                row.PushBack(i == 3   ? (j == 3 ? 1.0 : 0.0)
-                             : j == 3 ? candidate.pose.shift[i]
-                                      : candidate.pose.turn(i, j),
-                             allocator);
-            rows.PushBack(row, allocator);
-        }
-        add_member(entry, "pose", std::move(rows), allocator);
+        JsonValue entry(rapidjson::kObjectType);
+        add_member(entry, "pose", pose_to_json(candidate.pose, allocator), allocator);
         add_member(entry, "score", JsonValue(candidate.score), allocator);
         add_member(entry, "contact", JsonValue(candidate.contact), allocator);
         add_member(entry, "rim", JsonValue(candidate.rim), allocator);

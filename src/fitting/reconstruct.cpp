@@ -76,6 +76,9 @@ public:
         scaled_ = scaled_by(mesh_, result_.placement.scale);
         diagonal_ = box_diagonal(scaled_);
         if (options_.refine) timed("refinement", [&] { refine(); });
+        timed("turns", [&] {
+            result_.turns = decide_free_turns(scaled_, fragments_, result_.searched, result_.placement.fragments, options_.turns);
+        });
         timed("annotations", [&] { match(); });
         if (prior_ != nullptr) timed("class", [&] { take_shape_of_class(); });
         timed("fit", [&] { result_.fit = fit_template(scaled_, set_, placed_, options_.fit); });
@@ -369,6 +372,9 @@ private:
             result_.verdict = Compatibility::incompatible;
         } else if (placed < fragments_.size()) {
             result_.undecided = "not all fragments could be placed";
+        } else if (result_.turns && std::any_of(result_.turns->notes.begin(), result_.turns->notes.end(),
+                                                [](const std::string& note) { return !note.empty(); })) {
+            result_.undecided = "the turns of some fragments about the axis are not decided";
         } else if (placed == 1 && !tested) {
             result_.undecided = "one fragment and no constraint: nothing can contradict it";
         } else {

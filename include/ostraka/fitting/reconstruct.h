@@ -2,8 +2,8 @@
 #pragma once
 
 #include "ostraka/fitting/complete.h"
+#include "ostraka/fitting/free_turns.h"
 #include "ostraka/fitting/placement.h"
-#include "ostraka/fitting/search_placement.h"
 #include "ostraka/fitting/shape_prior.h"
 #include "ostraka/registration/part_alignment.h"
 #include "ostraka/semantic/deform.h"
@@ -17,6 +17,7 @@ struct ReconstructOptions {
     SearchOptions search;
     bool refine = true;  ///< poses are refined by the surface, with the landmarks as anchors
     PartAlignmentOptions alignment;
+    BreakTurnOptions turns;
     AnnotationMatchOptions annotations;
     PriorOptions prior;
     NonRigidOptions fit;
@@ -35,6 +36,7 @@ struct ReconstructOptions {
         search.describe(visit);
         visit("refine", refine, "poses are refined by closest points of the surface, landmarks as anchors", Anything{});
         alignment.describe(visit);
+        turns.describe(visit);
         annotations.describe(visit);
         prior.describe(visit);
         fit.describe(visit);
@@ -77,6 +79,7 @@ struct Reconstruction {
     CommonPlacement placement;
     std::vector<std::optional<PoseSearchResult>> searched;  ///< of each fragment whose pose was searched
     std::vector<PartAlignment> alignment;                   ///< of each fragment placed, where poses were refined
+    std::optional<BreakTurns> turns;                        ///< where turns about the template's axis were open
     std::vector<std::vector<AnnotationMatch>> annotations;  ///< of each fragment
     std::vector<std::vector<std::string>> notes;            ///< of each fragment
     std::optional<PriorFit> prior;                          ///< where a class was given

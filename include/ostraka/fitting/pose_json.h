@@ -1,0 +1,11 @@
+// A rigid motion as JSON: the rows of a 4 x 4 matrix.
+#pragma once
+
+#include "ostraka/core/json.h"
+#include "ostraka/geom/rigid_fit.h"
+
+namespace ostraka {
+
+JsonValue pose_to_json(const Motion& pose, JsonAllocator& allocator);
+
+}  // namespace ostraka
