@@ -1,6 +1,7 @@
 #include "break_align.h"
 
 #include "ostraka/geom/eigen.h"
+#include "ostraka/geom/plane_motion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -40,15 +41,12 @@ BreakAligner::BreakAligner(const Mesh& a, const BreakSide& side_a, const BreakSi
       surface_(a.number_of_faces() > 0 ? std::make_unique<SurfaceSearch>(whole_) : nullptr) {}
 
 Motion BreakAligner::align(const Motion& start, std::size_t samples, int steps, double hold) const {
-    using Row = Eigen::Matrix<double, 6, 1>;
     Motion pose = start;
     const std::size_t count = std::min(samples, b_.fracture.places.size());
     for (int step = 0; step < steps; ++step) {
         // The last third at the last reach.
         const double share = std::min(1.0, 1.5 * step / std::max(1, steps - 1));
         const double reach = reach_ * std::pow(last_reach_ / reach_, share);
-        Eigen::Matrix<double, 6, 6> matrix = Eigen::Matrix<double, 6, 6>::Zero();
-        Row right = Row::Zero();
         Vector3d centre = Vector3d::Zero();
         struct Plane {
             Vector3d point, normal;
@@ -108,22 +106,12 @@ Motion BreakAligner::align(const Motion& start, std::size_t samples, int steps, 
         for (const Plane& plane : planes) unit += plane.weight / total * (plane.point - centre).squaredNorm();
         unit = std::sqrt(unit);
         if (!(unit > 0)) break;
-        for (const Plane& plane : planes) {
-            Row row;
-            row << ((plane.point - centre) / unit).cross(plane.normal), plane.normal;
-            matrix += plane.weight * row * row.transpose();
-            right += plane.weight * plane.off / unit * row;
-        }
-        // What is left open is not moved.
-        matrix.diagonal().array() += 1e-3 * matrix.trace() / 6;
-        const Row x = matrix.ldlt().solve(right);
-        Motion move;
-        const double angle = x.head<3>().norm();
-        if (angle > 0) move.turn = Eigen::AngleAxisd(angle, x.head<3>() / angle).toRotationMatrix();
-        move.shift = centre + unit * x.tail<3>() - move.turn * centre;
-        pose = move.after(pose);
+        PlaneMotion system(centre, unit);
+        for (const Plane& plane : planes) system.add(plane.point, plane.normal, plane.off, plane.weight);
+        const PlaneMotion::Step move = system.solve(1e-3 / 6);
+        pose = system.motion(move).after(pose);
         pose.turn = Eigen::Quaterniond(pose.turn).normalized().toRotationMatrix();
-        if (share >= 1 && angle < 1e-7 && x.tail<3>().norm() < 1e-7) break;
+        if (share >= 1 && move.turn.norm() < 1e-7 && move.shift.norm() < 1e-7 * unit) break;
     }
     return pose;
 }

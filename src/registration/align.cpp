@@ -2,6 +2,7 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/geom/eigen.h"
+#include "ostraka/geom/plane_motion.h"
 
 #include <CGAL/Orthogonal_k_neighbor_search.h>
 #include <CGAL/Search_traits_3.h>
@@ -178,31 +179,14 @@ private:
         Vector3d centre = Vector3d::Zero();
         for (const Pair& pair : pairs_) centre += pair.point / static_cast<double>(pairs_.size());
         const bool scaled = options_.shrinkage > 0;
-        const int n = scaled ? 7 : 6;
-        const double unit = b_.size;
-        Eigen::Matrix<double, 7, 7> m = Eigen::Matrix<double, 7, 7>::Zero();
-        Eigen::Matrix<double, 7, 1> r = Eigen::Matrix<double, 7, 1>::Zero();
-        for (const Pair& pair : pairs_) {
-            const Vector3d arm = (pair.point - centre) / unit;
-            Eigen::Matrix<double, 7, 1> row;
-            row << arm.cross(pair.normal), pair.normal, arm.dot(pair.normal);
-            const double off = pair.normal.dot(pair.place - pair.point) / unit;
-            m += row * row.transpose();
-            r += off * row;
-        }
-        // A ball, a plane or a tube leaves some motions open: those are not made.
-        m.diagonal().array() += 1e-9 * m.trace();
-        const Eigen::VectorXd x = m.topLeftCorner(n, n).ldlt().solve(r.head(n));
-        Motion move;
-        const Vector3d w = x.head<3>();
-        const double angle = w.norm();
-        if (angle > 0) move.turn = Eigen::AngleAxisd(angle, w / angle).toRotationMatrix();
-        if (scaled) {
-            const double whole = std::clamp(motion.scale * std::exp(x[6]), 1 - options_.shrinkage, 1 / (1 - options_.shrinkage));
-            move.scale = whole / motion.scale;
-        }
-        move.shift = centre + unit * x.segment<3>(3) - move.scale * (move.turn * centre);
-        return move.after(motion);
+        PlaneMotion planes(centre, b_.size);
+        for (const Pair& pair : pairs_) planes.add(pair.point, pair.normal, pair.normal.dot(pair.place - pair.point));
+        PlaneMotion::Step step = planes.solve(1e-9, scaled);
+        if (scaled)
+            step.growth =
+                std::log(std::clamp(motion.scale * std::exp(step.growth), 1 - options_.shrinkage, 1 / (1 - options_.shrinkage)) /
+                         motion.scale);
+        return planes.motion(step).after(motion);
     }
 
     const AlignSurface::State &a_, &b_;

@@ -3,6 +3,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/geom/eigen.h"
+#include "ostraka/geom/plane_motion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -104,28 +105,13 @@ private:
     [[nodiscard]] Motion step(const Motion& pose) const {
         Vector3d centre = Vector3d::Zero();
         for (const Pair& pair : pairs_) centre += pair.point / static_cast<double>(pairs_.size());
-        const double unit = whole_.diagonal();
-        using Row = Eigen::Matrix<double, 6, 1>;
-        Eigen::Matrix<double, 6, 6> matrix = Eigen::Matrix<double, 6, 6>::Zero();
-        Row right = Row::Zero();
-        const auto add = [&](const Vector3d& point, const Vector3d& normal, double off, double weight) {
-            Row row;
-            row << ((point - centre) / unit).cross(normal), normal;
-            matrix += weight * row * row.transpose();
-            right += weight * off / unit * row;
-        };
-        for (const Pair& pair : pairs_) add(pair.point, pair.normal, pair.normal.dot(pair.place - pair.point), 1);
+        PlaneMotion planes(centre, whole_.diagonal());
+        for (const Pair& pair : pairs_) planes.add(pair.point, pair.normal, pair.normal.dot(pair.place - pair.point));
         for (const Anchor& anchor : anchors_) {
             const Vector3d p = pose(anchor.of_part);
-            for (int axis = 0; axis < 3; ++axis) add(p, Vector3d::Unit(axis), anchor.of_whole[axis] - p[axis], weight_);
+            for (int axis = 0; axis < 3; ++axis) planes.add(p, Vector3d::Unit(axis), anchor.of_whole[axis] - p[axis], weight_);
         }
-        matrix.diagonal().array() += 1e-9 * matrix.trace();
-        const Row x = matrix.ldlt().solve(right);
-        Motion move;
-        const double angle = x.head<3>().norm();
-        if (angle > 0) move.turn = Eigen::AngleAxisd(angle, x.head<3>() / angle).toRotationMatrix();
-        move.shift = centre + unit * x.tail<3>() - move.turn * centre;
-        return move.after(pose);
+        return planes.motion(planes.solve(1e-9)).after(pose);
     }
 
     std::vector<Sample> samples_;

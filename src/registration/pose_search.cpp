@@ -6,6 +6,7 @@
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
 #include "ostraka/geom/eigen.h"
+#include "ostraka/geom/plane_motion.h"
 #include "ostraka/registration/pair_votes.h"
 #include "ostraka/registration/part_alignment.h"
 
@@ -80,14 +81,11 @@ double score_on(const detail::NearestGrid& grid, const SurfacePoints& part, cons
 /// Iterative closest points, point to plane, on the grid; with `scale` that as well.
 Motion refined_on(const detail::NearestGrid& grid, const SurfacePoints& part, Motion pose, double tolerance, int rounds,
                   bool scale) {
-    const int n = scale ? 7 : 6;
     for (int round = 0; round < rounds; ++round) {
         const double t = static_cast<double>(round) / std::max(1, rounds - 1);
         const double reach = std::pow(grid.reach(), 1 - t) * std::pow(std::min(grid.reach(), 1.5 * tolerance), t);
         const Vector3d centre = pose(Vector3d::Zero());
-        Eigen::Matrix<double, 7, 7> m = Eigen::Matrix<double, 7, 7>::Zero();
-        Eigen::Matrix<double, 7, 1> r = Eigen::Matrix<double, 7, 1>::Zero();
-        const double unit = grid.reach();
+        PlaneMotion planes(centre, grid.reach());
         for (std::size_t i = 0; i < part.size(); ++i) {
             const Vector3d p = pose(part.places[i]), normal = pose.turn * part.normals[i];
             const int j = grid.find(p, normal);
@@ -96,22 +94,12 @@ Motion refined_on(const detail::NearestGrid& grid, const SurfacePoints& part, Mo
             const Vector3d& to = grid.points().normals[k];
             const double off = to.dot(grid.points().places[k] - p), ratio = (grid.points().places[k] - p).norm() / reach;
             if (ratio >= 1 || normal.dot(to) < 0.5) continue;
-            const double weight = (1 - ratio * ratio) * (1 - ratio * ratio);
-            const Vector3d arm = (p - centre) / unit;
-            Eigen::Matrix<double, 7, 1> row;
-            row << arm.cross(to), to, arm.dot(to);
-            m += weight * row * row.transpose();
-            r += weight * off / unit * row;
+            planes.add(p, to, off, (1 - ratio * ratio) * (1 - ratio * ratio));
         }
-        m.diagonal().array() += 1e-6 * m.trace() + 1e-30;
-        const Eigen::VectorXd x = m.topLeftCorner(n, n).ldlt().solve(r.head(n));
-        Motion move;
-        const Vector3d w = x.head<3>();
-        const double angle = std::min(w.norm(), 0.5);
-        if (angle > 0) move.turn = Eigen::AngleAxisd(angle, w.normalized()).toRotationMatrix();
-        if (scale) move.scale = std::exp(std::clamp(x[6], -0.05, 0.05));
-        move.shift = centre + unit * x.segment<3>(3) - move.scale * (move.turn * centre);
-        pose = move.after(pose);
+        PlaneMotion::Step step = planes.solve(1e-6, scale);
+        if (const double angle = step.turn.norm(); angle > 0.5) step.turn *= 0.5 / angle;
+        step.growth = std::clamp(step.growth, -0.05, 0.05);
+        pose = planes.motion(step).after(pose);
     }
     return pose;
 }

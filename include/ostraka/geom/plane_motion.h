@@ -1,0 +1,64 @@
+// A small motion that brings points onto planes.
+#pragma once
+
+#include "ostraka/geom/rigid_fit.h"
+
+#include <cmath>
+
+namespace ostraka {
+
+/// One step of iterative closest points, point to plane (Chen and Medioni 1991): of all turns, shifts and growths about a centre,
+/// linearised, the one with the least sum of weights times squared distances of the moved points from their planes.
+class PlaneMotion {
+public:
+    /// Arms from the centre are taken in this unit, a length of the size of the whole.
+    PlaneMotion(const Eigen::Vector3d& centre, double unit) : centre_(centre), unit_(unit) {
+        normal_.setZero();
+        right_.setZero();
+    }
+
+    /// A point that is `off` below the plane with this unit normal.
+    void add(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, double off, double weight = 1) {
+        const Eigen::Vector3d arm = (point - centre_) / unit_;
+        Row row;
+        row << arm.cross(normal), normal, arm.dot(normal);
+        normal_ += weight * row * row.transpose();
+        right_ += weight * off / unit_ * row;
+    }
+
+    struct Step {
+        Eigen::Vector3d turn = Eigen::Vector3d::Zero();   ///< axis times angle
+        Eigen::Vector3d shift = Eigen::Vector3d::Zero();  ///< a length
+        double growth = 0;                                ///< logarithm of the scale
+    };
+    /// `damping`, as a share of the trace, keeps what the planes leave open (of a ball, a plane or a tube) as it is.
+    [[nodiscard]] Step solve(double damping, bool scaled = false) const {
+        const int n = scaled ? 7 : 6;
+        Eigen::Matrix<double, 7, 7> damped = normal_;
+        damped.diagonal().array() += damping * damped.topLeftCorner(n, n).trace() + 1e-30;
+        const Eigen::VectorXd x = damped.topLeftCorner(n, n).ldlt().solve(right_.head(n));
+        Step step;
+        step.turn = x.head<3>();
+        step.shift = unit_ * x.segment<3>(3);
+        if (scaled) step.growth = x[6];
+        return step;
+    }
+
+    [[nodiscard]] Motion motion(const Step& step) const {
+        Motion move;
+        const double angle = step.turn.norm();
+        if (angle > 0) move.turn = Eigen::AngleAxisd(angle, step.turn / angle).toRotationMatrix();
+        move.scale = std::exp(step.growth);
+        move.shift = centre_ + step.shift - move.scale * (move.turn * centre_);
+        return move;
+    }
+
+private:
+    using Row = Eigen::Matrix<double, 7, 1>;
+    Eigen::Vector3d centre_;
+    double unit_;
+    Eigen::Matrix<double, 7, 7> normal_;
+    Row right_;
+};
+
+}  // namespace ostraka
