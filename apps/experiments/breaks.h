@@ -11,6 +11,11 @@
 
 namespace ostraka::experiments {
 
+struct BreakExperiment;
+
+/// Two halves of a bottle, and the neighbours among five sherds.
+void break_pairs(const BreakExperiment& options);
+
 /// Turned evenly at random, shifted by about `far`.
 Motion random_motion(Random& random, double far);
 double degrees_of(const Motion& motion);

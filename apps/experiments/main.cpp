@@ -1,5 +1,6 @@
 // Experiments: how faithful transfer is, how sound cages are, what semantic constraints keep. Each prints Markdown tables and
 // writes the raw rows as CSV.
+#include "breaks.h"
 #include "classes.h"
 #include "experiments.h"
 
@@ -129,6 +130,7 @@ int main(int argc, char** argv) {
             ->capture_default_str();
         return command;
     };
+    CLI::App* break_pairs_command = add_breaks("break-pairs", "two halves of a bottle, and neighbours among scanned sherds");
     CLI::App* sherd_turns_command = add_breaks("sherd-turns", "scanned sherds on the template turned from them, turns by breaks");
     CLI::App* broken_pots_command = add_breaks("broken-pots", "made vessels, broken: turns by breaks");
 
@@ -239,6 +241,7 @@ int main(int argc, char** argv) {
         if (class_command->parsed()) experiments::class_membership(classes);
         if (mould_command->parsed()) experiments::moulds(heads);
         if (pose_command->parsed()) experiments::pose_search(poses);
+        if (break_pairs_command->parsed()) experiments::break_pairs(breaks);
         if (sherd_turns_command->parsed()) experiments::sherd_turns(breaks);
         if (broken_pots_command->parsed()) experiments::broken_pots(breaks);
         for (const auto& [command, run] : semantic_commands)

@@ -90,6 +90,8 @@ private:
                 list.PushBack(x, allocator).PushBack(y, allocator).PushBack(z, allocator);
                 return list;
             };
+            add_member(result, "format", "ostraka-turned", allocator);
+            add_member(result, "version", JsonValue(1), allocator);
             add_member(result, "through", triple(turned.axis.point.x(), turned.axis.point.y(), turned.axis.point.z()), allocator);
             add_member(result, "direction",
                        triple(turned.axis.direction.x(), turned.axis.direction.y(), turned.axis.direction.z()), allocator);

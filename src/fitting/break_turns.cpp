@@ -103,7 +103,7 @@ private:
             double squares = 0;
             for (const Vector3d& p : surface_samples.places) squares += p.head<2>().squaredNorm();
             one.radius = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, surface_samples.places.size())));
-            one.map = std::make_unique<TurnMap>(cells, surface_samples, one.side.fracture.places, steps_, 2 * width, 2 * wall_);
+            one.map = std::make_unique<TurnMap>(cells, surface_samples, one.side.fracture.places, steps_, 2 * width, 0.5 * wall_);
         }
         std::vector<TurnPair> pairs(n * n);
         for (std::size_t i = 0; i < n; ++i)
