@@ -44,27 +44,27 @@ const Class& template_of_class() {
     return made;
 }
 
-/// Half of another member of the class, meshed by itself, as a scan of about the number of vertices.
-const Fragment& fragment_of(std::uint64_t vertices) {
-    static std::map<std::uint64_t, Fragment> made;
-    const auto [entry, fresh] = made.try_emplace(vertices);
+/// A share of another member of the class around a landmark, meshed by itself, as a scan of about the number of vertices.
+const Fragment& fragment_of(std::uint64_t vertices, const std::string& landmark = "head joint", double share = 0.5) {
+    static std::map<std::pair<std::uint64_t, std::string>, Fragment> made;
+    const auto [entry, fresh] = made.try_emplace({vertices, landmark});
     if (!fresh) return entry->second;
     StatuetteParameters parameters;
     parameters.wall = 0;
-    parameters.vertices = 2 * vertices;
+    parameters.vertices = static_cast<std::uint64_t>(static_cast<double>(vertices) / share);
     parameters.height = 215;
     parameters.head_height = 50;
     parameters.arm_length = 76;
     parameters.seed = 2;
     const Statuette whole = generate_statuette(parameters);
     const auto top = std::find_if(whole.landmarks.begin(), whole.landmarks.end(),
-                                  [](const StatuetteLandmark& one) { return one.name == "head joint"; });
+                                  [&](const StatuetteLandmark& one) { return one.name == landmark; });
     BreakOptions options;
-    options.share = 0.5;
+    options.share = share;
     options.noise = 0.001;
     BrokenPiece piece = break_off(whole.mesh, top->place, options);
     Fragment& fragment = entry->second;
-    fragment.name = "fragment";
+    fragment.name = landmark;
     for (Annotation& one : landmarks_of(whole).annotations) {
         const auto found = std::find(piece.vertices.begin(), piece.vertices.end(), one.points.front());
         if (found == piece.vertices.end()) continue;
@@ -96,6 +96,52 @@ void run(benchmark::State& state, std::uint64_t vertices, int thread_count) {
     state.counters["fragment"] = static_cast<double>(fragment.mesh.number_of_vertices());
 }
 
+/// Two fragments: both from scratch, or the second added to the first, or one from scratch, or left after the second was removed.
+/// `bare`: without landmarks, so that poses are searched.
+void change(benchmark::State& state, const std::string& what, bool bare) {
+    const Class& ours = template_of_class();
+    std::vector<Fragment> fragments{fragment_of(10'000, "head joint", 0.4), fragment_of(10'000, "left hand tip", 0.2)};
+    ReconstructOptions options;
+    options.search.search = bare ? "always" : "never";
+    set_threads(2);
+    Reconstructor kept(ours.mesh, ours.set, {}, options);
+    kept.add(fragments[0]);
+    (void)kept.run();
+    std::map<std::string, double> seconds;
+    double laps = 0;
+    for ([[maybe_unused]] const auto lap : state) {
+        state.PauseTiming();
+        if (what == "removed") {
+            kept.add(fragments[1]);
+            (void)kept.run();
+        }
+        state.ResumeTiming();
+        Reconstruction result;
+        if (what == "two") {
+            result = reconstruct(ours.mesh, ours.set, {}, {&fragments[0], &fragments[1]}, options);
+        } else if (what == "one") {
+            result = reconstruct(ours.mesh, ours.set, {}, {&fragments[0]}, options);
+        } else {
+            if (what == "added") kept.add(fragments[1]);
+            else kept.remove(1);
+            result = kept.run();
+        }
+        for (const auto& [phase, time] : result.seconds) seconds[phase] += time;
+        seconds["fit: matching"] += result.fit.seconds_matching;
+        seconds["fit: solving"] += result.fit.seconds_solving;
+        seconds["fit: coarsening"] += result.fit.seconds_coarsening;
+        ++laps;
+        state.PauseTiming();
+        if (what == "added") {
+            kept.remove(1);
+            (void)kept.run();
+        }
+        state.ResumeTiming();
+    }
+    set_threads(0);
+    for (const auto& [phase, time] : seconds) state.counters[phase + " ms"] = 1000 * time / laps;
+}
+
 }  // namespace
 
 void register_fitting_benchmarks() {
@@ -104,6 +150,11 @@ void register_fitting_benchmarks() {
             with_both_times(benchmark::RegisterBenchmark(
                 ("fitting/fragment:" + std::to_string(vertices) + "/threads:" + std::to_string(thread_count)).c_str(),
                 [=](benchmark::State& state) { run(state, vertices, thread_count); }));
+    for (const bool bare : {false, true})
+        for (const std::string what : {"two", "added", "one", "removed"})
+            with_both_times(benchmark::RegisterBenchmark(
+                (std::string("fitting/two_fragments/") + (bare ? "searched/" : "landmarks/") + what).c_str(),
+                [=](benchmark::State& state) { change(state, what, bare); }));
 }
 
 }  // namespace ostraka::bench

@@ -30,7 +30,7 @@ struct Fit {
     std::string output, assembly, class_file;
     ReconstructOptions options;
     FragmentFileOptions reading;
-    bool placed = false;
+    bool placed = false, fresh = false;
 
     int run(const Session& session) {
         check_options(options, "fit");
@@ -85,12 +85,20 @@ struct Fit {
             prior = prior_of(read_class(class_file).modes);
             take(class_file);
         }
-        const Reconstruction result =
-            reconstruct(loaded.mesh->mesh, *loaded.annotations, graph, pointers, options, stated, prior ? &*prior : nullptr);
+        Reconstructor reconstructor(loaded.mesh->mesh, *loaded.annotations, graph, options, prior ? &*prior : nullptr);
+        for (std::size_t k = 0; k < pointers.size(); ++k) reconstructor.add(*pointers[k], std::move(stated[k]));
+        PoseSearches& searches = reconstructor.searches();
+        if (!fresh) remember(searches, session);
+        const Reconstruction result = reconstructor.run();
+        if (searches.reused() > 0)
+            session.note("note: " + std::to_string(searches.reused()) + " of " +
+                         std::to_string(searches.reused() + searches.made()) +
+                         " searches of poses are those of an earlier fit in " + printable(output) +
+                         ": template, fragment and options are the same");
         if (const double scale = result.placement.scale;
             result.placement.any() && (scale > options.placement.unit_ratio || scale * options.placement.unit_ratio < 1))
             session.note("note: the template is scaled by " + number(scale, 4) + ": are all files in one unit?");
-        write(*loaded.mesh, *loaded.annotations, fragments, names, result, provenance, session);
+        write(*loaded.mesh, *loaded.annotations, fragments, names, result, searches, provenance, session);
         print(session, provenance, names, result);
         return result.verdict == Compatibility::compatible ? done : answer_is_no;
     }
@@ -126,14 +134,30 @@ private:
         return transfer(fitted, set, SurfaceSearch(result.object.mesh), options).annotations;
     }
 
+    static constexpr const char* kept = "fit.searches.json";
+
+    /// Searches that an earlier fit in the folder made. Whether one is of use here its key says.
+    void remember(PoseSearches& searches, const Session& session) const {
+        if (!fs::exists(in(kept))) return;
+        try {
+            const std::size_t damaged = searches.add(read_json(in(kept)), in(kept).string());
+            if (damaged > 0)
+                session.note("note: " + std::to_string(damaged) + " searches in " + printable(in(kept).string()) +
+                             " were changed since they were made: they are made anew");
+        } catch (const Error& error) {
+            session.note("note: " + printable(in(kept).string()) + " is not used, and written anew: " + error.problem());
+        }
+    }
+
     [[nodiscard]] Path in(const std::string& name) const { return Path(output) / name; }
 
     void write(const MeshFile& file, const AnnotationSet& set, const std::vector<Fragment>& fragments, const AssemblyNames& names,
-               const Reconstruction& result, const Provenance& provenance, const Session& session) const {
+               const Reconstruction& result, const PoseSearches& searches, const Provenance& provenance,
+               const Session& session) const {
         std::error_code code;
         fs::create_directories(output, code);
         if (code) throw Error(ErrorKind::failure, output, "the folder cannot be made: " + code.message(), "name another one");
-        std::vector<Path> outputs{in("fit.assembly.json"), in("completed.ply"), in("completed.ant.json")};
+        std::vector<Path> outputs{in("fit.assembly.json"), in(kept), in("completed.ply"), in("completed.ant.json")};
         for (const std::string& name : names.fragments) outputs.push_back(in(name + ".placed.ply"));
         check_outputs(inputs, outputs);
         const std::vector<Path> before = written_before();
@@ -143,6 +167,12 @@ private:
         JsonValue report = assembly_to_json(result, names, document.GetAllocator());
         add_member(report, "provenance", provenance.to_json(document.GetAllocator()), document.GetAllocator());
         write_json(in("fit.assembly.json"), report);
+        if (!searches.empty()) {
+            JsonValue known = searches.to_json(document.GetAllocator());
+            add_member(known, "provenance", provenance.to_json(document.GetAllocator()), document.GetAllocator());
+            write_json(in(kept), known);
+            written.push_back(in(kept));
+        }
         if (!result.points.empty()) {
             const CompletedObject& object = result.object;
             MeshExtras extras;
@@ -171,7 +201,7 @@ private:
             AnnotationSet carried = carry(file.mesh, set, result);
             for (const auto& note : refresh_measures(object.mesh, carried).notes) session.note("note: " + note);
             write_annotations(in("completed.ant.json"), carried, object.mesh, "completed.ply", provenance);
-            written = {in("completed.ply"), in("completed.ant.json")};
+            written.insert(written.end(), {in("completed.ply"), in("completed.ant.json")});
         }
         for (std::size_t k = 0; placed && k < fragments.size(); ++k) {
             if (!result.placement.fragments[k].problem.empty()) continue;
@@ -188,7 +218,7 @@ private:
     [[nodiscard]] std::vector<Path> written_before() const {
         std::vector<Path> earlier;
         if (!fs::exists(in("fit.assembly.json"))) return earlier;
-        earlier = {in("completed.ply"), in("completed.ant.json")};
+        earlier = {in(kept), in("completed.ply"), in("completed.ant.json")};
         try {
             const Json old = read_json(in("fit.assembly.json"));
             validate(old, "assembly", "fit.assembly.json");
@@ -296,6 +326,7 @@ void add_fit(CLI::App& tool, Session& session) {
         "--class", fit->class_file,
         "a class learnt with this template (NAME.class.json of 'template learn'): what no fragment shows is as in its "
         "members that look so where one does");
+    command->add_flag("--fresh", fit->fresh, "search poses anew, whatever an earlier fit in the folder found");
     command->add_flag("--placed", fit->placed, "also write each fragment where it lies: NAME.placed.ply");
     add_flags(command, fit->options);
     add_flags(command, fit->reading);

@@ -1,5 +1,6 @@
 #include "ostraka/fitting/fit.h"
 
+#include "level_system.h"
 #include "match_search.h"
 
 #include "ostraka/core/error.h"
@@ -7,12 +8,10 @@
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/remesh/simplify.h"
-#include "ostraka/solver/solve.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <map>
 #include <numbers>
 
 namespace ostraka {
@@ -34,66 +33,23 @@ private:
     std::chrono::steady_clock::time_point begin_;
 };
 
-/// The rest shape's neighbours of each vertex with their cotangent weights, and the area around it.
-struct Rings {
-    std::vector<std::size_t> begin;
-    std::vector<int> neighbour;
-    std::vector<double> weight;
-    std::vector<double> area, sum;  ///< area around each vertex; sum of its weights
-};
-
-double cotangent(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
-    const double sine = (a - c).cross(b - c).norm();
-    return sine > 0 ? (a - c).dot(b - c) / sine : 0;
-}
-
-Rings rings_of(const Mesh& mesh, const Points& rest) {
-    Rings rings;
-    rings.area.assign(mesh.number_of_vertices(), 0);
-    rings.sum.assign(mesh.number_of_vertices(), 0);
-    for (const Face face : mesh.faces()) {
-        const double area = face_area(mesh, face) / 3;
-        for (const Vertex v : corners(mesh, face)) rings.area[v] += area;
-    }
-    for (const Vertex v : mesh.vertices()) {
-        rings.begin.push_back(rings.neighbour.size());
-        if (mesh.is_isolated(v)) continue;
-        for (const Halfedge h : mesh.halfedges_around_target(mesh.halfedge(v))) {
-            const Vertex n = mesh.source(h);
-            double weight = 0;
-            for (const Halfedge side : {h, mesh.opposite(h)})
-                if (!mesh.is_border(side))
-                    weight += 0.5 * cotangent(rest.col(static_cast<Eigen::Index>(v)), rest.col(static_cast<Eigen::Index>(n)),
-                                              rest.col(static_cast<Eigen::Index>(mesh.target(mesh.next(side)))));
-            rings.neighbour.push_back(static_cast<int>(n.idx()));
-            // Obtuse angles would make the displacement unstable; needles, the weights endless.
-            rings.weight.push_back(std::clamp(weight, 0.05, 20.0));
-            rings.sum[v] += rings.weight.back();
-        }
-    }
-    rings.begin.push_back(rings.neighbour.size());
-    return rings;
-}
-
 /// The levels of a fit over one mesh of the template.
 class Fitter {
 public:
-    /// `scale` is the template's diagonal. All outlive it.
-    Fitter(const Mesh& mesh, const MatchSearch& search, MatchSearch::Labels labels, std::vector<Guide> guides, double diagonal,
+    /// Lengths are in the template's unit. All outlive it.
+    Fitter(LevelSystem& system, const MatchSearch& search, MatchSearch::Labels labels, std::vector<Guide> guides, double diagonal,
            const NonRigidOptions& options)
-        : mesh_(mesh),
+        : system_(system),
+          mesh_(system.mesh),
           search_(search),
           labels_(std::move(labels)),
-          guides_(std::move(guides)),
+          guides_(system.mesh.number_of_vertices()),
           diagonal_(diagonal),
-          options_(options) {
-        rest_.resize(3, static_cast<Eigen::Index>(mesh.number_of_vertices()));
-        for (const Vertex v : mesh.vertices()) rest_.col(static_cast<Eigen::Index>(v)) = eigen(mesh.point(v));
-        now_ = rest_;
-        rings_ = rings_of(mesh, rest_);
-        double sum = 0;
-        for (const double area : rings_.area) sum += area;
-        mean_area_ = sum / static_cast<double>(std::max<std::size_t>(1, rings_.area.size()));
+          options_(options),
+          rest_(system.rest),
+          now_(system.rest),
+          rings_(system.rings) {
+        for (Guide& guide : guides) guides_[guide.vertex].push_back(guide);
     }
 
     void start_at(Points points) { now_ = std::move(points); }
@@ -107,9 +63,9 @@ public:
 
     void run(int first, int end, NonRigidFit& fit) {
         if (first == end) return;
-        if (!solver_) {
+        {
             const Stopwatch watch(fit.seconds_solving);
-            make_solver();
+            solver_ = &system_.renewed_solver();
         }
         for (int level = first; level < end; ++level) {
             NonRigidFit::Level record;
@@ -183,37 +139,6 @@ private:
         return first * std::pow(last / first, options.levels > 1 ? static_cast<double>(level) / (options.levels - 1) : 1);
     }
 
-    /// For each vertex a match, a place to stay at and a Laplacian displacement; then the guides.
-    void make_solver() {
-        std::vector<std::unique_ptr<Constraint>> list;
-        for (const Vertex v : mesh_.vertices()) {
-            const int i = static_cast<int>(v.idx());
-            ConstraintParameters here;
-            here.target = rest_.col(i);
-            match_.push_back(list.size());
-            list.push_back(make_constraint("Closeness", {i}, 0, here, rest_));
-            stay_.push_back(list.size());
-            list.push_back(make_constraint("Closeness", {i}, 1, here, rest_));
-            laplacian_.push_back(no_constraint);
-            if (mesh_.is_isolated(v)) continue;
-            std::vector<int> ids{i};
-            ConstraintParameters ring;
-            for (std::size_t k = rings_.begin[v]; k < rings_.begin[v + 1]; ++k) {
-                ids.push_back(rings_.neighbour[k]);
-                ring.coefficients.push_back(rings_.weight[k]);
-            }
-            laplacian_.back() = list.size();
-            list.push_back(make_constraint("CotangentLaplacianDisplacement", std::move(ids), 1, ring, rest_));
-        }
-        for (const Guide& guide : guides_) {
-            ConstraintParameters there;
-            there.target = guide.place;
-            guide_.push_back(list.size());
-            list.push_back(make_constraint("Closeness", {static_cast<int>(guide.vertex)}, 1, there, rest_));
-        }
-        solver_ = std::make_unique<MeshSpaceSolver>(std::move(list), rest_);
-    }
-
     /// Where few matches came or went since the weights were last set, they stay, and with them the factorisation: who lost its
     /// match is held where it is, who found one waits.
     [[nodiscard]] bool matched_as_before() const {
@@ -224,32 +149,32 @@ private:
 
     void solve(double smoothing, double transition, bool new_level) {
         // In units of mean areas, and of lengths of the smoothing, so that weights are near one.
-        const double stay = std::pow(std::min(1.0, smoothing / transition), 4);
+        const double stay = std::pow(std::min(1.0, smoothing / transition), 4), mean_area = system_.mean_area;
         turn();
         const bool renew = new_level || !matched_as_before();
-        if (renew) weighted_.assign(matches_.size(), false);
+        if (renew) {
+            weighted_.assign(matches_.size(), false);
+            match_weight_.assign(matches_.size(), 0);
+        }
         for (std::size_t i = 0; i < matches_.size(); ++i) {
             const bool matched = matches_[i].fragment >= 0;
             if (renew) {
-                const double share = rings_.area[i] / mean_area_;
+                const double share = rings_.area[i] / mean_area;
                 weighted_[i] = matched;
-                solver_->set_weight(match_[i], matched ? share : 0);
-                solver_->set_weight(stay_[i], stay * std::max(share, 1e-6));
-                if (new_level) solver_->set_target(stay_[i], start_.col(static_cast<Eigen::Index>(i)));
+                match_weight_[i] = matched ? share : 0;
+                solver_->set_weight(system_.match(i), match_weight_[i] + guide_weight(i, smoothing));
+                solver_->set_weight(system_.stay(i), stay * std::max(share, 1e-6));
+                if (new_level) solver_->set_target(system_.stay(i), start_.col(static_cast<Eigen::Index>(i)));
             }
-            if (weighted_[i])
-                solver_->set_target(match_[i],
-                                    matched ? Points(matches_[i].place) : Points(now_.col(static_cast<Eigen::Index>(i))));
-            if (laplacian_[i] == no_constraint) continue;
-            solver_->set_target(laplacian_[i], displacement_.col(static_cast<Eigen::Index>(i)));
+            const Vector3d goal = matched ? matches_[i].place : Vector3d(now_.col(static_cast<Eigen::Index>(i)));
+            if (!guides_[i].empty()) solver_->set_target(system_.match(i), Points(guided(i, smoothing, goal)));
+            else if (weighted_[i]) solver_->set_target(system_.match(i), Points(goal));
+            if (system_.laplacian(i) == LevelSystem::no_constraint) continue;
+            solver_->set_target(system_.laplacian(i), displacement_.col(static_cast<Eigen::Index>(i)));
             if (!renew) continue;
-            const double area = std::max(rings_.area[i], 1e-6 * mean_area_);
-            solver_->set_weight(laplacian_[i], std::pow(smoothing, 4) * rings_.sum[i] * rings_.sum[i] / (area * mean_area_));
-        }
-        for (std::size_t g = 0; renew && g < guides_.size(); ++g) {
-            // What a patch of the smoothing's size would weigh: of a landmark the whole, of an outline the share of its length.
-            const double width = guides_[g].length > 0 ? guides_[g].length * smoothing : smoothing * smoothing;
-            solver_->set_weight(guide_[g], options_.guides * std::max(width, 0.0) / mean_area_);
+            const double area = std::max(rings_.area[i], 1e-6 * mean_area);
+            solver_->set_weight(system_.laplacian(i),
+                                std::pow(smoothing, 4) * rings_.sum[i] * rings_.sum[i] / (area * mean_area));
         }
         SolveOptions once;
         once.iterations = 1;
@@ -257,6 +182,28 @@ private:
         const SolveSummary summary = solver_->solve(now_, once);
         if (!summary.usable)
             throw Error(ErrorKind::failure, "fit", "no usable solution: " + summary.text(), "look at the template's faces");
+    }
+
+    /// What a patch of the smoothing's size would weigh: of a landmark the whole, of an outline the share of its length.
+    [[nodiscard]] double weight_of(const Guide& guide, double smoothing) const {
+        const double width = guide.length > 0 ? guide.length * smoothing : smoothing * smoothing;
+        return options_.guides * width / system_.mean_area;
+    }
+    [[nodiscard]] double guide_weight(std::size_t vertex, double smoothing) const {
+        double sum = 0;
+        for (const Guide& guide : guides_[vertex]) sum += weight_of(guide, smoothing);
+        return sum;
+    }
+    /// Where a vertex's match and its guides draw it together: sums of squares about several places are one about their mean.
+    [[nodiscard]] Vector3d guided(std::size_t vertex, double smoothing, const Vector3d& match) const {
+        double weight = match_weight_[vertex];
+        Vector3d sum = weight * match;
+        for (const Guide& guide : guides_[vertex]) {
+            const double share = weight_of(guide, smoothing);
+            sum += share * guide.place;
+            weight += share;
+        }
+        return weight > 0 ? Vector3d(sum / weight) : match;
     }
 
     /// Rest displacements turned with the surroundings of each vertex.
@@ -272,20 +219,20 @@ private:
         });
     }
 
-    static constexpr std::size_t no_constraint = static_cast<std::size_t>(-1);
-
+    LevelSystem& system_;
     const Mesh& mesh_;
     const MatchSearch& search_;
     MatchSearch::Labels labels_;
-    std::vector<Guide> guides_;
-    double diagonal_, mean_area_ = 1;
+    std::vector<std::vector<Guide>> guides_;  ///< of each vertex
+    double diagonal_;
     const NonRigidOptions& options_;
-    Points rest_, start_, now_, displacement_;  ///< start: of the level
-    Rings rings_;
-    std::vector<std::size_t> match_, stay_, laplacian_, guide_;
-    std::unique_ptr<MeshSpaceSolver> solver_;
+    const Points& rest_;
+    Points now_, start_, displacement_;  ///< start: of the level
+    const Rings& rings_;
+    Solver* solver_ = nullptr;
     std::vector<VertexMatch> matches_;
-    std::vector<bool> weighted_;  ///< vertices whose match weighs in the factorisation
+    std::vector<bool> weighted_;        ///< vertices whose match weighs in the factorisation
+    std::vector<double> match_weight_;  ///< and how much
 };
 
 /// The template with fewer vertices, for what is smooth anyway.
@@ -307,66 +254,108 @@ Coarse coarsened(const Mesh& mesh, std::size_t vertices) {
     return coarse;
 }
 
-/// The fine mesh moved with the surroundings of the nearest place of the coarse one.
-Points follow(const Mesh& fine, const Mesh& coarse, const Fitter& fitter) {
-    const std::vector<Matrix3d> turns = fitter.turns();
-    const SurfaceSearch search(coarse);
-    Points points(3, static_cast<Eigen::Index>(fine.number_of_vertices()));
-    parallel_for(fine.number_of_vertices(), [&](std::size_t i) {
-        const Point& p = fine.point(Vertex(static_cast<Index>(i)));
-        const SurfaceHit hit = search.closest(p);
-        const auto c = corners(coarse, Face(hit.face));
-        Vector3d sum = Vector3d::Zero();
-        for (std::size_t k = 0; k < 3; ++k) {
-            const auto v = static_cast<Eigen::Index>(c[k]);
-            sum += hit.barycentric[k] * (turns[c[k]] * (eigen(p) - fitter.rest().col(v)) + fitter.now().col(v));
-        }
-        points.col(static_cast<Eigen::Index>(i)) = sum;
-    });
-    return points;
-}
+constexpr std::size_t few = 4000;  // vertices that show every shape of the first levels
 
 }  // namespace
 
-NonRigidFit fit_template(const Mesh& scaled, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments,
-                         const NonRigidOptions& options) {
+struct TemplateFitter::State {
+    State(const Mesh& of, const AnnotationSet& with) : mesh(of), set(with), diagonal(box_diagonal(of)), fine(of) {}
+
+    /// Simplifies the template where that is worth while.
+    void prepare() {
+        if (coarse || mesh.number_of_vertices() <= 2 * few) return;
+        coarse = std::make_unique<Coarse>(coarsened(mesh, few));
+        smooth = std::make_unique<LevelSystem>(coarse->mesh);
+        edge = mean_edge_length(coarse->mesh);
+        const SurfaceSearch search(coarse->mesh);
+        nearest.resize(mesh.number_of_vertices());
+        parallel_for(nearest.size(),
+                     [&](std::size_t i) { nearest[i] = search.closest(mesh.point(Vertex(static_cast<Index>(i)))); });
+    }
+
+    /// The fine mesh moved with the surroundings of the nearest place of the coarse one.
+    [[nodiscard]] Points follow(const Fitter& fitter) const {
+        const std::vector<Matrix3d> turns = fitter.turns();
+        Points points(3, static_cast<Eigen::Index>(mesh.number_of_vertices()));
+        parallel_for(nearest.size(), [&](std::size_t i) {
+            const Vector3d p = eigen(mesh.point(Vertex(static_cast<Index>(i))));
+            const auto c = corners(coarse->mesh, Face(nearest[i].face));
+            Vector3d sum = Vector3d::Zero();
+            for (std::size_t k = 0; k < 3; ++k) {
+                const auto v = static_cast<Eigen::Index>(c[k]);
+                sum += nearest[i].barycentric[k] * (turns[c[k]] * (p - fitter.rest().col(v)) + fitter.now().col(v));
+            }
+            points.col(static_cast<Eigen::Index>(i)) = sum;
+        });
+        return points;
+    }
+
+    const Mesh& mesh;
+    const AnnotationSet& set;
+    double diagonal;
+    LevelSystem fine;
+    std::unique_ptr<Coarse> coarse;
+    std::unique_ptr<LevelSystem> smooth;  ///< of the coarse mesh
+    double edge = 0;                      ///< mean length of its edges
+    std::vector<SurfaceHit> nearest;      ///< of each vertex on it
+};
+
+TemplateFitter::TemplateFitter(const Mesh& mesh, const AnnotationSet& set) {
+    if (mesh.number_of_faces() == 0) fail_input("template", "has no faces", "is it the right file?");
+    state_ = std::make_unique<State>(mesh, set);
+}
+TemplateFitter::~TemplateFitter() = default;
+TemplateFitter::TemplateFitter(TemplateFitter&&) noexcept = default;
+
+NonRigidFit TemplateFitter::fit(double scale, const std::vector<PlacedFragment>& fragments, const NonRigidOptions& options) {
     check_options(options, "fit");
     if (options.counterparts != "surface" &&
         !(options.vertices.boundary + options.vertices.distance + options.vertices.outline > 0))
         fail_usage("all three weights of equation 5.1 are zero", "give --distance-weight or another one");
-    if (scaled.number_of_faces() == 0) fail_input("template", "has no faces", "is it the right file?");
-    constexpr std::size_t few = 4000;  // vertices that show every shape of the first levels
-    constexpr double edges = 0.8;      // least smoothing length of a level on the coarse mesh, in its edges
-    const double diagonal = box_diagonal(scaled);
+    constexpr double edges = 0.8;  // least smoothing length of a level on the coarse mesh, in its edges
+    State& s = *state_;
     NonRigidFit fit;
-    const MatchSearch search(scaled, set, fragments);
-    Fitter fine(scaled, search, search.labels(scaled, {}), search.guides(), diagonal, options);
+    const MatchSearch search(s.mesh, s.set, fragments, scale);
+    {
+        const Stopwatch watch(fit.seconds_coarsening);
+        s.prepare();
+    }
+    Fitter fine(s.fine, search, search.labels(s.mesh, {}), search.guides(), s.diagonal, options);
     int level = 0;
-    if (scaled.number_of_vertices() > 2 * few) {
-        Coarse coarse;
-        {
-            const Stopwatch watch(fit.seconds_coarsening);
-            coarse = coarsened(scaled, few);
-        }
-        const double edge = mean_edge_length(coarse.mesh);
-        while (level < options.levels && Fitter::smoothing(options, level, diagonal) >= edges * edge) ++level;
+    if (s.coarse) {
+        const Coarse& coarse = *s.coarse;
+        while (level < options.levels && Fitter::smoothing(options, level, s.diagonal) >= edges * s.edge) ++level;
         std::vector<Guide> guides = search.guides();
         for (Guide& guide : guides) {
             const Index here = coarse.vertex_map[guide.vertex];
             if (here != no_index)
-                guide.place += eigen(coarse.mesh.point(Vertex(here))) - eigen(scaled.point(Vertex(guide.vertex)));
+                guide.place += eigen(coarse.mesh.point(Vertex(here))) - eigen(s.mesh.point(Vertex(guide.vertex)));
             guide.vertex = here;
         }
         std::erase_if(guides, [&](const Guide& guide) { return guide.vertex >= coarse.mesh.number_of_vertices(); });
-        Fitter smooth(coarse.mesh, search, search.labels(coarse.mesh, coarse.face_origin), std::move(guides), diagonal, options);
+        Fitter smooth(*s.smooth, search, search.labels(coarse.mesh, coarse.face_origin), std::move(guides), s.diagonal, options);
         smooth.run(0, level, fit);
         const Stopwatch watch(fit.seconds_coarsening);
-        if (level > 0) fine.start_at(follow(scaled, coarse.mesh, smooth));
+        if (level > 0) fine.start_at(s.follow(smooth));
     }
     fine.run(level, options.levels, fit);
-    fit.matches = fine.match(options.last_reach * diagonal, fit);
-    for (Eigen::Index i = 0; i < fine.now().cols(); ++i) fit.points.push_back(point_of(fine.now().col(i)));
+    fit.matches = fine.match(options.last_reach * s.diagonal, fit);
+    // So far all was in the template's unit.
+    for (VertexMatch& match : fit.matches) {
+        match.place *= scale;
+        match.distance *= scale;
+    }
+    for (NonRigidFit::Level& one : fit.levels) {
+        one.smoothing *= scale;
+        one.residual *= scale;
+    }
+    for (Eigen::Index i = 0; i < fine.now().cols(); ++i) fit.points.push_back(point_of(scale * fine.now().col(i)));
     return fit;
+}
+
+NonRigidFit fit_template(const Mesh& scaled, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments,
+                         const NonRigidOptions& options) {
+    return TemplateFitter(scaled, set).fit(1, fragments, options);
 }
 
 }  // namespace ostraka

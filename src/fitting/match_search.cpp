@@ -2,7 +2,6 @@
 
 #include "ostraka/core/parallel.h"
 #include "ostraka/geom/eigen.h"
-#include "ostraka/geom/submesh.h"
 
 #include <algorithm>
 
@@ -33,8 +32,10 @@ std::vector<int> face_labels(const Mesh& mesh, const std::vector<std::pair<const
 
 MatchSearch::~MatchSearch() = default;
 
-MatchSearch::MatchSearch(const Mesh& scaled, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments)
-    : fragments_(fragments) {
+MatchSearch::MatchSearch(const Mesh& mesh, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments, double scale)
+    : scale_(scale), fragments_(fragments) {
+    Motion unit;
+    unit.scale = 1 / scale;
     // Regions that any fragment has.
     std::vector<std::pair<const Annotation*, int>> ours;
     for (std::size_t k = 0; k < fragments.size(); ++k) {
@@ -48,53 +49,28 @@ MatchSearch::MatchSearch(const Mesh& scaled, const AnnotationSet& set, const std
                 if (std::none_of(ours.begin(), ours.end(), [&](const auto& one) { return one.first == a; }))
                     ours.emplace_back(a, a->id);
             } else if (a->type == AnnotationType::point && a->points.size() == 1 && b->points.size() == 1) {
-                guides_.push_back({a->points.front(), eigen(fragment.mesh.point(Vertex(b->points.front()))), 0});
+                guides_.push_back({a->points.front(), eigen(fragment.mesh.point(Vertex(b->points.front()))) / scale, 0});
                 landmarks_.emplace_back(a->points.front(), b->points.front());
                 landmark_fragment_.push_back(static_cast<int>(k));
             }
         }
         const std::vector<int> labels = face_labels(fragment.mesh, theirs);
-        std::vector<bool> outer(fragment.mesh.number_of_faces(), true);
-        for (std::size_t f = 0; f < fragment.facets.size(); ++f) outer[f] = fragment.facets[f] != Facet::fracture;
-        std::vector<bool> breaks(fragment.mesh.number_of_vertices(), false);
-        for (const Halfedge h : fragment.mesh.halfedges())
-            if (fragment.mesh.is_border(h) || !outer[fragment.mesh.face(h)])
-                breaks[fragment.mesh.source(h)] = breaks[fragment.mesh.target(h)] = true;
         for (const auto& [region, label] : theirs) {
-            Counterpart one{static_cast<int>(k), label, {}, breaks};
+            Counterpart one{static_cast<int>(k), label, {}};
             one.region.tag = region->tag;
             one.region.type = AnnotationType::region;
             for (const Index face : region->faces)
-                if (labels[face] == label && outer[face]) one.region.faces.push_back(face);
+                if (labels[face] == label && (fragment.facets.empty() || fragment.facets[face] != Facet::fracture))
+                    one.region.faces.push_back(face);
             if (!one.region.faces.empty()) counterparts_.push_back(std::move(one));
         }
-        std::map<int, std::vector<bool>> kept;
-        for (std::size_t f = 0; f < labels.size(); ++f)
-            if (outer[f]) kept.try_emplace(labels[f], labels.size(), false).first->second[f] = true;
-        for (const auto& [label, keep] : kept) {
-            auto part = std::make_unique<Part>();
-            part->fragment = static_cast<int>(k);
-            SubMesh sub = keep_faces(fragment.mesh, keep);
-            part->mesh = std::move(sub.mesh);
-            part->faces = std::move(sub.faces);
-            part->edge_breaks.assign(part->mesh.number_of_edges(), false);
-            part->vertex_breaks.assign(part->mesh.number_of_vertices(), false);
-            for (const Edge e : part->mesh.edges()) {
-                if (!part->mesh.is_border(e)) continue;
-                const Vertex a = part->mesh.vertex(e, 0), b = part->mesh.vertex(e, 1);
-                Halfedge h = find_halfedge(fragment.mesh, Vertex(sub.vertices[a]), Vertex(sub.vertices[b]));
-                bool ends = h == Mesh::null_halfedge();
-                for (int side = 0; side < 2 && !ends; ++side, h = fragment.mesh.opposite(h))
-                    ends = fragment.mesh.is_border(h) || !outer[fragment.mesh.face(h)];
-                if (!ends) continue;
-                part->edge_breaks[e] = true;
-                part->vertex_breaks[a] = part->vertex_breaks[b] = true;
-            }
-            part->search = std::make_unique<SurfaceSearch>(part->mesh);
-            parts_[label].push_back(std::move(part));
-        }
+        const bool own = fragment.trees != nullptr;
+        trees_.push_back(own ? fragment.trees : std::make_shared<FragmentTrees>(fragment.mesh, fragment.facets));
+        to_template_.push_back(own ? unit.after(fragment.pose) : unit);
+        to_fragment_.push_back(to_template_.back().inverse());
+        for (const auto& [label, part] : trees_.back()->parts(labels)) parts_[label].push_back({static_cast<int>(k), &part});
     }
-    face_labels_ = face_labels(scaled, ours);
+    face_labels_ = face_labels(mesh, ours);
 }
 
 MatchSearch::Labels MatchSearch::labels(const Mesh& mesh, const std::vector<Index>& face_origin) const {
@@ -136,26 +112,29 @@ std::vector<VertexMatch> MatchSearch::matches(const Points& now, const Mesh& con
         for (const int label : labels.of_vertex[i]) {
             const auto list = parts_.find(label);
             if (list == parts_.end()) continue;
-            for (const auto& part : list->second) {
-                const auto hit =
-                    part->search->closest_compatible(point_of(place), vector_of(normals[i] / length), min_cosine, nearest);
+            for (const Part& one : list->second) {
+                const FragmentPart& part = *one.part;
+                const auto k = static_cast<std::size_t>(one.fragment);
+                const Motion& there = to_fragment_[k];
+                const auto hit = part.search->closest_compatible(
+                    point_of(there(place)), vector_of(there.turn * normals[i] / length), min_cosine, nearest * there.scale);
                 if (!hit) continue;
                 // Beyond the end of what is there, everything is nearest to its rim.
                 constexpr double on_edge = 1e-6;
                 const Face face(hit->face);
-                const auto c = corners(part->mesh, face);
+                const auto c = corners(part.mesh, face);
                 bool at_end = false;
-                for (const Halfedge h : part->mesh.halfedges_around_face(part->mesh.halfedge(face))) {
-                    const Vertex opposite = part->mesh.target(part->mesh.next(h));
-                    for (int k = 0; k < 3; ++k)
-                        if (c[static_cast<std::size_t>(k)] == opposite && hit->barycentric[static_cast<std::size_t>(k)] < on_edge)
-                            at_end = at_end || part->edge_breaks[part->mesh.edge(h)];
+                for (const Halfedge h : part.mesh.halfedges_around_face(part.mesh.halfedge(face))) {
+                    const Vertex opposite = part.mesh.target(part.mesh.next(h));
+                    for (std::size_t corner = 0; corner < 3; ++corner)
+                        if (c[corner] == opposite && hit->barycentric[corner] < on_edge)
+                            at_end = at_end || part.edge_breaks[part.mesh.edge(h)];
                 }
-                for (std::size_t k = 0; k < 3; ++k)
-                    at_end = at_end || (hit->barycentric[k] > 1 - on_edge && part->vertex_breaks[c[k]]);
-                nearest = hit->distance;
-                found[i] =
-                    at_end ? VertexMatch() : VertexMatch{part->fragment, part->faces[hit->face], eigen(hit->point), nearest};
+                for (std::size_t corner = 0; corner < 3; ++corner)
+                    at_end = at_end || (hit->barycentric[corner] > 1 - on_edge && part.vertex_breaks[c[corner]]);
+                nearest = hit->distance / there.scale;
+                found[i] = at_end ? VertexMatch()
+                                  : VertexMatch{one.fragment, part.faces[hit->face], to_template_[k](eigen(hit->point)), nearest};
             }
         }
     });
@@ -165,26 +144,31 @@ std::vector<VertexMatch> MatchSearch::matches(const Points& now, const Mesh& con
 std::vector<FragmentSample> MatchSearch::samples(int count) const {
     double area = 0;
     for (const auto& [label, parts] : parts_)
-        for (const auto& part : parts) area += surface_area(part->mesh);
+        for (const Part& one : parts) area += surface_area(one.part->mesh);
     std::vector<FragmentSample> samples;
     const double each = area / count;
     double sum = 0, next = 0.5 * each;
     for (const auto& [label, parts] : parts_)
-        for (const auto& part : parts)
-            for (const Face face : part->mesh.faces()) {
-                sum += face_area(part->mesh, face);
+        for (const Part& one : parts) {
+            const Mesh& mesh = one.part->mesh;
+            const Motion& motion = to_template_[static_cast<std::size_t>(one.fragment)];
+            for (const Face face : mesh.faces()) {
+                sum += face_area(mesh, face);
                 if (next >= sum) continue;
-                const Vector3d normal = eigen(area_vector(part->mesh, face));
-                samples.push_back({eigen(centroid(part->mesh, face)), normal.normalized(), label});
+                const Vector3d normal = motion.turn * eigen(area_vector(mesh, face));
+                samples.push_back({motion(eigen(centroid(mesh, face))), normal.normalized(), label});
                 while (next < sum) next += each;
             }
+        }
     return samples;
 }
 
-void MatchSearch::assign(const Points& now, const Mesh& connectivity, const Labels& labels,
-                         const VertexAssignmentOptions& options, std::vector<VertexMatch>& matches) const {
+void MatchSearch::assign(const Points& now, const Mesh& connectivity, const Labels& labels, const VertexAssignmentOptions& how,
+                         std::vector<VertexMatch>& matches) const {
     Mesh mesh = connectivity;
-    for (const Vertex v : mesh.vertices()) mesh.point(v) = point_of(now.col(static_cast<Eigen::Index>(v)));
+    for (const Vertex v : mesh.vertices()) mesh.point(v) = point_of(scale_ * now.col(static_cast<Eigen::Index>(v)));
+    VertexAssignmentOptions options = how;
+    options.reach *= scale_;
     for (const Counterpart& other : counterparts_) {
         Annotation part;
         part.type = AnnotationType::region;
@@ -207,11 +191,11 @@ void MatchSearch::assign(const Points& now, const Mesh& connectivity, const Labe
             VertexMatch& match = matches[v];
             // Of several fragments that have the part the nearest counts.
             const bool ours = match.fragment == other.fragment || match.fragment < 0;
-            if (there == no_index || other.breaks[there]) {
+            if (there == no_index || trees_[static_cast<std::size_t>(other.fragment)]->breaks()[there]) {
                 if (ours) match = VertexMatch();
                 continue;
             }
-            const Eigen::Vector3d place = eigen(fragment.mesh.point(Vertex(there)));
+            const Eigen::Vector3d place = eigen(fragment.mesh.point(Vertex(there))) / scale_;
             const double distance = (place - now.col(static_cast<Eigen::Index>(v))).norm();
             if (!ours && match.distance <= distance) continue;
             match = {other.fragment, fragment.mesh.face(fragment.mesh.halfedge(Vertex(there))), place, distance};

@@ -1,9 +1,10 @@
 // Where on the fragments the template's vertices are.
 #pragma once
 
+#include "fragment_trees.h"
+
 #include "ostraka/fitting/fit.h"
 #include "ostraka/fitting/vertex_assignment.h"
-#include "ostraka/geom/surface_search.h"
 #include "ostraka/solver/constraint.h"
 
 #include <map>
@@ -28,7 +29,9 @@ struct FragmentSample {
 /// Like is looked for among like: vertices in a matched annotation on the faces of its counterpart, all others on faces in none.
 class MatchSearch {
 public:
-    MatchSearch(const Mesh& scaled, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments);
+    /// `mesh` is the template, whose unit is `scale` times that of the placed fragments: all that is asked and told is in the
+    /// template's. Trees are those of the fragments, in their own coordinates, where they bring them along.
+    MatchSearch(const Mesh& mesh, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments, double scale = 1);
     ~MatchSearch();
     MatchSearch(const MatchSearch&) = delete;
     MatchSearch& operator=(const MatchSearch&) = delete;
@@ -57,17 +60,16 @@ private:
     /// The faces of one fragment that carry one label.
     struct Part {
         int fragment = 0;
-        std::vector<Index> faces;  ///< of the fragment, for each of the part
-        Mesh mesh;
-        std::unique_ptr<SurfaceSearch> search;
-        std::vector<bool> edge_breaks, vertex_breaks;  ///< of the part's edges and vertices: where the outer surface ends
+        const FragmentPart* part = nullptr;
     };
-    std::map<int, std::vector<std::unique_ptr<Part>>> parts_;  ///< by label: the id of the template's annotation, -1 for none
+    std::map<int, std::vector<Part>> parts_;             ///< by label: the id of the template's annotation, -1 for none
+    std::vector<std::shared_ptr<FragmentTrees>> trees_;  ///< of each fragment
+    std::vector<Motion> to_template_, to_fragment_;      ///< of each: from the coordinates of its trees, and back
+    double scale_;
     /// A region of a fragment and its counterpart's label.
     struct Counterpart {
         int fragment = 0, label = 0;
-        Annotation region;         ///< its faces that carry the label
-        std::vector<bool> breaks;  ///< of the fragment's vertices: where its outer surface ends
+        Annotation region;  ///< its faces that carry the label
     };
     const std::vector<PlacedFragment>& fragments_;
     std::vector<Counterpart> counterparts_;

@@ -1,5 +1,7 @@
 #include "ostraka/fitting/reconstruct.h"
 
+#include "fragment_trees.h"
+
 #include "ostraka/core/error.h"
 #include "ostraka/core/text.h"
 #include "ostraka/geom/eigen.h"
@@ -58,12 +60,83 @@ bool inside_out(const Mesh& mesh) {
     return volume < 0;
 }
 
-class Reconstructor {
+bool same(const Motion& a, const Motion& b) { return a.turn == b.turn && a.shift == b.shift && a.scale == b.scale; }
+bool same(const std::vector<Anchor>& a, const std::vector<Anchor>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](const Anchor& x, const Anchor& y) { return x.of_part == y.of_part && x.of_whole == y.of_whole; });
+}
+
+/// A fragment, and what is known of it already.
+struct Known {
+    const Fragment* fragment = nullptr;
+    std::vector<StatedMatch> stated;
+    std::vector<LandmarkPair> pairs;  ///< with the template
+    std::vector<std::string> notes;
+    std::shared_ptr<FragmentTrees> trees;
+
+    /// A pose that was refined: from where, to where.
+    struct Refined {
+        double scale = 0;
+        Motion start;
+        std::vector<Anchor> anchors;
+        PartAlignment alignment;
+    };
+    std::optional<Refined> refined;
+    /// Annotations that were matched in a pose.
+    struct Matched {
+        double scale = 0;
+        Motion pose;
+        std::vector<AnnotationMatch> matches;
+    };
+    std::optional<Matched> matched;
+};
+
+}  // namespace
+
+struct Reconstructor::State {
+    State(const Mesh& of, const AnnotationSet& with, const RelationGraph& relations, const ReconstructOptions& how,
+          const ShapePrior* of_class)
+        : mesh(of),
+          set(with),
+          graph(relations),
+          options(how),
+          prior(of_class),
+          searches(of, how.search.poses),
+          fitter(of, with) {}
+
+    const Mesh& mesh;
+    const AnnotationSet& set;
+    const RelationGraph& graph;
+    const ReconstructOptions options;
+    const ShapePrior* prior;
+    PoseSearches searches;
+    TemplateFitter fitter;
+    std::optional<std::vector<std::pair<Index, Index>>> crossings;  ///< of the template's faces
+    std::vector<Known> fragments;
+};
+
+namespace {
+
+/// One reconstruction, from the fragments there are.
+class Run {
 public:
-    Reconstructor(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
-                  const std::vector<const Fragment*>& fragments, const ReconstructOptions& options,
-                  const std::vector<std::vector<StatedMatch>>& stated, const ShapePrior* prior)
-        : mesh_(mesh), set_(set), graph_(graph), fragments_(fragments), options_(options), stated_(stated), prior_(prior) {}
+    Run(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph, const ReconstructOptions& options,
+        const ShapePrior* prior, PoseSearches& searches, TemplateFitter& fitter,
+        std::optional<std::vector<std::pair<Index, Index>>>& crossings, std::vector<Known>& known)
+        : mesh_(mesh),
+          set_(set),
+          graph_(graph),
+          options_(options),
+          prior_(prior),
+          searches_(searches),
+          fitter_(fitter),
+          crossings_(crossings),
+          known_(known) {
+        for (const Known& one : known) {
+            fragments_.push_back(one.fragment);
+            pairs_.push_back(one.pairs);
+        }
+    }
 
     Reconstruction run() {
         timed("placement", [&] { place(); });
@@ -81,7 +154,11 @@ public:
         });
         timed("annotations", [&] { match(); });
         if (prior_ != nullptr) timed("class", [&] { take_shape_of_class(); });
-        timed("fit", [&] { result_.fit = fit_template(scaled_, set_, placed_, options_.fit); });
+        timed("fit", [&] {
+            // The shape of the class is another one each time.
+            result_.fit = prior_ != nullptr ? fit_template(scaled_, set_, placed_, options_.fit)
+                                            : fitter_.fit(result_.placement.scale, placed_, options_.fit);
+        });
         result_.points = result_.fit.points;
         timed("observed", [&] { see(); });
         timed("constraints", [&] { restore(); });
@@ -99,20 +176,18 @@ private:
     }
 
     void place() {
-        result_.notes.resize(fragments_.size());
-        for (std::size_t k = 0; k < fragments_.size(); ++k)
-            pairs_.push_back(common_landmarks(mesh_, set_, fragments_[k]->mesh, fragments_[k]->annotations, &result_.notes[k]));
+        for (const Known& one : known_) result_.notes.push_back(one.notes);
         result_.placement = place_by_landmarks(pairs_, options_.placement);
         for (std::size_t k = 0; k < fragments_.size(); ++k)
             for (const auto& [one, other] : result_.placement.fragments[k].swapped)
                 result_.notes[k].push_back("landmarks '" + one + "' and '" + other +
                                            "' would fit each other's places: are their tags exchanged?");
         result_.searched =
-            place_by_search(mesh_, fragments_, options_.search, result_.placement.scale, result_.placement.fragments);
+            place_by_search(searches_, fragments_, options_.search, result_.placement.scale, result_.placement.fragments);
     }
 
     void refine() {
-        const SurfaceSearch whole(scaled_);
+        std::optional<SurfaceSearch> whole;
         result_.alignment.assign(fragments_.size(), {});
         for (std::size_t k = 0; k < fragments_.size(); ++k) {
             FragmentPlacement& placement = result_.placement.fragments[k];
@@ -126,7 +201,16 @@ private:
             for (std::size_t i = 0; i < pairs.size(); ++i)
                 if (i < placement.landmarks.size() && placement.landmarks[i].used)
                     anchors.push_back({pairs[i].on_fragment, on_scaled(pairs[i])});
-            result_.alignment[k] = align_part(fragment.mesh, counts, whole, placement.pose, anchors, options_.alignment);
+            std::optional<Known::Refined>& known = known_[k].refined;
+            const double scale = result_.placement.scale;
+            if (!known || shaped_ || known->scale != scale || !same(known->start, placement.pose) ||
+                !same(known->anchors, anchors)) {
+                if (!whole) whole.emplace(scaled_);
+                result_.alignment[k] = align_part(fragment.mesh, counts, *whole, placement.pose, anchors, options_.alignment);
+                if (!shaped_) known = {scale, placement.pose, anchors, result_.alignment[k]};
+            } else {
+                result_.alignment[k] = known->alignment;
+            }
             placement.pose = result_.alignment[k].pose;
             double squares = 0;
             for (std::size_t i = 0; i < std::min(pairs.size(), placement.landmarks.size()); ++i) {
@@ -148,6 +232,7 @@ private:
         for (int round = 0; round < rounds; ++round) {
             result_.prior = fit_prior(scaled_, set_, placed_, *prior_, options_.prior);
             scaled_ = result_.prior->mesh;
+            shaped_ = true;
             if (!options_.refine || round + 1 == rounds) continue;
             refine();
             match();
@@ -162,11 +247,20 @@ private:
             const FragmentPlacement& placement = result_.placement.fragments[k];
             if (!placement.problem.empty()) continue;
             const Fragment& fragment = *fragments_[k];
-            result_.annotations[k] =
-                match_annotations(scaled_, set_, fragment.mesh, fragment.annotations, placement.pose,
-                                  k < stated_.size() ? stated_[k] : std::vector<StatedMatch>(), options_.annotations);
-            PlacedFragment placed{moved(fragment.mesh, placement.pose), &fragment.annotations, fragment.facets,
-                                  result_.annotations[k]};
+            std::optional<Known::Matched>& known = known_[k].matched;
+            if (!known || shaped_ || known->scale != result_.placement.scale || !same(known->pose, placement.pose)) {
+                result_.annotations[k] = match_annotations(scaled_, set_, fragment.mesh, fragment.annotations, placement.pose,
+                                                           known_[k].stated, options_.annotations);
+                if (!shaped_) known = {result_.placement.scale, placement.pose, result_.annotations[k]};
+            } else {
+                result_.annotations[k] = known->matches;
+            }
+            PlacedFragment placed{moved(fragment.mesh, placement.pose),
+                                  &fragment.annotations,
+                                  fragment.facets,
+                                  result_.annotations[k],
+                                  placement.pose,
+                                  known_[k].trees};
             // A landmark that was found to be a wrong one guides nothing.
             std::erase_if(placed.matches, [&](const AnnotationMatch& one) {
                 const Annotation* a = set_.find(one.of_template);
@@ -212,7 +306,9 @@ private:
         }
         result_.observed_share = area > 0 ? seen / area : 0;
         for (CompletionNote& note : object.notes) note.fragment = number_[static_cast<std::size_t>(note.fragment)];
-        const auto before = self_intersections(to_soup(scaled_)).pairs, after = self_intersections(to_soup(object.mesh)).pairs;
+        if (!crossings_) crossings_ = self_intersections(to_soup(mesh_)).pairs;
+        const auto before = shaped_ ? self_intersections(to_soup(scaled_)).pairs : *crossings_,
+                   after = self_intersections(to_soup(object.mesh)).pairs;
         result_.crossings = static_cast<std::size_t>(std::count_if(after.begin(), after.end(), [&](const auto& pair) {
             const auto [a, b] = pair;
             const Index f = object.template_face[a], g = object.template_face[b];
@@ -385,13 +481,17 @@ private:
     const Mesh& mesh_;
     const AnnotationSet& set_;
     const RelationGraph& graph_;
-    const std::vector<const Fragment*>& fragments_;
     const ReconstructOptions& options_;
-    const std::vector<std::vector<StatedMatch>>& stated_;
     const ShapePrior* prior_;
-    Mesh scaled_;
-    double diagonal_ = 0;
+    PoseSearches& searches_;
+    TemplateFitter& fitter_;
+    std::optional<std::vector<std::pair<Index, Index>>>& crossings_;
+    std::vector<Known>& known_;
+    std::vector<const Fragment*> fragments_;
     std::vector<std::vector<LandmarkPair>> pairs_;  ///< of each fragment
+    Mesh scaled_;
+    bool shaped_ = false;  ///< `scaled_` is no longer the template's shape, but that of its class
+    double diagonal_ = 0;
     std::vector<PlacedFragment> placed_;
     std::vector<int> number_;  ///< of each placed fragment
     std::vector<bool> held_;
@@ -400,16 +500,50 @@ private:
 
 }  // namespace
 
+Reconstructor::Reconstructor(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
+                             const ReconstructOptions& options, const ShapePrior* prior) {
+    check_options(options, "fit");
+    if (prior != nullptr) prior->check(mesh.number_of_vertices());
+    if (inside_out(mesh)) fail_input("template", "is inside out", "run: ostraka mesh repair");
+    state_ = std::make_unique<State>(mesh, set, graph, options, prior);
+}
+Reconstructor::~Reconstructor() = default;
+Reconstructor::Reconstructor(Reconstructor&&) noexcept = default;
+
+void Reconstructor::add(const Fragment& fragment, std::vector<StatedMatch> stated) {
+    if (inside_out(fragment.mesh)) fail_input("fragment '" + fragment.name + "'", "is inside out", "run: ostraka mesh repair");
+    Known known;
+    known.fragment = &fragment;
+    known.stated = std::move(stated);
+    known.pairs = common_landmarks(state_->mesh, state_->set, fragment.mesh, fragment.annotations, &known.notes);
+    known.trees = std::make_shared<FragmentTrees>(fragment.mesh, fragment.facets);
+    state_->fragments.push_back(std::move(known));
+}
+
+void Reconstructor::remove(std::size_t position) {
+    if (position >= size())
+        fail_usage("there is no fragment at position " + std::to_string(position),
+                   "give a position below " + std::to_string(size()));
+    state_->fragments.erase(state_->fragments.begin() + static_cast<std::ptrdiff_t>(position));
+}
+
+std::size_t Reconstructor::size() const { return state_->fragments.size(); }
+
+PoseSearches& Reconstructor::searches() { return state_->searches; }
+
+Reconstruction Reconstructor::run() {
+    if (size() == 0) fail_usage("there is no fragment", "give one or more");
+    State& s = *state_;
+    return Run(s.mesh, s.set, s.graph, s.options, s.prior, s.searches, s.fitter, s.crossings, s.fragments).run();
+}
+
 Reconstruction reconstruct(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
                            const std::vector<const Fragment*>& fragments, const ReconstructOptions& options,
                            const std::vector<std::vector<StatedMatch>>& stated, const ShapePrior* prior) {
-    check_options(options, "fit");
-    if (fragments.empty()) fail_usage("there is no fragment", "give one or more");
-    if (prior != nullptr) prior->check(mesh.number_of_vertices());
-    if (inside_out(mesh)) fail_input("template", "is inside out", "run: ostraka mesh repair");
-    for (const Fragment* one : fragments)
-        if (inside_out(one->mesh)) fail_input("fragment '" + one->name + "'", "is inside out", "run: ostraka mesh repair");
-    return Reconstructor(mesh, set, graph, fragments, options, stated, prior).run();
+    Reconstructor all(mesh, set, graph, options, prior);
+    for (std::size_t k = 0; k < fragments.size(); ++k)
+        all.add(*fragments[k], k < stated.size() ? stated[k] : std::vector<StatedMatch>());
+    return all.run();
 }
 
 }  // namespace ostraka

@@ -6,17 +6,12 @@ namespace ostraka {
 
 namespace {
 
-std::vector<bool> not_broken(const Fragment& fragment) {
-    std::vector<bool> counts(fragment.facets.size());
-    for (std::size_t f = 0; f < counts.size(); ++f) counts[f] = fragment.facets[f] != Facet::fracture;
-    return counts;
-}
-
 bool few_landmarks(const FragmentPlacement& one) { return !one.problem.empty() && one.landmarks.size() < 3; }
 
 }  // namespace
 
-std::vector<std::optional<PoseSearchResult>> place_by_search(const Mesh& mesh, const std::vector<const Fragment*>& fragments,
+std::vector<std::optional<PoseSearchResult>> place_by_search(PoseSearches& searches,
+                                                             const std::vector<const Fragment*>& fragments,
                                                              const SearchOptions& options, double& scale,
                                                              std::vector<FragmentPlacement>& placed) {
     std::vector<std::optional<PoseSearchResult>> results(fragments.size());
@@ -27,14 +22,8 @@ std::vector<std::optional<PoseSearchResult>> place_by_search(const Mesh& mesh, c
         else known = known || placed[k].problem.empty();
     }
     if (wanted.empty()) return results;
-    const SurfaceSearch surface(mesh);
-    const PoseSearch search(surface, options.poses);
     const auto all = [&](double least, double most) {
-        for (const std::size_t k : wanted) {
-            const std::vector<bool> counts = not_broken(*fragments[k]);
-            const bool any = counts.empty() || std::find(counts.begin(), counts.end(), true) != counts.end();
-            if (any) results[k] = search.find(fragments[k]->mesh, counts, least, most);
-        }
+        for (const std::size_t k : wanted) results[k] = searches.find(*fragments[k], least, most);
     };
     if (known) {
         all(scale, scale);
@@ -70,6 +59,13 @@ std::vector<std::optional<PoseSearchResult>> place_by_search(const Mesh& mesh, c
         }
     }
     return results;
+}
+
+std::vector<std::optional<PoseSearchResult>> place_by_search(const Mesh& mesh, const std::vector<const Fragment*>& fragments,
+                                                             const SearchOptions& options, double& scale,
+                                                             std::vector<FragmentPlacement>& placed) {
+    PoseSearches searches(mesh, options.poses);
+    return place_by_search(searches, fragments, options, scale, placed);
 }
 
 }  // namespace ostraka

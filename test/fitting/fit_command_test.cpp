@@ -145,6 +145,55 @@ TEST_F(FitCommand, NeitherInputsNorOldAnswersAreMixedUp) {
     EXPECT_FALSE(std::filesystem::exists(scratch / "out" / "top.placed.ply"));
 }
 
+TEST_F(FitCommand, SearchesOfAnEarlierFitAreTakenWhereNothingChanged) {
+    // A piece of the template itself, without annotations.
+    const auto broken = run_command("mesh break " + quoted(scratch / "made" / "statuette-1.ply") + " " +
+                                    quoted(scratch / "bare.ply") + " --at 0,0,180 --share 0.45");
+    ASSERT_EQ(broken.code, 0) << broken.err;
+    const auto contents = [&] {
+        std::vector<std::string> texts;
+        for (const char* name : {"completed.ply", "completed.ant.json", "fit.assembly.json", "fit.searches.json"})
+            texts.push_back(read_file(scratch / "out" / name));
+        return texts;
+    };
+    const auto first = fit(quoted(scratch / "bare.ply"));
+    EXPECT_EQ(first.code, 3);
+    EXPECT_EQ(first.err.find("earlier fit"), std::string::npos) << first.err;
+    const Json kept = read_json(scratch / "out" / "fit.searches.json");
+    validate(kept, "searches", "searches");
+    const auto before = contents();
+    const auto again = fit(quoted(scratch / "bare.ply"));
+    EXPECT_NE(again.err.find("1 of 1 searches of poses are those of an earlier fit"), std::string::npos) << again.err;
+    EXPECT_EQ(contents(), before);
+    EXPECT_EQ(again.out, first.out);
+    // Another one comes, and goes.
+    (void)fit(quoted(scratch / "bare.ply") + " " + quoted(scratch / "top.ply"));
+    (void)fit(quoted(scratch / "bare.ply"));
+    EXPECT_EQ(contents()[0], before[0]);
+    EXPECT_EQ(contents()[2], before[2]);
+    EXPECT_EQ(fit(quoted(scratch / "bare.ply") + " --fresh").err.find("earlier fit"), std::string::npos);
+    // Numbers that are not those that were written.
+    Json changed = read_json(scratch / "out" / "fit.searches.json");
+    for (auto& one : changed["searches"].GetArray()) one["result"]["margin"].SetDouble(99);
+    write_json(scratch / "out" / "fit.searches.json", changed);
+    const auto noticed = fit(quoted(scratch / "bare.ply"));
+    EXPECT_NE(noticed.err.find("were changed since"), std::string::npos) << noticed.err;
+    EXPECT_EQ(contents()[0], before[0]);
+    write_file(scratch / "out" / "fit.searches.json", "{}");
+    const auto other = fit(quoted(scratch / "bare.ply"));
+    EXPECT_NE(other.err.find("is not used, and written anew"), std::string::npos) << other.err;
+    EXPECT_EQ(contents()[0], before[0]);
+    // The fragment's own file has changed.
+    ASSERT_EQ(run_command("mesh break " + quoted(scratch / "made" / "statuette-1.ply") + " " + quoted(scratch / "bare.ply") +
+                          " --at 0,0,180 --share 0.4")
+                  .code,
+              0);
+    EXPECT_EQ(fit(quoted(scratch / "bare.ply")).err.find("earlier fit"), std::string::npos);
+    // Nothing to search: no file of searches stays beside the new answer.
+    (void)fit(quoted(scratch / "top.ply") + " --fresh");
+    EXPECT_FALSE(std::filesystem::exists(scratch / "out" / "fit.searches.json"));
+}
+
 TEST_F(FitCommand, BreakRefusesWhatItCannotDo) {
     const std::string mesh = "mesh break " + quoted(scratch / "made" / "statuette-2.ply") + " " + quoted(scratch / "x.ply");
     EXPECT_EQ(run_command(mesh).code, 2);

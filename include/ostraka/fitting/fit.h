@@ -6,9 +6,12 @@
 #include "ostraka/fitting/fragment.h"
 #include "ostraka/fitting/vertex_assignment.h"
 
+#include <memory>
 #include <vector>
 
 namespace ostraka {
+
+class FragmentTrees;
 
 struct NonRigidOptions {
     double start = 0.3;  ///< smoothing length of the first level, as a share of the template's diagonal
@@ -56,6 +59,8 @@ struct PlacedFragment {
     const AnnotationSet* annotations = nullptr;  ///< outlives it
     std::vector<Facet> facets;
     std::vector<AnnotationMatch> matches;
+    Motion pose{};                           ///< of `mesh`, from the coordinates of the trees
+    std::shared_ptr<FragmentTrees> trees{};  ///< of the fragment before it was moved, where they are kept; else they are made
 };
 
 /// Where a template vertex was found on a fragment.
@@ -78,6 +83,24 @@ struct NonRigidFit {
     };
     std::vector<Level> levels;
     double seconds_matching = 0, seconds_solving = 0, seconds_coarsening = 0;
+};
+
+/// Fits of one template. What depends on the template alone is made once, when first needed, and used again: the simplified
+/// template, areas and cotangent weights, the linear systems with the order of their unknowns and their symbolic factorisation.
+/// A fit is the same to the bit whatever was fitted before it.
+class TemplateFitter {
+public:
+    /// Both outlive it and do not change. Throws Error (input) for a mesh without faces.
+    TemplateFitter(const Mesh& mesh, const AnnotationSet& set);
+    ~TemplateFitter();
+    TemplateFitter(TemplateFitter&&) noexcept;
+
+    /// As `fit_template` for the template `scale` times as large.
+    NonRigidFit fit(double scale, const std::vector<PlacedFragment>& fragments, const NonRigidOptions& options = {});
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
 };
 
 /// Minimises, level by level,  sum over vertices of A_i (w_i |x_i - q_i|^2 + (s/t)^4 |x_i - p_i|^2 + s^4 |Delta x_i - R_i Delta

@@ -9,6 +9,7 @@
 #include "ostraka/semantic/deform.h"
 
 #include <map>
+#include <memory>
 
 namespace ostraka {
 
@@ -97,6 +98,37 @@ struct Reconstruction {
     std::vector<Objection> objections;
     std::string undecided;                  ///< why
     std::map<std::string, double> seconds;  ///< by phase
+};
+
+/// Fragments of one object on its template, which come and go. What depends on the template alone (its simplified mesh, linear
+/// systems with their symbolic factorisation, what poses are searched with) or on it and one fragment (common landmarks, poses
+/// that were searched, search trees) is made once; what depends on the common scale as well (refined poses, matches of
+/// annotations) is used again where scale and pose are the same to the bit. So the result is that of a new object with the same
+/// fragments in the same order, to the bit.
+class Reconstructor {
+public:
+    /// All but the options outlive it and do not change; so do fragments for as long as they are there. Throws Error (usage) for
+    /// options out of range, (input) for a template that is inside out, and as ShapePrior::check.
+    Reconstructor(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph, const ReconstructOptions& options = {},
+                  const ShapePrior* prior = nullptr);
+    ~Reconstructor();
+    Reconstructor(Reconstructor&&) noexcept;
+
+    /// Puts a fragment behind the others. Throws Error (input) if it is inside out.
+    void add(const Fragment& fragment, std::vector<StatedMatch> stated = {});
+    /// By position; those behind it move up. Throws Error (usage) where there is none.
+    void remove(std::size_t position);
+    [[nodiscard]] std::size_t size() const;
+
+    /// Searches of poses, to keep them in a file or to take them from one.
+    [[nodiscard]] PoseSearches& searches();
+
+    /// See `reconstruct`. Throws Error (usage) without a fragment.
+    Reconstruction run();
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
 };
 
 /// With a `prior`, the template takes the most probable shape of its class before it is deformed freely, and the fragments are

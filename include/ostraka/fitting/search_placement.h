@@ -3,7 +3,7 @@
 
 #include "ostraka/fitting/fragment.h"
 #include "ostraka/fitting/placement.h"
-#include "ostraka/registration/pose_search.h"
+#include "ostraka/fitting/pose_searches.h"
 
 #include <optional>
 #include <string>
@@ -27,7 +27,13 @@ struct SearchOptions {
 /// into `placed`; one that cannot be decided keeps a `problem` that says why. `scale` is that of the landmarks where some
 /// fragment is placed by them; else it is searched in the range of the options, becomes the middle one of the fragments decided,
 /// and all are searched again with it. Breaks (`Facet::fracture`) do not count. The results, one a fragment: nothing where none
-/// was searched.
+/// was searched. `searches` are those of the template with these options: what it has is not searched again.
+std::vector<std::optional<PoseSearchResult>> place_by_search(PoseSearches& searches,
+                                                             const std::vector<const Fragment*>& fragments,
+                                                             const SearchOptions& options, double& scale,
+                                                             std::vector<FragmentPlacement>& placed);
+
+/// The same without earlier searches.
 std::vector<std::optional<PoseSearchResult>> place_by_search(const Mesh& mesh, const std::vector<const Fragment*>& fragments,
                                                              const SearchOptions& options, double& scale,
                                                              std::vector<FragmentPlacement>& placed);
