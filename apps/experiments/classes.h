@@ -9,7 +9,7 @@ namespace ostraka::experiments {
 
 /// Which class an object belongs to: templates fitted to a benchmark's models, each left out of what its class learns.
 struct ClassMembershipOptions {
-    std::string models, output = "experiments-output/classes";
+    std::string models, labels, output = "experiments-output/classes";
     std::size_t members = 1000;  ///< of each class, at most
     std::uint64_t template_vertices = 1000, object_vertices = 3000;
     int tries = 1;

@@ -172,6 +172,7 @@ int main(int argc, char** argv) {
     CLI::App* class_command = tool.add_subcommand("classes", "which class an object belongs to, leave one out");
     class_command->add_option("models", classes.models, "folder with <class>/<number>.off")->required();
     class_command->add_option("--output", classes.output, "folder for tables")->capture_default_str();
+    class_command->add_option("--labels", classes.labels, "folder with <class>/<number>/*.seg");
     class_command->add_option("--members", classes.members, "of each class, at most");
     class_command->add_option("--vertices", classes.template_vertices, "of the templates")->capture_default_str();
     class_command->add_option("--object-vertices", classes.object_vertices, "of the objects, at most")->capture_default_str();

@@ -5,6 +5,7 @@
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/bundle/template.h"
 #include "ostraka/family/class_file.h"
+#include "ostraka/family/fragment_thresholds.h"
 #include "ostraka/fitting/assembly.h"
 #include "ostraka/fitting/fragment_file.h"
 #include "ostraka/geom/eigen.h"
@@ -15,6 +16,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <iostream>
 #include <memory>
 #include <set>
@@ -31,6 +33,7 @@ struct Fit {
     ReconstructOptions options;
     FragmentFileOptions reading;
     bool placed = false, fresh = false;
+    std::function<bool(const std::string&)> told = {};  ///< whether a flag was given
 
     int run(const Session& session) {
         check_options(options, "fit");
@@ -82,8 +85,13 @@ struct Fit {
         const RelationGraph graph = loaded.graph ? std::move(*loaded.graph) : RelationGraph();
         std::optional<ShapePrior> prior;
         if (!class_file.empty()) {
-            prior = prior_of(read_class(class_file).modes);
+            const ShapeClass learnt = read_class(class_file);
             take(class_file);
+            check_topology(learnt, class_file, loaded.mesh->mesh, files[0]);
+            prior = prior_of(learnt.modes);
+            take_thresholds(learnt);
+            provenance.options = list_options(options);
+            for (auto& option : list_options(reading)) provenance.options.push_back(std::move(option));
         }
         Reconstructor reconstructor(loaded.mesh->mesh, *loaded.annotations, graph, options, prior ? &*prior : nullptr);
         for (std::size_t k = 0; k < pointers.size(); ++k) reconstructor.add(*pointers[k], std::move(stated[k]));
@@ -105,6 +113,39 @@ struct Fit {
 
 private:
     std::vector<Path> inputs;
+    std::vector<FragmentThreshold> learnt_thresholds;  ///< those that hold because the class says so
+
+    /// What the class's members show takes the place of the defaults, not of what is told. What scans and measuring leave is not
+    /// seen on members: a constraint may always be off by the default.
+    void take_thresholds(const ShapeClass& learnt) {
+        for (FragmentThreshold& threshold : fragment_thresholds(learnt)) {
+            double& value = threshold.option == "residual"          ? options.residual
+                            : threshold.option == "scale-tolerance" ? options.scale_tolerance
+                                                                    : options.slack;
+            if (told("--" + threshold.option) || (threshold.option == "slack" && threshold.value < value)) continue;
+            value = std::min(threshold.value, threshold.option == "residual" ? 10.0 : 1000.0);
+            threshold.value = value;
+            learnt_thresholds.push_back(std::move(threshold));
+        }
+    }
+
+    /// Which thresholds the verdict went by, and where they are from.
+    [[nodiscard]] JsonValue thresholds_to_json(JsonAllocator& allocator) const {
+        JsonValue list(rapidjson::kArrayType);
+        for (const auto& [name, value] :
+             {std::pair{"residual", options.residual}, {"scale-tolerance", options.scale_tolerance}, {"slack", options.slack}}) {
+            JsonValue one(rapidjson::kObjectType);
+            const auto found = std::find_if(learnt_thresholds.begin(), learnt_thresholds.end(),
+                                            [&, &name = name](const FragmentThreshold& each) { return each.option == name; });
+            const bool by_class = found != learnt_thresholds.end();
+            add_member(one, "option", name, allocator);
+            add_member(one, "value", JsonValue(value), allocator);
+            add_member(one, "from", by_class ? "class" : told(std::string("--") + name) ? "told" : "default", allocator);
+            if (by_class) add_member(one, "members", JsonValue(static_cast<std::uint64_t>(found->members)), allocator);
+            list.PushBack(one, allocator);
+        }
+        return list;
+    }
 
     void read(const std::string& file, Fragment& fragment, Provenance& provenance, const Session& session) {
         FragmentFile one = read_fragment(file, reading);
@@ -165,6 +206,7 @@ private:
         OutputTransaction transaction;
         Json document(rapidjson::kObjectType);
         JsonValue report = assembly_to_json(result, names, document.GetAllocator());
+        add_member(report, "thresholds", thresholds_to_json(document.GetAllocator()), document.GetAllocator());
         add_member(report, "provenance", provenance.to_json(document.GetAllocator()), document.GetAllocator());
         write_json(in("fit.assembly.json"), report);
         if (!searches.empty()) {
@@ -237,14 +279,15 @@ private:
                (one.freedom.kind == FreedomKind::none ? "" : "; open: " + one.freedom.text());
     }
 
-    static void print(const Session& session, const Provenance& provenance, const AssemblyNames& names,
-                      const Reconstruction& result) {
+    void print(const Session& session, const Provenance& provenance, const AssemblyNames& names,
+               const Reconstruction& result) const {
         if (session.json) {
             Json document(rapidjson::kObjectType);
             JsonValue report = assembly_to_json(result, names, document.GetAllocator()), run(rapidjson::kObjectType),
                       seconds(rapidjson::kObjectType);
             for (const auto& [phase, time] : result.seconds) add_member(seconds, phase, JsonValue(time), document.GetAllocator());
             add_member(run, "seconds", std::move(seconds), document.GetAllocator());
+            add_member(report, "thresholds", thresholds_to_json(document.GetAllocator()), document.GetAllocator());
             session.print_report(provenance, document, report, &run);
             return;
         }
@@ -292,6 +335,9 @@ private:
                                    words});
         }
         if (!constraints.empty()) std::cout << table({"id", "constraint", "verdict", "how well"}, constraints);
+        for (const FragmentThreshold& one : learnt_thresholds)
+            std::cout << "--" << one.option << ' ' << number(one.value, 3) << " as " << one.members
+                      << " members of the class have it\n";
         for (const Objection& objection : result.objections)
             std::cout << (objection.fragment >= 0
                               ? "against " + printable(names.fragments[static_cast<std::size_t>(objection.fragment)]) + ": "
@@ -325,11 +371,12 @@ void add_fit(CLI::App& tool, Session& session) {
     command->add_option(
         "--class", fit->class_file,
         "a class learnt with this template (NAME.class.json of 'template learn'): what no fragment shows is as in its "
-        "members that look so where one does");
+        "members that look so where one does; thresholds that are not told are those of its members");
     command->add_flag("--fresh", fit->fresh, "search poses anew, whatever an earlier fit in the folder found");
     command->add_flag("--placed", fit->placed, "also write each fragment where it lies: NAME.placed.ply");
     add_flags(command, fit->options);
     add_flags(command, fit->reading);
+    fit->told = [command](const std::string& flag) { return command->get_option(flag)->count() > 0; };
 }
 
 }  // namespace ostraka::app

@@ -1,10 +1,15 @@
 #include "template_class.h"
 
+#include "template_landmarks.h"
+
 #include <set>
 
 namespace ostraka::app {
 
 LoadedTemplate load_class_template(const std::string& file, Provenance& provenance) {
+    if (is_landmark_file(file))
+        fail_input(file, "is a file of landmarks, and a template with a mesh is needed",
+                   "classes of landmarks can be learnt and asked, no more");
     LoadedTemplate result;
     result.file = read_template(file);
     provenance.add_input(file);
@@ -20,8 +25,9 @@ LoadedTemplate load_class_template(const std::string& file, Provenance& provenan
 }
 
 WholeObject read_member(const std::string& file, Provenance& provenance) {
+    if (std::filesystem::is_directory(file)) fail_input(file, "is a folder", "name the mesh files in it");
     WholeObject member;
-    member.name = Path(file).stem().string();
+    member.name = object_name(file);
     member.mesh = read_mesh(file).mesh;
     provenance.add_input(file);
     const Path annotations = Path(file).parent_path() / (member.name + ".ant.json");
@@ -29,6 +35,12 @@ WholeObject read_member(const std::string& file, Provenance& provenance) {
     member.annotations = read_annotations(annotations, member.mesh);
     provenance.add_input(annotations);
     return member;
+}
+
+std::string object_name(const std::string& file) {
+    const std::string name = Path(file).filename().string(), double_ending = ".mrk.json";
+    if (name.ends_with(double_ending)) return name.substr(0, name.size() - double_ending.size());
+    return Path(file).stem().string();
 }
 
 void make_folder(const std::string& folder) {
@@ -41,8 +53,8 @@ void make_folder(const std::string& folder) {
 void check_names(const std::vector<std::string>& files) {
     std::set<std::string> taken;
     for (const std::string& file : files)
-        if (!taken.insert(Path(file).stem().string()).second)
-            fail_usage("two objects are called '" + printable(Path(file).stem().string()) + "'", "rename one of the files");
+        if (!taken.insert(object_name(file)).second)
+            fail_usage("two objects are called '" + printable(object_name(file)) + "'", "rename one of the files");
 }
 
 }  // namespace ostraka::app

@@ -4,6 +4,7 @@
 #include "command.h"
 
 #include "ostraka/family/class_file.h"
+#include "ostraka/family/fragment_thresholds.h"
 
 namespace ostraka::app {
 
@@ -20,6 +21,9 @@ LoadedTemplate load_class_template(const std::string& file, Provenance& provenan
 
 /// A mesh file and the annotations beside it (NAME.ant.json), if there are.
 WholeObject read_member(const std::string& file, Provenance& provenance);
+
+/// The name of an object: its file's without folder and ending (".mrk.json" is one ending).
+std::string object_name(const std::string& file);
 
 /// Makes the folder. Throws Error (failure).
 void make_folder(const std::string& folder);

@@ -1,5 +1,6 @@
 // ostraka template learn | classify
 #include "template_class.h"
+#include "template_landmarks.h"
 
 #include "ostraka/core/text.h"
 #include "ostraka/geom/with_points.h"
@@ -24,6 +25,7 @@ struct Learn {
     int run(const Session& session) {
         if (given) options.correspondence = "given";
         check_options(options, "learn");
+        if (!files.empty() && is_landmark_file(files[0])) return run_landmarks(session);
         if (files.size() < 2) fail_usage("the class is empty: there is no member", "give TEMPLATE MEMBER ...");
         const std::vector<std::string> members(files.begin() + 1, files.end());
         check_names(members);
@@ -66,6 +68,35 @@ struct Learn {
     }
 
 private:
+    /// All files are members; the first one says which landmarks there are, and how the mean is turned.
+    int run_landmarks(const Session& session) {
+        check_names(files);
+        Provenance provenance{"template learn", list_options(options), {}};
+        const LandmarkTemplate known = read_landmark_template(files[0], provenance);
+        std::vector<LearntMember> members;
+        for (const std::string& file : files) {
+            members.push_back(read_landmark_member(file, known, provenance));
+            for (const std::string& note : members.back().fit.notes)
+                session.note(printable(members.back().name) + ": " + printable(note));
+        }
+        ShapeClass result = learn_class(known.known(), members, options);
+        result.name = name.empty() ? "landmarks" : name;
+        result.template_file = Path(files[0]).filename().string();
+        make_folder(output);
+        std::vector<Path> outputs;
+        for (const char* ending : {".class.json", ".mean.mrk.json", ".mean.npy", ".modes.npy"})
+            outputs.push_back(Path(output) / (result.name + ending));
+        check_outputs({files.begin(), files.end()}, outputs);
+        OutputTransaction transaction;
+        const Path copy = Path(output) / result.template_file;
+        if (!fs::exists(copy) || !fs::equivalent(copy, files[0])) write_file(copy, read_file(files[0]));
+        write_class(output, result, provenance);
+        write_landmark_mean(outputs[1], known, result.modes.mean, provenance);
+        transaction.commit();
+        print(session, provenance, result);
+        return done;
+    }
+
     static void print(const Session& session, const Provenance& provenance, const ShapeClass& result) {
         const ShapeModes& modes = result.modes;
         if (session.json) {
@@ -125,6 +156,7 @@ struct Classify {
         Provenance provenance{"template classify", list_options(options), {}};
         std::vector<ShapeClass> classes;
         std::vector<LoadedTemplate> templates;
+        std::vector<std::optional<LandmarkTemplate>> landmarks;
         std::vector<std::string> objects;
         for (const std::string& file : files) {
             if (!file.ends_with(".class.json")) {
@@ -133,15 +165,28 @@ struct Classify {
             }
             classes.push_back(read_class(file));
             provenance.add_input(file);
-            templates.push_back(load_class_template(classes.back().template_file, provenance));
-            if (static_cast<std::size_t>(classes.back().modes.mean.rows()) != templates.back().mesh.number_of_vertices())
-                fail_input(file, "was learnt with another template than the one beside it", "learn the class anew");
+            const std::string& known = classes.back().template_file;
+            templates.emplace_back();
+            landmarks.emplace_back();
+            if (is_landmark_file(known)) landmarks.back() = read_landmark_template(known, provenance);
+            else templates.back() = load_class_template(known, provenance);
+            check_topology(classes.back(), file, landmarks.back() ? landmarks.back()->mesh : templates.back().mesh, known);
+            if (landmarks.front().has_value() != landmarks.back().has_value())
+                fail_input(file, "is a class of meshes, or of landmarks, and the first is not", "ask them one after the other");
         }
+        moderate_thresholds(classes);
         if (classes.empty()) fail_usage("there is no class", "give one or more .class.json files, then objects");
         if (objects.empty()) fail_usage("there is no object", "give mesh files after the classes");
         check_outputs({files.begin(), files.end()}, report.empty() ? std::vector<Path>() : std::vector<Path>{report});
         std::vector<Classification> answers;
         for (const std::string& file : objects) {
+            if (landmarks.front()) {
+                std::vector<ClassAnswer> list;
+                for (std::size_t k = 0; k < classes.size(); ++k)
+                    list.push_back(compare_with(classes[k], read_landmark_member(file, *landmarks[k], provenance), options));
+                answers.push_back(decide(object_name(file), std::move(list), options));
+                continue;
+            }
             const WholeObject object = read_member(file, provenance);
             const WholeShape whole = in_file(file, [&] { return measure_whole_shape(object.mesh); });
             std::vector<ClassAnswer> list;
@@ -209,7 +254,8 @@ void add_template_learn(CLI::App& bundle, Session& session) {
     command
         ->add_option(
             "files", learn->files,
-            "the template (.template.json), then a mesh file for each member; NAME.ant.json beside it are its annotations")
+            "the template (.template.json), then a mesh file for each member; NAME.ant.json beside it are its annotations; or "
+            "files of landmarks of the same names alone (.mrk.json, .fcsv, .tps, .pp), all of them members")
         ->required()
         ->expected(-1);
     command->add_option("--output", learn->output, "folder for the class and a copy of the template; made if it is missing");
@@ -222,7 +268,9 @@ void add_template_learn(CLI::App& bundle, Session& session) {
                           "say which class objects belong to, and which proportion, relation or distance speaks against it (exit "
                           "code 3: one belongs to none, or it cannot be told)",
                           [&session, classify] { return classify->run(session); });
-    command->add_option("files", classify->files, "classes (.class.json), then a mesh file for each object")
+    command
+        ->add_option("files", classify->files,
+                     "classes (.class.json), then a mesh file for each object (of landmarks for classes of landmarks)")
         ->required()
         ->expected(-1);
     command->add_option("--report", classify->report, "write the whole answer as JSON (doc/schema/classification.schema.json)");

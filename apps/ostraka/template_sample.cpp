@@ -28,6 +28,7 @@ struct Draw {
         const ShapeClass learnt = read_class(file);
         provenance.add_input(file);
         const LoadedTemplate loaded = load_class_template(learnt.template_file, provenance);
+        check_topology(learnt, file, loaded.mesh, learnt.template_file);
         const Sampling result = sample_class(learnt, loaded.known(), options);
         make_folder(output);
         OutputTransaction transaction;
@@ -120,13 +121,14 @@ struct Propagate {
         const std::vector<std::string> members(files.begin() + 1, files.end());
         check_names(members);
         Provenance provenance{"template propagate", list_options(options.fit), {}};
+        provenance.options.emplace_back("correspondence", options.correspondence);
         const LoadedTemplate loaded = load_class_template(files[0], provenance);
         if (loaded.set.annotations.empty())
             fail_input(files[0], "has no annotations", "pack them: there is nothing to propagate");
         make_folder(output);
         std::vector<Path> inputs{files[0]}, outputs;
         for (const std::string& file : members) {
-            const std::string name = Path(file).stem().string();
+            const std::string name = object_name(file);
             inputs.emplace_back(file);
             const Path beside = Path(file).parent_path() / (name + ".ant.json");
             if (std::filesystem::exists(beside)) inputs.push_back(beside);

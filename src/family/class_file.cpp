@@ -48,8 +48,7 @@ constexpr Field fields[] = {{"min", &LearntRange::min},
                             {"percentile25", &LearntRange::percentile_25},
                             {"median", &LearntRange::median},
                             {"percentile75", &LearntRange::percentile_75},
-                            {"percentile95", &LearntRange::percentile_95},
-                            {"overshoot", &LearntRange::overshoot}};
+                            {"percentile95", &LearntRange::percentile_95}};
 
 JsonValue range_to_json(const LearntRange& range, JsonAllocator& allocator) {
     JsonValue object(rapidjson::kObjectType);
@@ -57,6 +56,8 @@ JsonValue range_to_json(const LearntRange& range, JsonAllocator& allocator) {
     add_member(object, "count", JsonValue(static_cast<std::uint64_t>(range.count)), allocator);
     if (range.count > 0)
         for (const Field& field : fields) add_member(object, field.name, JsonValue(range.*field.value), allocator);
+    add_member(object, "logarithm", JsonValue(range.logarithm), allocator);
+    add_member(object, "falseReject", JsonValue(range.reject), allocator);
     if (range.deviation) add_member(object, "deviation", JsonValue(*range.deviation), allocator);
     if (range.low) add_member(object, "low", JsonValue(*range.low), allocator);
     if (range.high) add_member(object, "high", JsonValue(*range.high), allocator);
@@ -89,6 +90,8 @@ LearntRange range_from(const JsonValue& object, std::size_t members, const std::
     range.quantity.unit = text_of(object, "unit");
     range.quantity.one_sided = object["oneSided"].GetBool();
     range.count = object["count"].GetUint64();
+    range.logarithm = object["logarithm"].GetBool();
+    range.reject = object["falseReject"].GetDouble();
     for (const Field& field : fields) range.*field.value = number_in(object, field.name).value_or(0);
     range.deviation = number_in(object, "deviation");
     range.low = number_in(object, "low");
@@ -125,6 +128,7 @@ void write_class(const Path& folder, const ShapeClass& learnt, const Provenance&
     add_member(document, "version", JsonValue(1), allocator);
     add_member(document, "name", learnt.name, allocator);
     add_member(document, "template", learnt.template_file, allocator);
+    add_member(document, "topology", learnt.topology, allocator);
     add_member(document, "sizes", JsonValue(learnt.sizes), allocator);
     JsonValue members(rapidjson::kArrayType);
     for (std::size_t i = 0; i < learnt.members.size(); ++i) {
@@ -142,6 +146,8 @@ void write_class(const Path& folder, const ShapeClass& learnt, const Provenance&
         if (!member.notes.empty()) add_member(object, "notes", texts(member.notes, allocator), allocator);
         members.PushBack(object, allocator);
     }
+    add_member(document, "falseReject", JsonValue(learnt.reject), allocator);
+    add_member(document, "resolution", JsonValue(learnt.resolution), allocator);
     add_member(document, "members", std::move(members), allocator);
     add_member(document, "archetype", learnt.members[modes.archetype].name, allocator);
     add_member(document, "diversity", JsonValue(learnt.diversity), allocator);
@@ -167,6 +173,8 @@ void write_class(const Path& folder, const ShapeClass& learnt, const Provenance&
     add_member(document, "shape", std::move(shape), allocator);
     add_member(document, "ranges", list_of(learnt.ranges, allocator, [&](const auto& r) { return range_to_json(r, allocator); }),
                allocator);
+    add_member(document, "fragments",
+               list_of(learnt.fragments, allocator, [&](const auto& r) { return range_to_json(r, allocator); }), allocator);
     add_member(document, "notes", texts(learnt.notes, allocator), allocator);
     add_member(document, "provenance", provenance.to_json(allocator), allocator);
     write_json(folder / (learnt.name + ".class.json"), document);
@@ -179,7 +187,10 @@ ShapeClass read_class(const Path& file) {
     ShapeClass learnt;
     learnt.name = document["name"].GetString();
     learnt.template_file = beside(file, document["template"].GetString(), where).string();
+    learnt.topology = document["topology"].GetString();
     learnt.sizes = document["sizes"].GetBool();
+    learnt.reject = document["falseReject"].GetDouble();
+    learnt.resolution = document["resolution"].GetDouble();
     learnt.notes = texts_in(document, "notes");
     learnt.diversity = document["diversity"].GetDouble();
     ShapeModes& modes = learnt.modes;
@@ -228,6 +239,8 @@ ShapeClass read_class(const Path& file) {
     }
     for (const auto& range : document["ranges"].GetArray())
         learnt.ranges.push_back(range_from(range, learnt.members.size(), where));
+    for (const auto& range : document["fragments"].GetArray())
+        learnt.fragments.push_back(range_from(range, learnt.members.size(), where));
     return learnt;
 }
 
@@ -281,6 +294,7 @@ JsonValue classification_to_json(const Classification& answer, JsonAllocator& al
             add_member(item, "decides", JsonValue(check.decides), allocator);
             add_member(item, "off", JsonValue(check.off), allocator);
             add_member(item, "excess", JsonValue(check.excess), allocator);
+            if (!check.most.empty()) add_member(item, "most", check.most, allocator);
             checks.PushBack(item, allocator);
         }
         add_member(object, "checks", std::move(checks), allocator);

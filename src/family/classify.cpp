@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <tuple>
 
 namespace ostraka {
@@ -30,7 +31,7 @@ QuantityCheck check_of(const LearntRange& range, const std::optional<double>& va
     check.low = range.low;
     check.high = range.high;
     check.decides = range.quantity.kind != QuantityKind::attribute || attributes;
-    if (!value || !range.high) {
+    if (!value || !range.high || !(range.reject > 0)) {
         check.decides = false;
         return check;
     }
@@ -47,10 +48,30 @@ std::string words(const QuantityCheck& check) {
     std::string text = quantity.text() + ": " + digits(quantity.value.value_or(0), 4) + unit;
     const bool above = check.high && *quantity.value > *check.high;
     text += above ? ", at most " + digits(*check.high, 4) : ", at least " + digits(check.low.value_or(0), 4);
-    return text + unit + " is accepted: " + digits(check.off, 3) + unit + (above ? " too much" : " too little");
+    return text + unit + " is accepted: " + digits(check.off, 3) + unit + (above ? " too much" : " too little") +
+           (check.most.empty() ? "" : "; most of all " + check.most);
 }
 
-double score_of(const ShapeClass& learnt, const LearntMember& object, const ShapeCoordinates& coordinates) {
+/// Adds what is measured of all parts together; `most` gets, by key, which of them is farthest off.
+void add_parts(const ShapeClass& learnt, std::vector<ClassQuantity>& quantities, std::map<std::string, std::string>& most) {
+    std::vector<std::optional<double>> values;
+    for (const LearntRange& range : learnt.ranges) {
+        const auto found = std::find_if(quantities.begin(), quantities.end(),
+                                        [&](const ClassQuantity& one) { return one.key() == range.quantity.key(); });
+        values.push_back(found == quantities.end() ? std::optional<double>() : found->value);
+    }
+    for (PartsTogether& one : parts_together(learnt.ranges, values, expected_parts(learnt.ranges))) {
+        if (one.quantity.value) {
+            const double value = *values[one.most];
+            most[one.quantity.key()] = learnt.ranges[one.most].quantity.text() + ": " + digits(value, 4) + ", " +
+                                       digits(value / one.expected, 3) + " times the members' mean";
+        }
+        quantities.push_back(std::move(one.quantity));
+    }
+}
+
+double score_of(const ShapeClass& learnt, const LearntMember& object, const std::vector<ClassQuantity>& quantities,
+                const ShapeCoordinates& coordinates) {
     double score = coordinates.distance;
     if (object.fit.residuals) {
         const FitResiduals& r = *object.fit.residuals;
@@ -65,6 +86,9 @@ double score_of(const ShapeClass& learnt, const LearntMember& object, const Shap
             *own->value > 0)
             score += 2 * std::abs(std::log(*own->value / range->mean));
     }
+    // Parts together: roots of mean squared logarithms, and how far its own annotations are from those of the template.
+    for (const ClassQuantity& quantity : quantities)
+        if (quantity.kind == QuantityKind::part && quantity.id < 0) score += quantity.value.value_or(0);
     return score;
 }
 
@@ -87,7 +111,6 @@ ClassAnswer compare_with(const ShapeClass& learnt, const LearntMember& object, c
         return answer;
     }
     answer.coordinates = coordinates_in(learnt.modes, landmarks_of(object.fit.points));
-    answer.score = score_of(learnt, object, answer.coordinates);
     std::vector<ClassQuantity> quantities = object.quantities;
     const auto add = [&](const char* name, double value) {
         quantities.emplace_back().name = name;
@@ -96,13 +119,17 @@ ClassAnswer compare_with(const ShapeClass& learnt, const LearntMember& object, c
     add("from the mean shape", answer.coordinates.distance);
     add("outside the modes", answer.coordinates.outside);
     if (learnt.sizes) add("centroid size", answer.coordinates.centroid_size);
+    std::map<std::string, std::string> most;
+    add_parts(learnt, quantities, most);
+    answer.score = score_of(learnt, object, quantities, answer.coordinates);
     bool any = false;
     for (const LearntRange& range : learnt.ranges) {
         const auto found = std::find_if(quantities.begin(), quantities.end(),
                                         [&](const ClassQuantity& one) { return one.key() == range.quantity.key(); });
         answer.checks.push_back(
             check_of(range, found == quantities.end() ? std::optional<double>() : found->value, options.attributes));
-        const QuantityCheck& check = answer.checks.back();
+        QuantityCheck& check = answer.checks.back();
+        check.most = most[range.quantity.key()];
         any = any || check.decides;
         if (check.decides && check.off > 0) answer.against.push_back(answer.checks.size() - 1);
     }
@@ -114,8 +141,9 @@ ClassAnswer compare_with(const ShapeClass& learnt, const LearntMember& object, c
         return std::make_tuple(rank(x), -x.excess) < std::make_tuple(rank(y), -y.excess);
     });
     if (!any) {
-        answer.undecided = learnt.has_thresholds() ? "nothing of what was learnt can be measured on it"
-                                                   : "the class has one member, of which no threshold can be learnt";
+        answer.undecided = learnt.has_thresholds()      ? "nothing of what was learnt can be measured on it"
+                           : learnt.members.size() == 1 ? "the class has one member, of which no threshold can be learnt"
+                                                        : "the class has two members, of which no threshold can be learnt";
     } else {
         answer.verdict = answer.against.empty() ? Membership::member : Membership::other;
     }

@@ -19,6 +19,8 @@ std::string to_string(QuantityKind kind) {
             return "constraint";
         case QuantityKind::relation:
             return "relation";
+        case QuantityKind::part:
+            return "part";
         case QuantityKind::attribute:
             return "attribute";
         default:
@@ -28,9 +30,9 @@ std::string to_string(QuantityKind kind) {
 
 QuantityKind quantity_kind(const std::string& word) {
     for (const QuantityKind kind : {QuantityKind::proportion, QuantityKind::constraint, QuantityKind::relation,
-                                    QuantityKind::attribute, QuantityKind::geometry})
+                                    QuantityKind::part, QuantityKind::attribute, QuantityKind::geometry})
         if (to_string(kind) == word) return kind;
-    fail_usage("'" + word + "' is no kind of quantity", "use proportion, constraint, relation, attribute or geometry");
+    fail_usage("'" + word + "' is no kind of quantity", "use proportion, constraint, relation, part, attribute or geometry");
 }
 
 std::string ClassQuantity::key() const {
@@ -41,6 +43,8 @@ std::string ClassQuantity::text() const {
     switch (kind) {
         case QuantityKind::geometry:
             return name;
+        case QuantityKind::part:
+            return id < 0 ? name : name + " of part " + std::to_string(id) + (of.empty() ? "" : " (" + of + ")");
         case QuantityKind::attribute:
             return name + " of " + of;
         case QuantityKind::proportion:

@@ -2,6 +2,8 @@
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/core/json.h"
+#include "ostraka/family/class_file.h"
+#include "ostraka/family/fragment_thresholds.h"
 #include "ostraka/io/mesh_file.h"
 
 #include <gtest/gtest.h>
@@ -64,6 +66,87 @@ TEST_F(ClassCommand, LearnsClassifiesSamplesAndPropagates) {
     EXPECT_GT(read_annotations(scratch / "carried" / "statuette-2.ant.json", own.mesh).annotations.size(), 10U);
 }
 
+/// From which place a threshold of a fit is.
+std::string origin_of(const Json& assembly, const std::string& option) {
+    for (const auto& one : assembly["thresholds"].GetArray())
+        if (option == one["option"].GetString()) return one["from"].GetString();
+    return "";
+}
+
+TEST_F(ClassCommand, AFitTakesShapeAndThresholdsOfItsOwnClassOnly) {
+    const Path learnt = scratch / "class" / "idol.class.json";
+    ASSERT_EQ(run_command("template learn " + known() + " " + member(2) + " " + member(3) + " " + member(4) +
+                          " --name idol --output " + quoted(scratch / "class") + " --quiet")
+                  .code,
+              0);
+    const std::string fit = "fit " + known() + " " + member(2) + " --quiet --threads 1 --output " + quoted(scratch / "fitted");
+    const auto good = run_command(fit + " --class " + quoted(learnt));
+    ASSERT_TRUE(good.code == 0 || good.code == 3) << good.err;
+    Json assembly = read_json(scratch / "fitted" / "fit.assembly.json");
+    validate(assembly, "assembly", "assembly");
+    const ShapeClass read = read_class(learnt);
+    std::size_t by_class = 0;
+    for (const FragmentThreshold& one : fragment_thresholds(read)) {
+        if (one.option == "slack") continue;  // never below the default
+        ++by_class;
+        EXPECT_EQ(one.members, 3U);
+        EXPECT_EQ(origin_of(assembly, one.option), "class");
+        EXPECT_NE(good.out.find("--" + one.option), std::string::npos) << good.out;
+    }
+    EXPECT_EQ(by_class, 2U) << "statuettes have landmarks enough";
+    // What is told holds; without a class the defaults do.
+    const auto told = run_command(fit + " --residual 0.4 --class " + quoted(learnt));
+    ASSERT_TRUE(told.code == 0 || told.code == 3) << told.err;
+    assembly = read_json(scratch / "fitted" / "fit.assembly.json");
+    EXPECT_EQ(origin_of(assembly, "residual"), "told");
+    EXPECT_EQ(assembly["thresholds"][0]["value"].GetDouble(), 0.4);
+
+    // A class of another template: other vertices, or the same number joined otherwise.
+    std::filesystem::copy_file(OSTRAKA_SOURCE_DIR "/data/vase.ply", scratch / "made" / "vase.ply");
+    ASSERT_EQ(run_command("template pack " + quoted(scratch / "made" / "vase.template.json") + " --mesh " +
+                          quoted(scratch / "made" / "vase.ply"))
+                  .code,
+              0);
+    ASSERT_EQ(run_command("template learn " + quoted(scratch / "made" / "vase.template.json") + " " +
+                          quoted(scratch / "made" / "vase.ply") + " --name vase --quiet --output " + quoted(scratch / "class"))
+                  .code,
+              0);
+    const auto other = run_command(fit + " --class " + quoted(scratch / "class" / "vase.class.json"));
+    EXPECT_EQ(other.code, 1);
+    for (const char* word : {"vase.class.json", "s.template.json", "vertices", "template learn"})
+        EXPECT_NE(other.err.find(word), std::string::npos) << other.err;
+    std::string text = read_file(learnt);
+    const std::size_t at = text.find(read.topology);
+    ASSERT_NE(at, std::string::npos);
+    text[at] = text[at] == '0' ? '1' : '0';
+    write_file(learnt, text);
+    for (const std::string& command :
+         {fit + " --class " + quoted(learnt), "template classify " + quoted(learnt) + " " + member(1),
+          "template sample " + quoted(learnt) + " --output " + quoted(scratch / "drawn")}) {
+        const auto refused = run_command(command);
+        EXPECT_EQ(refused.code, 1) << command;
+        EXPECT_NE(refused.err.find("idol.class.json"), std::string::npos) << refused.err;
+        EXPECT_NE(refused.err.find("join other vertices"), std::string::npos) << refused.err;
+    }
+    const auto none = run_command(fit + " --class " + quoted(scratch / "class" / "missing.class.json"));
+    EXPECT_EQ(none.code, 1);
+    EXPECT_NE(none.err.find("missing.class.json"), std::string::npos) << none.err;
+}
+
+TEST_F(ClassCommand, PropagateWritesWhereItIsFrom) {
+    ASSERT_EQ(run_command("template propagate " + known() + " " + member(2) + " --output " + quoted(scratch / "carried")).code,
+              0);
+    for (const char* name : {"statuette-2.ant.json", "statuette-2.fitted.ant.json"}) {
+        const Json file = read_json(scratch / "carried" / name);
+        ASSERT_TRUE(file.HasMember("provenance")) << name;
+        const std::string text = to_text(file["provenance"]);
+        for (const char* word : {"template propagate", "correspondence", "s.template.json", "statuette-1.ply", "statuette-2.ply"})
+            EXPECT_NE(text.find(word), std::string::npos) << name << ": " << text;
+    }
+    EXPECT_NE(read_file(scratch / "carried" / "statuette-2.fitted.ply").substr(0, 2000).find("template propagate"),
+              std::string::npos);
+}
+
 TEST_F(ClassCommand, WrongWordsAndFilesAreSaid) {
     const auto empty = run_command("template learn " + known() + " --output " + quoted(scratch / "class"));
     EXPECT_EQ(empty.code, 2);
@@ -73,6 +156,10 @@ TEST_F(ClassCommand, WrongWordsAndFilesAreSaid) {
     EXPECT_EQ(other.code, 1);
     EXPECT_NE(other.err.find("correspondence"), std::string::npos) << other.err;
     EXPECT_EQ(run_command("template classify " + member(1)).code, 2);
+    const auto folder =
+        run_command("template learn " + known() + " " + quoted(scratch / "made") + " --output " + quoted(scratch / "class"));
+    EXPECT_EQ(folder.code, 1);
+    EXPECT_NE(folder.err.find("is a folder"), std::string::npos) << folder.err;
     EXPECT_FALSE(std::filesystem::exists(scratch / "class" / "s.template.json")) << "nothing is written by what fails";
 }
 

@@ -3,6 +3,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/family/class_file.h"
 #include "ostraka/family/propagate.h"
+#include "ostraka/family/thresholds.h"
 #include "ostraka/geom/with_points.h"
 #include "ostraka/measure/measure.h"
 #include "ostraka/stats/random.h"
@@ -133,8 +134,16 @@ TEST(ShapeClass, LearnsTheRangesThatItsMembersHave) {
     EXPECT_NEAR(ratio->min, 0.9, 1e-9);
     EXPECT_NEAR(ratio->max, 1.1, 1e-9);
     EXPECT_NEAR(ratio->median, 1, 1e-9);
-    EXPECT_NEAR(ratio->overshoot, 0.05, 1e-9) << "0.9 lies 0.05 below the others";
-    EXPECT_NEAR(*ratio->high, 1.1 + 0.05 + 0.02 * 1.1, 1e-5);
+    // It is the prediction interval of the logarithms, at its share of the rate at which members are refused.
+    std::vector<double> logs;
+    for (const double x : {0.9, 1.0, 1.1, 0.95, 1.05}) logs.push_back(std::log(x));
+    const PredictionInterval expected = predict(moments_of(logs), false, ratio->reject, learnt.resolution);
+    EXPECT_NEAR(*ratio->high, std::exp(expected.high), 1e-5);
+    EXPECT_NEAR(*ratio->low, std::exp(expected.low), 1e-5);
+    double rate = 0;
+    for (const LearntRange& range : learnt.ranges)
+        if (range.quantity.kind != QuantityKind::attribute) rate += range.reject;
+    EXPECT_NEAR(rate, 0.05, 1e-12) << "all together refuse what was told";
     const LearntRange* height = learnt.find("attribute 2 height");
     ASSERT_NE(height, nullptr);
     EXPECT_NEAR(height->mean, 1, 1e-9) << "heights stay the members' own, wherever they lie";
@@ -170,6 +179,17 @@ TEST(Classify, SaysWhenItCannotDecide) {
     EXPECT_EQ(answer.verdict, Membership::undecided);
     const Classification decided = decide("x", {answer});
     EXPECT_EQ(decided.text.find("cannot decide, because"), 0U) << decided.text;
+    // Of two members, and of members of one shape.
+    std::vector<WholeObject> equal;
+    equal.push_back(member_of(known, "a", 1, 0.9, 1));
+    equal.push_back(member_of(known, "b", 1, 0.9, 1, far_away()));
+    const ShapeClass two = class_of(known, equal);
+    EXPECT_EQ(ask_class(two, known.known(), member_of(known, "x", 1, 0.9, 1)).verdict, Membership::undecided);
+    equal.push_back(member_of(known, "c", 1, 0.9, 1));
+    const ShapeClass same = class_of(known, equal);
+    EXPECT_NE(same.notes.back().find("one shape"), std::string::npos) << same.notes.back();
+    EXPECT_EQ(ask_class(same, known.known(), member_of(known, "x", 1, 0.9, 1)).verdict, Membership::member);
+    EXPECT_EQ(ask_class(same, known.known(), member_of(known, "x", 1, 1.8, 1)).verdict, Membership::other);
     // Two classes that say the same cannot be told apart.
     const ShapeClass learnt = class_of(known, usual(known));
     const ClassAnswer yes = ask_class(learnt, known.known(), member_of(known, "x", 1, 1, 1));
@@ -186,9 +206,10 @@ TEST(Classify, WithoutConstraintsGeometryDecidesAndThatIsSaid) {
     EXPECT_NE(std::find_if(learnt.notes.begin(), learnt.notes.end(),
                            [](const std::string& note) { return note.find("no constraint") != std::string::npos; }),
               learnt.notes.end());
-    const ClassAnswer bad = ask_class(learnt, known.known(), member_of(known, "bad", 1, 1.6, 1));
-    EXPECT_EQ(bad.verdict, Membership::other);
-    EXPECT_EQ(bad.checks[bad.against.front()].quantity.kind, QuantityKind::geometry);
+    const ClassAnswer bad = ask_class(learnt, known.known(), member_of(known, "bad", 1, 4, 1));
+    ASSERT_EQ(bad.verdict, Membership::other);
+    for (const std::size_t i : bad.against)
+        EXPECT_TRUE(bad.checks[i].quantity.kind == QuantityKind::geometry || bad.checks[i].quantity.kind == QuantityKind::part);
 }
 
 TEST(Classify, SizesCountWhereTold) {
@@ -291,6 +312,39 @@ TEST(ClassSample, RestoresAStatedProportionOrRejects) {
         EXPECT_LE(top / base, 1.02 * 1.001 + 1e-3);
     }
     EXPECT_EQ(sampling.tried, sampling.samples.size() + sampling.by_constraints + sampling.by_ranges + sampling.by_intersections);
+}
+
+TEST(ClassSample, DiversityIsTheMeanDistanceOfTwo) {
+    const Tower known = tower();
+    const ShapeClass learnt = class_of(known, usual(known));
+    const ShapeModes& modes = learnt.modes;
+    // Along one mode by +-a and 0: 2a, a and a off each other, wherever they lie and however large they are.
+    const double a = 1e-4 * modes.mean_size;
+    std::vector<Landmarks> shapes;
+    for (const double b : {a, -a, 0.0}) {
+        const Landmarks shape = shape_of(modes, {b});
+        const Motion motion = far_away();
+        shapes.push_back(
+            shapes.size() == 1 ? Landmarks((3 * shape * motion.turn.transpose()).rowwise() + motion.shift.transpose()) : shape);
+    }
+    EXPECT_NEAR(mean_distance(modes, shapes) / (4.0 / 3 * 1e-4), 1, 1e-3);
+    EXPECT_NEAR(mean_distance(modes, {shapes[0], shapes[0]}), 0, 1e-12) << "equal ones have none";
+    EXPECT_EQ(mean_distance(modes, {shapes[0]}), 0);
+    // Without spread all draws are the mean; with more they differ more.
+    SampleOptions options;
+    options.count = 4;
+    options.attempts = 50;
+    options.spread = 0;
+    EXPECT_NEAR(sample_class(learnt, known.known(), options).diversity, 0, 1e-9);
+    options.spread = 0.3;
+    const double few = sample_class(learnt, known.known(), options).diversity;
+    options.spread = 1;
+    const Sampling wide = sample_class(learnt, known.known(), options);
+    EXPECT_GT(few, 0);
+    EXPECT_GT(wide.diversity, few);
+    std::vector<Landmarks> drawn;
+    for (const ClassSample& sample : wide.samples) drawn.push_back(landmarks_of(sample.points));
+    EXPECT_EQ(wide.diversity, mean_distance(modes, drawn)) << "it is that of what is written";
 }
 
 TEST(ClassSample, EditsAndBadInput) {

@@ -9,7 +9,7 @@
 namespace ostraka {
 
 /// In the order in which reasons are told.
-enum class QuantityKind { proportion, constraint, relation, attribute, geometry };
+enum class QuantityKind { proportion, constraint, relation, part, attribute, geometry };
 std::string to_string(QuantityKind kind);
 /// Throws Error (usage) for another word.
 QuantityKind quantity_kind(const std::string& word);
