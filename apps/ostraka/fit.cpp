@@ -298,7 +298,8 @@ private:
             std::string wrong;
             for (const LandmarkResidual& landmark : one.landmarks) {
                 used += landmark.used ? 1 : 0;
-                if (!landmark.used && one.problem.empty()) wrong += (wrong.empty() ? "" : ", ") + printable(landmark.name);
+                if (!landmark.used && one.problem.empty() && !(k < result.searched.size() && result.searched[k].has_value()))
+                    wrong += (wrong.empty() ? "" : ", ") + printable(landmark.name);
             }
             rows.push_back({printable(names.fragments[k]),
                             !one.problem.empty()                                           ? "left out"

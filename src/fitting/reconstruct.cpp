@@ -184,6 +184,25 @@ private:
                                            "' would fit each other's places: are their tags exchanged?");
         result_.searched =
             place_by_search(searches_, fragments_, options_.search, result_.placement.scale, result_.placement.fragments);
+        for (std::size_t k = 0; k < fragments_.size(); ++k)
+            if (result_.searched[k] && result_.searched[k]->decided) ask_landmarks(k);
+    }
+
+    /// What the search of a pose left open is decided by the landmarks there are; those that contradict it are named.
+    void ask_landmarks(std::size_t k) {
+        constexpr double far_off = 0.1;  // of the template's diagonal
+        const double scale = result_.placement.scale, limit = far_off * scale * box_diagonal(mesh_);
+        FragmentPlacement& placed = result_.placement.fragments[k];
+        if (close_by_landmarks(pairs_[k], scale, limit, *result_.searched[k], placed)) {
+            result_.notes[k].push_back("what the search for its pose left open is decided by its landmarks");
+            return;
+        }
+        for (const LandmarkPair& pair : pairs_[k]) {
+            const double off = (placed.pose(pair.on_fragment) - scale * pair.on_template).norm();
+            if (off > limit)
+                result_.notes[k].push_back("landmark '" + pair.name + "' is " + digits(off, 3) +
+                                           " off its place on the template: the pose was searched for and contradicts it");
+        }
     }
 
     void refine() {

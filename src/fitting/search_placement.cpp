@@ -1,6 +1,8 @@
 #include "ostraka/fitting/search_placement.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace ostraka {
 
@@ -47,8 +49,10 @@ std::vector<std::optional<PoseSearchResult>> place_by_search(PoseSearches& searc
         if (!results[k]) {
             one.problem = "all of it is of breaks: nothing can be laid onto the template";
         } else if (!results[k]->decided) {
-            one.problem = (few_landmarks(one) ? one.problem + "; searched for: " : std::string()) +
-                          "cannot decide where it belongs, because " + results[k]->reason;
+            one.problem =
+                (few_landmarks(one) ? "has fewer than three landmarks in common with the template, and the search for its pose "
+                                    : "the search for its pose ") +
+                std::string("cannot decide where it belongs, because ") + results[k]->reason;
         } else {
             one.problem.clear();
             one.mirrored = false;
@@ -59,6 +63,41 @@ std::vector<std::optional<PoseSearchResult>> place_by_search(PoseSearches& searc
         }
     }
     return results;
+}
+
+bool close_by_landmarks(const std::vector<LandmarkPair>& pairs, double scale, double limit, PoseSearchResult& search,
+                        FragmentPlacement& placed) {
+    using Eigen::Vector3d;
+    if (pairs.empty() || search.ways.empty()) return false;
+    Motion pose = placed.pose;
+    for (const FreeWay& way : search.ways) {
+        const Vector3d d = way.direction.normalized();
+        double sine = 0, cosine = 0, along = 0;
+        for (const LandmarkPair& pair : pairs) {
+            const Vector3d p = pose(pair.on_fragment) - way.point, t = scale * pair.on_template - way.point;
+            const Vector3d a = p - p.dot(d) * d, b = t - t.dot(d) * d;
+            sine += d.dot(a.cross(b));
+            cosine += a.dot(b);
+            along += (t - p).dot(d) / static_cast<double>(pairs.size());
+        }
+        Motion move;
+        if (way.turns) {
+            const bool round = way.most - way.least >= 2 * std::numbers::pi - 0.2;
+            const double angle = std::atan2(sine, cosine);
+            move.turn = Eigen::AngleAxisd(round ? angle : std::clamp(angle, way.least, way.most), d).toRotationMatrix();
+            move.shift = way.point - move.turn * way.point;
+        } else {
+            move.shift = std::clamp(along, way.least, way.most) * d;
+        }
+        pose = move.after(pose);
+    }
+    for (const LandmarkPair& pair : pairs)
+        if ((pose(pair.on_fragment) - scale * pair.on_template).norm() > limit) return false;
+    placed.pose = pose;
+    for (LandmarkResidual& landmark : placed.landmarks) landmark.used = true;
+    search.freedom.kind = FreedomKind::none;
+    search.ways.clear();
+    return true;
 }
 
 std::vector<std::optional<PoseSearchResult>> place_by_search(const Mesh& mesh, const std::vector<const Fragment*>& fragments,

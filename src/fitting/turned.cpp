@@ -165,7 +165,10 @@ private:
             area += n.norm();
             squares += n.norm() * hit->distance * hit->distance;
         }
-        if (area > 0) one.residual = std::sqrt(squares / area);
+        if (!(area > 0))
+            fail_input("sherd '" + one.name + "'", "its walls are nowhere on the vessel that all sherds make",
+                       "is it in another unit than the others, inside out, or of another vessel?");
+        one.residual = std::sqrt(squares / area);
     }
 
     const std::vector<const Fragment*>& sherds_;

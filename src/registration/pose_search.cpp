@@ -41,6 +41,15 @@ Extent extent_of(const SurfacePoints& points) {
     return extent;
 }
 
+/// Diagonal of the box of the marked faces, of all if there are no marks.
+double marked_diagonal(const Mesh& mesh, const std::vector<bool>& marks) {
+    Eigen::AlignedBox3d box;
+    for (const Face face : mesh.faces())
+        if (marks.empty() || marks[face])
+            for (const Vertex v : corners(mesh, face)) box.extend(eigen(mesh.point(v)));
+    return box.isEmpty() ? 0 : box.diagonal().norm();
+}
+
 /// At most `count` of the points, evenly chosen.
 SurfacePoints thinned(const SurfacePoints& points, std::size_t count) {
     if (points.size() <= count) return points;
@@ -315,7 +324,12 @@ void PoseSearch::State::decide(const SurfacePoints& points, double tolerance, Po
     const double rated = confidence_at_rest + confidence_of_margin * result.margin + confidence_of_score * best.score;
     result.confidence = 1 / (1 + std::exp(-rated));
     const auto per_cent = [](double share) { return digits(100 * share, 3) + " %"; };
-    if (open.kind == FreedomKind::more || points.size() < 30) {
+    const SurfacePoints some = thinned(points, 300);
+    const FreedomKind own = freedom_of(some.places, some.normals, 0.02).kind;
+    if (own == FreedomKind::plane) {
+        result.confidence = 0;
+        result.reason = "it is flat: it lies as well in any flat place";
+    } else if (open.kind == FreedomKind::more || own == FreedomKind::more || points.size() < 30) {
         result.confidence = 0;
         result.reason = "it has too little shape: it lies as well nearly anywhere";
     } else if (result.confidence >= options.least_confidence) {
@@ -364,6 +378,17 @@ PoseSearchResult PoseSearch::find(const Mesh& part, const std::vector<bool>& of_
                    " faces");
     if (!(marked_area(part, of_part) > 0))
         fail_input("fragment", "has no area that could be laid onto a template", "look at its faces and facets");
+    // A part is no larger than its whole, and one that is next to nothing of it cannot be told from noise.
+    constexpr double too_large = 1.8, too_small = 0.01;  // diagonals of boxes, which turn
+    const double ratio = marked_diagonal(part, of_part) / s.whole.diagonal();
+    if (ratio > too_large * most_scale || ratio < too_small * least_scale) {
+        PoseSearchResult result;
+        result.reason = "it is " +
+                        (ratio > most_scale ? digits(ratio / most_scale, 3) + " times as large as"
+                                            : "1/" + digits(least_scale / ratio, 3) + " of") +
+                        " the template, a part of which it is to be: is it in another unit?";
+        return result;
+    }
     const auto scales = s.scales(least_scale, most_scale);
     const bool free = scales.size() > 1;
 
@@ -373,6 +398,11 @@ PoseSearchResult PoseSearch::find(const Mesh& part, const std::vector<bool>& of_
     for (const double scale : scales) {
         if (scales.size() == 1) s.propose(middling, extent, scale, free, all);
         else s.propose(s.points_of(part, of_part, scale), extent, scale, free, all);
+    }
+    if (all.empty()) {
+        PoseSearchResult result;
+        result.reason = "it has too little shape: no pair of its places is found on the template";
+        return result;
     }
     std::stable_sort(all.begin(), all.end(), [](const Proposal& a, const Proposal& b) { return a.score > b.score; });
 

@@ -1,6 +1,7 @@
 #include "ostraka/fitting/search_placement.h"
 
 #include "meshes.h"
+#include "pieces.h"
 
 #include "ostraka/fitting/reconstruct.h"
 #include "ostraka/geom/eigen.h"
@@ -112,6 +113,54 @@ TEST(SearchPlacement, AStrangerStaysOut) {
     auto placed = without_landmarks(1);
     (void)place_by_search(mesh, {&stranger}, {}, scale, placed);
     EXPECT_NE(placed[0].problem.find("cannot decide"), std::string::npos) << placed[0].problem;
+}
+
+TEST(SearchPlacement, OneLandmarkDecidesTheTurnOfAVessel) {
+    // A vase, turned: its pieces are found, but for the turn about its axis.
+    const Mesh mesh = test::deformed_by(build_mesh(test::octahedron_sphere(5)), [](const Vector3d& p) {
+        const double r = 1 + 0.3 * std::sin(3 * p.z()) + 0.1 * p.z();
+        return Vector3d(r * p.x(), r * p.y(), 2 * p.z());
+    });
+    Cut one = cut(mesh, Point(0.9, 0.3, 0.9));
+    Index far = 0;
+    for (const Vertex v : one.fragment.mesh.vertices()) {
+        const Point p = point_of(one.pose(eigen(one.fragment.mesh.point(v))));
+        const Point q = point_of(one.pose(eigen(one.fragment.mesh.point(Vertex(far)))));
+        if (std::hypot(p.x(), p.y()) > std::hypot(q.x(), q.y())) far = v;
+    }
+    const Vector3d there = one.pose(eigen(one.fragment.mesh.point(Vertex(far))));
+    Index same = 0;
+    for (const Vertex v : mesh.vertices())
+        if ((eigen(mesh.point(v)) - there).norm() < (eigen(mesh.point(Vertex(same))) - there).norm()) same = v;
+    AnnotationSet set;
+    set.annotations.push_back(test::landmark(0, "mark", same));
+    const Reconstruction without = reconstruct(mesh, set, {}, {&one.fragment});
+    ASSERT_TRUE(without.searched[0].has_value() && without.searched[0]->decided);
+    EXPECT_EQ(without.searched[0]->freedom.kind, FreedomKind::turn);
+    one.fragment.annotations.annotations.push_back(test::landmark(0, "mark", far));
+    const Reconstruction with = reconstruct(mesh, set, {}, {&one.fragment});
+    EXPECT_EQ(with.searched[0]->freedom.kind, FreedomKind::none);
+    EXPECT_LT((with.placement.fragments[0].pose.turn - one.pose.turn).norm(), 0.02);
+    ASSERT_EQ(with.placement.fragments[0].landmarks.size(), 1U);
+    EXPECT_TRUE(with.placement.fragments[0].landmarks[0].used);
+    ASSERT_FALSE(with.notes[0].empty());
+    EXPECT_NE(with.notes[0].back().find("decided by its landmarks"), std::string::npos);
+}
+
+TEST(SearchPlacement, AnotherUnitIsSaidAtOnce) {
+    const Mesh mesh = potato();
+    for (const double factor : {1e-4, 1e-3, 100.0, 1e6}) {
+        Cut one = cut(mesh, Point(0, 0.5, 1.6));
+        for (const Vertex v : one.fragment.mesh.vertices())
+            one.fragment.mesh.point(v) = point_of(factor * eigen(one.fragment.mesh.point(v)));
+        const Reconstruction result = reconstruct(mesh, {}, {}, {&one.fragment});
+        EXPECT_FALSE(result.placement.any());
+        EXPECT_NE(result.placement.fragments[0].problem.find("another unit"), std::string::npos) << factor;
+    }
+    Fragment triangle;
+    triangle.name = "triangle";
+    triangle.mesh = build_mesh({{{0, 0, 0}, {0.1, 0, 0}, {0, 0.1, 0}}, {{0, 1, 2}}});
+    EXPECT_FALSE(reconstruct(mesh, {}, {}, {&triangle}).placement.any());
 }
 
 }  // namespace
