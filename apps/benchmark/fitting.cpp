@@ -7,6 +7,7 @@
 #include "ostraka/shapes/statuettes.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <string>
 
@@ -100,29 +101,31 @@ void run(benchmark::State& state, std::uint64_t vertices, int thread_count) {
 /// `bare`: without landmarks, so that poses are searched.
 void change(benchmark::State& state, const std::string& what, bool bare) {
     const Class& ours = template_of_class();
-    std::vector<Fragment> fragments{fragment_of(10'000, "head joint", 0.4), fragment_of(10'000, "left hand tip", 0.2)};
+    const std::array<const Fragment*, 2> fragments{&fragment_of(10'000, "head joint", 0.4),
+                                                   &fragment_of(10'000, "base centre", 0.2)};
     ReconstructOptions options;
     options.search.search = bare ? "always" : "never";
     set_threads(2);
-    Reconstructor kept(ours.mesh, ours.set, {}, options);
-    kept.add(fragments[0]);
+    const RelationGraph no_graph;
+    Reconstructor kept(ours.mesh, ours.set, no_graph, options);
+    kept.add(*fragments[0]);
     (void)kept.run();
     std::map<std::string, double> seconds;
     double laps = 0;
     for ([[maybe_unused]] const auto lap : state) {
         state.PauseTiming();
         if (what == "removed") {
-            kept.add(fragments[1]);
+            kept.add(*fragments[1]);
             (void)kept.run();
         }
         state.ResumeTiming();
         Reconstruction result;
         if (what == "two") {
-            result = reconstruct(ours.mesh, ours.set, {}, {&fragments[0], &fragments[1]}, options);
+            result = reconstruct(ours.mesh, ours.set, {}, {fragments[0], fragments[1]}, options);
         } else if (what == "one") {
-            result = reconstruct(ours.mesh, ours.set, {}, {&fragments[0]}, options);
+            result = reconstruct(ours.mesh, ours.set, {}, {fragments[0]}, options);
         } else {
-            if (what == "added") kept.add(fragments[1]);
+            if (what == "added") kept.add(*fragments[1]);
             else kept.remove(1);
             result = kept.run();
         }

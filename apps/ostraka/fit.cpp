@@ -4,6 +4,7 @@
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/bundle/template.h"
+#include "ostraka/coords/coordinate_file.h"
 #include "ostraka/family/class_file.h"
 #include "ostraka/family/fragment_thresholds.h"
 #include "ostraka/fitting/assembly.h"
@@ -93,7 +94,14 @@ struct Fit {
             provenance.options = list_options(options);
             for (auto& option : list_options(reading)) provenance.options.push_back(std::move(option));
         }
-        Reconstructor reconstructor(loaded.mesh->mesh, *loaded.annotations, graph, options, prior ? &*prior : nullptr);
+        std::optional<TemplateCage> cage;
+        if (options.fit.space != "mesh") {
+            if (prior)
+                fail_usage("--class changes the template's shape, and its cage does not follow", "leave --class or --space out");
+            cage = cage_of(bundle, loaded, session);
+        }
+        Reconstructor reconstructor(loaded.mesh->mesh, *loaded.annotations, graph, options, prior ? &*prior : nullptr,
+                                    cage ? &*cage : nullptr);
         for (std::size_t k = 0; k < pointers.size(); ++k) reconstructor.add(*pointers[k], std::move(stated[k]));
         PoseSearches& searches = reconstructor.searches();
         if (!fresh) remember(searches, session);
@@ -173,6 +181,29 @@ private:
         options.overlap = false;
         options.force = true;
         return transfer(fitted, set, SurfaceSearch(result.object.mesh), options).annotations;
+    }
+
+    /// The template's first cage, with its coordinates if it has some that go together; one that is made if it has none.
+    TemplateCage cage_of(const TemplateFile& bundle, const Template& loaded, const Session& session) const {
+        const Mesh& mesh = loaded.mesh->mesh;
+        for (const std::optional<Mesh>& cage : loaded.cages) {
+            if (!cage) continue;
+            for (const TemplatePart* part : bundle.of("coordinates")) {
+                try {
+                    Coordinates coordinates = read_coordinates(part->file, mesh, *cage);
+                    if (!coordinates.has_normals()) return {*cage, std::move(coordinates)};
+                } catch (const Error&) {  // those of another cage: they are computed
+                    continue;
+                }
+            }
+            try {
+                return template_in_cage(mesh, *cage);
+            } catch (const Error& error) {
+                fail_input(files[0] + ", " + error.where(), error.problem(), error.remedy());
+            }
+        }
+        session.note("note: the template has no cage: one of 200 vertices was made around it");
+        return made_cage(mesh);
     }
 
     static constexpr const char* kept = "fit.searches.json";

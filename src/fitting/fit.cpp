@@ -5,9 +5,12 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/fitting/template_cage.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/remesh/simplify.h"
+
+#include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <chrono>
@@ -52,6 +55,13 @@ public:
         for (Guide& guide : guides) guides_[guide.vertex].push_back(guide);
     }
 
+    /// Solves for the points of a cage instead; `weights` outlive it, a row for each vertex.
+    void go_through(const CageWeights& weights, const Points& cage) {
+        weights_ = &weights;
+        cage_rest_ = cage_ = cage;
+    }
+    [[nodiscard]] const Points& cage() const { return cage_; }
+
     void start_at(Points points) { now_ = std::move(points); }
     [[nodiscard]] const Points& rest() const { return rest_; }
     [[nodiscard]] const Points& now() const { return now_; }
@@ -63,7 +73,7 @@ public:
 
     void run(int first, int end, NonRigidFit& fit) {
         if (first == end) return;
-        {
+        if (weights_ == nullptr) {
             const Stopwatch watch(fit.seconds_solving);
             solver_ = &system_.renewed_solver();
         }
@@ -109,6 +119,65 @@ public:
         return matches_;
     }
 
+    /// Point-to-plane steps over the points of the cage (Chen and Medioni 1992), each as short as it can be where vertices are
+    /// matched: so the surface is met as nearly as the cage can, which levels with a smoothing do not. Vertices that are not
+    /// matched are held where the levels left them.
+    /// At most 4000 vertices are looked at, evenly over their list.
+    void polish(double reach, double smoothing, NonRigidFit& fit) {
+        constexpr int most_steps = 12;
+        constexpr double hold = 0.1, shorten = 1e-6, settled = 1e-10;  // weights against matches; share of the diagonal
+        constexpr Eigen::Index rows_at_once = 512;
+        const Points left = now_;
+        const Eigen::Index count = cage_.cols(), stride = std::max<Eigen::Index>(1, now_.cols() / 4000),
+                           n = (now_.cols() + stride - 1) / stride;
+        for (int step = 0; step < most_steps; ++step) {
+            match(reach, fit);
+            const Stopwatch watch(fit.seconds_solving);
+            Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(3 * count, 3 * count), same = Eigen::MatrixXd::Zero(count, count);
+            Eigen::VectorXd right = Eigen::VectorXd::Zero(3 * count);
+            for (Eigen::Index first = 0; first < n; first += rows_at_once) {
+                const Eigen::Index rows = std::min(rows_at_once, n - first);
+                Eigen::MatrixXd planes = Eigen::MatrixXd::Zero(3 * count, rows), places(count, rows);
+                for (Eigen::Index r = 0; r < rows; ++r) {
+                    const Eigen::Index v = (first + r) * stride;
+                    const auto i = static_cast<std::size_t>(v);
+                    const Vector3d x = now_.col(v);
+                    const double area = std::max(rings_.area[i] / system_.mean_area, 1e-6);
+                    const VertexMatch& one = matches_[i];
+                    double weight = one.fragment < 0 ? hold * area : shorten * area;
+                    Vector3d pull = one.fragment < 0 ? Vector3d(weight * (left.col(v) - x)) : Vector3d::Zero();
+                    for (const Guide& guide : guides_[i]) {
+                        const double share = weight_of(guide, smoothing);
+                        weight += share;
+                        pull += share * (guide.place - x);
+                    }
+                    const auto w = weights_->row(v).transpose();
+                    places.col(r) = std::sqrt(weight) * w;
+                    for (int axis = 0; axis < 3; ++axis) right.segment(axis * count, count) += pull[axis] * w;
+                    if (one.fragment < 0) continue;
+                    const Vector3d plane = search_.normal(one);
+                    const double off = plane.dot(one.place - x);
+                    for (int axis = 0; axis < 3; ++axis) {
+                        planes.col(r).segment(axis * count, count) = std::sqrt(area) * plane[axis] * w;
+                        right.segment(axis * count, count) += area * off * plane[axis] * w;
+                    }
+                }
+                normal.selfadjointView<Eigen::Lower>().rankUpdate(planes);
+                same.selfadjointView<Eigen::Lower>().rankUpdate(places);
+            }
+            for (int axis = 0; axis < 3; ++axis) normal.block(axis * count, axis * count, count, count) += same;
+            normal.diagonal().array() += 1e-12 * normal.diagonal().mean();
+            const Eigen::LLT<Eigen::MatrixXd> factor(normal);
+            if (factor.info() != Eigen::Success) return;
+            const Eigen::VectorXd change = factor.solve(right);
+            if (!change.allFinite()) return;
+            for (int axis = 0; axis < 3; ++axis) cage_.row(axis) += change.segment(axis * count, count).transpose();
+            const Points before = now_;
+            now_ = points_of(*weights_, cage_);
+            if ((now_ - before).colwise().norm().maxCoeff() < settled * diagonal_) return;
+        }
+    }
+
     /// How the surroundings of each vertex have turned.
     [[nodiscard]] std::vector<Matrix3d> turns() const {
         const auto n = static_cast<std::size_t>(rest_.cols());
@@ -152,6 +221,11 @@ private:
         const double stay = std::pow(std::min(1.0, smoothing / transition), 4), mean_area = system_.mean_area;
         turn();
         const bool renew = new_level || !matched_as_before();
+        if (renew && weights_ != nullptr) {
+            // So much changes that its small matrix is best made anew.
+            through_cage_ = std::make_unique<CageSpaceSolver>(system_.constraints(), *weights_, cage_rest_);
+            solver_ = through_cage_.get();
+        }
         if (renew) {
             weighted_.assign(matches_.size(), false);
             match_weight_.assign(matches_.size(), 0);
@@ -164,7 +238,8 @@ private:
                 match_weight_[i] = matched ? share : 0;
                 solver_->set_weight(system_.match(i), match_weight_[i] + guide_weight(i, smoothing));
                 solver_->set_weight(system_.stay(i), stay * std::max(share, 1e-6));
-                if (new_level) solver_->set_target(system_.stay(i), start_.col(static_cast<Eigen::Index>(i)));
+                if (new_level || weights_ != nullptr)
+                    solver_->set_target(system_.stay(i), start_.col(static_cast<Eigen::Index>(i)));
             }
             const Vector3d goal = matched ? matches_[i].place : Vector3d(now_.col(static_cast<Eigen::Index>(i)));
             if (!guides_[i].empty()) solver_->set_target(system_.match(i), Points(guided(i, smoothing, goal)));
@@ -179,7 +254,8 @@ private:
         SolveOptions once;
         once.iterations = 1;
         once.window = 0;
-        const SolveSummary summary = solver_->solve(now_, once);
+        const SolveSummary summary = solver_->solve(weights_ != nullptr ? cage_ : now_, once);
+        if (weights_ != nullptr) now_ = points_of(*weights_, cage_);
         if (!summary.usable)
             throw Error(ErrorKind::failure, "fit", "no usable solution: " + summary.text(), "look at the template's faces");
     }
@@ -230,6 +306,9 @@ private:
     Points now_, start_, displacement_;  ///< start: of the level
     const Rings& rings_;
     Solver* solver_ = nullptr;
+    const CageWeights* weights_ = nullptr;  ///< in cage space
+    Points cage_rest_, cage_;
+    std::unique_ptr<CageSpaceSolver> through_cage_;
     std::vector<VertexMatch> matches_;
     std::vector<bool> weighted_;        ///< vertices whose match weighs in the factorisation
     std::vector<double> match_weight_;  ///< and how much
@@ -259,7 +338,8 @@ constexpr std::size_t few = 4000;  // vertices that show every shape of the firs
 }  // namespace
 
 struct TemplateFitter::State {
-    State(const Mesh& of, const AnnotationSet& with) : mesh(of), set(with), diagonal(box_diagonal(of)), fine(of) {}
+    State(const Mesh& of, const AnnotationSet& with, const TemplateCage* around)
+        : mesh(of), set(with), cage(around), diagonal(box_diagonal(of)), fine(of) {}
 
     /// Simplifies the template where that is worth while.
     void prepare() {
@@ -271,6 +351,14 @@ struct TemplateFitter::State {
         nearest.resize(mesh.number_of_vertices());
         parallel_for(nearest.size(),
                      [&](std::size_t i) { nearest[i] = search.closest(mesh.point(Vertex(static_cast<Index>(i)))); });
+    }
+
+    /// Coordinates of the vertices that levels in cage space are solved with.
+    [[nodiscard]] const CageWeights& weights() {
+        if (!coarse) return cage->coordinates.vertex;
+        if (coarse_weights.size() == 0)
+            coarse_weights = compute_coordinates(cage->coordinates.kind, cage->cage, coarse->mesh).vertex;
+        return coarse_weights;
     }
 
     /// The fine mesh moved with the surroundings of the nearest place of the coarse one.
@@ -292,17 +380,27 @@ struct TemplateFitter::State {
 
     const Mesh& mesh;
     const AnnotationSet& set;
+    const TemplateCage* cage;
     double diagonal;
     LevelSystem fine;
+    CageWeights coarse_weights;
     std::unique_ptr<Coarse> coarse;
     std::unique_ptr<LevelSystem> smooth;  ///< of the coarse mesh
     double edge = 0;                      ///< mean length of its edges
     std::vector<SurfaceHit> nearest;      ///< of each vertex on it
 };
 
-TemplateFitter::TemplateFitter(const Mesh& mesh, const AnnotationSet& set) {
+TemplateFitter::TemplateFitter(const Mesh& mesh, const AnnotationSet& set, const TemplateCage* cage) {
     if (mesh.number_of_faces() == 0) fail_input("template", "has no faces", "is it the right file?");
-    state_ = std::make_unique<State>(mesh, set);
+    if (cage != nullptr) {
+        if (cage->coordinates.has_normals())
+            fail_usage(cage->coordinates.kind + " coordinates have a normal term, which a fit cannot use",
+                       "take mean-value coordinates");
+        if (static_cast<std::size_t>(cage->coordinates.vertex.rows()) != mesh.number_of_vertices() ||
+            static_cast<std::size_t>(cage->coordinates.vertex.cols()) != cage->cage.number_of_vertices())
+            fail_usage("the cage's coordinates are not those of the template's vertices", "make them anew");
+    }
+    state_ = std::make_unique<State>(mesh, set, cage);
 }
 TemplateFitter::~TemplateFitter() = default;
 TemplateFitter::TemplateFitter(TemplateFitter&&) noexcept = default;
@@ -315,17 +413,17 @@ NonRigidFit TemplateFitter::fit(double scale, const std::vector<PlacedFragment>&
     constexpr double edges = 0.8;  // least smoothing length of a level on the coarse mesh, in its edges
     State& s = *state_;
     NonRigidFit fit;
-    const MatchSearch search(s.mesh, s.set, fragments, scale);
+    const MatchSearch search(s.mesh, s.set, fragments, scale, options.outlines);
     {
         const Stopwatch watch(fit.seconds_coarsening);
         s.prepare();
     }
     Fitter fine(s.fine, search, search.labels(s.mesh, {}), search.guides(), s.diagonal, options);
     int level = 0;
+    std::vector<Guide> guides = search.guides();
     if (s.coarse) {
         const Coarse& coarse = *s.coarse;
         while (level < options.levels && Fitter::smoothing(options, level, s.diagonal) >= edges * s.edge) ++level;
-        std::vector<Guide> guides = search.guides();
         for (Guide& guide : guides) {
             const Index here = coarse.vertex_map[guide.vertex];
             if (here != no_index)
@@ -333,7 +431,26 @@ NonRigidFit TemplateFitter::fit(double scale, const std::vector<PlacedFragment>&
             guide.vertex = here;
         }
         std::erase_if(guides, [&](const Guide& guide) { return guide.vertex >= coarse.mesh.number_of_vertices(); });
-        Fitter smooth(*s.smooth, search, search.labels(coarse.mesh, coarse.face_origin), std::move(guides), s.diagonal, options);
+    }
+    if (options.space != "mesh") {
+        if (s.cage == nullptr) fail_usage("the fit is to go through a cage, and there is none", "give the cage of the template");
+        Points rest(3, static_cast<Eigen::Index>(s.cage->cage.number_of_vertices()));
+        for (const Vertex v : s.cage->cage.vertices()) rest.col(static_cast<Eigen::Index>(v)) = eigen(s.cage->cage.point(v));
+        LevelSystem& system = s.coarse ? *s.smooth : s.fine;
+        Fitter through(system, search,
+                       s.coarse ? search.labels(s.coarse->mesh, s.coarse->face_origin) : search.labels(s.mesh, {}),
+                       std::move(guides), s.diagonal, options);
+        through.go_through(s.weights(), rest);
+        level = options.space == "both" ? std::max(1, options.levels - 1) : options.levels;
+        through.run(0, level, fit);
+        fine.start_at(points_of(s.cage->coordinates.vertex, through.cage()));
+        if (level == options.levels) {
+            fine.go_through(s.cage->coordinates.vertex, through.cage());
+            fine.polish(options.last_reach * s.diagonal, Fitter::smoothing(options, level - 1, s.diagonal), fit);
+        }
+    } else if (s.coarse) {
+        Fitter smooth(*s.smooth, search, search.labels(s.coarse->mesh, s.coarse->face_origin), std::move(guides), s.diagonal,
+                      options);
         smooth.run(0, level, fit);
         const Stopwatch watch(fit.seconds_coarsening);
         if (level > 0) fine.start_at(s.follow(smooth));

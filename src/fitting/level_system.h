@@ -37,8 +37,10 @@ public:
     /// factorisation are kept, which depend on the mesh alone, and no numbers: results are those of a new solver to the bit.
     Solver& renewed_solver();
 
-private:
+    /// The constraints of a solver, in the positions above; matches weigh nothing yet.
     std::vector<std::unique_ptr<Constraint>> constraints();
+
+private:
     std::vector<std::size_t> match_, stay_, laplacian_;
     std::unique_ptr<MeshSpaceSolver> solver_;
 };

@@ -1,5 +1,7 @@
 #include "match_search.h"
 
+#include "outline_guides.h"
+
 #include "ostraka/core/parallel.h"
 #include "ostraka/geom/eigen.h"
 
@@ -32,7 +34,8 @@ std::vector<int> face_labels(const Mesh& mesh, const std::vector<std::pair<const
 
 MatchSearch::~MatchSearch() = default;
 
-MatchSearch::MatchSearch(const Mesh& mesh, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments, double scale)
+MatchSearch::MatchSearch(const Mesh& mesh, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments, double scale,
+                         bool outlines)
     : scale_(scale), fragments_(fragments) {
     Motion unit;
     unit.scale = 1 / scale;
@@ -71,6 +74,34 @@ MatchSearch::MatchSearch(const Mesh& mesh, const AnnotationSet& set, const std::
         for (const auto& [label, part] : trees_.back()->parts(labels)) parts_[label].push_back({static_cast<int>(k), &part});
     }
     face_labels_ = face_labels(mesh, ours);
+    if (outlines) add_outline_guides(mesh, set);
+}
+
+void MatchSearch::add_outline_guides(const Mesh& mesh, const AnnotationSet& set) {
+    for (std::size_t k = 0; k < fragments_.size(); ++k) {
+        const PlacedFragment& fragment = fragments_[k];
+        std::vector<bool> broken(fragment.facets.size());
+        for (std::size_t f = 0; f < broken.size(); ++f) broken[f] = fragment.facets[f] == Facet::fracture;
+        std::vector<std::pair<Index, Index>> landmarks;
+        for (std::size_t l = 0; l < landmarks_.size(); ++l)
+            if (landmark_fragment_[l] == static_cast<int>(k)) landmarks.push_back(landmarks_[l]);
+        if (landmarks.empty()) continue;
+        for (const AnnotationMatch& match : fragment.matches) {
+            const Annotation *a = set.find(match.of_template), *b = fragment.annotations->find(match.of_fragment);
+            if (a == nullptr || b == nullptr || a->type != b->type || a->type == AnnotationType::point || a->all || b->all)
+                continue;
+            Annotation outer = *b;
+            if (!broken.empty()) std::erase_if(outer.faces, [&](Index f) { return broken[f]; });
+            for (const OutlineGuide& guide : outline_guides(mesh, *a, fragment.mesh, outer, broken, landmarks, scale_)) {
+                // Of parts in parts the inner one decides.
+                const auto ring = mesh.faces_around_target(mesh.halfedge(Vertex(guide.vertex)));
+                const bool ours = a->type == AnnotationType::line || std::any_of(ring.begin(), ring.end(), [&](Face face) {
+                                      return face != Mesh::null_face() && face_labels_[face] == a->id;
+                                  });
+                if (ours) guides_.push_back({guide.vertex, guide.place / scale_, guide.length});
+            }
+        }
+    }
 }
 
 MatchSearch::Labels MatchSearch::labels(const Mesh& mesh, const std::vector<Index>& face_origin) const {
@@ -139,6 +170,11 @@ std::vector<VertexMatch> MatchSearch::matches(const Points& now, const Mesh& con
         }
     });
     return found;
+}
+
+Vector3d MatchSearch::normal(const VertexMatch& match) const {
+    const auto k = static_cast<std::size_t>(match.fragment);
+    return (to_template_[k].turn * eigen(area_vector(trees_[k]->mesh(), Face(match.face)))).normalized();
 }
 
 std::vector<FragmentSample> MatchSearch::samples(int count) const {

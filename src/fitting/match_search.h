@@ -31,7 +31,9 @@ class MatchSearch {
 public:
     /// `mesh` is the template, whose unit is `scale` times that of the placed fragments: all that is asked and told is in the
     /// template's. Trees are those of the fragments, in their own coordinates, where they bring them along.
-    MatchSearch(const Mesh& mesh, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments, double scale = 1);
+    /// `outlines`: guides are not only landmarks, but also the places along matched outlines and lines.
+    MatchSearch(const Mesh& mesh, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments, double scale = 1,
+                bool outlines = false);
     ~MatchSearch();
     MatchSearch(const MatchSearch&) = delete;
     MatchSearch& operator=(const MatchSearch&) = delete;
@@ -51,9 +53,11 @@ public:
     /// options say; none where the counterpart is where the fragment ends.
     void assign(const Points& now, const Mesh& connectivity, const Labels& labels, const VertexAssignmentOptions& options,
                 std::vector<VertexMatch>& matches) const;
+    /// Unit normal of the fragment's face that was matched.
+    [[nodiscard]] Eigen::Vector3d normal(const VertexMatch& match) const;
     /// About this many places of all fragments together.
     [[nodiscard]] std::vector<FragmentSample> samples(int count) const;
-    /// Landmarks of matched point annotations.
+    /// Landmarks of matched point annotations, then places along outlines and lines.
     [[nodiscard]] std::vector<Guide> guides() const { return guides_; }
 
 private:
@@ -71,6 +75,8 @@ private:
         int fragment = 0, label = 0;
         Annotation region;  ///< its faces that carry the label
     };
+    void add_outline_guides(const Mesh& mesh, const AnnotationSet& set);
+
     const std::vector<PlacedFragment>& fragments_;
     std::vector<Counterpart> counterparts_;
     std::vector<std::pair<Index, Index>> landmarks_;  ///< vertices of the template and of the fragment, as guides_

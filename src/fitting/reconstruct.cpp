@@ -95,14 +95,14 @@ struct Known {
 
 struct Reconstructor::State {
     State(const Mesh& of, const AnnotationSet& with, const RelationGraph& relations, const ReconstructOptions& how,
-          const ShapePrior* of_class)
+          const ShapePrior* of_class, const TemplateCage* cage)
         : mesh(of),
           set(with),
           graph(relations),
           options(how),
           prior(of_class),
           searches(of, how.search.poses),
-          fitter(of, with) {}
+          fitter(of, with, cage) {}
 
     const Mesh& mesh;
     const AnnotationSet& set;
@@ -520,11 +520,16 @@ private:
 }  // namespace
 
 Reconstructor::Reconstructor(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
-                             const ReconstructOptions& options, const ShapePrior* prior) {
+                             const ReconstructOptions& options, const ShapePrior* prior, const TemplateCage* cage) {
     check_options(options, "fit");
+    if (options.fit.space != "mesh" && cage == nullptr)
+        fail_usage("the fit is to go through a cage, and there is none", "give the cage of the template");
+    if (options.fit.space != "mesh" && prior != nullptr)
+        fail_usage("a class changes the template's shape, and its cage does not follow",
+                   "fit in mesh space, or without the class");
     if (prior != nullptr) prior->check(mesh.number_of_vertices());
     if (inside_out(mesh)) fail_input("template", "is inside out", "run: ostraka mesh repair");
-    state_ = std::make_unique<State>(mesh, set, graph, options, prior);
+    state_ = std::make_unique<State>(mesh, set, graph, options, prior, cage);
 }
 Reconstructor::~Reconstructor() = default;
 Reconstructor::Reconstructor(Reconstructor&&) noexcept = default;
@@ -558,8 +563,9 @@ Reconstruction Reconstructor::run() {
 
 Reconstruction reconstruct(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
                            const std::vector<const Fragment*>& fragments, const ReconstructOptions& options,
-                           const std::vector<std::vector<StatedMatch>>& stated, const ShapePrior* prior) {
-    Reconstructor all(mesh, set, graph, options, prior);
+                           const std::vector<std::vector<StatedMatch>>& stated, const ShapePrior* prior,
+                           const TemplateCage* cage) {
+    Reconstructor all(mesh, set, graph, options, prior, cage);
     for (std::size_t k = 0; k < fragments.size(); ++k)
         all.add(*fragments[k], k < stated.size() ? stated[k] : std::vector<StatedMatch>());
     return all.run();

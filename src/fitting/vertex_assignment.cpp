@@ -1,8 +1,8 @@
 #include "ostraka/fitting/vertex_assignment.h"
 
 #include "assignment.h"
+#include "outline_guides.h"
 
-#include "ostraka/annotation/outline.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/geom/eigen.h"
@@ -38,47 +38,9 @@ struct Part {
     std::vector<std::vector<double>> ways;
 };
 
-/// Chains of vertices along which positions are told: outlines without what is a border of the mesh, or lines.
-struct Chain {
-    std::vector<Index> vertices;
-    bool closed = false;
-};
-
-std::vector<Chain> chains_of(const Mesh& mesh, const Annotation& part) {
-    std::vector<Chain> chains;
-    for (const auto& line : part.polylines) {
-        const bool closed = line.size() > 2 && line.front() == line.back();
-        chains.push_back({std::vector<Index>(line.begin(), line.end() - (closed ? 1 : 0)), closed});
-    }
-    if (part.type != AnnotationType::region) return chains;
-    for (const Outline& loop : extract_outlines(mesh, part.faces)) {
-        const std::size_t n = loop.size();
-        std::vector<bool> ends(n, false);  // the edge that begins here is a border of the mesh
-        for (std::size_t i = 0; i < n; ++i) {
-            const Halfedge h = find_halfedge(mesh, Vertex(loop[i]), Vertex(loop[(i + 1) % n]));
-            ends[i] = h == Mesh::null_halfedge() || mesh.is_border(h) || mesh.is_border(mesh.opposite(h));
-        }
-        const auto first = std::find(ends.begin(), ends.end(), true);
-        if (first == ends.end()) {
-            chains.push_back({loop, true});
-            continue;
-        }
-        const auto begin = static_cast<std::size_t>(first - ends.begin());
-        Chain chain;
-        for (std::size_t k = 1; k <= n; ++k) {
-            const std::size_t i = (begin + k) % n;
-            chain.vertices.push_back(loop[i]);
-            if (!ends[i]) continue;
-            if (chain.vertices.size() > 1) chains.push_back(chain);
-            chain.vertices.clear();
-        }
-    }
-    return chains;
-}
-
 /// Distances from each vertex of a chain onwards to one of them, going on at the start of a closed one; negative where there is
 /// no way.
-std::vector<double> ways_to(const Mesh& mesh, const Chain& chain, std::size_t goal) {
+std::vector<double> ways_to(const Mesh& mesh, const VertexChain& chain, std::size_t goal) {
     const std::size_t n = chain.vertices.size();
     std::vector<double> ways(n, -1);
     double length = 0;
@@ -105,17 +67,17 @@ Part part_of(const Mesh& mesh, const Annotation& annotation, const std::vector<I
         part.places.push_back(mesh.point(Vertex(part.vertices[i])));
         part.normals.push_back(vertex_normal(mesh, Vertex(part.vertices[i])));
     }
-    const std::vector<Chain> chains = chains_of(mesh, annotation);
+    const std::vector<VertexChain> chains = chains_of(mesh, annotation);
     part.boundary.assign(part.vertices.size(), annotation.type != AnnotationType::region);
-    for (const Chain& chain : chains)
+    for (const VertexChain& chain : chains)
         for (const Index v : chain.vertices) part.boundary[static_cast<std::size_t>(position.at(v))] = true;
     part.ways.assign(part.vertices.size(), std::vector<double>(landmarks.size(), -1));
     for (std::size_t l = 0; l < landmarks.size(); ++l) {
         const Point& place = mesh.point(Vertex(landmarks[l]));
-        const Chain* nearest = nullptr;
+        const VertexChain* nearest = nullptr;
         std::size_t goal = 0;
         double least = std::numeric_limits<double>::infinity();
-        for (const Chain& chain : chains)
+        for (const VertexChain& chain : chains)
             for (std::size_t i = 0; i < chain.vertices.size(); ++i)
                 if (const double d = CGAL::squared_distance(mesh.point(Vertex(chain.vertices[i])), place); d < least) {
                     least = d;

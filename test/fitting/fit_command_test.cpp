@@ -194,6 +194,26 @@ TEST_F(FitCommand, SearchesOfAnEarlierFitAreTakenWhereNothingChanged) {
     EXPECT_FALSE(std::filesystem::exists(scratch / "out" / "fit.searches.json"));
 }
 
+TEST_F(FitCommand, FitsThroughACage) {
+    const std::string bundle = quoted(scratch / "made" / "t.template.json"), top = quoted(scratch / "top.ply");
+    const auto made = fit(top + " --space cage");
+    EXPECT_EQ(made.code, 3) << made.err;
+    EXPECT_NE(made.err.find("has no cage"), std::string::npos) << made.err;
+    EXPECT_TRUE(std::filesystem::exists(scratch / "out" / "completed.ply"));
+    // A cage of its own, and one that does not contain it.
+    const std::string statuette = quoted(scratch / "made" / "statuette-1.ply");
+    ASSERT_EQ(run_command("cage make " + statuette + " " + quoted(scratch / "made" / "cage.ply") + " --vertices 100").code, 0);
+    const std::string pack = "template pack " + quoted(scratch / "made" / "caged.template.json") + " --mesh " + statuette +
+                             " --annotations " + quoted(scratch / "made" / "statuette-1.ant.json") + " --cage ";
+    ASSERT_EQ(run_command(pack + quoted(scratch / "made" / "cage.ply")).code, 0);
+    const std::string caged = "fit " + quoted(scratch / "made" / "caged.template.json") + " " + top + " --space both --output " +
+                              quoted(scratch / "out");
+    const auto own = run_command(caged);
+    EXPECT_EQ(own.code, 3) << own.err;
+    EXPECT_EQ(own.err.find("has no cage"), std::string::npos) << own.err;
+    EXPECT_EQ(run_command("fit " + bundle + " " + top + " --space air --output " + quoted(scratch / "out")).code, 2);
+}
+
 TEST_F(FitCommand, BreakRefusesWhatItCannotDo) {
     const std::string mesh = "mesh break " + quoted(scratch / "made" / "statuette-2.ply") + " " + quoted(scratch / "x.ply");
     EXPECT_EQ(run_command(mesh).code, 2);

@@ -12,10 +12,12 @@
 namespace ostraka {
 
 class FragmentTrees;
+struct TemplateCage;
 
 struct NonRigidOptions {
-    double start = 0.3;  ///< smoothing length of the first level, as a share of the template's diagonal
-    double end = 0.01;   ///< of the last
+    std::string space = "mesh";  ///< unknowns: the template's vertices, those of its cage, or first these and at last those
+    double start = 0.3;          ///< smoothing length of the first level, as a share of the template's diagonal
+    double end = 0.01;           ///< of the last
     int levels = 6;
     int steps = 3;       ///< matches and solutions in each level, at most
     double stay = 0.5;   ///< length over which the deformation of the first level fades where nothing is observed
@@ -26,9 +28,15 @@ struct NonRigidOptions {
     std::string counterparts = "surface";  ///< in matched annotations: closest places, or the vertices of equation 5.1
     VertexAssignmentOptions vertices;      ///< its weights; reach and angle are those of the level
     double guides = 1;                     ///< weight of outlines and landmarks of matched annotations
+    bool outlines = true;                  ///< outlines and lines guide by the position along them, not only landmarks
 
     template <class Visitor>
     void describe(Visitor& visit) {
+        visit("space", space,
+              "what is solved for: the template's vertices (mesh), those of a cage around it (cage: fewer degrees of freedom, no "
+              "face "
+              "folds by noise), or those of the cage and in the last level the template's (both)",
+              Choices{"mesh", "cage", "both"});
         visit("smoothing", start, "length below which the first level fits no detail, as a share of the template's diagonal",
               Range{1e-3, 10});
         visit("detail", end, "the same of the last level", Range{1e-4, 10});
@@ -50,6 +58,8 @@ struct NonRigidOptions {
         visit("distance-weight", vertices.distance, "equation 5.1: of the distance", Range{0, 1e6});
         visit("outline-weight", vertices.outline, "equation 5.1: of the positions along the outline", Range{0, 1e6});
         visit("guides", guides, "weight of matched outlines and landmarks against that of the surface", Range{0, 1e6});
+        visit("outlines", outlines,
+              "matched outlines and lines guide the fit by the position along them, from landmark to landmark", Anything{});
     }
 };
 
@@ -90,12 +100,15 @@ struct NonRigidFit {
 /// A fit is the same to the bit whatever was fitted before it.
 class TemplateFitter {
 public:
-    /// Both outlive it and do not change. Throws Error (input) for a mesh without faces.
-    TemplateFitter(const Mesh& mesh, const AnnotationSet& set);
+    /// All outlive it and do not change; fits in the space of the cage need one. Throws Error (input) for a mesh without faces,
+    /// (usage) for coordinates with a normal term or of another mesh or cage.
+    TemplateFitter(const Mesh& mesh, const AnnotationSet& set, const TemplateCage* cage = nullptr);
     ~TemplateFitter();
     TemplateFitter(TemplateFitter&&) noexcept;
 
-    /// As `fit_template` for the template `scale` times as large.
+    /// As `fit_template` for the template `scale` times as large. Through the cage, x = W c, the same sum is minimised over the
+    /// cage's vertices c; after the last level point-to-plane steps follow, which hold what was not matched where the levels have
+    /// left it. Throws Error (usage) for cage space without a cage.
     NonRigidFit fit(double scale, const std::vector<PlacedFragment>& fragments, const NonRigidOptions& options = {});
 
 private:

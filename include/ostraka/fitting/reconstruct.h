@@ -5,6 +5,7 @@
 #include "ostraka/fitting/free_turns.h"
 #include "ostraka/fitting/placement.h"
 #include "ostraka/fitting/shape_prior.h"
+#include "ostraka/fitting/template_cage.h"
 #include "ostraka/registration/part_alignment.h"
 #include "ostraka/semantic/deform.h"
 
@@ -108,9 +109,10 @@ struct Reconstruction {
 class Reconstructor {
 public:
     /// All but the options outlive it and do not change; so do fragments for as long as they are there. Throws Error (usage) for
-    /// options out of range, (input) for a template that is inside out, and as ShapePrior::check.
+    /// options out of range, and for cage space without a cage or with a prior; (input) for a template that is inside out, and as
+    /// ShapePrior::check.
     Reconstructor(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph, const ReconstructOptions& options = {},
-                  const ShapePrior* prior = nullptr);
+                  const ShapePrior* prior = nullptr, const TemplateCage* cage = nullptr);
     ~Reconstructor();
     Reconstructor(Reconstructor&&) noexcept;
 
@@ -144,6 +146,7 @@ private:
 /// annotations.
 Reconstruction reconstruct(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
                            const std::vector<const Fragment*>& fragments, const ReconstructOptions& options = {},
-                           const std::vector<std::vector<StatedMatch>>& stated = {}, const ShapePrior* prior = nullptr);
+                           const std::vector<std::vector<StatedMatch>>& stated = {}, const ShapePrior* prior = nullptr,
+                           const TemplateCage* cage = nullptr);
 
 }  // namespace ostraka

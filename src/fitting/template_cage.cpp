@@ -1,0 +1,26 @@
+#include "ostraka/fitting/template_cage.h"
+
+#include "ostraka/cage/cage.h"
+#include "ostraka/core/error.h"
+
+namespace ostraka {
+
+TemplateCage template_in_cage(const Mesh& mesh, Mesh cage) {
+    const CageCheck check = check_cage(cage, mesh);
+    if (!check.valid()) {
+        for (const Finding& finding : findings(check, ""))
+            if (finding.defect)
+                fail_input("cage" + (finding.where.empty() ? std::string() : ", " + finding.where), finding.text,
+                           "give a sound cage around the template: 'cage check' tells all, 'cage make' makes one");
+    }
+    Coordinates coordinates = compute_coordinates("mean-value", cage, mesh);
+    return {std::move(cage), std::move(coordinates)};
+}
+
+TemplateCage made_cage(const Mesh& mesh, std::uint64_t vertices) {
+    CageOptions options;
+    options.vertices = vertices;
+    return template_in_cage(mesh, make_cage(mesh, options).cage);
+}
+
+}  // namespace ostraka
