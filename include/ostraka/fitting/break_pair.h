@@ -19,7 +19,7 @@ struct PairOptions {
     double last_reach = 0.025;      ///< at the end
     double edges = 1;               ///< weight of the rims against the fracture surfaces
     double least_contact = 0.1;     ///< of the smaller fracture that must be in contact
-    double least_confidence = 0.4;  ///< below it cannot be told how the fragments go together
+    double least_confidence = 0.5;  ///< below it cannot be told how the fragments go together
     int candidates = 5;             ///< told
 
     template <class Visitor>
