@@ -111,6 +111,7 @@ struct FragmentExperiment {
     int seeds = 4;
     std::uint64_t vertices = 12000, seed = 1;
     int pairs = 200;
+    std::string space = "mesh";  ///< of the fit: mesh, cage or both
 };
 void fragments(const FragmentExperiment& options);
 /// Pairs of fragments of one object, of two sizes, of another canon: which are called compatible, and what is said against

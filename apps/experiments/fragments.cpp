@@ -3,6 +3,7 @@
 #include "ostraka/collection/statuette_annotations.h"
 #include "ostraka/family/shape_class.h"
 #include "ostraka/fitting/reconstruct.h"
+#include "ostraka/fitting/template_cage.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/measure/measure.h"
@@ -18,6 +19,7 @@
 #include <functional>
 #include <iostream>
 #include <numbers>
+#include <optional>
 
 namespace ostraka::experiments {
 
@@ -149,7 +151,8 @@ Broken make_fragment(const Canon& canon, const Mesh& whole, const std::string& n
     return broken;
 }
 
-Row run(const Canon& canon, const ShapePrior* prior, const Case& what, std::uint64_t seed) {
+Row run(const Canon& canon, const ShapePrior* prior, const TemplateCage* cage, const ReconstructOptions& how, const Case& what,
+        std::uint64_t seed) {
     const Mesh& mesh = canon.statuette.mesh;
     const double high = bounding_box(mesh).zmax(), strength = 1 + 0.25 * (static_cast<double>(seed % 4) - 1.5);
     Mesh whole = mesh;
@@ -172,7 +175,7 @@ Row run(const Canon& canon, const ShapePrior* prior, const Case& what, std::uint
     std::vector<bool> seen(mesh.number_of_vertices(), false);
     for (const Index v : piece.vertices) seen[v] = true;
     const Stopwatch watch;
-    const Reconstruction result = reconstruct(mesh, canon.set, canon.graph, {&broken.fragment}, {}, {}, prior);
+    const Reconstruction result = reconstruct(mesh, canon.set, canon.graph, {&broken.fragment}, how, {}, prior, cage);
     Row row;
     row.seconds = watch.seconds().wall;
     row.placed = result.placement.any();
@@ -304,7 +307,12 @@ void verdicts(const FragmentExperiment& options) {
 
 void fragments(const FragmentExperiment& options) {
     const Canon canon = make_canon(options.vertices);
-    const ShapePrior prior = learn_canon(canon);
+    const bool in_mesh = options.space == "mesh";
+    const std::optional<ShapePrior> prior = in_mesh ? std::optional(learn_canon(canon)) : std::nullopt;
+    const std::optional<TemplateCage> made = in_mesh ? std::nullopt : std::optional(made_cage(canon.statuette.mesh));
+    const TemplateCage* cage = made ? &*made : nullptr;
+    ReconstructOptions how;
+    how.fit.space = options.space;
     TextTable table({"deformation", "at", "share", "noise", "erosion", "placed", "angle", "shift", "observed", "missing", "rigid",
                      "missing/rigid", "missing with class", "with class/rigid", "constraint before", "after", "crossings",
                      "seconds"});
@@ -316,10 +324,11 @@ void fragments(const FragmentExperiment& options) {
                     Row sum, with_class;
                     int placed = 0;
                     for (int seed = 1; seed <= options.seeds; ++seed) {
-                        const Row row = run(canon, nullptr, what, static_cast<std::uint64_t>(seed));
+                        const Row row = run(canon, nullptr, cage, how, what, static_cast<std::uint64_t>(seed));
                         if (!row.placed) continue;
                         ++placed;
-                        const Row other = run(canon, &prior, what, static_cast<std::uint64_t>(seed));
+                        const Row other =
+                            prior ? run(canon, &*prior, nullptr, how, what, static_cast<std::uint64_t>(seed)) : Row();
                         with_class.missing += other.missing;
                         with_class.rigid += other.rigid;
                         sum.angle += row.angle, sum.shift += row.shift, sum.observed += row.observed, sum.missing += row.missing;
@@ -331,8 +340,8 @@ void fragments(const FragmentExperiment& options) {
                                format("%d of %d", placed, options.seeds), fixed_cell(sum.angle / n, 2),
                                percent_cell(sum.shift / n, 2), percent_cell(sum.observed / n, 3),
                                percent_cell(sum.missing / n, 2), percent_cell(sum.rigid / n, 2),
-                               fixed_cell(sum.missing / sum.rigid, 2), percent_cell(with_class.missing / n, 2),
-                               fixed_cell(with_class.missing / sum.rigid, 2), fixed_cell(sum.before / n, 2),
+                               fixed_cell(sum.missing / sum.rigid, 2), prior ? percent_cell(with_class.missing / n, 2) : "-",
+                               prior ? fixed_cell(with_class.missing / sum.rigid, 2) : "-", fixed_cell(sum.before / n, 2),
                                fixed_cell(sum.after / n, 2), fixed_cell(static_cast<double>(sum.crossings) / n, 1),
                                fixed_cell(sum.seconds / n, 2)});
                 }

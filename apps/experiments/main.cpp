@@ -159,6 +159,9 @@ int main(int argc, char** argv) {
     fragment_command->add_option("--vertices", broken.vertices, "of the template")
         ->check(CLI::Range(4000, 1000000))
         ->capture_default_str();
+    fragment_command->add_option("--space", broken.space, "of the fit; with another than mesh no class is asked")
+        ->check(CLI::IsMember({"mesh", "cage", "both"}))
+        ->capture_default_str();
 
     CLI::App* verdict_command = tool.add_subcommand("verdicts", "pairs of fragments that belong together, or do not");
     verdict_command->add_option("output", broken.output, "folder for the table")->capture_default_str();

@@ -129,7 +129,8 @@ TEST_F(CageFit, RefusesWhatIsNoCageOfTheTemplate) {
     EXPECT_THROW((void)TemplateFitter(mesh, set).fit(1, placed(whole), in("cage")), Error);
     ReconstructOptions how;
     how.fit.space = "both";
-    EXPECT_THROW(Reconstructor(mesh, set, RelationGraph(), how), Error);
+    const RelationGraph graph;
+    EXPECT_THROW(Reconstructor(mesh, set, graph, how), Error);
     const TemplateCage green{cage.cage, compute_coordinates("green", cage.cage, mesh)};
     EXPECT_THROW(TemplateFitter(mesh, set, &green), Error);
     const Mesh other = body(2);

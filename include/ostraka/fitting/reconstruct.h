@@ -113,6 +113,9 @@ public:
     /// ShapePrior::check.
     Reconstructor(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph, const ReconstructOptions& options = {},
                   const ShapePrior* prior = nullptr, const TemplateCage* cage = nullptr);
+    /// What is given is referred to.
+    Reconstructor(const Mesh& mesh, const AnnotationSet& set, RelationGraph&& graph, const ReconstructOptions& options = {},
+                  const ShapePrior* prior = nullptr, const TemplateCage* cage = nullptr) = delete;
     ~Reconstructor();
     Reconstructor(Reconstructor&&) noexcept;
 
