@@ -330,14 +330,29 @@ struct Stitched {
     std::vector<Vertex> failed;
 };
 
-/// Crossings of the patch's faces with others near the seam: the border vertices nearest to them.
-std::vector<Vertex> crossings_at_seam(const Stitched& stitched, const Patch& patch) {
-    const SubMesh near = keep_faces(stitched.joint.mesh, stitched.near);
+/// Crossings of faces near the seam that neither the patch nor the surface had by itself: the border vertices nearest to them.
+std::vector<Vertex> crossings_at_seam(const Mesh& surface, const Stitched& stitched, const Patch& patch) {
+    const Joint& joint = stitched.joint;
+    const SubMesh near = keep_faces(joint.mesh, stitched.near);
+    const auto pairs = self_intersections(to_soup(near.mesh)).pairs;
+    if (pairs.empty()) return {};
+    // Which of the surface's own faces crossed before.
+    std::vector<bool> old(surface.number_of_faces(), false);
+    for (const Index face : near.faces)
+        if (joint.old_face[face] != no_index) old[joint.old_face[face]] = true;
+    const SubMesh before = keep_faces(surface, old);
+    std::vector<std::pair<Index, Index>> known;
+    for (const auto& [a, b] : self_intersections(to_soup(before.mesh)).pairs)
+        known.emplace_back(std::min(before.faces[a], before.faces[b]), std::max(before.faces[a], before.faces[b]));
+    std::sort(known.begin(), known.end());
     std::vector<Vertex> found;
-    for (const auto& [a, b] : self_intersections(to_soup(near.mesh)).pairs) {
-        const Index f = stitched.joint.patch_face[near.faces[a]], g = stitched.joint.patch_face[near.faces[b]];
-        if ((f == no_index) == (g == no_index)) continue;  // each had them before
-        const Point place = centroid(patch.mesh(), Face(f == no_index ? g : f));
+    for (const auto& [a, b] : pairs) {
+        const Index f = joint.old_face[near.faces[a]], g = joint.old_face[near.faces[b]];
+        if (f == no_index && g == no_index) continue;
+        if (f != no_index && g != no_index &&
+            std::binary_search(known.begin(), known.end(), std::pair(std::min(f, g), std::max(f, g))))
+            continue;
+        const Point place = centroid(near.mesh, Face(f == no_index ? b : a));
         Vertex nearest = patch.loops().front().front();
         for (const auto& loop : patch.loops())
             for (const Vertex v : loop)
@@ -470,7 +485,8 @@ Joint join_patch(const Mesh& surface, Patch patch, const std::vector<std::option
             patch.erode(stitched.failed, rings);
             continue;
         }
-        const std::vector<Vertex> at = patch.loops().empty() ? std::vector<Vertex>() : crossings_at_seam(stitched, patch);
+        const std::vector<Vertex> at =
+            patch.loops().empty() ? std::vector<Vertex>() : crossings_at_seam(surface, stitched, patch);
         if (crossed_attempts == 0 || at.size() < fewest) {
             fewest = at.size();
             best = std::move(stitched.joint);
