@@ -153,22 +153,40 @@ struct Propagate {
                 add_member(item, "placedBy", result.fit.placed_by, allocator);
                 add_member(item, "annotations", JsonValue(static_cast<std::uint64_t>(result.on_member->annotations.size())),
                            allocator);
+                add_member(item, "liesOn", JsonValue(result.lies_on), allocator);
             } else {
                 add_member(item, "problem", result.fit.problem, allocator);
-                all = false;
             }
+            add_member(item, "lost", JsonValue(static_cast<std::uint64_t>(result.lost)), allocator);
+            if (result.fit.residuals) {
+                const FitResiduals& r = *result.fit.residuals;
+                add_member(item, "distance", JsonValue(r.distance), allocator);
+                add_member(item, "distanceBack", JsonValue(r.back), allocator);
+                add_member(item, "unmatched", JsonValue(r.unmatched), allocator);
+                add_member(item, "unexplained", JsonValue(r.unexplained), allocator);
+                add_member(item, "stretch", JsonValue(r.stretch), allocator);
+                add_member(item, "bend", JsonValue(r.bend), allocator);
+            }
+            all = all && result.complete();
             for (const std::string& note : result.notes) notes.PushBack(json_string(note, allocator), allocator);
             add_member(item, "notes", std::move(notes), allocator);
             list.PushBack(item, allocator);
-            rows.push_back({printable(member.name), result.fit.problem.empty() ? result.fit.placed_by : "left out",
-                            result.on_member ? std::to_string(result.on_member->annotations.size()) : "-",
-                            std::to_string(result.notes.size()), printable(result.fit.problem)});
+            const auto residual = [&](double FitResiduals::*value) {
+                return result.fit.residuals ? number(100 * (*result.fit.residuals).*value, 3) : std::string("-");
+            };
+            rows.push_back(
+                {printable(member.name), result.fit.problem.empty() ? result.fit.placed_by : "left out",
+                 residual(&FitResiduals::distance), residual(&FitResiduals::unmatched), residual(&FitResiduals::unexplained),
+                 result.on_member ? std::to_string(result.on_member->annotations.size()) : "-", std::to_string(result.lost),
+                 std::to_string(result.notes.size()), result.lies_on ? printable(result.fit.problem) : "does not lie on it"});
             for (const std::string& note : result.notes) session.note(printable(member.name) + ": " + printable(note));
         }
         add_member(report, "members", std::move(list), allocator);
         transaction.commit();
         if (session.json) session.print_report(provenance, document, report);
-        else std::cout << table({"member", "laid on by", "annotations", "notes", ""}, rows);
+        else
+            std::cout << table(
+                {"member", "laid on by", "distance %", "unmatched %", "unexplained %", "annotations", "lost", "notes", ""}, rows);
         return all ? done : answer_is_no;
     }
 
@@ -199,9 +217,11 @@ void add_template_sample(CLI::App& bundle, Session& session) {
     add_flags(command, draw->options);
 
     const auto spread = std::make_shared<Propagate>();
-    command = session.add(bundle, "propagate",
-                          "lay a template onto members of its class and carry its annotations to them (exit code 3: not to all)",
-                          [&session, spread] { return spread->run(session); });
+    command =
+        session.add(bundle, "propagate",
+                    "lay a template onto members of its class and carry its annotations to them (exit code 3: some are lost, or "
+                    "the template does not lie on a member)",
+                    [&session, spread] { return spread->run(session); });
     command->add_option("files", spread->files, "the template (.template.json), then a mesh file for each member")
         ->required()
         ->expected(-1);

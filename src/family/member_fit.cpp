@@ -2,6 +2,7 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/core/text.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/geom/with_points.h"
@@ -15,6 +16,14 @@ namespace ostraka {
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+
+std::string fit_is_off(const MemberFit& fit, double most) {
+    if (!fit.residuals || !(fit.residuals->off() > most)) return {};
+    const auto per_cent = [](double share) { return digits(100 * share, 3) + " %"; };
+    return "the template does not lie on it: " + per_cent(fit.residuals->unmatched) + " of the template and " +
+           per_cent(fit.residuals->unexplained) + " of the object are off the other, " + per_cent(most) +
+           " on average is the most";
+}
 
 bool in_correspondence(const Mesh& mesh, const Mesh& member) {
     if (mesh.number_of_vertices() != member.number_of_vertices() || mesh.number_of_faces() != member.number_of_faces())

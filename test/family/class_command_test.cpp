@@ -147,6 +147,28 @@ TEST_F(ClassCommand, PropagateWritesWhereItIsFrom) {
               std::string::npos);
 }
 
+TEST_F(ClassCommand, PropagateSaysWhereTheTemplateDoesNotLie) {
+    write_file(scratch / "one.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    const std::string to = " --json --output " + quoted(scratch / "carried");
+    const auto good = run_command("template propagate " + known() + " " + member(3) + to);
+    EXPECT_EQ(good.code, 0) << good.err;
+    const auto bad = run_command("template propagate " + known() + " " + quoted(scratch / "one.off") +
+                                 " " OSTRAKA_SOURCE_DIR "/data/teapot.ply" + to);
+    EXPECT_EQ(bad.code, 3) << bad.err;
+    const Json report = parse_json(bad.out, "report");
+    for (const auto& one : report["result"]["members"].GetArray()) {
+        EXPECT_FALSE(one["liesOn"].GetBool()) << one["name"].GetString();
+        EXPECT_GT(one["unmatched"].GetDouble() + one["unexplained"].GetDouble(), 0.25) << one["name"].GetString();
+        EXPECT_NE(std::string(one["notes"][0].GetString()).find("does not lie on it"), std::string::npos);
+    }
+    EXPECT_GT(report["result"]["members"][0]["lost"].GetInt(), 0) << "a triangle has no room for them";
+    EXPECT_NE(bad.err.find("teapot: the template does not lie on it"), std::string::npos) << bad.err;
+    // The limit is the user's.
+    EXPECT_EQ(run_command("template propagate " + known() + " " OSTRAKA_SOURCE_DIR "/data/teapot.ply --most-off 1 --quiet" + to)
+                  .err.find("does not lie"),
+              std::string::npos);
+}
+
 TEST_F(ClassCommand, WrongWordsAndFilesAreSaid) {
     const auto empty = run_command("template learn " + known() + " --output " + quoted(scratch / "class"));
     EXPECT_EQ(empty.code, 2);

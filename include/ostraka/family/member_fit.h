@@ -17,6 +17,7 @@ struct MemberFitOptions {
     bool ignore_landmarks = false;
     int tries = 1;
     double observed = 0.02;
+    double most_off = 0.125;
     MemberFitOptions() {
         alignment.shrinkage = 0.3;
         fit.reach = 0.2;
@@ -36,6 +37,11 @@ struct MemberFitOptions {
               Range{1, 5});
         visit("observed", observed, "surfaces farther apart than this share of the diagonal do not lie on each other",
               Range{0, 1});
+        visit(
+            "most-off", most_off,
+            "a template does not lie on an object if a larger share of both surfaces (mean of unmatched and unexplained) is off "
+            "the other after the fit",
+            Range{0, 1});
     }
 };
 
@@ -56,6 +62,8 @@ struct FitResiduals {
     double stretch = 0;      ///< root mean square of the logarithms of the stretches along the two principal directions of each
                              ///< triangle, against the scaled template: 0.1 is about ten per cent
     double bend = 0;         ///< root mean square of the change of the angles between faces at edges, radians
+    /// Share of both surfaces that is off the other.
+    [[nodiscard]] double off() const { return 0.5 * (unmatched + unexplained); }
 };
 
 struct MemberFit {
@@ -67,6 +75,10 @@ struct MemberFit {
     std::optional<FitResiduals> residuals;  ///< none in correspondence
     double share_placed = 0;                ///< of the surface's samples that found a partner in the rigid placement
 };
+
+/// In words with the numbers why the template does not lie on the object: `off()` is above `most`. Empty where it does, or where
+/// there are no residuals.
+std::string fit_is_off(const MemberFit& fit, double most);
 
 /// Whether an object has the template's triangles: as many vertices, and the same faces in the same order.
 bool in_correspondence(const Mesh& mesh, const Mesh& member);
