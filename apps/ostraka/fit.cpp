@@ -90,6 +90,9 @@ struct Fit {
             take(class_file);
             check_topology(learnt, class_file, loaded.mesh->mesh, files[0]);
             prior = prior_of(learnt.modes);
+            if (learnt.modes.variances.empty())
+                session.note("note: " + class_file +
+                             " has no modes (one member, or all of one shape): its mean shape alone counts");
             take_thresholds(learnt);
             provenance.options = list_options(options);
             for (auto& option : list_options(reading)) provenance.options.push_back(std::move(option));

@@ -43,8 +43,18 @@ std::string object_name(const std::string& file) {
     return Path(file).stem().string();
 }
 
-void make_folder(const std::string& folder) {
+void check_folder(const std::string& folder) {
     if (folder.empty()) fail_usage("there is no folder to write to", "give --output FOLDER");
+    std::error_code code;
+    Path known = std::filesystem::absolute(folder, code);
+    while (known.has_relative_path() && !std::filesystem::exists(known, code)) known = known.parent_path();
+    if (!std::filesystem::is_directory(known, code))
+        throw Error(ErrorKind::failure, folder, "the folder cannot be made: '" + known.string() + "' is no folder",
+                    "name another one");
+}
+
+void make_folder(const std::string& folder) {
+    check_folder(folder);
     std::error_code code;
     std::filesystem::create_directories(folder, code);
     if (code) throw Error(ErrorKind::failure, folder, "the folder cannot be made: " + code.message(), "name another one");

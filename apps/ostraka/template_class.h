@@ -25,7 +25,9 @@ WholeObject read_member(const std::string& file, Provenance& provenance);
 /// The name of an object: its file's without folder and ending (".mrk.json" is one ending).
 std::string object_name(const std::string& file);
 
-/// Makes the folder. Throws Error (failure).
+/// Throws Error (usage) where none is named, (failure) where a file is in its place: told before the work, which makes it.
+void check_folder(const std::string& folder);
+/// Makes the folder. Throws Error as check_folder, and (failure) where it cannot be made.
 void make_folder(const std::string& folder);
 /// Throws Error (usage) where two files have one name without folder and ending.
 void check_names(const std::vector<std::string>& files);

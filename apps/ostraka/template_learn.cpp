@@ -29,6 +29,8 @@ struct Learn {
         if (files.size() < 2) fail_usage("the class is empty: there is no member", "give TEMPLATE MEMBER ...");
         const std::vector<std::string> members(files.begin() + 1, files.end());
         check_names(members);
+        if (!name.empty()) check_class_name(name);
+        check_folder(output);
         Provenance provenance{"template learn", list_options(options), {}};
         const LoadedTemplate loaded = load_class_template(files[0], provenance);
         if (name.empty()) name = loaded.file.object_class;
@@ -38,6 +40,7 @@ struct Learn {
             if (name.size() > ending.size() && name.ends_with(ending)) name.resize(name.size() - ending.size());
         }
         std::replace(name.begin(), name.end(), ' ', '-');
+        check_class_name(name);
         std::vector<LearntMember> learnt;
         for (const std::string& file : members) {
             const WholeObject member = read_member(file, provenance);
@@ -45,6 +48,8 @@ struct Learn {
             session.note(printable(member.name) + ": " +
                          (learnt.back().fit.problem.empty() ? "laid on by " + learnt.back().fit.placed_by
                                                             : "left out: " + printable(learnt.back().fit.problem)));
+            if (const std::string off = fit_is_off(learnt.back().fit, options.fit.most_off); !off.empty())
+                session.note(printable(member.name) + ": " + off);
         }
         ShapeClass result = learn_class(loaded.known(), learnt, options);
         result.name = name;
@@ -71,6 +76,9 @@ private:
     /// All files are members; the first one says which landmarks there are, and how the mean is turned.
     int run_landmarks(const Session& session) {
         check_names(files);
+        if (name.empty()) name = "landmarks";
+        check_class_name(name);
+        check_folder(output);
         Provenance provenance{"template learn", list_options(options), {}};
         const LandmarkTemplate known = read_landmark_template(files[0], provenance);
         std::vector<LearntMember> members;
@@ -80,7 +88,7 @@ private:
                 session.note(printable(members.back().name) + ": " + printable(note));
         }
         ShapeClass result = learn_class(known.known(), members, options);
-        result.name = name.empty() ? "landmarks" : name;
+        result.name = name;
         result.template_file = Path(files[0]).filename().string();
         make_folder(output);
         std::vector<Path> outputs;
@@ -157,13 +165,15 @@ struct Classify {
         std::vector<ShapeClass> classes;
         std::vector<LoadedTemplate> templates;
         std::vector<std::optional<LandmarkTemplate>> landmarks;
-        std::vector<std::string> objects;
+        std::vector<std::string> objects, class_files;
+        std::vector<std::size_t> same;  // of one name: told apart by their files
         for (const std::string& file : files) {
             if (!file.ends_with(".class.json")) {
                 objects.push_back(file);
                 continue;
             }
             classes.push_back(read_class(file));
+            class_files.push_back(file);
             provenance.add_input(file);
             const std::string& known = classes.back().template_file;
             templates.emplace_back();
@@ -174,6 +184,10 @@ struct Classify {
             if (landmarks.front().has_value() != landmarks.back().has_value())
                 fail_input(file, "is a class of meshes, or of landmarks, and the first is not", "ask them one after the other");
         }
+        for (std::size_t i = 0; i < classes.size(); ++i)
+            if (std::count_if(classes.begin(), classes.end(), [&](const auto& c) { return c.name == classes[i].name; }) > 1)
+                same.push_back(i);
+        for (const std::size_t i : same) classes[i].name += " (" + class_files[i] + ")";
         moderate_thresholds(classes);
         if (classes.empty()) fail_usage("there is no class", "give one or more .class.json files, then objects");
         if (objects.empty()) fail_usage("there is no object", "give mesh files after the classes");

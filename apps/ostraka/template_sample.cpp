@@ -103,8 +103,11 @@ private:
                   << number(100 * result.acceptance(), 3) << " %); rejected by constraints " << result.by_constraints
                   << ", by learnt ranges " << result.by_ranges << ", by self-intersections " << result.by_intersections << '\n';
         for (const std::string& text : result.examples) std::cout << "  such as: " << printable(text) << '\n';
-        std::cout << "diversity (mean distance of two) " << number(100 * result.diversity, 3)
-                  << " % of the mean size, that of the members " << number(100 * result.of_members, 3) << " %\n";
+        if (result.samples.size() < 2) std::cout << "no diversity: it is the mean distance of two; that of the members ";
+        else
+            std::cout << "diversity (mean distance of two) " << number(100 * result.diversity, 3)
+                      << " % of the mean size, that of the members ";
+        std::cout << number(100 * result.of_members, 3) << " %\n";
     }
 };
 

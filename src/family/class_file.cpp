@@ -10,11 +10,6 @@ namespace ostraka {
 
 namespace {
 
-void check_name(const std::string& name) {
-    if (name.empty() || Path(name).filename() != Path(name) || name == "." || name == "..")
-        fail_usage("the class is called '" + name + "', which no file can be", "give --name a plain word");
-}
-
 template <class List, class Make>
 JsonValue list_of(const List& list, JsonAllocator& allocator, Make&& make) {
     JsonValue array(rapidjson::kArrayType);
@@ -117,10 +112,35 @@ Path beside(const Path& file, const std::string& name, const std::string& where)
     return file.parent_path() / name;
 }
 
+/// What learning makes, and what no other file has: a mean of the members' size, modes of length one, and coefficients with the
+/// modes' variances.
+void check_shape(const ShapeModes& modes, const std::string& where) {
+    const auto refuse = [&](const std::string& what) { fail_input(where, what, "learn the class anew"); };
+    const double size = centroid_size(modes.mean);
+    if (!std::isfinite(size) || !(size > 0.05 * modes.mean_size) || !(size < 1.1 * modes.mean_size))
+        refuse("has a mean shape of another size than its members");
+    double sum = 0;
+    for (std::size_t k = 0; k < modes.variances.size(); ++k) {
+        const auto row = static_cast<Eigen::Index>(k);
+        if (!(std::abs(modes.modes.row(row).norm() - 1) < 1e-6)) refuse("has modes that are not of length one");
+        const double squares = modes.coefficients.col(row).squaredNorm(),
+                     expected = static_cast<double>(modes.coefficients.rows() - 1) * modes.variances[k];
+        if (!(modes.variances[k] > 0) || !(std::abs(squares - expected) <= 1e-6 * expected))
+            refuse("has coefficients of mode " + std::to_string(k + 1) + " that do not have its variance");
+        sum += modes.variances[k];
+    }
+    if (!(sum <= (1 + 1e-6) * modes.total)) refuse("has modes with more variance than all together");
+}
+
 }  // namespace
 
+void check_class_name(const std::string& name) {
+    if (name.empty() || Path(name).filename() != Path(name) || name == "." || name == "..")
+        fail_usage("the class is called '" + name + "', which no file can be", "give --name a plain word");
+}
+
 void write_class(const Path& folder, const ShapeClass& learnt, const Provenance& provenance) {
-    check_name(learnt.name);
+    check_class_name(learnt.name);
     const ShapeModes& modes = learnt.modes;
     Json document(rapidjson::kObjectType);
     auto& allocator = document.GetAllocator();
@@ -237,6 +257,10 @@ ShapeClass read_class(const Path& file) {
             modes.coefficients(i, static_cast<Eigen::Index>(k)) = member["coefficients"][k].GetDouble();
         if (learnt.members.back().name == document["archetype"].GetString()) modes.archetype = i;
     }
+    check_shape(modes, where);
+    const std::string archetype = document["archetype"].GetString();
+    if (learnt.members[modes.archetype].name != archetype)
+        fail_input(where, "has the archetype '" + archetype + "', which is none of its members", "learn the class anew");
     for (const auto& range : document["ranges"].GetArray())
         learnt.ranges.push_back(range_from(range, learnt.members.size(), where));
     for (const auto& range : document["fragments"].GetArray())

@@ -92,6 +92,20 @@ double score_of(const ShapeClass& learnt, const LearntMember& object, const std:
     return score;
 }
 
+/// Members in correspondence show nothing of the error of a fit, which slides along the surface.
+bool fitted_to_given(const ShapeClass& learnt, const LearntMember& object) {
+    return object.fit.residuals && std::all_of(learnt.members.begin(), learnt.members.end(),
+                                               [](const auto& m) { return m.placed_by == "correspondence"; });
+}
+
+/// All that speaks against it are distances of vertices.
+bool only_shape(const ClassAnswer& answer) {
+    return !answer.against.empty() && std::all_of(answer.against.begin(), answer.against.end(), [&](std::size_t i) {
+        const std::string& name = answer.checks[i].quantity.name;
+        return name == "from the mean shape" || name == "outside the modes";
+    });
+}
+
 }  // namespace
 
 std::vector<std::string> ClassAnswer::reasons() const {
@@ -144,6 +158,10 @@ ClassAnswer compare_with(const ShapeClass& learnt, const LearntMember& object, c
         answer.undecided = learnt.has_thresholds()      ? "nothing of what was learnt can be measured on it"
                            : learnt.members.size() == 1 ? "the class has one member, of which no threshold can be learnt"
                                                         : "the class has two members, of which no threshold can be learnt";
+    } else if (fitted_to_given(learnt, object) && only_shape(answer)) {
+        answer.undecided = "the class was learnt from objects in correspondence and this one was fitted: " +
+                           words(answer.checks[answer.against.front()]) + ", which may be the fit's own error";
+        answer.against.clear();
     } else {
         answer.verdict = answer.against.empty() ? Membership::member : Membership::other;
     }

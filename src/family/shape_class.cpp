@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 namespace ostraka {
 
@@ -72,6 +73,12 @@ bool is_distance(const ClassQuantity& quantity) {
             name == "places of the parts");
 }
 
+/// Shares, lengths, ratios: what ranges below zero would say nothing of. Deviations have signs, attributes may have.
+bool is_never_negative(const ClassQuantity& quantity) {
+    return quantity.kind == QuantityKind::proportion || quantity.kind == QuantityKind::part ||
+           quantity.kind == QuantityKind::geometry;
+}
+
 void summarise_range(LearntRange& range) {
     const std::vector<double> known = known_of(range);
     range.count = known.size();
@@ -122,7 +129,7 @@ void set_bounds(LearntRange& range, const SampleMoments& known, double resolutio
                  high = (range.logarithm ? std::exp(interval.high) : interval.high) + more;
     if (!std::isfinite(low) || !std::isfinite(high)) return;
     range.high = high;
-    if (!range.quantity.one_sided) range.low = low;
+    if (!range.quantity.one_sided) range.low = is_never_negative(range.quantity) ? std::max(0.0, low) : low;
 }
 
 using Moments = std::map<std::string, SampleMoments>;  ///< by key: what to take instead of the range's own
@@ -284,6 +291,15 @@ void add_ranges(ShapeClass& learnt, const std::vector<const LearntMember*>& memb
     learn_thresholds(learnt);
 }
 
+/// The member nearest the mean; not one of `poor`, if there are others.
+void choose_archetype(ShapeModes& modes, const std::set<std::size_t>& poor) {
+    if (poor.size() >= modes.distances.size()) return;
+    std::size_t best = modes.distances.size();
+    for (std::size_t i = 0; i < modes.distances.size(); ++i)
+        if (poor.count(i) == 0 && (best == modes.distances.size() || modes.distances[i] < modes.distances[best])) best = i;
+    modes.archetype = best;
+}
+
 }  // namespace
 
 ShapeClass learn_class(const ClassTemplate& known, const std::vector<LearntMember>& members, const LearnOptions& options) {
@@ -294,10 +310,20 @@ ShapeClass learn_class(const ClassTemplate& known, const std::vector<LearntMembe
     learnt.resolution = options.resolution;
     std::vector<const LearntMember*> used;
     std::vector<Landmarks> shapes;
+    std::set<std::size_t> poor;  // no archetype
+    constexpr double hopeless = 0.5;
     for (const LearntMember& member : members) {
         if (!member.fit.problem.empty()) {
             learnt.notes.push_back(member.name + " is left out: " + member.fit.problem);
             continue;
+        }
+        if (std::string off = fit_is_off(member.fit, hopeless); !off.empty()) {
+            learnt.notes.push_back(member.name + " is left out: " + off);
+            continue;
+        }
+        if (std::string off = fit_is_off(member.fit, options.fit.most_off); !off.empty()) {
+            learnt.notes.push_back(member.name + " counts, but is no archetype: " + off);
+            poor.insert(used.size());
         }
         used.push_back(&member);
         shapes.push_back(landmarks_of(member.fit.points));
@@ -310,6 +336,14 @@ ShapeClass learn_class(const ClassTemplate& known, const std::vector<LearntMembe
     learnt.diversity = mean_distance(learnt.modes, shapes);
     add_ranges(learnt, used);
     add_fragment_ranges(learnt, used);
+    if (const LearntRange* range = learnt.find("geometry compactness"); range != nullptr && range->count > 0)
+        for (std::size_t i = 0; i < range->values.size(); ++i)
+            if (!range->values[i]) {
+                poor.insert(i);
+                learnt.notes.push_back(learnt.members[i].name +
+                                       " counts, but is no archetype: its surface is open or encloses no volume, and others' do");
+            }
+    choose_archetype(learnt.modes, poor);
     learnt.topology = topology_checksum(known.mesh);
     if (used.size() == 1)
         learnt.notes.push_back("there is one member: neither modes nor thresholds can be learnt; give three or more");

@@ -170,6 +170,14 @@ TEST_F(ClassCommand, PropagateSaysWhereTheTemplateDoesNotLie) {
 }
 
 TEST_F(ClassCommand, WrongWordsAndFilesAreSaid) {
+    // Before any work, and without leaving a folder.
+    const std::string learn = "template learn " + known() + " " + quoted(scratch / "missing.ply");
+    EXPECT_EQ(run_command(learn).code, 2) << "no --output";
+    EXPECT_EQ(run_command(learn + " --name ../../evil --output " + quoted(scratch / "evil")).code, 2);
+    EXPECT_FALSE(std::filesystem::exists(scratch / "evil"));
+    write_file(scratch / "file", "no folder");
+    const auto unmade = run_command(learn + " --output " + quoted(scratch / "file" / "class"));
+    EXPECT_NE(unmade.err.find("folder cannot be made"), std::string::npos) << unmade.err;
     const auto empty = run_command("template learn " + known() + " --output " + quoted(scratch / "class"));
     EXPECT_EQ(empty.code, 2);
     EXPECT_NE(empty.err.find("empty"), std::string::npos) << empty.err;

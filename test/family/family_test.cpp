@@ -199,6 +199,68 @@ TEST(Classify, SaysWhenItCannotDecide) {
     EXPECT_THROW(static_cast<void>(class_of(known, {})), Error);
 }
 
+/// The nearest member to the mean of all was fitted badly.
+TEST(ShapeClass, BadFitsAreSaidAndAreNoArchetype) {
+    const Tower known = tower();
+    std::vector<LearntMember> members;
+    for (const WholeObject& member : usual(known)) members.push_back(learn_member(known.known(), member));
+    const ShapeClass before = learn_class(known.known(), members);
+    const std::size_t nearest = before.modes.archetype;
+    LearntMember& bad = members[nearest];
+    bad.fit.residuals.emplace();
+    bad.fit.residuals->unmatched = 0.4;
+    const ShapeClass noted = learn_class(known.known(), members);
+    EXPECT_EQ(noted.members.size(), members.size());
+    EXPECT_NE(noted.modes.archetype, nearest);
+    const auto says = [&](const ShapeClass& learnt, const std::string& words) {
+        return std::any_of(learnt.notes.begin(), learnt.notes.end(), [&](const std::string& note) {
+            return note.starts_with(bad.name + " ") && note.find(words) != std::string::npos;
+        });
+    };
+    EXPECT_TRUE(says(noted, "no archetype"));
+    bad.fit.residuals->unexplained = 1;
+    const ShapeClass without = learn_class(known.known(), members);
+    EXPECT_EQ(without.members.size(), members.size() - 1);
+    EXPECT_TRUE(says(without, "is left out"));
+    // One without volume: what cannot be measured of it is said.
+    bad.fit.residuals.reset();
+    for (ClassQuantity& quantity : bad.quantities)
+        if (quantity.name == "compactness") quantity.value.reset();
+    const ShapeClass flat = learn_class(known.known(), members);
+    EXPECT_NE(flat.modes.archetype, nearest);
+    EXPECT_TRUE(says(flat, "no volume"));
+}
+
+TEST(ShapeClass, WhatIsNeverNegativeIsNotAcceptedBelowZero) {
+    const Tower known = tower();
+    std::vector<LearntMember> members;
+    for (const WholeObject& member : usual(known)) members.push_back(learn_member(known.known(), member));
+    double value = 0;  // one of them zero: no logarithm
+    for (LearntMember& member : members)
+        for (ClassQuantity& quantity : member.quantities)
+            if (quantity.name == "compactness") quantity.value = value, value += 0.1;
+    const ShapeClass learnt = learn_class(known.known(), members);
+    const LearntRange* range = learnt.find("geometry compactness");
+    ASSERT_NE(range, nullptr);
+    ASSERT_TRUE(range->low.has_value());
+    EXPECT_EQ(*range->low, 0);
+}
+
+TEST(Classify, AFitsOwnErrorDoesNotSpeakAgainstAnObject) {
+    const Tower known = tower();
+    const ShapeClass learnt = class_of(known, usual(known));
+    LearntMember object = learn_member(known.known(), member_of(known, "x", 1, 1, 1));
+    ASSERT_EQ(compare_with(learnt, object).verdict, Membership::member);
+    // Vertices that slid along the surface: nothing else that is measured changes.
+    Random random(7);
+    for (Point& p : object.fit.points) p = Point(p.x() + random.uniform(-0.2, 0.2), p.y() + random.uniform(-0.2, 0.2), p.z());
+    EXPECT_EQ(compare_with(learnt, object).verdict, Membership::other) << "in correspondence the vertices are what is compared";
+    object.fit.residuals.emplace();
+    const ClassAnswer answer = compare_with(learnt, object);
+    EXPECT_EQ(answer.verdict, Membership::undecided);
+    EXPECT_NE(answer.undecided.find("this one was fitted"), std::string::npos) << answer.undecided;
+}
+
 TEST(Classify, WithoutConstraintsGeometryDecidesAndThatIsSaid) {
     Tower known = tower();
     known.graph.relationships.clear();
@@ -379,6 +441,33 @@ TEST(ClassFile, ComesBackAsWritten) {
     }
     const WholeObject object = member_of(known, "bad", 1, 1.6, 1);
     EXPECT_EQ(ask_class(read, known.known(), object).reasons(), ask_class(learnt, known.known(), object).reasons());
+    // What was written and then changed is no class.
+    const auto refused = [&](const ShapeClass& changed) {
+        write_class(scratch.path(), changed, Provenance{"test", {}, {}});
+        EXPECT_THROW(static_cast<void>(read_class(scratch / "tower.class.json")), Error);
+    };
+    ShapeClass changed = learnt;
+    changed.modes.mean *= 1e300;
+    refused(changed);
+    changed = learnt;
+    changed.modes.modes.row(0) *= 2;
+    refused(changed);
+    changed = learnt;
+    changed.modes.coefficients(0, 0) = 1e300;
+    refused(changed);
+    changed = learnt;
+    changed.modes.variances[0] *= 3;
+    refused(changed);
+    write_class(scratch.path(), learnt, Provenance{"test", {}, {}});
+    std::string text = read_file(scratch / "tower.class.json");
+    const std::string archetype = "\"archetype\": \"" + learnt.members[learnt.modes.archetype].name + "\"";
+    const std::size_t at = text.find(archetype);
+    ASSERT_NE(at, std::string::npos);
+    text.replace(at, archetype.size(), "\"archetype\": \"nobody\"");
+    write_file(scratch / "tower.class.json", text);
+    EXPECT_THROW(static_cast<void>(read_class(scratch / "tower.class.json")), Error);
+    write_class(scratch.path(), learnt, Provenance{"test", {}, {}});
+    EXPECT_EQ(read_class(scratch / "tower.class.json").modes.archetype, learnt.modes.archetype);
     std::filesystem::remove(scratch / "tower.modes.npy");
     EXPECT_THROW(static_cast<void>(read_class(scratch / "tower.class.json")), Error);
     learnt.name = "../up";
