@@ -1,4 +1,4 @@
-// Nearest-point and ray queries on a mesh (CGAL AABB tree).
+// Nearest-point queries on a mesh (a tree of boxes with normal cones) and ray queries (CGAL AABB tree).
 #pragma once
 
 #include "ostraka/core/mesh.h"
@@ -22,7 +22,8 @@ struct SurfaceHit {
 /// for any number of threads. Faces without area are left out. Building costs O(n log n), a query O(log n) typically.
 class SurfaceSearch {
 public:
-    /// `closest` prepares nearest-point queries as well (a quarter of the time and half of the memory on top).
+    /// What rays and nearest points are looked up in is made with the first query of its kind; `closest`: that for nearest points
+    /// at once.
     explicit SurfaceSearch(const Mesh& mesh, bool closest = true);
     ~SurfaceSearch();
     SurfaceSearch(SurfaceSearch&&) noexcept;
