@@ -8,6 +8,20 @@
 
 namespace ostraka {
 
+AnnotationSet::AnnotationSet(const AnnotationSet& other)
+    : object_class(other.object_class), unit(other.unit), up(other.up), annotations(other.annotations), notes(other.notes) {
+    provenance.CopyFrom(other.provenance, provenance.GetAllocator());
+}
+
+AnnotationSet& AnnotationSet::operator=(const AnnotationSet& other) {
+    if (this != &other) *this = AnnotationSet(other);
+    return *this;
+}
+
+std::string name_of(const Annotation& annotation) {
+    return "annotation " + std::to_string(annotation.id) + " ('" + annotation.tag + "')";
+}
+
 const Annotation* AnnotationSet::find(int id) const {
     const auto found = std::find_if(annotations.begin(), annotations.end(), [id](const Annotation& a) { return a.id == id; });
     return found == annotations.end() ? nullptr : &*found;

@@ -88,6 +88,23 @@ AnnotationSet remap_annotations(const Mesh& before, const AnnotationSet& set, co
     return collect_annotations(mesh, table, set, vertex_map);
 }
 
+AnnotationSet annotations_of_piece(const Mesh& whole, const AnnotationSet& set, const Mesh& piece,
+                                   const std::vector<Index>& vertices, const std::vector<Index>& faces) {
+    const auto inverse = [](const std::vector<Index>& kept, std::size_t count) {
+        std::vector<Index> map(count, no_index);
+        for (std::size_t i = 0; i < kept.size(); ++i) map.at(kept[i]) = static_cast<Index>(i);
+        return map;
+    };
+    AnnotationSet rest = remap_annotations(whole, set, piece, inverse(vertices, whole.number_of_vertices()),
+                                           inverse(faces, whole.number_of_faces()));
+    std::erase_if(rest.annotations, [&](const Annotation& one) {
+        const Annotation* before = set.find(one.id);
+        return before == nullptr || before->type != one.type ||
+               (one.type == AnnotationType::point && one.points.size() != before->points.size());
+    });
+    return rest;
+}
+
 std::vector<std::int32_t> remap_labels(const std::vector<std::int32_t>& labels, const std::vector<Index>& face_map,
                                        std::size_t face_count) {
     if (face_map.size() != labels.size())

@@ -1,11 +1,12 @@
 // Moments, principal axes, circles, and the choice of a method.
 #include "ostraka/axis/axis.h"
+#include "ostraka/core/dense.h"
 
 #include "axis_parts.h"
 
 #include "ostraka/core/error.h"
 
-#include <Eigen/Eigenvalues>
+#include <cstdio>
 
 namespace ostraka {
 
@@ -56,7 +57,7 @@ AreaMoments area_moments(const Mesh& mesh, const std::vector<Index>& faces) {
     }
     if (!(moments.area > 0)) return moments;
     const Vector3d mean = first / moments.area;
-    const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(second / moments.area - mean * mean.transpose());
+    const SymmetricEigen3 solver(second / moments.area - mean * mean.transpose());
     moments.centroid = point_of(origin + mean);
     for (int k = 0; k < 3; ++k) {
         moments.variances.at(static_cast<std::size_t>(k)) = std::max(0.0, solver.eigenvalues()[2 - k]);
@@ -101,7 +102,7 @@ Axis circle_axis(const std::vector<Point>& points) {
     mean = eigen(points[0]) + mean / double(points.size());
     Matrix3d covariance = Matrix3d::Zero();
     for (const auto& p : points) covariance += (eigen(p) - mean) * (eigen(p) - mean).transpose() / double(points.size());
-    const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(covariance);
+    const SymmetricEigen3 solver(covariance);
     const Vector3d a = oriented(solver.eigenvectors().col(0)), u = solver.eigenvectors().col(2), w = a.cross(u);
     std::vector<Eigen::Vector2d> flat;
     for (const auto& p : points) flat.emplace_back(u.dot(eigen(p) - mean), w.dot(eigen(p) - mean));
@@ -136,6 +137,33 @@ Axis find_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOpti
     if (options.method == "skeleton") return skeleton_axis(mesh, faces, options);
     if (options.method == "principal") return principal_axis(mesh, faces, options);
     return rotation_axis(mesh, faces, options);
+}
+
+std::string to_obj(const Axis& axis) {
+    std::string text = "# axis\n";
+    char buffer[128];
+    std::size_t next = 1;
+    for (const auto& line : axis.lines) {
+        std::string element = "l";
+        for (const auto& p : line) {
+            std::snprintf(buffer, sizeof buffer, "v %.17g %.17g %.17g\n", p.x(), p.y(), p.z());
+            text += buffer;
+            element += " " + std::to_string(next++);
+        }
+        text += element + "\n";
+    }
+    return text;
+}
+
+void AxisOptions::describe(OptionList& visit) {
+    visit("method", method, "how the axis is found", Choices{"rotation", "slices", "skeleton", "principal"});
+    visit("tolerance", tolerance,
+          "rotation: distance from the turned profile that counts as on it, share of its largest diameter", Range{0, 1});
+    visit("least-quality", least_quality, "rotation: share of the surface that must lie on the turned profile", Range{0, 1});
+    visit("slices", slices, "slices: number of planes across the part", Range{4, 10000});
+    visit("trials", trials, "rotation: random sets of normals tried", Range{0, 1000000});
+    visit("smoothing", smoothing, "rotation: how often normals are averaged over their neighbours", Range{0, 100});
+    visit("seed", seed, "rotation: of the random sets", Anything{});
 }
 
 }  // namespace ostraka

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ostraka/axis/axis.h"
+#include "ostraka/core/angles.h"
 #include "ostraka/geom/circle.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/line.h"
@@ -29,9 +30,9 @@ inline std::pair<Vector3d, Vector3d> across(const Vector3d& a) {
 inline double covered_percent(std::vector<double> angles) {
     if (angles.empty()) return 0;
     std::sort(angles.begin(), angles.end());
-    double gap = angles.front() + 2 * M_PI - angles.back();
+    double gap = angles.front() + 2 * pi - angles.back();
     for (std::size_t i = 1; i < angles.size(); ++i) gap = std::max(gap, angles[i] - angles[i - 1]);
-    return gap < std::max(5 * M_PI / 180, 6 * M_PI / double(angles.size())) ? 100 : 100 * (1 - gap / (2 * M_PI));
+    return gap < std::max(5 * pi / 180, 6 * pi / double(angles.size())) ? 100 : 100 * (1 - gap / (2 * pi));
 }
 
 double part_diagonal(const Mesh& mesh, const std::vector<Index>& faces);

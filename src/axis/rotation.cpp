@@ -1,9 +1,9 @@
 // Axis of a surface of revolution from normals, refined on positions.
 #include "axis_parts.h"
 
+#include "ostraka/core/angles.h"
+#include "ostraka/core/dense.h"
 #include "ostraka/core/error.h"
-
-#include <Eigen/Eigenvalues>
 
 #include <random>
 
@@ -89,12 +89,12 @@ struct Complex {
     }
     /// The axis of least error with |a| = 1, its pitch dropped; `second` is the next eigenvalue: how well other axes would do.
     [[nodiscard]] Line solve(double* second = nullptr) const {
-        const Eigen::SelfAdjointEigenSolver<Matrix3d> of_n(N);
+        const SymmetricEigen3 of_n(N);
         Matrix3d inverse = Matrix3d::Zero();
         for (int k = 0; k < 3; ++k)
             if (of_n.eigenvalues()[k] > 1e-6 * N.trace())
                 inverse += of_n.eigenvectors().col(k) * of_n.eigenvectors().col(k).transpose() / of_n.eigenvalues()[k];
-        const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(D - B.transpose() * inverse * B);
+        const SymmetricEigen3 solver(D - B.transpose() * inverse * B);
         const Vector3d a = solver.eigenvectors().col(0);
         if (second != nullptr) *second = solver.eigenvalues()[1];
         return {a.cross(-inverse * B * a), a};
@@ -281,7 +281,7 @@ struct Refinement {
         const Eigen::Matrix2d shifts = H.topLeftCorner<2, 2>() + 1e-12 * (H.trace() + 1e-30) * Eigen::Matrix2d::Identity();
         const Eigen::Matrix2d left =
             H.bottomRightCorner<2, 2>() - H.bottomLeftCorner<2, 2>() * shifts.inverse() * H.topRightCorner<2, 2>();
-        return std::max(0.0, Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(left).eigenvalues()[0]) / weight;
+        return std::max(0.0, SymmetricEigen2(left).eigenvalues()[0]) / weight;
     }
 };
 
@@ -291,7 +291,7 @@ Line refined(const std::vector<Sample>& samples, Line axis) {
         const Refinement system(samples, axis, profile);
         if (!(system.weight > 0)) break;
         const Eigen::Matrix4d damped = system.H + 1e-6 * system.H.trace() * Eigen::Matrix4d::Identity();
-        const Eigen::Vector4d step = -damped.ldlt().solve(system.g);
+        const Eigen::Vector4d step = -solve_ldlt<4>(damped, system.g);
         if (!step.allFinite() || step.norm() > 0.5) break;
         axis.point += step[0] * system.u + step[1] * system.w;
         axis.direction = (axis.direction + step[2] * system.u + step[3] * system.w).normalized();
@@ -314,7 +314,7 @@ double sphere_error(const std::vector<Sample>& samples, const Profile& profile) 
         A += s.weight * row * row.transpose();
         b += s.weight * s.p.squaredNorm() * row;
     });
-    const Eigen::Vector4d x = A.ldlt().solve(b);
+    const Eigen::Vector4d x = solve_ldlt<4>(A, b);
     const double square = x[3] + x.head<3>().squaredNorm();
     if (!x.allFinite() || !(square > 0)) return std::numeric_limits<double>::infinity();
     std::vector<double> errors;
@@ -371,7 +371,7 @@ Axis rotation_axis(const Mesh& mesh, const std::vector<Index>& faces, const Axis
     axis.figures = {{"largest diameter", 2 * largest * scale, "length"},
                     {"circle preserved", covered_percent(angles), "%"},
                     {"rms distance", round > 0 ? std::sqrt(squares / round) * scale : 0, "length"},
-                    {"direction error", std::min(90.0, error * 180 / M_PI), "degree"}};
+                    {"direction error", std::min(90.0, error * 180 / pi), "degree"}};
     if (sphere_error(samples, profile) < 2 * profile.sigma || information < 1e-4 * system.radius * system.radius) {
         axis.reason = "it is like a part of a sphere: many axes would do";
         return axis;

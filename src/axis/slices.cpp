@@ -10,7 +10,7 @@ using namespace detail;
 
 namespace {
 
-struct Slice {
+struct PatchSlice {
     bool valid = false;
     Vector3d centre = Vector3d::Zero();
     double radius = 0;
@@ -18,7 +18,7 @@ struct Slice {
 
 /// The cut of the part by a plane, of which only what lies within `reach` of `point` counts. A vertex on the plane counts as
 /// above.
-Slice cut(const Mesh& mesh, const std::vector<Index>& faces, const Vector3d& point, const Vector3d& normal, double reach) {
+PatchSlice cut(const Mesh& mesh, const std::vector<Index>& faces, const Vector3d& point, const Vector3d& normal, double reach) {
     std::vector<Vector3d> middles;
     std::vector<double> lengths;
     for (const Index f : faces) {
@@ -46,7 +46,7 @@ Slice cut(const Mesh& mesh, const std::vector<Index>& faces, const Vector3d& poi
         middles.push_back(middle);
         lengths.push_back(length);
     }
-    Slice slice;
+    PatchSlice slice;
     if (middles.size() < 3) return slice;
     Vector3d centre = Vector3d::Zero();
     double total = 0;
@@ -90,7 +90,7 @@ Axis slice_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOpt
         }
     const double diagonal = part_diagonal(mesh, faces);
     const auto count = static_cast<std::size_t>(options.slices);
-    std::vector<Slice> first(count);
+    std::vector<PatchSlice> first(count);
     parallel_for(
         count,
         [&](std::size_t i) {
@@ -98,10 +98,10 @@ Axis slice_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOpt
             first[i] = cut(mesh, faces, centroid + h * direction, direction, 2 * diagonal);
         },
         1);
-    std::vector<Slice> rough;
+    std::vector<PatchSlice> rough;
     for (const auto& slice : first)
         if (slice.valid) rough.push_back(slice);
-    std::vector<Slice> fine(rough.size());
+    std::vector<PatchSlice> fine(rough.size());
     parallel_for(
         rough.size(),
         [&](std::size_t i) {

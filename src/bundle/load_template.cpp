@@ -5,7 +5,7 @@
 #include "ostraka/core/inside.h"
 #include "ostraka/core/limits.h"
 #include "ostraka/core/npy.h"
-#include "ostraka/relation/topology.h"
+#include "ostraka/relation/rules.h"
 
 #include <algorithm>
 #include <cmath>
@@ -43,11 +43,10 @@ private:
         TemplateEntry entry{part.role, part.name, 0, {}};
         if (part.role == "cage") result_.cages.emplace_back();
         try {
-            std::error_code code;
-            const auto bytes = std::filesystem::file_size(part.file, code);
-            if (!code) entry.bytes = bytes;
+            const bool there = file_exists(part.file);
+            if (there) entry.bytes = size_of_file(part.file);
             if (part.sha256.empty()) remark(part.name, "the template holds no checksum of it");
-            else if (!code && sha256_of_file(part.file) != part.sha256)
+            else if (there && sha256_of_file(part.file) != part.sha256)
                 defect(part.name, "the file is another one than when the template was packed (its checksum differs)");
             entry.text = read(part);
         } catch (const Error& error) {
@@ -109,8 +108,7 @@ private:
                         defect(part.name, error.problem() + " (" + error.remedy() + ")");
                         continue;
                     }
-                std::error_code code;
-                if (!std::filesystem::exists(part.file.parent_path() / array, code))
+                if (!file_exists(part.file.parent_path() / array))
                     remark(part.name, "the array '" + array + "' of the attribute '" + attribute.name + "' is not there");
             }
         return counted(result_.annotations->annotations.size(), "annotation", "annotations");
@@ -169,8 +167,7 @@ private:
 
     /// Where the weights have their header beside them, it says which mesh and cage they are of.
     void check_header(const TemplatePart& part) {
-        std::error_code code;
-        if (!std::filesystem::exists(coordinate_header_file(part.file), code)) {
+        if (!file_exists(coordinate_header_file(part.file))) {
             // The second array of Green coordinates belongs to the header of the first.
             if (!part.name.ends_with(".normal.npy"))
                 remark(part.name, "has no header " + coordinate_header_file(part.file).filename().string() +
@@ -263,15 +260,11 @@ private:
 
     void class_rules() {
         const TemplatePart& part = *result_.file.of("rules").front();
-        std::vector<Relationship> relationships;
-        if (result_.graph) relationships = result_.graph->relationships;
-        else if (result_.rules->about_relations())
-            relationships = relationships_of(topology(result_.mesh->mesh, *result_.annotations), *result_.annotations, 0);
-        std::vector<RelationFact> facts;
-        for (const Relationship& one : relationships) facts.push_back({one.type, one.directed, one.annotations});
+        const Vocabulary* words = result_.vocabulary ? &*result_.vocabulary : nullptr;
+        const RelationGraph* graph = result_.graph ? &*result_.graph : nullptr;
         try {
-            for (const BrokenRule& broken : check_class_rules(
-                     *result_.annotations, *result_.rules, result_.vocabulary ? &*result_.vocabulary : nullptr, facts, part.name))
+            for (const BrokenRule& broken :
+                 broken_rules(result_.mesh->mesh, *result_.annotations, *result_.rules, words, graph, part.name))
                 defect(result_.file.of("annotations").front()->name, "rule '" + broken.rule + "': " + broken.text);
         } catch (const Error& error) {
             if (error.kind() != ErrorKind::input) throw;
@@ -290,5 +283,11 @@ bool Template::sound() const {
 }
 
 Template load_template(TemplateFile file, const TemplateOptions& options) { return Loader(std::move(file), options).run(); }
+
+void check_usable(const Template& known, const std::string& file) {
+    for (const Finding& finding : known.findings)
+        if (finding.defect) fail_input(file + ", " + finding.where, finding.text, "mend it: 'template check' tells all");
+    if (!known.mesh) fail_input(file, "has no mesh", "pack one");
+}
 
 }  // namespace ostraka

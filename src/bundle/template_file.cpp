@@ -113,4 +113,31 @@ Json template_to_json(const TemplateFile& file, const Provenance& provenance) {
     return document;
 }
 
+std::string part_name(const Path& folder, const Path& part) {
+    std::error_code code;
+    const Path home = std::filesystem::weakly_canonical(std::filesystem::absolute(folder), code);
+    const Path file = std::filesystem::weakly_canonical(std::filesystem::absolute(part), code);
+    const Path relative = file.lexically_relative(home);
+    return (relative.empty() ? file : relative).generic_string();
+}
+
+TemplateFile copy_template(const TemplateFile& file, const Path& folder, const std::string& name, const Provenance& provenance) {
+    TemplateFile copy = file;
+    for (TemplatePart& part : copy.parts) {
+        part.name = part.file.filename().string();
+        if (std::any_of(copy.parts.begin(), copy.parts.end(), [&](const TemplatePart& other) {
+                return &other < &part && other.name == part.name && other.file != part.file;
+            }))
+            fail_input("template", "two of its parts are called '" + part.name + "', from different folders",
+                       "rename one of them");
+        const Path place = folder / part.name;
+        const std::string bytes = read_file(part.file);
+        if (!same_place(place, part.file)) write_file(place, bytes);
+        part.sha256 = sha256(bytes);
+        part.file = place;
+    }
+    write_json(folder / name, template_to_json(copy, provenance));
+    return copy;
+}
+
 }  // namespace ostraka

@@ -1,5 +1,6 @@
 #include "ostraka/cage/cage.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/core/text.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/io/diagnose.h"
 
@@ -33,12 +34,6 @@ std::size_t count_components(const Mesh& mesh) {
         }
     }
     return count;
-}
-
-std::string text(double value) {
-    char buffer[32];
-    std::snprintf(buffer, sizeof buffer, "%.4g", value);
-    return buffer;
 }
 
 std::string counted(std::size_t count, const std::string& one) {
@@ -154,7 +149,8 @@ std::vector<Finding> findings(const CageCheck& check, const std::string& unit) {
         list.push_back({true, "cage", std::to_string(check.intersections.size() - 5) + " more pairs of faces meet"});
     for (std::size_t i = 0; i < check.outside.size() && i < 5; ++i) {
         const OutsideVertex& o = check.outside[i];
-        const std::string place = o.distance > 0 ? "is " + text(o.distance) + of_length + " outside near face " : "is on face ";
+        const std::string place =
+            o.distance > 0 ? "is " + digits(o.distance, 4) + of_length + " outside near face " : "is on face ";
         list.push_back({true, "vertex " + std::to_string(o.vertex) + " of the mesh",
                         place + std::to_string(o.face) + ": move that face's vertices outwards" +
                             (o.distance > 0 ? " by more than that" : "")});

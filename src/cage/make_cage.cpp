@@ -1,6 +1,7 @@
 #include "ostraka/cage/cage.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/limits.h"
+#include "ostraka/core/text.h"
 #include "ostraka/io/wrap.h"
 
 #include "shrink.h"
@@ -31,12 +32,6 @@ TriangleSoup obstacle_of(const Mesh& mesh, const std::optional<MirrorPlane>& mir
     return soup;
 }
 
-std::string text(double value) {
-    char buffer[32];
-    std::snprintf(buffer, sizeof buffer, "%.3g", value);
-    return buffer;
-}
-
 Mesh without_loose_vertices(Mesh mesh) {
     for (const Vertex v : mesh.vertices())
         if (mesh.is_isolated(v)) mesh.remove_vertex(v);
@@ -58,8 +53,8 @@ void check_soup(const TriangleSoup& soup, double offset) {
     const double rounding = largest * std::numeric_limits<double>::epsilon();
     if (!(offset >= 1000 * rounding))
         fail_input("mesh",
-                   "is too far from the origin for its size: coordinates are rounded to " + text(rounding) +
-                       " there, and the offset of the wrap is " + text(offset),
+                   "is too far from the origin for its size: coordinates are rounded to " + digits(rounding, 3) +
+                       " there, and the offset of the wrap is " + digits(offset, 3),
                    "translate it to the origin, or raise the offset");
 }
 

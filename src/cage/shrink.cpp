@@ -2,6 +2,8 @@
 
 #include "triangle_grid.h"
 
+#include "ostraka/core/angles.h"
+#include "ostraka/core/dense.h"
 #include "ostraka/geom/eigen.h"
 
 #include <CGAL/boost/graph/Euler_operations.h>
@@ -148,7 +150,7 @@ private:
         const double trace = q.a.trace();
         const Vector3d middle = (pa + pb) / 2;
         const Matrix3d soft = q.a + 1e-3 * trace * Matrix3d::Identity();
-        const Vector3d best = soft.ldlt().solve(q.b + 1e-3 * trace * middle);
+        const Vector3d best = solve_ldlt<3>(soft, q.b + 1e-3 * trace * middle);
         const double length = (pa - pb).squaredNorm(), density = std::max(density_[a], density_[b]);
         std::vector<Vector3d> list;
         if (stage == 0) list = {best, middle, pa, pb};
@@ -283,7 +285,7 @@ private:
                 }
                 for (const auto& t : fresh) change += solid_angle(local(t[0]) - q, local(t[1]) - q, local(t[2]) - q);
             }
-            if (std::abs(change) > M_PI) return false;
+            if (std::abs(change) > pi) return false;
         }
         return true;
     }

@@ -118,6 +118,37 @@ MeasureTable measure_table(const std::vector<std::string>& names, const std::vec
     return table;
 }
 
+std::vector<ObjectResult> take_measures(const Collection& collection, const MeasureDefinitions& definitions,
+                                        const ResultStore& store) {
+    return for_each_object(collection, store, {"measures", definitions.text}, [&](const CollectionObject& object) {
+        return object_measures_to_json(take_measures(object, definitions));
+    });
+}
+
+MeasureTable measure_table(const Collection& collection, const std::vector<ObjectResult>& taken,
+                           const MeasureDefinitions& definitions, std::vector<std::string>& notes, const std::string& where) {
+    std::vector<std::string> names, order;
+    std::vector<std::optional<ObjectMeasures>> objects;
+    std::map<std::string, std::vector<std::string>> told;  // by note: the objects
+    for (std::size_t i = 0; i < taken.size(); ++i) {
+        names.push_back(collection.objects[i].name);
+        objects.emplace_back();
+        if (!taken[i].problem.empty()) continue;
+        objects.back() = object_measures_from_json(taken[i].result);
+        for (const auto& note : objects.back()->notes) {
+            if (told[note].empty()) order.push_back(note);
+            told[note].push_back(names.back());
+        }
+    }
+    for (const auto& note : order) {
+        const auto& of = told[note];
+        notes.push_back(of.front() + (of.size() == 1 ? "" : " and " + std::to_string(of.size() - 1) + " more") + ": " + note);
+    }
+    if (std::none_of(taken.begin(), taken.end(), [](const ObjectResult& each) { return each.problem.empty(); }))
+        fail_input(where, "not one object could be measured", "the first: " + taken.front().problem);
+    return measure_table(names, objects, definitions, notes);
+}
+
 MeasureTable read_measure_table(const Path& file) {
     const std::string text = read_file(file);
     const auto rows = csv_rows(text, csv_separator(text), file.string());

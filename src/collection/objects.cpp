@@ -6,14 +6,13 @@
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
 
+#include "json_text.h"
+
 #include <algorithm>
 #include <array>
-#include <filesystem>
 #include <set>
 
 namespace ostraka {
-
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -53,11 +52,6 @@ std::string some_of(const std::vector<std::string>& names) {
     return names.size() <= 3 ? text : text + " and " + std::to_string(names.size() - 3) + " more";
 }
 
-std::string text_of(const JsonValue& object, const char* member) {
-    const JsonValue* value = find_member(object, member);
-    return value == nullptr || !value->IsString() ? std::string() : std::string(value->GetString(), value->GetStringLength());
-}
-
 /// The contents of all files of an object; empty if one cannot be read.
 std::string checksum_of(const CollectionObject& object) {
     Sha256 hash;
@@ -77,26 +71,18 @@ Collection from_folder(const Path& folder) {
     std::map<std::string, Path> markups;
     std::set<std::string> annotations;
     Collection collection;
-    std::error_code code;
-    fs::directory_iterator entries(folder, code);
-    for (const fs::directory_iterator end; !code && entries != end; entries.increment(code)) {
-        const fs::directory_entry& entry = *entries;
-        const std::string name = entry.path().filename().string();
-        std::error_code own;
-        const fs::file_status status = entry.status(own);
-        if (name.front() == '.' || fs::is_directory(status)) continue;
-        if (!fs::is_regular_file(status)) {
-            if (is_object_file(entry.path()))
-                collection.left_out.emplace_back(shown(name), "is no file that can be read (is it a link to nothing?)");
-            continue;
-        }
-        if (name.ends_with(markup_ending))
-            markups[name.substr(0, name.size() - std::string(markup_ending).size())] = entry.path();
+    std::vector<std::string> others;
+    for (const std::string& name : files_in(folder, &others)) {
+        const Path file = folder / name;
+        if (name.front() == '.') continue;
+        if (name.ends_with(markup_ending)) markups[name.substr(0, name.size() - std::string(markup_ending).size())] = file;
         else if (name.ends_with(".ant.json")) annotations.insert(name);
-        else if (std::find(mesh_endings.begin(), mesh_endings.end(), extension(entry.path())) != mesh_endings.end())
-            meshes[entry.path().stem().string()].push_back(entry.path());
+        else if (std::find(mesh_endings.begin(), mesh_endings.end(), extension(file)) != mesh_endings.end())
+            meshes[file.stem().string()].push_back(file);
     }
-    if (code) fail_input(folder.string(), "the folder cannot be read: " + code.message(), "check its rights");
+    for (const std::string& name : others)
+        if (is_object_file(folder / name))
+            collection.left_out.emplace_back(shown(name), "is no file that can be read (is it a link to nothing?)");
     const auto add = [&](const std::string& name, const std::string& stem, const Path& mesh) {
         if (!is_name(name)) {
             collection.left_out.emplace_back(shown(name),
@@ -174,11 +160,21 @@ bool is_object_file(const Path& file) {
                                    std::find(mesh_endings.begin(), mesh_endings.end(), extension(file)) != mesh_endings.end());
 }
 
+void check_new_collection(const Path& folder) {
+    if (!is_folder(folder)) return;
+    std::vector<std::string> there = files_in(folder);
+    std::erase_if(there, [](const std::string& name) { return !is_object_file(name) && extension(name) != ".csv"; });
+    if (there.empty()) return;
+    throw Error(
+        ErrorKind::failure, folder.string(),
+        "the folder holds objects or tables already (" + std::to_string(there.size()) + ", such as '" + there.front() + "')",
+        "name a folder that is new or empty, so that made objects are not mixed with others");
+}
+
 Collection read_collection(const Path& folder_or_file) {
     const std::string where = folder_or_file.string();
-    std::error_code code;
-    const bool folder = fs::is_directory(folder_or_file, code);
-    if (!folder && !fs::exists(folder_or_file, code)) fail_input(where, "there is no such folder or file", "check the name");
+    const bool folder = is_folder(folder_or_file);
+    if (!folder && !file_exists(folder_or_file)) fail_input(where, "there is no such folder or file", "check the name");
     if (!folder && extension(folder_or_file) != ".json")
         fail_input(where, "is no collection", "name a folder of meshes, or a file *.study.json");
     Collection collection = folder ? from_folder(folder_or_file) : from_file(folder_or_file);

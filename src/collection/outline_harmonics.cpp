@@ -1,14 +1,13 @@
 #include "outline_harmonics.h"
+#include "ostraka/core/angles.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 
 #include <cmath>
-#include <numbers>
 
 namespace ostraka {
 
 using Eigen::Vector2d;
-using std::numbers::pi;
 
 namespace {
 

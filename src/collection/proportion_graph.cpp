@@ -138,4 +138,10 @@ Proposals propose_proportions(const Mesh& mesh, const AnnotationSet& set, Relati
     return result;
 }
 
+void ProposalOptions::describe(OptionList& visit) {
+    visit("stable", stable, "propose ratios that are stable as well, not only fixed ones", Anything{});
+    visit("weight", weight, "weight of the proposed constraints", Range{0, 1e12});
+    visit("hard", hard, "propose hard constraints", Anything{});
+}
+
 }  // namespace ostraka

@@ -353,4 +353,17 @@ ProportionStudy study_proportions(const MeasureTable& given, const ProportionOpt
     return study;
 }
 
+void ProportionOptions::describe(OptionList& visit) {
+    visit("false-discoveries", false_discoveries, "share of false ones that is allowed among the ratios called fixed",
+          Range{1e-6, 0.5});
+    visit("correction", correction,
+          "for the number of ratios: bh (Benjamini and Hochberg) or by (Benjamini and Yekutieli, under any dependence)",
+          Choices{"bh", "by"});
+    visit("permutations", permutations, "random rearrangements of each test; more where the number of ratios asks for it",
+          Range{99, 1000000});
+    visit("range", range, "share of the observed ratios that a proposed range spans", Range{0.01, 1});
+    visit("confidence", confidence, "confidence of intervals", Range{0.5, 0.999});
+    visit("seed", seed, "seed of the random numbers", Range{0, 1e18});
+}
+
 }  // namespace ostraka

@@ -1,10 +1,9 @@
 #include "ratio_tests.h"
 
+#include "ostraka/core/dense.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/stats/inference.h"
 #include "ostraka/stats/random.h"
-
-#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
@@ -84,7 +83,7 @@ Eigen::MatrixXd centred_columns(const Eigen::MatrixXd& logs) {
         }
     }
     // The sizes may take a constant from the columns: of all solutions the one with the least squares.
-    const Eigen::VectorXd centre = normal.completeOrthogonalDecomposition().solve(right);
+    const Eigen::VectorXd centre = solve_least_squares<Eigen::Dynamic>(normal, right);
     return x.rowwise() - centre.transpose();
 }
 

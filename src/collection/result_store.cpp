@@ -5,21 +5,11 @@
 #include "ostraka/core/progress.h"
 #include "ostraka/core/provenance.h"
 
-#include <filesystem>
+#include "json_text.h"
+
 #include <new>
 
 namespace ostraka {
-
-namespace fs = std::filesystem;
-
-namespace {
-
-std::string text_of(const JsonValue& object, const char* member) {
-    const JsonValue* value = find_member(object, member);
-    return value == nullptr || !value->IsString() ? std::string() : std::string(value->GetString(), value->GetStringLength());
-}
-
-}  // namespace
 
 ResultStore::ResultStore(Path folder) : folder_(std::move(folder)) {
     if (!folder_.empty()) remove_stale_temporaries(folder_);
@@ -44,8 +34,7 @@ std::string ResultStore::key(const std::vector<std::string>& parts) {
 std::optional<Json> ResultStore::find(const std::string& name, const std::string& key) const {
     if (folder_.empty()) return {};
     const Path file = folder_ / (name + ".json");
-    std::error_code code;
-    if (!fs::exists(file, code)) return {};
+    if (!file_exists(file)) return {};
     try {
         Json document = read_json(file);
         if (!document.IsObject() || text_of(document, "key") != key) return {};
@@ -61,8 +50,7 @@ std::optional<Json> ResultStore::find(const std::string& name, const std::string
 
 void ResultStore::keep(const std::string& name, const std::string& key, const JsonValue& result) const {
     if (folder_.empty()) return;
-    std::error_code code;
-    fs::create_directories(folder_, code);
+    make_folder(folder_);
     Json document(rapidjson::kObjectType);
     auto& allocator = document.GetAllocator();
     add_member(document, "format", "ostraka-study-result", allocator);

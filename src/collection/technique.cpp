@@ -1,5 +1,7 @@
 #include "ostraka/collection/technique.h"
 
+#include "ostraka/core/dense.h"
+
 #include "outline_harmonics.h"
 
 #include "ostraka/core/error.h"
@@ -7,7 +9,7 @@
 #include "ostraka/slicing/slice.h"
 #include "ostraka/slicing/slice_descriptors.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -117,7 +119,7 @@ Straightness straightness(const std::vector<TechniqueSlice>& slices) {
         radius += slice.radius;
     }
     radius /= static_cast<double>(n);
-    const Eigen::MatrixXd rest = B - A * A.householderQr().solve(B);
+    const Eigen::MatrixXd rest = B - A * solve_full_rank(A, B);
     result.line = std::sqrt(rest.squaredNorm() / static_cast<double>(n)) / radius;
     result.upright = (B.rowwise() - B.colwise().mean()).rowwise().norm().mean() / radius;
     return result;
@@ -263,6 +265,14 @@ TechniqueMeasures technique_from_json(const JsonValue& json) {
     measures.open_used = json["openUsed"].GetUint64();
     describe_technique(measures);
     return measures;
+}
+
+void TechniqueOptions::describe(OptionList& visit) {
+    visit("slices", slices, "slices of each object", Range{2, 100000});
+    visit("from", from, "where they begin, as a share of the height", Range{0, 1});
+    visit("to", to, "where they end, as a share of the height (the thesis: the lowest two fifths)", Range{0, 1});
+    visit("least-turn", least_turn, "an open outline is used if it covers this share of the full turn", Range{0.5, 1});
+    visit("least-slices", least_slices, "an object needs as many slices that can be used", Range{2, 100000});
 }
 
 }  // namespace ostraka

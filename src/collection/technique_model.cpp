@@ -1,6 +1,5 @@
 #include "technique_model.h"
-
-#include <Eigen/Dense>
+#include "ostraka/core/dense.h"
 
 #include <cmath>
 
@@ -79,7 +78,7 @@ TechniqueModel learn(const MatrixXd& values, const std::vector<bool>& truth, con
     const MatrixXd standard = size.cwiseInverse().asDiagonal() * kinds.scatter * size.cwiseInverse().asDiagonal();
     const MatrixXd damped = standard + 0.05 * MatrixXd::Identity(values.cols(), values.cols());
     const VectorXd apart = (kinds.mean[1] - kinds.mean[0]).cwiseQuotient(size);
-    model.weights = damped.ldlt().solve(apart).cwiseQuotient(size);
+    model.weights = solve_ldlt<Eigen::Dynamic>(damped, apart).cwiseQuotient(size);
     const double deviation = std::sqrt(std::max(model.weights.dot(kinds.scatter * model.weights), 0.0));
     if (deviation > 1e-300) model.weights /= deviation;
     model.middle = 0.5 * (kinds.mean[0] + kinds.mean[1]);

@@ -1,4 +1,5 @@
 #include "ostraka/collection/technique_study.h"
+#include "ostraka/core/dense.h"
 
 #include "technique_model.h"
 #include "technique_words.h"
@@ -7,8 +8,6 @@
 #include "ostraka/core/parallel.h"
 #include "ostraka/stats/random.h"
 #include "ostraka/stats/summary.h"
-
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -135,7 +134,7 @@ std::vector<double> first_component(const DescriptorTable& table) {
         const double size = X.col(k).norm() / std::sqrt(static_cast<double>(n - 1));
         X.col(k) /= size > 1e-12 ? size : 1;
     }
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> parts(X.transpose() * X);
+    const SymmetricEigenX parts(X.transpose() * X);
     VectorXd way = parts.eigenvectors().col(X.cols() - 1);
     if (way[0] < 0) way = -way;  // of ovality
     const VectorXd y = X * way;
@@ -293,6 +292,19 @@ TechniqueStudy study_technique(const std::vector<TechniqueObject>& objects, cons
     }
     explain_answers(study, objects);
     return study;
+}
+
+void TechniqueStudyOptions::describe(OptionList& visit) {
+    visit("positive", positive, "the label that F1 is of; else the one whose bodies are rounder", Anything{});
+    visit("answer-by", answer_by, "the classifier that answers for each object (see the table of classifiers)", Anything{});
+    visit("folds", folds, "parts of the cross-validation", Range{2, 1000});
+    visit("repeats", repeats, "divisions into parts", Range{1, 1000});
+    visit("resamples", resamples, "resampled collections that each answer is asked of", Range{10, 100000});
+    visit("simulations", simulations, "collections of one group that a division into two is compared with", Range{19, 100000});
+    visit("unlike-from", unlike_from,
+          "an object that lies as many robust standard deviations outside the labelled ones by any descriptor gets no answer",
+          Range{1, 1e6});
+    visit("seed", seed, "seed of the random numbers", Range{0, 1e18});
 }
 
 }  // namespace ostraka

@@ -147,8 +147,7 @@ void write_coordinates(const Path& weights, const Coordinates& coordinates, cons
 CoordinateHeader read_coordinate_header(const Path& weights) {
     check_name(weights);
     const Path file = coordinate_header_file(weights);
-    std::error_code code;
-    if (!std::filesystem::exists(file, code))
+    if (!file_exists(file))
         fail_input(weights.string(), "has no header " + file.filename().string() + " beside it that says what it belongs to",
                    anew);
     const Json document = read_json(file);

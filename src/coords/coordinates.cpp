@@ -148,4 +148,9 @@ std::vector<Point> deformed(const Coordinates& coordinates, const Mesh& rest_cag
     return result;
 }
 
+void CoordinateOptions::describe(OptionList& visit) {
+    visit("snap", snap, "distance, as a share of the cage's diagonal, below which a point counts as lying on the cage",
+          Range{0, 1e-6});
+}
+
 }  // namespace ostraka

@@ -12,7 +12,10 @@
 #include <cctype>
 #include <cerrno>
 #include <cstring>
+#include <map>
+#include <mutex>
 #include <new>
+#include <optional>
 
 namespace ostraka {
 
@@ -49,6 +52,66 @@ struct Input {
 };
 
 thread_local OutputTransaction* open_transaction = nullptr;
+thread_local ReadRecord* open_record = nullptr;
+
+/// Files in memory by their names without "." and "..".
+class MemoryFiles {
+public:
+    [[nodiscard]] std::optional<std::string> find(const Path& file) const {
+        const std::lock_guard lock(mutex_);
+        const auto found = files_.find(key(file));
+        return found == files_.end() ? std::nullopt : std::optional(found->second);
+    }
+    void put(const Path& file, std::string bytes) {
+        const std::lock_guard lock(mutex_);
+        files_[key(file)] = std::move(bytes);
+    }
+    void rename(const Path& from, const Path& to) {
+        const std::lock_guard lock(mutex_);
+        auto node = files_.extract(key(from));
+        if (node.empty()) return;
+        files_.erase(key(to));
+        node.key() = key(to);
+        files_.insert(std::move(node));
+    }
+    void remove(const Path& file) {
+        const std::lock_guard lock(mutex_);
+        files_.erase(key(file));
+    }
+    /// Names below a folder, without it.
+    [[nodiscard]] std::vector<std::string> below(const Path& folder) const {
+        const std::lock_guard lock(mutex_);
+        const std::string beginning = key(folder) + "/";
+        std::vector<std::string> names;
+        for (auto it = files_.lower_bound(beginning); it != files_.end() && it->first.starts_with(beginning); ++it)
+            names.push_back(it->first.substr(beginning.size()));
+        return names;
+    }
+    Path temporary() {
+        const std::lock_guard lock(mutex_);
+        return "memory:.temporary/" + std::to_string(++temporaries_);
+    }
+
+private:
+    static std::string key(const Path& file) {
+        std::string text = file.lexically_normal().generic_string();
+        while (text.ends_with('/')) text.pop_back();
+        return text;
+    }
+    mutable std::mutex mutex_;
+    std::map<std::string, std::string> files_;
+    std::size_t temporaries_ = 0;
+};
+MemoryFiles& memory_files() {
+    static MemoryFiles files;
+    return files;
+}
+
+void rename_file(const Path& from, const Path& to) {
+    if (is_memory(from)) return memory_files().rename(from, to);
+    if (::rename(from.c_str(), to.c_str()) != 0)
+        throw Error(ErrorKind::failure, to.string(), "cannot be written: " + reason(), "check the rights of its folder");
+}
 
 /// What a link points to, whether that exists or not.
 Path behind_links(Path file) {
@@ -62,7 +125,93 @@ Path behind_links(Path file) {
 }
 }  // namespace
 
+bool is_memory(const Path& file) { return file.native().starts_with("memory:"); }
+
+void forget_memory(const Path& file) {
+    memory_files().remove(file);
+    for (const std::string& name : memory_files().below(file)) memory_files().remove(file / name);
+}
+
+bool file_exists(const Path& file) {
+    std::error_code code;
+    return is_memory(file) ? memory_files().find(file).has_value() : std::filesystem::is_regular_file(file, code);
+}
+
+std::size_t size_of_file(const Path& file) {
+    std::error_code code;
+    if (is_memory(file)) return memory_files().find(file).value_or("").size();
+    const auto size = std::filesystem::file_size(file, code);
+    return code ? 0 : size;
+}
+
+bool is_folder(const Path& folder) {
+    std::error_code code;
+    return is_memory(folder) ? !memory_files().below(folder).empty() : std::filesystem::is_directory(folder, code);
+}
+
+std::vector<std::string> files_in(const Path& folder, std::vector<std::string>* others) {
+    std::vector<std::string> names;
+    if (is_memory(folder)) {
+        for (std::string& name : memory_files().below(folder))
+            if (name.find('/') == std::string::npos) names.push_back(std::move(name));
+        return names;
+    }
+    std::error_code code;
+    for (std::filesystem::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code)) {
+        std::error_code own;
+        const std::filesystem::file_status status = entry->status(own);
+        if (std::filesystem::is_regular_file(status)) names.push_back(entry->path().filename().string());
+        else if (others != nullptr && !std::filesystem::is_directory(status))
+            others->push_back(entry->path().filename().string());
+    }
+    if (code)
+        throw Error(ErrorKind::failure, folder.string(), "the folder cannot be read: " + code.message(), "check its rights");
+    std::sort(names.begin(), names.end());
+    if (others != nullptr) std::sort(others->begin(), others->end());
+    return names;
+}
+
+void make_folder(const Path& folder) {
+    if (is_memory(folder) || folder.empty()) return;
+    std::error_code code;
+    std::filesystem::create_directories(folder, code);
+    if (code || !std::filesystem::is_directory(folder, code))
+        throw Error(ErrorKind::failure, folder.string(), "the folder cannot be made" + (code ? ": " + code.message() : ""),
+                    "name another one");
+}
+
+void remove_file(const Path& file) {
+    std::error_code code;
+    if (is_memory(file)) memory_files().remove(file);
+    else std::filesystem::remove(file, code);
+}
+
+ReadRecord::ReadRecord() : outer_(open_record) { open_record = this; }
+ReadRecord::~ReadRecord() { open_record = outer_; }
+
+namespace {
+std::string recorded(const Path& file, std::string bytes) {
+    if (open_record == nullptr) return bytes;
+    auto& files = open_record->files;
+    if (std::none_of(files.begin(), files.end(), [&](const auto& entry) { return entry.file == file; }))
+        files.push_back({file, sha256(bytes)});
+    return bytes;
+}
+
+std::string read_memory(const Path& file) {
+    auto bytes = memory_files().find(file);
+    if (!bytes) fail_input(file.string(), "is not in memory", "check the name");
+    return std::move(*bytes);
+}
+}  // namespace
+
+void check_readable(const Path& file) {
+    if (!is_memory(file)) const Input input(file);
+    else if (!file_exists(file)) static_cast<void>(read_memory(file));
+}
+
 std::string read_file(const Path& file) {
+    if (is_memory(file)) return recorded(file, read_memory(file));
     const Input input(file);
     std::string bytes;
     try {
@@ -85,11 +234,12 @@ std::string read_file(const Path& file) {
     } catch (const std::bad_alloc&) {
         throw Error(ErrorKind::failure, file.string(), "does not fit into memory");
     }
-    return bytes;
+    return recorded(file, std::move(bytes));
 }
 
 // A link keeps pointing where it points: what is replaced is the file behind it.
-AtomicFile::AtomicFile(Path file) : file_(behind_links(std::move(file))) {
+AtomicFile::AtomicFile(Path file) : file_(is_memory(file) ? std::move(file) : behind_links(std::move(file))) {
+    if (is_memory(file_)) return;
     std::error_code code;
     if (std::filesystem::is_directory(file_, code))
         throw Error(ErrorKind::failure, file_.string(), "is a folder", "name a file to write");
@@ -128,12 +278,22 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::write(std::string_view bytes) {
+    if (is_memory(file_)) {
+        memory_ += bytes;
+        return;
+    }
     if (!bytes.empty() && std::fwrite(bytes.data(), 1, bytes.size(), stream_) != bytes.size())
         throw Error(ErrorKind::failure, file_.string(), "cannot be written: " + reason(),
                     "free some space; an earlier file of that name is untouched");
 }
 
 void AtomicFile::commit() {
+    if (is_memory(file_)) {
+        temporary_ = open_transaction == nullptr ? file_ : memory_files().temporary();
+        memory_files().put(temporary_, std::move(memory_));
+        if (open_transaction != nullptr) open_transaction->waiting_.emplace_back(temporary_, file_);
+        return;
+    }
     const bool direct = temporary_.empty();
     const bool flushed = std::fflush(stream_) == 0 && (direct || ::fsync(::fileno(stream_)) == 0);
     const std::string why = flushed ? "" : reason();
@@ -153,7 +313,7 @@ OutputTransaction::OutputTransaction() : outer_(open_transaction) { open_transac
 
 OutputTransaction::~OutputTransaction() {
     open_transaction = outer_;
-    for (const auto& [temporary, file] : waiting_) ::unlink(temporary.c_str());
+    for (const auto& [temporary, file] : waiting_) remove_file(temporary);
 }
 
 void OutputTransaction::commit() {
@@ -163,8 +323,7 @@ void OutputTransaction::commit() {
     for (const OutputSweep& sweep : sweeps) sweep.write_list();
     while (!waiting_.empty()) {
         const auto& [temporary, file] = waiting_.front();
-        if (::rename(temporary.c_str(), file.c_str()) != 0)
-            throw Error(ErrorKind::failure, file.string(), "cannot be written: " + reason(), "check the rights of its folder");
+        rename_file(temporary, file);
         waiting_.erase(waiting_.begin());
     }
     for (OutputSweep& sweep : sweeps) sweep.remove_rest();
@@ -172,7 +331,7 @@ void OutputTransaction::commit() {
 
 void replace_outputs(const Path& folder, const std::string& owner) {
     if (open_transaction == nullptr) throw std::logic_error("no transaction is open");
-    open_transaction->replaced_.emplace_back(folder, owner);
+    if (!is_memory(folder)) open_transaction->replaced_.emplace_back(folder, owner);
 }
 
 void write_file(const Path& file, std::string_view bytes) {
@@ -191,14 +350,16 @@ Path one_spelling(const Path& file) {
 }
 }  // namespace
 
+bool same_place(const Path& a, const Path& b) { return one_spelling(a / ".") == one_spelling(b / "."); }
+
 void check_outputs(const std::vector<Path>& inputs, const std::vector<Path>& outputs) {
     std::error_code code;
     for (std::size_t i = 0; i < outputs.size(); ++i) {
         const Path& output = outputs[i];
-        if (output.empty()) continue;
+        if (output.empty() || is_memory(output)) continue;
         const Path place = one_spelling(output);
         for (const Path& input : inputs) {
-            if (input.empty()) continue;
+            if (input.empty() || is_memory(input)) continue;
             if (std::filesystem::equivalent(output, input, code) || place == one_spelling(input))
                 fail_usage("output " + output.string() + " is also an input", "choose another name for the output");
         }
@@ -248,6 +409,7 @@ std::string sha256(std::string_view bytes) {
 }
 
 std::string sha256_of_file(const Path& file) {
+    if (is_memory(file)) return sha256(read_memory(file));
     const Input input(file);
     Sha256 hash;
     std::vector<char> buffer(1 << 20);

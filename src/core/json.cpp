@@ -240,6 +240,11 @@ void add_member(JsonValue& object, std::string_view name, std::string_view text,
     add_member(object, name, json_string(text, allocator), allocator);
 }
 
+double number_or(const JsonValue& object, std::string_view name, double otherwise) {
+    const JsonValue* value = find_member(object, name);
+    return value == nullptr ? otherwise : value->GetDouble();
+}
+
 const JsonValue* find_member(const JsonValue& object, std::string_view name) {
     if (!object.IsObject()) return nullptr;
     const JsonValue key(rapidjson::StringRef(name.data(), static_cast<rapidjson::SizeType>(name.size())));

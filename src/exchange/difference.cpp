@@ -112,4 +112,12 @@ std::vector<Difference> differences(const AnnotationSet& a, const AnnotationSet&
     return std::move(comparison.list);
 }
 
+void MergeOptions::describe(OptionList& visit) {
+    visit("prefer", prefer, "whose change counts where both changed one thing in two ways", Choices{"none", "ours", "theirs"});
+    visit("merge-faces", merge_faces, "where both changed a region, take the changes of both face by face instead of a conflict",
+          Anything{});
+    visit("renumber", renumber, "where both added an annotation under one id, give theirs a new one instead of a conflict",
+          Anything{});
+}
+
 }  // namespace ostraka

@@ -57,6 +57,15 @@ int free_attribute_id(const Annotation& annotation) {
     return id;
 }
 
+/// A unit made of one of length ("mm^2", "1/mm") in terms of another.
+std::string unit_after(const std::string& unit, const std::string& old, const std::string& fresh) {
+    if (old.empty() || fresh.empty()) return unit == old ? fresh : unit;
+    for (const std::string before : {"", "1/"})
+        if (unit == before + old || unit.starts_with(before + old + '^'))
+            return before + fresh + unit.substr((before + old).size());
+    return unit;
+}
+
 class Editor {
 public:
     Editor(const Mesh& mesh, AnnotationSet& set, const std::string& where) : mesh_(mesh), set_(set), where_(where) {}
@@ -277,6 +286,20 @@ std::vector<AnnotationEdit> read_edits(const Path& file) { return edits_from_jso
 std::vector<std::string> edit_annotations(const Mesh& mesh, AnnotationSet& set, const std::vector<AnnotationEdit>& edits,
                                           const std::string& where) {
     return Editor(mesh, set, where).run(edits);
+}
+
+void rename_unit(const Mesh& mesh, AnnotationSet& set, const std::string& fresh) {
+    const std::string old = set.unit;
+    set.unit = fresh;
+    for (Annotation& annotation : set.annotations)
+        for (Attribute& attribute : annotation.attributes) {
+            if (attribute.type == AttributeType::measure) attribute.measure.unit = unit_after(attribute.measure.unit, old, fresh);
+            if (attribute.type != AttributeType::descriptor) continue;
+            std::string& unit = attribute.descriptor.unit;
+            const bool computed = (old.empty() ? unit.empty() : unit == descriptor_unit(attribute.name, old)) &&
+                                  evaluate(mesh, annotation, attribute.name);
+            unit = computed ? descriptor_unit(attribute.name, fresh) : old.empty() ? unit : unit_after(unit, old, fresh);
+        }
 }
 
 }  // namespace ostraka

@@ -157,4 +157,11 @@ PlacedAnnotations import_annotations(const Mesh& mesh, const std::string& bytes,
     return result;
 }
 
+void ExportOptions::describe(OptionList& visit) { landmarks.describe(visit); }
+
+void ImportOptions::describe(OptionList& visit) {
+    landmarks.describe(visit);
+    place.describe(visit);
+}
+
 }  // namespace ostraka

@@ -253,4 +253,18 @@ PlacedAnnotations place_landmarks(const Mesh& mesh, const LandmarkSet& landmarks
     return Assembler(mesh, where).assemble(landmarks, options);
 }
 
+void LandmarkFileOptions::describe(OptionList& visit) {
+    visit("mesh-space", mesh_space,
+          "space of the mesh's coordinates, for files that state theirs: LPS (x to the left, y to the back; what 3D Slicer "
+          "writes since 4.11) or RAS (x to the right, y to the front; older ones)",
+          Choices{"LPS", "RAS"});
+    visit("specimen", specimen, "which specimen of a TPS file is meant: its ID, or its number from 1", Anything{});
+}
+
+void PlaceOptions::describe(OptionList& visit) {
+    visit("tolerance", tolerance, "farthest that a place of the file may lie from the surface, as a share of the box diagonal",
+          Range{0, 1});
+    visit("skip-far", skip_far, "leave out what lies farther, with a note, instead of refusing the file", Anything{});
+}
+
 }  // namespace ostraka

@@ -32,9 +32,9 @@ std::string joined(const std::vector<Index>& indices) {
     return text;
 }
 
-class Reader {
+class FctReader {
 public:
-    Reader(const std::string& bytes, const Mesh& mesh, const std::string& where) : bytes_(bytes), mesh_(mesh), where_(where) {}
+    FctReader(const std::string& bytes, const Mesh& mesh, const std::string& where) : bytes_(bytes), mesh_(mesh), where_(where) {}
 
     AnnotationSet read() {
         (void)field("Filename:");
@@ -213,7 +213,7 @@ std::string prototype_facets(const Mesh& mesh, const AnnotationSet& set, const s
 }
 
 AnnotationSet read_prototype_facets(const std::string& bytes, const Mesh& mesh, const std::string& where) {
-    return Reader(bytes, mesh, where).read();
+    return FctReader(bytes, mesh, where).read();
 }
 
 }  // namespace ostraka

@@ -44,9 +44,9 @@ bool is_selector(const JsonValue& value, const std::string& name) {
     return holds(type, name) || holds(type, web::terms + name.substr(name.find(':') + 1));
 }
 
-class Reader {
+class WebReader {
 public:
-    Reader(const Mesh& mesh, const std::string& where, const PlaceOptions& options)
+    WebReader(const Mesh& mesh, const std::string& where, const PlaceOptions& options)
         : mesh_(mesh), where_(where), options_(options), checksum_(mesh_checksum(mesh)) {
         native_.SetObject();
     }
@@ -361,7 +361,7 @@ PlacedAnnotations read_web_annotations(const std::string& bytes, const Mesh& mes
                                        const PlaceOptions& options) {
     check_options(options, "web annotations");
     const Json document = parse_json(bytes, where);
-    return Reader(mesh, where, options).read(document);
+    return WebReader(mesh, where, options).read(document);
 }
 
 }  // namespace ostraka

@@ -268,26 +268,6 @@ ShapeClass read_class(const Path& file) {
     return learnt;
 }
 
-TemplateFile copy_template(const TemplateFile& file, const Path& folder, const std::string& name, const Provenance& provenance) {
-    TemplateFile copy = file;
-    for (TemplatePart& part : copy.parts) {
-        part.name = part.file.filename().string();
-        if (std::any_of(copy.parts.begin(), copy.parts.end(), [&](const TemplatePart& other) {
-                return &other < &part && other.name == part.name && other.file != part.file;
-            }))
-            fail_input("template", "two of its parts are called '" + part.name + "', from different folders",
-                       "rename one of them");
-        const Path place = folder / part.name;
-        std::error_code code;
-        const std::string bytes = read_file(part.file);
-        if (!std::filesystem::equivalent(place, part.file, code)) write_file(place, bytes);
-        part.sha256 = sha256(bytes);
-        part.file = place;
-    }
-    write_json(folder / name, template_to_json(copy, provenance));
-    return copy;
-}
-
 JsonValue classification_to_json(const Classification& answer, JsonAllocator& allocator) {
     JsonValue report(rapidjson::kObjectType), answers(rapidjson::kArrayType);
     add_member(report, "object", answer.object, allocator);

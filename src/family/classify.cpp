@@ -216,4 +216,14 @@ Classification decide(std::string object, std::vector<ClassAnswer> answers, cons
     return result;
 }
 
+void ClassifyOptions::describe(OptionList& visit) {
+    fit.describe(visit);
+    visit("correspondence", correspondence,
+          "an object whose triangles are the template's is taken as it is (auto, given); the template is fitted to it (fitted)",
+          Choices{"auto", "given", "fitted"});
+    visit("attributes", attributes, "values of attributes out of their range speak against it, too", Anything{});
+    visit("close", close, "classes whose scores differ by less than this share of the better one cannot be told apart",
+          Range{0, 1});
+}
+
 }  // namespace ostraka

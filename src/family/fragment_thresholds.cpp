@@ -92,6 +92,42 @@ std::vector<FragmentThreshold> fragment_thresholds(const ShapeClass& learnt) {
     return list;
 }
 
+std::vector<UsedThreshold> take_thresholds(ReconstructOptions& options, const ShapeClass* learnt,
+                                           const std::function<bool(const std::string&)>& told) {
+    std::vector<UsedThreshold> used;
+    const std::vector<FragmentThreshold> of_class =
+        learnt != nullptr ? fragment_thresholds(*learnt) : std::vector<FragmentThreshold>();
+    const auto take = [&](const char* name, double& value, double most) {
+        UsedThreshold& one = used.emplace_back(UsedThreshold{{name, 0, 0}, told(name) ? "told" : "default"});
+        const auto found = std::find_if(of_class.begin(), of_class.end(), [&](const auto& each) { return each.option == name; });
+        const bool is_slack = one.option == "slack";
+        if (found != of_class.end() && one.from != "told" && !(is_slack && found->value < value)) {
+            value = std::min(found->value, most);
+            one.members = found->members;
+            one.from = "class";
+        }
+        one.value = value;
+    };
+    take("residual", options.residual, 10.0);
+    take("scale-tolerance", options.scale_tolerance, 1000.0);
+    take("slack", options.slack, 1000.0);
+    return used;
+}
+
+JsonValue thresholds_to_json(const std::vector<UsedThreshold>& thresholds, JsonAllocator& allocator) {
+    JsonValue list(rapidjson::kArrayType);
+    for (const UsedThreshold& threshold : thresholds) {
+        JsonValue one(rapidjson::kObjectType);
+        add_member(one, "option", threshold.option, allocator);
+        add_member(one, "value", JsonValue(threshold.value), allocator);
+        add_member(one, "from", threshold.from, allocator);
+        if (threshold.members > 0)
+            add_member(one, "members", JsonValue(static_cast<std::uint64_t>(threshold.members)), allocator);
+        list.PushBack(one, allocator);
+    }
+    return list;
+}
+
 std::string topology_checksum(const Mesh& mesh) {
     std::string bytes = std::to_string(mesh.number_of_vertices()) + "\n";
     for (const Face face : mesh.faces()) {

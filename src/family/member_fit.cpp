@@ -1,4 +1,5 @@
 #include "ostraka/family/member_fit.h"
+#include "ostraka/core/dense.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
@@ -185,7 +186,7 @@ void measure_distortion(const Mesh& mesh, const std::vector<Point>& points, doub
         const double weight = face_area(mesh, face);
         const Matrix2d before = flat(rest[c[0]], rest[c[1]], rest[c[2]]), after = flat(now[c[0]], now[c[1]], now[c[2]]);
         if (!(weight > 0) || !(std::abs(before.determinant()) > 0)) continue;
-        const Vector2d s = Eigen::JacobiSVD<Matrix2d>(after * before.inverse()).singularValues();
+        const Vector2d s = singular_values(after * before.inverse());
         double sum = 0;
         for (int k = 0; k < 2; ++k) {
             const double log = s[k] > 0 ? std::clamp(std::log(s[k]), -most, most) : -most;
@@ -254,6 +255,23 @@ MemberFit fit_member(const Mesh& mesh, const AnnotationSet& set, const WholeObje
     }
     if (best.points.empty()) best.problem = "the fit has no usable result: look at the mesh with 'mesh info'";
     return best;
+}
+
+void MemberFitOptions::describe(OptionList& visit) {
+    placement.describe(visit);
+    alignment.describe(visit);
+    annotations.describe(visit);
+    fit.describe(visit);
+    visit("ignore-landmarks", ignore_landmarks, "lay the template onto objects by their surfaces alone", Anything{});
+    visit("tries", tries,
+          "without landmarks: placements that are fitted, the nearest ones of those by principal axes and as the files have "
+          "it; the best fit is kept",
+          Range{1, 5});
+    visit("observed", observed, "surfaces farther apart than this share of the diagonal do not lie on each other", Range{0, 1});
+    visit("most-off", most_off,
+          "a template does not lie on an object if a larger share of both surfaces (mean of unmatched and unexplained) is off "
+          "the other after the fit",
+          Range{0, 1});
 }
 
 }  // namespace ostraka

@@ -1,11 +1,12 @@
 #include "ostraka/family/parts.h"
 
 #include "ostraka/annotation/label_file.h"
+#include "ostraka/core/dense.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/geom/with_points.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 
 #include <cmath>
 #include <map>
@@ -36,7 +37,7 @@ struct Moments {
     /// Length and width.
     [[nodiscard]] std::array<double, 2> sides() const {
         const Matrix3d covariance = second / area - middle() * middle().transpose();
-        const Vector3d values = Eigen::SelfAdjointEigenSolver<Matrix3d>(covariance, Eigen::EigenvaluesOnly).eigenvalues();
+        const Vector3d values = symmetric_eigenvalues(covariance);
         return {std::sqrt(12 * std::max(0.0, values[2])), std::sqrt(12 * std::max(0.0, values[1]))};
     }
 };

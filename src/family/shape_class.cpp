@@ -368,4 +368,18 @@ ShapePrior prior_of(const ShapeModes& modes) {
     return prior;
 }
 
+void LearnOptions::describe(OptionList& visit) {
+    fit.describe(visit);
+    modes.describe(visit);
+    visit("correspondence", correspondence,
+          "members whose triangles are the template's are taken as they are, the template is fitted to others (auto); all have "
+          "to be in correspondence (given); it is fitted to all (fitted)",
+          Choices{"auto", "given", "fitted"});
+    visit("false-reject", reject,
+          "share of members that are refused, at most, where what is measured of them is normal or log-normal: all thresholds "
+          "together",
+          Range{1e-6, 0.5});
+    visit("resolution", resolution, "standard deviation of what is measured of one member, as a share of its value", Range{0, 1});
+}
+
 }  // namespace ostraka

@@ -1,8 +1,9 @@
 #include "ostraka/family/shape_modes.h"
+#include "ostraka/core/dense.h"
 
 #include "ostraka/core/error.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -46,7 +47,7 @@ std::pair<double, double> left_out(const MatrixXd& inner, Eigen::Index i) {
     const double whole = std::max(0.0, own.dot(inner * own));
     const MatrixXd gram = others.transpose() * inner * others;
     const VectorXd towards = others.transpose() * (inner * own);
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(gram);
+    const SymmetricEigenX eigen(gram);
     double within = 0;
     const double largest = std::max(0.0, eigen.eigenvalues()[m - 1]);
     for (Eigen::Index k = 0; k < m; ++k) {
@@ -91,7 +92,7 @@ ShapeModes learn_modes(const std::vector<Landmarks>& members, const Landmarks& f
             result.left_out_outside.push_back(std::sqrt(outside) / result.mean_size);
         }
 
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(inner);
+    const SymmetricEigenX eigen(inner);
     std::vector<Eigen::Index> kept;
     const double floor = 1e-20 * result.mean_size * result.mean_size;
     for (Eigen::Index k = n - 1; k >= 0; --k)
@@ -156,6 +157,12 @@ Landmarks shape_of(const ShapeModes& modes, const std::vector<double>& coefficie
     RowVectorXd row = row_of(modes.mean);
     for (std::size_t k = 0; k < coefficients.size(); ++k) row += coefficients[k] * modes.modes.row(static_cast<Eigen::Index>(k));
     return shape_from(row);
+}
+
+void ModeOptions::describe(OptionList& visit) {
+    visit("sizes", sizes, "the size of an object counts; else all are brought to one size first", Anything{});
+    visit("modes", most, "modes of variation that are kept, at most", Range{0, 1e6});
+    visit("variance", variance, "modes are kept until they have this share of the variance", Range{0, 1});
 }
 
 }  // namespace ostraka

@@ -1,4 +1,5 @@
 #include "ostraka/family/whole_shape.h"
+#include "ostraka/core/angles.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/geom/eigen.h"
@@ -8,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace ostraka {
 
@@ -30,7 +30,7 @@ std::optional<double> compactness_of(const Mesh& mesh, double area) {
         volume += x.dot(y.cross(z)) / 6;
     }
     if (!(volume > 0)) return {};
-    return 6 * std::sqrt(std::numbers::pi) * volume / std::pow(area, 1.5);
+    return 6 * std::sqrt(pi) * volume / std::pow(area, 1.5);
 }
 
 }  // namespace

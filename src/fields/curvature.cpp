@@ -1,11 +1,11 @@
 #include "ostraka/fields/curvature.h"
+#include "ostraka/core/angles.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/geom/neighbourhood.h"
 
 #include <cmath>
-#include <numbers>
 
 namespace ostraka {
 
@@ -53,7 +53,7 @@ double deficit(const Mesh& mesh, Vertex vertex) {
     if (mesh.is_isolated(vertex) || mesh.is_border(vertex)) return 0;
     double sum = 0;
     for (const Halfedge h : mesh.halfedges_around_target(mesh.halfedge(vertex))) sum += angle_at(mesh, h);
-    return 2 * std::numbers::pi - sum;
+    return 2 * pi - sum;
 }
 
 /// What falls to each face: half of its edges, its angles' shares of the deficits.
@@ -77,7 +77,7 @@ FaceShares face_shares(const Mesh& mesh) {
             const EdgeCurvature& edge = edges[mesh.edge(h)];
             shares.integrals.mean[f] += edge.mean / 2;
             shares.vector[f] += edge.vector / 2;
-            const double missing = deficits[mesh.target(h)], around = 2 * std::numbers::pi - missing;
+            const double missing = deficits[mesh.target(h)], around = 2 * pi - missing;
             if (missing != 0 && around > 0) shares.integrals.gaussian[f] += missing * angle_at(mesh, h) / around;
         }
     });
@@ -165,6 +165,13 @@ RegionCurvature region_curvature(const Mesh& mesh, const CurvatureIntegrals& int
         result.gaussian_integral += integrals.gaussian[face];
     }
     return result;
+}
+
+void CurvatureOptions::describe(OptionList& visit) {
+    visit("scale", scale,
+          "radius over which curvature is averaged, as a share of the box diagonal: larger is smoother and bears more noise; "
+          "0 = the faces around the vertex",
+          Range{0, 1});
 }
 
 }  // namespace ostraka

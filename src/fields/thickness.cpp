@@ -1,4 +1,5 @@
 #include "ostraka/fields/thickness.h"
+#include "ostraka/core/angles.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
@@ -8,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 
 namespace ostraka {
@@ -24,11 +24,11 @@ struct ConeRay {
 
 /// Directions spread evenly over the cone (Vogel's spiral on the sphere); weights fall to a quarter towards the rim.
 std::vector<ConeRay> cone_rays(int count, double opening) {
-    const double half = opening / 2 * std::numbers::pi / 180, lowest = std::cos(half);
+    const double half = opening / 2 * pi / 180, lowest = std::cos(half);
     std::vector<ConeRay> rays;
     for (int i = 0; i < count; ++i) {
         const double z = 1 - (1 - lowest) * (i + 0.5) / count, r = std::sqrt(std::max(0.0, 1 - z * z));
-        const double turn = i * std::numbers::pi * (3 - std::sqrt(5.0)), share = half > 0 ? std::acos(z) / half : 0;
+        const double turn = i * pi * (3 - std::sqrt(5.0)), share = half > 0 ? std::acos(z) / half : 0;
         rays.push_back({r * std::cos(turn), r * std::sin(turn), z, std::exp2(-2 * share * share)});
     }
     return rays;
@@ -150,6 +150,14 @@ std::vector<double> vertices_from_faces(const Mesh& mesh, const std::vector<doub
         if (weight > 0) result[i] = sum / weight;
     });
     return result;
+}
+
+void ThicknessOptions::describe(OptionList& visit) {
+    visit("rays", rays, "rays sent inward from each face", Range{1, 1000});
+    visit("cone", cone, "opening of the cone of rays, in degrees", Range{0, 175});
+    visit("thickness-scale", scale,
+          "radius over which normals are averaged for the cone's axis, as a share of the box diagonal; more bears more noise",
+          Range{0, 1});
 }
 
 }  // namespace ostraka

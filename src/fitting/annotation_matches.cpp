@@ -159,4 +159,8 @@ std::vector<AnnotationMatch> match_annotations(const Mesh& scaled, const Annotat
     return result;
 }
 
+void AnnotationMatchOptions::describe(OptionList& visit) {
+    visit("least-score", least_score, "annotations that agree less are not matched", Range{0, 1});
+}
+
 }  // namespace ostraka

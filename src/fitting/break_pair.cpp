@@ -1,4 +1,5 @@
 #include "ostraka/fitting/break_pair.h"
+#include "ostraka/core/angles.h"
 
 #include "break_align.h"
 #include "break_side.h"
@@ -8,7 +9,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <numbers>
 
 namespace ostraka {
 
@@ -116,7 +116,7 @@ BreakPair pair_breaks(const Fragment& a, const Fragment& b, const PairOptions& o
     if (order.size() > 40 * static_cast<std::size_t>(options.starts)) order.resize(40 * static_cast<std::size_t>(options.starts));
     std::vector<Scored> poses;
     for (const std::size_t k : order) poses.push_back({side_b.frames[k % columns].onto(side_a.frames[k / columns]), scores[k]});
-    poses = distinct(poses, static_cast<std::size_t>(options.starts), middle, 0.5 * reach, 6 * std::numbers::pi / 180);
+    poses = distinct(poses, static_cast<std::size_t>(options.starts), middle, 0.5 * reach, 6 * pi / 180);
 
     // The best refined: quickly, then to the end.
     const BreakAligner aligner(a.mesh, side_a, side_b, reach, options.last_reach * result.size, options.edges);
@@ -127,7 +127,7 @@ BreakPair pair_breaks(const Fragment& a, const Fragment& b, const PairOptions& o
             poses[i].score = aligner.judge(poses[i].pose, 300, 0.6).score;
         },
         1);
-    poses = distinct(poses, static_cast<std::size_t>(options.refined), middle, 0.5 * reach, 5 * std::numbers::pi / 180);
+    poses = distinct(poses, static_cast<std::size_t>(options.refined), middle, 0.5 * reach, 5 * pi / 180);
     std::vector<PairCandidate> candidates(poses.size());
     parallel_for(
         poses.size(),
@@ -140,9 +140,8 @@ BreakPair pair_breaks(const Fragment& a, const Fragment& b, const PairOptions& o
                      [](const PairCandidate& x, const PairCandidate& y) { return x.score > y.score; });
     for (const PairCandidate& one : candidates) {
         if (result.candidates.size() == static_cast<std::size_t>(options.candidates)) break;
-        if (std::none_of(result.candidates.begin(), result.candidates.end(), [&](const PairCandidate& k) {
-                return alike(k.pose, one.pose, middle, reach, 10 * std::numbers::pi / 180);
-            }))
+        if (std::none_of(result.candidates.begin(), result.candidates.end(),
+                         [&](const PairCandidate& k) { return alike(k.pose, one.pose, middle, reach, 10 * pi / 180); }))
             result.candidates.push_back(one);
     }
     if (result.candidates.empty() || result.candidates.front().contact < options.least_contact) {
@@ -158,6 +157,22 @@ BreakPair pair_breaks(const Fragment& a, const Fragment& b, const PairOptions& o
     if (result.confidence < options.least_confidence)
         result.undecided = "the best pose is not far enough ahead of the next, or little of the fracture is in contact";
     return result;
+}
+
+void PairOptions::describe(OptionList& visit) {
+    visit("frames", frames, "places along the rim of each fracture that are laid onto each other", Range{4, 2000});
+    visit("samples", samples, "points on the fracture, and as many on the rest of the surface", Range{50, 1e6});
+    visit("starts", starts, "poses that are refined quickly: the best of all tried", Range{1, 10000});
+    visit("refined", refined, "poses that are refined to the end", Range{1, 1000});
+    visit("reach", reach,
+          "farthest that two fractures lie apart at first, share of the smaller fragment's size (root of its area)",
+          Range{1e-4, 1});
+    visit("last-reach", last_reach, "the same at the end; deeper in each other than this they do not go together",
+          Range{1e-4, 1});
+    visit("edges", edges, "weight of the fractures' rims against their surfaces", Range{0, 1000});
+    visit("least-contact", least_contact, "share of the smaller fracture that must be in contact", Range{0, 1});
+    visit("least-confidence", least_confidence, "below this it cannot be told how they go together", Range{0, 1});
+    visit("candidates", candidates, "poses told, best first", Range{1, 1000});
 }
 
 }  // namespace ostraka

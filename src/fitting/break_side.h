@@ -4,7 +4,7 @@
 #include "ostraka/fitting/fragment.h"
 #include "point_tree.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 
 #include <memory>
 #include <vector>

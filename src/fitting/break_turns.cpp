@@ -1,4 +1,5 @@
 #include "ostraka/fitting/break_turns.h"
+#include "ostraka/core/angles.h"
 
 #include "turn_assembly.h"
 
@@ -9,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 namespace ostraka {
@@ -17,8 +17,6 @@ namespace ostraka {
 using Eigen::Vector3d;
 
 namespace {
-
-constexpr double pi = std::numbers::pi;
 
 class TurnDecider {
 public:
@@ -295,6 +293,17 @@ BreakTurns turn_by_breaks(const Mesh& whole, const Vector3d& point, const Vector
     if (sherds.empty()) fail_usage("there is no sherd", "give one or more");
     if (!(direction.norm() > 0)) fail_usage("the axis has no direction", "give a vector that is not zero");
     return TurnDecider(whole, point, direction.normalized(), sherds, options).run();
+}
+
+void BreakTurnOptions::describe(OptionList& visit) {
+    visit("turns", turns, "turns about a vessel's axis that are open are decided by the breaks: auto; or never",
+          Choices{"auto", "never"});
+    visit("turn-frames", frames, "places along the rim of each fracture", Range{4, 5000});
+    visit("turn-samples", samples, "points on each fracture", Range{50, 1e6});
+    visit("turn-candidates", candidates, "turns of two sherds that are refined: the best of all tried", Range{1, 1000});
+    visit("turn-beam", beam, "assemblies of all sherds that are followed at once", Range{1, 100000});
+    visit("turn-hold", hold, "weight of a sherd's place on the template against the breaks", Range{0, 1000});
+    visit("least-joint", least_confidence, "confidence of a joint; below it is not decided", Range{0, 1});
 }
 
 }  // namespace ostraka

@@ -1,16 +1,14 @@
 #include "clay.h"
 
+#include "ostraka/core/angles.h"
 #include "ostraka/core/parallel.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace ostraka {
 
 using Eigen::Vector3d;
-
-constexpr double pi = std::numbers::pi;
 
 void ClayImage::drop_rare(const TurnOptions& options) {
     const double least = options.presence / 360 * 2 * std::max(4, options.columns / 2);

@@ -1,4 +1,5 @@
 #include "ostraka/fitting/complete.h"
+#include "ostraka/core/angles.h"
 
 #include "seam.h"
 
@@ -9,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace ostraka {
 
@@ -66,7 +66,7 @@ private:
     std::vector<std::optional<SurfaceHit>> places(int number, const std::vector<Vector>& normals) {
         const PlacedFragment& fragment = fragments_[static_cast<std::size_t>(number)];
         const SurfaceSearch search(object_.mesh);
-        const double least = std::cos(options_.angle * std::numbers::pi / 180), reach = options_.tolerance * diagonal_;
+        const double least = std::cos(options_.angle * pi / 180), reach = options_.tolerance * diagonal_;
         std::vector<std::optional<SurfaceHit>> hits(fragment.mesh.number_of_vertices());
         parallel_for(hits.size(), [&](std::size_t v) {
             if (!(normals[v].squared_length() > 0)) return;
@@ -186,6 +186,16 @@ CompletedObject complete(const Mesh& fitted, const std::vector<PlacedFragment>& 
     check_options(options, "complete");
     if (fitted.number_of_faces() == 0) fail_input("template", "has no faces", "is it the right file?");
     return Completer(fitted, fragments, options).run();
+}
+
+void CompleteOptions::describe(OptionList& visit) {
+    visit("seam-angle", angle, "normals of a fragment and of the fitted template differ by at most this, degrees", Range{0, 90});
+    visit("seam-width", blend, "width over which the template gives way to a fragment's edge, as a share of the diagonal",
+          Range{0, 1});
+    visit("confidence-length", halving,
+          "length over which confidence halves away from what was observed, as a share of the diagonal", Range{1e-6, 1e6});
+    visit("join", join, "the completed mesh has the fragments' own triangles where they lie", Anything{});
+    visit("least-piece", least, "pieces of a fragment's surface below this share of its area are left out", Range{0, 1});
 }
 
 }  // namespace ostraka

@@ -1,5 +1,6 @@
 #include "facet_evidence.h"
 
+#include "ostraka/core/angles.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/geom/surface_search.h"
 
@@ -7,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace ostraka {
 
@@ -61,7 +61,7 @@ Walls walls_under(const Mesh& mesh, const std::vector<Vector>& normals, std::siz
     const SurfaceSearch search(mesh, false);
     const double diagonal = search.diagonal();
     constexpr int count = 9;
-    constexpr double half = 12 * std::numbers::pi / 180;
+    constexpr double half = 12 * pi / 180;
     Walls walls{std::vector<double>(normals.size(), std::numeric_limits<double>::infinity()),
                 std::vector<double>(normals.size(), -1)};
     parallel_for(
@@ -78,7 +78,7 @@ Walls walls_under(const Mesh& mesh, const std::vector<Vector>& normals, std::siz
             for (int i = 0; i < count; ++i) {
                 // Evenly over the cone (Vogel's spiral).
                 const double z = 1 - (1 - std::cos(half)) * (i + 0.5) / count, r = std::sqrt(1 - z * z),
-                             turn = i * std::numbers::pi * (3 - std::sqrt(5.0));
+                             turn = i * pi * (3 - std::sqrt(5.0));
                 const Vector direction = r * std::cos(turn) * u + r * std::sin(turn) * w + z * axis;
                 bool met = false;
                 for (double reach = diagonal / 32; !met; reach *= 4) {

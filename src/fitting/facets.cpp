@@ -2,20 +2,19 @@
 
 #include "facet_evidence.h"
 #include "ostraka/axis/axis.h"
+#include "ostraka/core/angles.h"
+#include "ostraka/core/dense.h"
 #include "ostraka/core/error.h"
 #include "ostraka/geom/eigen.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace ostraka {
 
 using Eigen::Vector3d;
 
 namespace {
-
-constexpr double degrees = std::numbers::pi / 180;
 
 /// 0 below `low`, 1 above `high`, straight between.
 double ramp(double x, double low, double high) { return std::clamp((x - low) / (high - low), 0.0, 1.0); }
@@ -86,7 +85,7 @@ private:
     [[nodiscard]] std::vector<double> boundary(double width) const {
         std::vector<double> costs(mesh_.number_of_edges());
         for (const Edge e : mesh_.edges()) {
-            const double turn = std::max(0.0, turns_[e]) / (options_.edge * degrees);
+            const double turn = std::max(0.0, turns_[e]) / (options_.edge * degree);
             const double length =
                 std::sqrt(CGAL::squared_distance(mesh_.point(mesh_.vertex(e, 0)), mesh_.point(mesh_.vertex(e, 1))));
             costs[e] = options_.coherence * width * length * (0.03 + std::exp(-turn * turn));
@@ -152,7 +151,7 @@ private:
             matrix += across;
             right += across * (eigen(centroid(mesh_, Face(f))) - middle);
         }
-        const Vector3d focus = middle + matrix.ldlt().solve(right);
+        const Vector3d focus = middle + solve_ldlt<3>(matrix, right);
         result_.notes.emplace_back("outer and inner are told by where normals meet: there is no axis of rotation");
         for (const Face face : mesh_.faces()) {
             const Vector3d away = eigen(centroid(mesh_, face)) - focus;
@@ -162,7 +161,7 @@ private:
     }
 
     void solid() {
-        const std::vector<std::size_t> part = convex_parts(mesh_, areas_, turns_, options_.edge * degrees);
+        const std::vector<std::size_t> part = convex_parts(mesh_, areas_, turns_, options_.edge * degree);
         std::size_t count = 0;
         for (const std::size_t p : part) count = std::max(count, p + 1);
         std::vector<std::vector<Index>> faces(count);
@@ -213,7 +212,7 @@ private:
             square += areas_[f] / area * z * z;
         }
         matrix.diagonal().array() += 1e-9;
-        return std::sqrt(std::max(0.0, square - right.dot(matrix.ldlt().solve(right))));
+        return std::sqrt(std::max(0.0, square - right.dot(solve_ldlt<6>(matrix, right))));
     }
 
     void finish() {
@@ -259,6 +258,14 @@ double Facets::area(Facet facet) const {
 Facets find_facets(const Mesh& mesh, const FacetOptions& options) {
     check_options(options, "facets");
     return Finder(mesh, options).run();
+}
+
+void FacetOptions::describe(OptionList& visit) {
+    visit("facet-edge", edge, "turn of the surface, in degrees, over an edge where a break may begin", Range{5, 120});
+    visit("facet-wall", wall, "walls are thinner than this share of the square root of the area", Range{0.01, 1});
+    visit("facet-coherence", coherence, "weight of neighbours against what a face shows by itself", Range{0, 100});
+    visit("facet-rough", rough, "solids: a break deviates from a smooth surface by more than this share of its size",
+          Range{0, 1});
 }
 
 }  // namespace ostraka

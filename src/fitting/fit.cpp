@@ -1,4 +1,6 @@
 #include "ostraka/fitting/fit.h"
+#include "ostraka/core/angles.h"
+#include "ostraka/core/dense.h"
 
 #include "level_system.h"
 #include "match_search.h"
@@ -10,12 +12,9 @@
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/remesh/simplify.h"
 
-#include <Eigen/Cholesky>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numbers>
 
 namespace ostraka {
 
@@ -109,7 +108,7 @@ public:
 
     const std::vector<VertexMatch>& match(double reach, NonRigidFit& fit) {
         const Stopwatch watch(fit.seconds_matching);
-        matches_ = search_.matches(now_, mesh_, labels_, reach, std::cos(options_.angle * std::numbers::pi / 180));
+        matches_ = search_.matches(now_, mesh_, labels_, reach, std::cos(options_.angle * pi / 180));
         if (options_.counterparts == "surface") return matches_;
         VertexAssignmentOptions options = options_.vertices;
         options.counterpart = options_.counterparts;
@@ -167,8 +166,8 @@ public:
             }
             for (int axis = 0; axis < 3; ++axis) normal.block(axis * count, axis * count, count, count) += same;
             normal.diagonal().array() += 1e-12 * normal.diagonal().mean();
-            const Eigen::LLT<Eigen::MatrixXd> factor(normal);
-            if (factor.info() != Eigen::Success) return;
+            const Cholesky factor(normal);
+            if (!factor.found()) return;
             const Eigen::VectorXd change = factor.solve(right);
             if (!change.allFinite()) return;
             for (int axis = 0; axis < 3; ++axis) cage_.row(axis) += change.segment(axis * count, count).transpose();
@@ -195,7 +194,7 @@ public:
             Matrix3d sum = covariances[i];
             for (std::size_t k = rings_.begin[i]; k < rings_.begin[i + 1]; ++k)
                 sum += covariances[static_cast<std::size_t>(rings_.neighbour[k])];
-            const Eigen::JacobiSVD<Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
+            const Svd3 svd(sum);
             Vector3d signs(1, 1, 1);
             if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0) signs.z() = -1;
             turns[i] = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
@@ -473,6 +472,36 @@ NonRigidFit TemplateFitter::fit(double scale, const std::vector<PlacedFragment>&
 NonRigidFit fit_template(const Mesh& scaled, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments,
                          const NonRigidOptions& options) {
     return TemplateFitter(scaled, set).fit(1, fragments, options);
+}
+
+void NonRigidOptions::describe(OptionList& visit) {
+    visit("space", space,
+          "what is solved for: the template's vertices (mesh), those of a cage around it (cage: fewer degrees of freedom, no "
+          "face "
+          "folds by noise), or those of the cage and in the last level the template's (both)",
+          Choices{"mesh", "cage", "both"});
+    visit("smoothing", start, "length below which the first level fits no detail, as a share of the template's diagonal",
+          Range{1e-3, 10});
+    visit("detail", end, "the same of the last level", Range{1e-4, 10});
+    visit("levels", levels, "levels of stiffness", Range{1, 100});
+    visit("steps", steps, "matches and solutions in each level, at most", Range{1, 1000});
+    visit("transition", stay,
+          "length over which the deformation of the first level fades where nothing is observed, as a share of the diagonal",
+          Range{1e-3, 1e3});
+    visit("fade", fade, "what a later level adds fades over so many of its smoothing lengths", Range{0.1, 1e3});
+    visit("reach", reach, "farthest match in the first level, as a share of the diagonal", Range{0, 10});
+    visit("last-reach", last_reach, "farthest match in the last level", Range{0, 10});
+    visit("match-angle", angle, "normals of matches differ by at most this, degrees", Range{0, 180});
+    visit("counterparts", counterparts,
+          "of vertices in matched annotations: closest places of the surface (surface), or vertices by distance, outline and "
+          "position along it (equation 5.1): the best of each (best), or each given once (one-to-one)",
+          Choices{"surface", "best", "one-to-one"});
+    visit("boundary-weight", vertices.boundary, "equation 5.1: of vertices on an outline against vertices inside", Range{0, 1e6});
+    visit("distance-weight", vertices.distance, "equation 5.1: of the distance", Range{0, 1e6});
+    visit("outline-weight", vertices.outline, "equation 5.1: of the positions along the outline", Range{0, 1e6});
+    visit("guides", guides, "weight of matched outlines and landmarks against that of the surface", Range{0, 1e6});
+    visit("outlines", outlines, "matched outlines and lines guide the fit by the position along them, from landmark to landmark",
+          Anything{});
 }
 
 }  // namespace ostraka

@@ -50,10 +50,10 @@ FragmentFile read_fragment(const Path& file, const FragmentFileOptions& options)
     }
     bool annotated = false;
     const Path beside = file.parent_path() / (fragment.name + ".ant.json");
-    if (result.points && std::filesystem::exists(beside))
+    if (result.points && file_exists(beside))
         result.notes.push_back(beside.filename().string() +
                                " is not read: annotations beside points say nothing of the surface through them; give a mesh");
-    if (!result.points && std::filesystem::exists(beside)) {
+    if (!result.points && file_exists(beside)) {
         AnnotationSet set = read_annotations(beside, fragment.mesh);
         result.inputs.push_back(beside);
         std::swap(fragment.annotations.annotations, set.annotations);
@@ -157,6 +157,15 @@ void update_facet_annotations(AnnotationSet& set, const Facets& facets) {
         if (set.find(one.id) != nullptr) one.id = free_id(set);
         set.annotations.push_back(std::move(one));
     }
+}
+
+void FragmentFileOptions::describe(OptionList& visit) {
+    visit("facets", facets,
+          "outer, inner and fracture surface: as annotated; auto: from the shape, annotations override; either: as "
+          "annotated where there are such annotations, else from the shape if it is closed; none: all outer",
+          Choices{"either", "annotated", "auto", "none"});
+    finding.describe(visit);
+    cloud.describe(visit);
 }
 
 }  // namespace ostraka

@@ -1,18 +1,16 @@
 #include "joined_sherds.h"
 
+#include "ostraka/core/angles.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/text.h"
 #include "ostraka/geom/eigen.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace ostraka {
 
 using Eigen::Vector3d;
-
-constexpr double pi = std::numbers::pi;
 
 JoinedSherds joined(const std::vector<const Fragment*>& sherds, const std::vector<Motion>& motions) {
     JoinedSherds all;

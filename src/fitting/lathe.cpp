@@ -1,15 +1,13 @@
 #include "lathe.h"
+#include "ostraka/core/angles.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace ostraka {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-constexpr double pi = std::numbers::pi;
 
 AxisFrame frame_of(const Axis& axis) {
     AxisFrame frame;

@@ -3,7 +3,7 @@
 
 #include "ostraka/annotation/annotation.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 
 #include <utility>
 #include <vector>

@@ -1,4 +1,5 @@
 #include "ostraka/fitting/placement.h"
+#include "ostraka/core/dense.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/text.h"
@@ -115,7 +116,7 @@ public:
 
     /// U diag(1, 1, d) V^T of a covariance of (to, from).
     static Matrix3d rotation(const Matrix3d& covariance, bool proper) {
-        const Eigen::JacobiSVD<Matrix3d> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
+        const Svd3 svd(covariance);
         Vector3d signs(1, 1, 1);
         if (proper && svd.matrixU().determinant() * svd.matrixV().determinant() < 0) signs.z() = -1;
         return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
@@ -143,7 +144,7 @@ public:
                 const Vector3d p = ours ? Vector3d(pairs_[i].on_template - m.from) : Vector3d(pairs_[i].on_fragment - m.to);
                 second += p * p.transpose();
             }
-            const Vector3d extents = Eigen::SelfAdjointEigenSolver<Matrix3d>(second, Eigen::EigenvaluesOnly).eigenvalues();
+            const Vector3d extents = symmetric_eigenvalues(second);
             least = std::min(least, extents[2] > 0 ? std::sqrt(std::max(0.0, extents[1]) / extents[2]) : 0.0);
         }
         return least;
@@ -316,6 +317,15 @@ CommonPlacement place_by_landmarks(const std::vector<std::vector<LandmarkPair>>&
         one.residual = std::sqrt(sum / static_cast<double>(m.count));
     }
     return placement;
+}
+
+void PlacementOptions::describe(OptionList& visit) {
+    visit("outlier", outlier,
+          "a landmark that is off by more than this share of the spread of the template's landmarks may be a wrong one",
+          Range{0, 1});
+    visit("unit-ratio", unit_ratio, "fragments whose own scales differ by more than this factor are not of one unit",
+          Range{1, 1e6});
+    visit("collinear", collinear, "landmarks whose second extent is below this share of the first lie on a line", Range{0, 1});
 }
 
 }  // namespace ostraka

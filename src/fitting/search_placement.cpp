@@ -1,8 +1,8 @@
 #include "ostraka/fitting/search_placement.h"
+#include "ostraka/core/angles.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace ostraka {
 
@@ -82,7 +82,7 @@ bool close_by_landmarks(const std::vector<LandmarkPair>& pairs, double scale, do
         }
         Motion move;
         if (way.turns) {
-            const bool round = way.most - way.least >= 2 * std::numbers::pi - 0.2;
+            const bool round = way.most - way.least >= 2 * pi - 0.2;
             const double angle = std::atan2(sine, cosine);
             move.turn = Eigen::AngleAxisd(round ? angle : std::clamp(angle, way.least, way.most), d).toRotationMatrix();
             move.shift = way.point - move.turn * way.point;
@@ -105,6 +105,12 @@ std::vector<std::optional<PoseSearchResult>> place_by_search(const Mesh& mesh, c
                                                              std::vector<FragmentPlacement>& placed) {
     PoseSearches searches(mesh, options.poses);
     return place_by_search(searches, fragments, options, scale, placed);
+}
+
+void SearchOptions::describe(OptionList& visit) {
+    visit("search", search, "poses are searched without landmarks: auto is where a fragment has fewer than three",
+          Choices{"auto", "always", "never"});
+    poses.describe(visit);
 }
 
 }  // namespace ostraka

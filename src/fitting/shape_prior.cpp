@@ -1,4 +1,6 @@
 #include "ostraka/fitting/shape_prior.h"
+#include "ostraka/core/angles.h"
+#include "ostraka/core/dense.h"
 
 #include "match_search.h"
 
@@ -11,7 +13,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <optional>
 
 namespace ostraka {
@@ -138,7 +139,7 @@ private:
     /// Where the fragments' samples are on the class's shape, in its planes: that is smooth, and they are not.
     [[nodiscard]] std::vector<Residual> residuals(const Points& now) {
         std::vector<Residual> found;
-        const double cosine = std::cos(options_.angle * std::numbers::pi / 180), reach = options_.reach * diagonal_;
+        const double cosine = std::cos(options_.angle * pi / 180), reach = options_.reach * diagonal_;
         for (auto& [label, part] : parts_) {
             if (part.faces.empty()) continue;
             for (const Vertex v : part.mesh.vertices())
@@ -237,7 +238,7 @@ private:
             right[7 + k] -= stiffness * b;
         }
         normal.diagonal().array() += 1e-12 * normal.diagonal().maxCoeff();
-        const VectorXd x = normal.ldlt().solve(right);
+        const VectorXd x = solve_ldlt<Eigen::Dynamic>(normal, right);
         if (!x.allFinite()) return false;
         // The same motion of what the modes give: first the coefficients, then the motion about the centre.
         for (Eigen::Index k = 0; k < modes; ++k) {
@@ -273,6 +274,13 @@ PriorFit fit_prior(const Mesh& scaled, const AnnotationSet& set, const std::vect
     check_options(options, "fit");
     prior.check(scaled.number_of_vertices());
     return PriorFitter(scaled, set, fragments, prior, options).run();
+}
+
+void PriorOptions::describe(OptionList& visit) {
+    visit("class-iterations", iterations, "most steps of the fit of a class's modes", Range{1, 1000});
+    visit("class-limit", most, "standard deviations that a mode may go from the mean", Range{0, 100});
+    visit("class-samples", samples, "least number of independent places that the observed surface counts as, against the class",
+          Range{1, 1e9});
 }
 
 }  // namespace ostraka

@@ -1,15 +1,13 @@
 #include "turn_assembly.h"
+#include "ostraka/core/angles.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <set>
 
 namespace ostraka {
 
 namespace {
-
-constexpr double pi = std::numbers::pi;
 
 struct State {
     std::vector<double> turns;

@@ -1,10 +1,10 @@
 #include "turn_map.h"
 
+#include "ostraka/core/angles.h"
 #include "ostraka/geom/eigen.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace ostraka {
 
@@ -26,7 +26,7 @@ TurnMap::TurnMap(ProfileCells& cells, const SurfaceSamples& surface, const std::
     std::vector<Point> breaks;
     for (const Vector3d& p : fracture) breaks.push_back(point_of(p));
     const PointTree tree(breaks);
-    const double step = 2 * std::numbers::pi / steps;
+    const double step = 2 * pi / steps;
     for (std::size_t i = 0; i < surface.places.size(); ++i) {
         const Vector3d& p = surface.places[i];
         const int row = cells.row(p, surface.normals[i], reach);

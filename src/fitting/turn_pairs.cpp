@@ -1,18 +1,16 @@
 #include "turn_pairs.h"
 
+#include "ostraka/core/angles.h"
 #include "ostraka/core/parallel.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace ostraka {
 
 using Eigen::Vector3d;
 
 namespace {
-
-constexpr double pi = std::numbers::pi;
 
 std::size_t step_of(double turn, std::size_t steps) {
     const auto n = static_cast<long>(steps);

@@ -1,4 +1,5 @@
 #include "ostraka/fitting/turned.h"
+#include "ostraka/core/angles.h"
 
 #include "clay.h"
 #include "joined_sherds.h"
@@ -11,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace ostraka {
 
@@ -20,8 +20,6 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 namespace {
-
-constexpr double pi = std::numbers::pi;
 
 class Turner {
 public:
@@ -189,6 +187,15 @@ TurnedTemplate turn_template(const std::vector<const Fragment*>& sherds, const T
     check_options(options, "turned template");
     if (sherds.empty()) fail_usage("there is no sherd", "give one or more");
     return Turner(sherds, options).run();
+}
+
+void TurnOptions::describe(OptionList& visit) {
+    visit("rows", rows, "heights at which the walls are looked at", Range{10, 20000});
+    visit("columns", columns, "directions around the axis", Range{8, 7200});
+    visit("presence", presence, "degrees of wall that a height must have to count", Range{0, 360});
+    visit("profile-smoothing", smoothing, "of the profile: standard deviation in rows", Range{0, 50});
+    visit("vertices", vertices, "of the template, about", Range{100, 1e7});
+    axis.describe(visit);
 }
 
 }  // namespace ostraka

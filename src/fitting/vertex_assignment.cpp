@@ -1,4 +1,5 @@
 #include "ostraka/fitting/vertex_assignment.h"
+#include "ostraka/core/angles.h"
 
 #include "assignment.h"
 #include "outline_guides.h"
@@ -16,7 +17,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numbers>
 
 namespace ostraka {
 
@@ -114,7 +114,7 @@ public:
         : ours_(std::move(ours)),
           theirs_(std::move(theirs)),
           options_(options),
-          least_cosine_(std::cos(options.angle * std::numbers::pi / 180)) {
+          least_cosine_(std::cos(options.angle * pi / 180)) {
         for (const bool outer : {false, true}) {
             std::vector<Named> named;
             for (const int j : outer ? theirs_.outer : theirs_.inner)
@@ -269,6 +269,18 @@ VertexAssignment assign_vertices(const Mesh& mesh, const Annotation& part, const
         theirs.push_back(b);
     }
     return Assigner(part_of(mesh, part, ours, "template"), part_of(fragment, of_fragment, theirs, "fragment"), options).run();
+}
+
+void VertexAssignmentOptions::describe(OptionList& visit) {
+    visit("counterpart", counterpart, "of a template vertex: its best one, or one-to-one", Choices{"best", "one-to-one"});
+    visit("boundary-weight", boundary, "of vertices on an outline against vertices inside", Range{0, 1e6});
+    visit("distance-weight", distance, "of the distance of counterparts", Range{0, 1e6});
+    visit("outline-weight", outline, "of the positions along the outline, from landmark to landmark", Range{0, 1e6});
+    visit("assignment-reach", reach, "farthest counterpart, in the meshes' unit; 0: any", Range{0, 1e60});
+    visit("assignment-angle", angle, "of the normals of counterparts, degrees", Range{0, 180});
+    visit("candidates", candidates, "one-to-one: counterparts tried for each vertex", Range{1, 1000});
+    visit("unassigned", unassigned, "one-to-one: cost of a vertex without counterpart, as a share of the weights' sum",
+          Range{0, 1e6});
 }
 
 }  // namespace ostraka

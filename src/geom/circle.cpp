@@ -1,7 +1,7 @@
 // Circle fits, and integrals of the distance from a circle along straight pieces.
 #include "ostraka/geom/circle.h"
+#include "ostraka/core/dense.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include <array>
@@ -75,7 +75,7 @@ Fit fit_at(const PlaneSegments& segments, const Vector2d& centre, double guess) 
     fit.gradient = -(moment / fit.length - mean * unit);
     // d^2 has the Hessian 2 I, d has (I - n n^T) / d.
     fit.hessian = Matrix2d::Identity() - unit * unit.transpose() - fit.radius / fit.length * bend;
-    const Eigen::SelfAdjointEigenSolver<Matrix2d> solver(fit.hessian);
+    const SymmetricEigen2 solver(fit.hessian);
     if (solver.eigenvalues()[0] < 0) fit.downhill = solver.eigenvectors().col(0);
     if (!(solver.eigenvalues()[0] > 1e-12)) fit.hessian = units / fit.length - unit * unit.transpose();
     return fit;

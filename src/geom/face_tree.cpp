@@ -1,12 +1,12 @@
 #include "face_tree.h"
 
+#include "ostraka/core/angles.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/geom/eigen.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace ostraka {
 
@@ -129,12 +129,12 @@ void FaceTree::fill(const Range& leaf, std::vector<Item>& items) {
         normals[i] = eigen(area / std::sqrt(area.squared_length()));
         axis += normals[i];
     }
-    double opening = axis.norm() > rounding ? 0 : std::numbers::pi;
+    double opening = axis.norm() > rounding ? 0 : pi;
     axis.normalize();
     for (std::size_t k = 0; k < 3; ++k) node.axis[k] = static_cast<float>(axis[static_cast<Eigen::Index>(k)]);
     for (std::uint32_t i = 0; i < node.count; ++i)
         opening = std::max(opening, angle_between(vector_of_place(node.axis), normals[i]) + rounding);
-    opening = std::min(opening, std::numbers::pi);
+    opening = std::min(opening, pi);
     node.cosine = static_cast<float>(std::cos(opening));
     node.sine = static_cast<float>(std::sin(opening));
 }
@@ -147,7 +147,7 @@ void FaceTree::join(std::uint32_t number) {
         node.high[k] = std::max(a.high[k], b.high[k]);
     }
     Vector3d axis = vector_of_place(a.axis) + vector_of_place(b.axis);
-    double opening = std::numbers::pi;
+    double opening = pi;
     if (axis.norm() > rounding) {
         axis.normalize();
         for (std::size_t k = 0; k < 3; ++k) node.axis[k] = static_cast<float>(axis[static_cast<Eigen::Index>(k)]);
@@ -155,7 +155,7 @@ void FaceTree::join(std::uint32_t number) {
         for (const Node* child : {&a, &b})
             opening = std::max(opening, angle_between(vector_of_place(node.axis), vector_of_place(child->axis)) +
                                             std::atan2(child->sine, child->cosine) + rounding);
-        opening = std::min(opening, std::numbers::pi);
+        opening = std::min(opening, pi);
     } else {
         node.axis = {0, 0, 1};
     }

@@ -1,7 +1,6 @@
 // Total least squares by the covariance.
 #include "ostraka/geom/line.h"
-
-#include <Eigen/Eigenvalues>
+#include "ostraka/core/dense.h"
 
 namespace ostraka {
 
@@ -16,7 +15,7 @@ LineFit fit_line(const std::vector<Vector3d>& points, const std::vector<double>&
     Matrix3d covariance = Matrix3d::Zero();
     for (std::size_t i = 0; i < points.size(); ++i)
         covariance += weights[i] / total * (points[i] - mean) * (points[i] - mean).transpose();
-    const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(covariance);
+    const SymmetricEigen3 solver(covariance);
     const Vector3d values = solver.eigenvalues();
     return {mean, solver.eigenvectors().col(2), std::sqrt(std::max(0.0, values[0]) + std::max(0.0, values[1]))};
 }

@@ -1,16 +1,17 @@
 // The oriented box: directions tried on a few hundred extreme points, then measured on all.
 #include "ostraka/geom/oriented_box.h"
+#include "ostraka/core/angles.h"
+#include "ostraka/core/dense.h"
 
 #include "calipers.h"
 
 #include "ostraka/core/mesh.h"
 #include "ostraka/core/parallel.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 namespace ostraka {
@@ -29,7 +30,7 @@ Vector3d vector(const Array3& p) { return {p[0], p[1], p[2]}; }
 std::vector<Vector3d> directions(int count) {
     std::vector<Vector3d> list;
     for (int i = 0; i < count; ++i) {
-        const double z = (i + 0.5) / count, r = std::sqrt(1 - z * z), turn = i * std::numbers::pi * (3 - std::sqrt(5.0));
+        const double z = (i + 0.5) / count, r = std::sqrt(1 - z * z), turn = i * pi * (3 - std::sqrt(5.0));
         list.emplace_back(r * std::cos(turn), r * std::sin(turn), z);
     }
     return list;
@@ -118,7 +119,7 @@ Candidate refine(Candidate best, const std::vector<Vector3d>& points, double coa
             Candidate better = best;
             for (int k = 0; k < 8; ++k) {
                 const Vector3d u = best.side, w = best.normal.cross(u);
-                const double turn = k * std::numbers::pi / 4;
+                const double turn = k * pi / 4;
                 const Candidate next =
                     box_across((best.normal + step * (std::cos(turn) * u + std::sin(turn) * w)).normalized(), points);
                 if (next.volume < better.volume) better = next;
@@ -154,7 +155,7 @@ std::vector<Vector3d> directions_around(const Candidate& box) {
     for (std::size_t k = 0; k < 3; ++k) {
         list.push_back(axes[k]);
         for (int i = 0; i < 24; ++i) {
-            const double turn = i * std::numbers::pi / 4, tilt = 0.02 * std::exp2(i / 8);
+            const double turn = i * pi / 4, tilt = 0.02 * std::exp2(i / 8);
             list.push_back(
                 (axes[k] + tilt * (std::cos(turn) * axes[(k + 1) % 3] + std::sin(turn) * axes[(k + 2) % 3])).normalized());
         }
@@ -183,7 +184,7 @@ OrientedBox oriented_box(const std::vector<Array3>& points) {
     for (const auto& p : extreme) mean += p / static_cast<double>(extreme.size());
     Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
     for (const auto& p : extreme) scatter += (p - mean) * (p - mean).transpose();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(scatter);
+    const SymmetricEigen3 principal(scatter);
     for (int k = 0; k < 3; ++k) {
         tried.push_back(Vector3d::Unit(k));
         tried.push_back(principal.eigenvectors().col(k).normalized());

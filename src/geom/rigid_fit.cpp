@@ -1,4 +1,5 @@
 #include "ostraka/geom/rigid_fit.h"
+#include "ostraka/core/dense.h"
 
 #include "ostraka/core/error.h"
 
@@ -39,7 +40,7 @@ Motion fit_motion(const std::vector<Vector3d>& from, const std::vector<Vector3d>
         m += weight(i) * (to[i] - b) * (from[i] - a).transpose();
         spread += weight(i) * (from[i] - a).squaredNorm();
     }
-    const Eigen::JacobiSVD<Matrix3d> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const Svd3 svd(m);
     Vector3d sign(1, 1, svd.matrixU().determinant() * svd.matrixV().determinant() < 0 ? -1 : 1);
     Motion result;
     result.turn = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();

@@ -353,4 +353,8 @@ MeshDiagnosis diagnose(const TriangleSoup& soup, const DiagnoseOptions& options)
     return diagnosis;
 }
 
+void DiagnoseOptions::describe(OptionList& visit) {
+    visit("skip-self-intersections", skip_self_intersections, "leave out the search for self-intersections", Anything{});
+}
+
 }  // namespace ostraka

@@ -48,10 +48,6 @@ void add_statistics(std::vector<Quantity>& list, const std::string& name, const 
     list.push_back(number(name + " 95 %", s.percentile_95, power, unit));
 }
 
-std::string name_of(const Annotation& annotation) {
-    return "annotation " + std::to_string(annotation.id) + " ('" + annotation.tag + "')";
-}
-
 double length_of(const Mesh& mesh, const Annotation& annotation) {
     double sum = 0;
     for (const auto& polyline : annotation.polylines)
@@ -204,6 +200,13 @@ void store(Annotation& annotation, const std::vector<Quantity>& quantities, cons
         place->descriptor.is_list = quantity.is_list;
         place->descriptor.unit = unit_of(quantity, unit);
     }
+}
+
+void DescriptorOptions::describe(OptionList& visit) {
+    visit("curvature", curvature, "statistics of mean and Gaussian curvature at the vertices", Anything{});
+    visit("thickness", thickness, "statistics of the thickness under the faces (shape diameter)", Anything{});
+    curvature_options.describe(visit);
+    thickness_options.describe(visit);
 }
 
 }  // namespace ostraka

@@ -4,6 +4,9 @@
 
 #include <cmath>
 
+#include <algorithm>
+#include <numeric>
+
 namespace ostraka {
 
 double hull_volume(const std::vector<Point>& points) {
@@ -15,14 +18,20 @@ double hull_volume(const std::vector<Point>& points) {
     CGAL::Surface_mesh<Point> hull;
     CGAL::convex_hull_3(near.begin(), near.end(), hull);
     if (hull.number_of_faces() < 4) return 0;
-    double sum = 0;
+    // The order of the hull's faces, and where each begins, hangs on where its parts lie in memory: not that of the sum.
+    std::vector<double> parts;
     for (const Face face : hull.faces()) {
-        const Halfedge first = hull.halfedge(face);
+        const Halfedge any = hull.halfedge(face);
+        Halfedge first = any;
+        for (Halfedge h = hull.next(any); h != any; h = hull.next(h))
+            if (hull.point(hull.target(h)) < hull.point(hull.target(first))) first = h;
         const Point& a = hull.point(hull.target(first));
         for (Halfedge h = hull.next(first); hull.next(h) != first; h = hull.next(h))
-            sum += CGAL::cross_product(a - CGAL::ORIGIN, hull.point(hull.target(h)) - CGAL::ORIGIN) *
-                   (hull.point(hull.target(hull.next(h))) - CGAL::ORIGIN) / 6;
+            parts.push_back(CGAL::cross_product(a - CGAL::ORIGIN, hull.point(hull.target(h)) - CGAL::ORIGIN) *
+                            (hull.point(hull.target(hull.next(h))) - CGAL::ORIGIN) / 6);
     }
+    std::sort(parts.begin(), parts.end());
+    const double sum = std::accumulate(parts.begin(), parts.end(), 0.0);
     return std::abs(sum);
 }
 

@@ -1,4 +1,5 @@
 #include "ostraka/measure/measure.h"
+#include "ostraka/core/angles.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/limits.h"
@@ -10,16 +11,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 
 namespace ostraka {
 
 namespace {
-
-std::string name_of(const Annotation& annotation) {
-    return "annotation " + std::to_string(annotation.id) + " ('" + annotation.tag + "')";
-}
 
 double distance(const Point& a, const Point& b) { return std::sqrt(CGAL::squared_distance(a, b)); }
 
@@ -97,7 +93,7 @@ private:
         else if (const Vertex v(pin.node.element); !mesh_.is_isolated(v))
             for (const Face face : mesh_.faces_around_target(mesh_.halfedge(v)))
                 if (face != Mesh::null_face()) area += face_area(mesh_, face) / 3;
-        return area / (4 * std::numbers::pi);
+        return area / (4 * pi);
     }
 
     /// Variance of a measure by the resolution at its pins.

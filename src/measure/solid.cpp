@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace ostraka {
 
@@ -52,6 +53,14 @@ private:
 };
 
 }  // namespace
+
+double closed_volume(const Mesh& mesh) {
+    for (const Halfedge h : mesh.halfedges())
+        if (mesh.is_border(h)) return std::numeric_limits<double>::quiet_NaN();
+    std::vector<Index> faces(mesh.number_of_faces());
+    std::iota(faces.begin(), faces.end(), Index{0});
+    return std::abs(region_solid(mesh, faces).volume);
+}
 
 Point surface_centroid(const Mesh& mesh, const std::vector<Index>& faces) {
     check_faces(mesh, faces);

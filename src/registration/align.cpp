@@ -1,4 +1,6 @@
 #include "ostraka/registration/align.h"
+#include "ostraka/core/angles.h"
+#include "ostraka/core/dense.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/geom/eigen.h"
@@ -11,7 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 namespace ostraka {
@@ -73,7 +74,7 @@ AlignSurface::AlignSurface(const Mesh& mesh, int samples) : state_(std::make_uni
         }
     }
     for (const Vector3d& p : s.sample_points) second += (p - s.centre) * (p - s.centre).transpose();
-    s.axes = Eigen::SelfAdjointEigenSolver<Matrix3d>(second).eigenvectors();
+    s.axes = SymmetricEigen3(second).eigenvectors();
     if (s.axes.determinant() < 0) s.axes.col(0) *= -1;
     std::vector<std::size_t> all(s.places.size());
     std::iota(all.begin(), all.end(), std::size_t{0});
@@ -110,7 +111,7 @@ struct Pair {
 class Aligner {
 public:
     Aligner(const AlignSurface& a, const AlignSurface& b, const AlignOptions& options)
-        : a_(a.state()), b_(b.state()), options_(options), cosine_(std::cos(options.angle * std::numbers::pi / 180)) {}
+        : a_(a.state()), b_(b.state()), options_(options), cosine_(std::cos(options.angle * pi / 180)) {}
 
     Alignment run(const Motion& start) {
         // The pairs change from step to step, so that the distance may rise for a while: the best pose met is kept.
@@ -209,6 +210,14 @@ Alignment align(const AlignSurface& a, const AlignSurface& b, const std::vector<
         first = false;
     }
     return best;
+}
+
+void AlignOptions::describe(OptionList& visit) {
+    visit("shrinkage", shrinkage, "surfaces may differ in size by up to this share; 0: rigid", Range{0, 0.5});
+    visit("trim", trim, "share of the pairs of points that count, the nearest ones", Range{0.1, 1});
+    visit("pair-angle", angle, "pairs whose normals differ by more are left out, degrees", Range{1, 180});
+    visit("samples", samples, "points on each surface that are laid onto the other", Range{10, 1e6});
+    visit("iterations", iterations, "most steps of a registration", Range{1, 10000});
 }
 
 }  // namespace ostraka

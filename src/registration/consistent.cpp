@@ -1,7 +1,7 @@
 #include "ostraka/registration/consistent.h"
+#include "ostraka/core/angles.h"
 
 #include <cmath>
-#include <numbers>
 
 namespace ostraka {
 
@@ -23,7 +23,7 @@ public:
           b_(b),
           matches_(matches),
           tolerance_(options.tolerance * (a.size + b.size) / 2),
-          cosine_(std::cos(options.angle * std::numbers::pi / 180)),
+          cosine_(std::cos(options.angle * pi / 180)),
           taken_a_(points(a)),
           taken_b_(points(b)) {}
 
@@ -94,6 +94,12 @@ ConsistentMatches consistent_matches(const FeatureSet& a, const FeatureSet& b, c
     }
     for (const std::size_t i : best) result.matches.push_back(matches[i]);
     return result;
+}
+
+void ConsistentOptions::describe(OptionList& visit) {
+    visit("tolerance", tolerance, "matched features lie this near to each other once moved, as a share of the size", Range{0, 1});
+    visit("normal-angle", angle, "and their normals differ by at most this, degrees", Range{0, 180});
+    visit("shrinkage", shrinkage, "objects may differ in size by up to this share; 0: rigid", Range{0, 0.5});
 }
 
 }  // namespace ostraka

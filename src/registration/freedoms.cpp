@@ -1,4 +1,5 @@
 #include "ostraka/registration/freedoms.h"
+#include "ostraka/core/dense.h"
 
 #include <algorithm>
 #include <cmath>
@@ -171,13 +172,13 @@ Freedom freedom_of(const std::vector<Vector3d>& places, const std::vector<Vector
         whole += move.transpose() * move / count;
     }
     whole.diagonal().array() += 1e-9;
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6> solver(along, whole);
+    const SymmetricEigenX solver = generalised_eigen(along, whole);
     int open = 0;
     while (open < 6 && solver.eigenvalues()[open] < tolerance * tolerance) ++open;
     if (open == 0) return freedom;
     const auto motions = solver.eigenvectors().leftCols(open).eval();
     // Which of the open motions are shifts: those whose turn vanishes.
-    const Eigen::JacobiSVD<Eigen::MatrixXd> turns(motions.topRows<3>(), Eigen::ComputeThinU | Eigen::ComputeFullV);
+    const SvdX turns(motions.topRows(3), true);
     const auto& singular = turns.singularValues();
     const double part = 0.15 * motions.colwise().norm().maxCoeff();
     const int rotations = static_cast<int>((singular.array() > part).count()), shifts = open - rotations;
@@ -209,7 +210,7 @@ Freedom freedom_of(const std::vector<Vector3d>& places, const std::vector<Vector
             A.block<3, 3>(3 * k, 0) << 0, -w.z(), w.y(), w.z(), 0, -w.x(), -w.y(), w.x(), 0;
             b.segment<3>(3 * k) = -v;
         }
-        freedom.point = middle + size * A.colPivHouseholderQr().solve(b);
+        freedom.point = middle + size * Vector3d(solve_full_rank(A, b));
         freedom.kind = FreedomKind::ball;
     } else if (open == 3 && rotations == 1) {
         line_of(motion_of(0));

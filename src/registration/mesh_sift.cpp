@@ -1,4 +1,5 @@
 #include "ostraka/registration/mesh_sift.h"
+#include "ostraka/core/angles.h"
 
 #include "ostraka/core/parallel.h"
 #include "ostraka/fields/curvature.h"
@@ -7,7 +8,6 @@
 #include "ostraka/geom/neighbourhood.h"
 
 #include <cmath>
-#include <numbers>
 
 namespace ostraka {
 
@@ -15,8 +15,6 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 namespace {
-
-constexpr double pi = std::numbers::pi;
 
 /// A level of the scale space: the smoothed surface and what the descriptors take from it.
 struct Level {
@@ -303,6 +301,24 @@ std::vector<FeatureMatch> match_features(const FeatureSet& a, const FeatureSet& 
         matches.push_back({static_cast<Index>(i), static_cast<Index>(best), first, second > 0 ? first / second : 0});
     }
     return matches;
+}
+
+void SiftOptions::describe(OptionList& visit) {
+    visit("feature-size", size, "length that scales are shares of, in the mesh's unit; 0 = the square root of its area",
+          Range{0, 1e60});
+    visit("first-scale", first_scale, "standard deviation of the first smoothing, as a share of the size", Range{1e-4, 0.5});
+    visit("scales", scales, "levels of smoothing", Range{4, 20});
+    visit("scales-per-octave", per_octave, "levels in which the standard deviation doubles", Range{1, 8});
+    visit("border", border, "no features within this many standard deviations of the border", Range{0, 10});
+    visit("contrast", contrast, "least difference of curvature between two levels, times the standard deviation", Range{0, 10});
+    visit("second-direction", second_direction,
+          "peaks of the histogram of directions above this share of the highest give a "
+          "feature each",
+          Range{0.1, 1});
+}
+
+void MatchOptions::describe(OptionList& visit) {
+    visit("ratio", ratio, "a match's angle over that of the next best feature, at most", Range{0, 1});
 }
 
 }  // namespace ostraka

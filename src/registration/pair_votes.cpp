@@ -1,4 +1,5 @@
 #include "ostraka/registration/pair_votes.h"
+#include "ostraka/core/angles.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
@@ -7,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 namespace ostraka {
 
@@ -16,7 +16,6 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
 constexpr int angles = 12;                     ///< bins from 0 to pi
 constexpr int turns = 36;                      ///< bins of the turn about a normal
 constexpr std::size_t most_entries = 1000000;  ///< that one reference point of the part looks at

@@ -1,4 +1,5 @@
 #include "ostraka/registration/part_alignment.h"
+#include "ostraka/core/angles.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
@@ -7,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 namespace ostraka {
@@ -77,7 +77,7 @@ private:
     /// Pairs under a pose, trimmed; what is minimised, anchors and samples without a partner included.
     double measure(const Motion& pose) {
         std::vector<std::optional<Pair>> found(samples_.size());
-        const double reach = options_.reach * whole_.diagonal(), cosine = std::cos(options_.angle * std::numbers::pi / 180);
+        const double reach = options_.reach * whole_.diagonal(), cosine = std::cos(options_.angle * pi / 180);
         parallel_for(samples_.size(), [&](std::size_t i) {
             const Vector3d p = pose(samples_[i].place), n = pose.turn * samples_[i].normal;
             const auto hit = whole_.closest_compatible(point_of(p), vector_of(n), cosine, reach);
@@ -131,6 +131,15 @@ PartAlignment align_part(const Mesh& part, const std::vector<bool>& of_part, con
         fail_usage("there are " + std::to_string(of_part.size()) + " marks for " + std::to_string(part.number_of_faces()) +
                    " faces");
     return PartAligner(samples_of(part, of_part, options.samples), whole, anchors, options).run(start);
+}
+
+void PartAlignmentOptions::describe(OptionList& visit) {
+    visit("icp-trim", trim, "share of the pairs of points that count, the nearest ones", Range{0.1, 1});
+    visit("icp-reach", reach, "farthest pair, as a share of the whole's diagonal", Range{0, 10});
+    visit("icp-angle", angle, "pairs whose normals differ by more are left out, degrees", Range{1, 180});
+    visit("icp-landmarks", anchors, "weight of all landmarks together against that of the surface", Range{0, 1e9});
+    visit("icp-samples", samples, "points of a fragment that are laid onto the template", Range{10, 1e7});
+    visit("icp-iterations", iterations, "most steps of a registration", Range{0, 10000});
 }
 
 }  // namespace ostraka

@@ -1,4 +1,5 @@
 #include "ostraka/registration/pose_search.h"
+#include "ostraka/core/angles.h"
 
 #include "nearest_grid.h"
 
@@ -12,7 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 namespace ostraka {
@@ -21,7 +21,6 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
 constexpr double scale_step = 1.0 / 12;
 // Places that differ by less are one: radians, shares of the part's size, logarithm of the ratio.
 constexpr double angle_apart = pi / 15, length_apart = 0.1, scale_apart = 0.15;
@@ -448,6 +447,19 @@ PoseSearchResult PoseSearch::find(const Mesh& part, const std::vector<bool>& of_
     for (const PoseCandidate& one : kept) keep_others(result.candidates, one);
     s.decide(middling, tolerance, result);
     return result;
+}
+
+void PoseSearchOptions::describe(OptionList& visit) {
+    visit("search-least-scale", least_scale, "smallest scale of the template that is searched", Range{1e-6, 1e6});
+    visit("search-most-scale", most_scale, "largest scale of the template that is searched", Range{1e-6, 1e6});
+    visit("search-tolerance", tolerance, "what lies nearer is on the template, as a share of the fragment's size",
+          Range{1e-6, 1});
+    visit("least-confidence", least_confidence, "of a pose that was searched; below it the fragment is not placed", Range{0, 1});
+    visit("search-points", points, "points spread over the template", Range{50, 4000});
+    visit("search-references", references, "points of a fragment for which places are sought", Range{1, 4000});
+    visit("search-partners", partners, "other points of the fragment that vote for each of them", Range{1, 100000});
+    visit("search-candidates", candidates, "poses that are refined on the template's faces", Range{1, 1000});
+    visit("search-seed", seed, "of what the search draws", Range{0, 9007199254740992.0});
 }
 
 }  // namespace ostraka

@@ -1,10 +1,10 @@
 #include "ostraka/registration/procrustes.h"
+#include "ostraka/core/dense.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 
 #include <algorithm>
 #include <cmath>
@@ -37,7 +37,7 @@ struct Turn {
     double trace = 0;
 };
 Turn best_turn(const Landmarks& from, const Landmarks& to, bool reflection) {
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(from.transpose() * to, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const Svd3 svd(from.transpose() * to);
     Eigen::Vector3d signs = Eigen::Vector3d::Ones();
     if (!reflection && (svd.matrixU().determinant() < 0) != (svd.matrixV().determinant() < 0)) signs[2] = -1;
     return {svd.matrixV() * signs.asDiagonal() * svd.matrixU().transpose(), svd.singularValues().dot(signs)};
@@ -134,6 +134,11 @@ Eigen::MatrixXd shape_rows(const std::vector<Landmarks>& configurations) {
         for (Eigen::Index k = 0; k < configurations[i].rows(); ++k)
             rows.block<1, 3>(static_cast<Eigen::Index>(i), 3 * k) = configurations[i].row(k);
     return rows;
+}
+
+void ProcrustesOptions::describe(OptionList& visit) {
+    visit("scaling", scaling, "sizes are made equal; else they stay", Anything{});
+    visit("reflection", reflection, "mirror images count as the same", Anything{});
 }
 
 }  // namespace ostraka

@@ -153,4 +153,45 @@ std::vector<Relationship> RelationMeter::extract(const std::vector<std::string>&
     return found;
 }
 
+std::vector<std::string> geometric_types(const std::vector<std::string>& names) {
+    std::vector<std::string> types;
+    for (const std::string& name : names) {
+        const RelationType* type = find_relation_type(name);
+        if (type == nullptr || !type->geometric)
+            fail_usage("'" + name + "' is not a type that geometry tells",
+                       "use one of those in doc/relations.md; the nearest is '" + nearest_relation_type(name) + "'");
+        types.push_back(type->name);
+    }
+    return types;
+}
+
+ExtractedRelations extract_relations(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& old,
+                                     const std::vector<std::string>& names, const RelationOptions& options) {
+    const std::vector<std::string> types = geometric_types(names);
+    const auto wanted = [&](const std::string& type) {
+        return types.empty() || std::find(types.begin(), types.end(), type) != types.end();
+    };
+    ExtractedRelations result;
+    for (const Relationship& relationship : old.relationships)
+        if (relationship.origin != "extracted") result.graph.relationships.push_back(relationship);
+    RelationGraph stated;
+    stated.relationships = result.graph.relationships;
+    const auto add = [&](Relationship relationship) {
+        if (const Relationship* known = find_twin(stated, relationship)) {
+            result.stated.push_back(known->id);
+            return;
+        }
+        relationship.id = free_id(result.graph);
+        result.graph.relationships.push_back(std::move(relationship));
+    };
+    Topology found = topology(mesh, set);
+    for (Relationship& relationship : relationships_of(found, set, 0))
+        if (wanted(relationship.type)) add(std::move(relationship));
+    result.order = std::move(found.order);
+    for (const char* type : {"same level", "horizontal support", "side contact"})
+        if (!set.up && wanted(type)) result.not_looked_for.emplace_back(type);
+    for (Relationship& relationship : RelationMeter(mesh, set, options).extract(types, 0)) add(std::move(relationship));
+    return result;
+}
+
 }  // namespace ostraka

@@ -1,6 +1,7 @@
 // Measures of the geometric relationships.
 #include "meter.h"
 
+#include "ostraka/core/angles.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/limits.h"
 #include "ostraka/measure/measure.h"
@@ -11,8 +12,6 @@ namespace ostraka {
 using namespace detail;
 
 namespace {
-
-constexpr double degree = M_PI / 180;
 
 double angle_between(const Vector3d& a, const Vector3d& b) { return std::atan2(a.cross(b).norm(), std::abs(a.dot(b))) / degree; }
 

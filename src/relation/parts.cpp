@@ -1,6 +1,5 @@
 #include "parts.h"
-
-#include <Eigen/Eigenvalues>
+#include "ostraka/core/dense.h"
 
 #include <map>
 
@@ -22,7 +21,7 @@ Cloud::Plane Cloud::plane() const {
         total += weights[i];
     }
     if (!(total > 0)) return plane;
-    const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(covariance / total);
+    const SymmetricEigen3 solver(covariance / total);
     plane.normal = solver.eigenvectors().col(0);
     plane.rms = std::sqrt(std::max(0.0, solver.eigenvalues()[0]));
     plane.spread = std::sqrt(std::max(0.0, solver.eigenvalues()[1]));
@@ -157,7 +156,7 @@ Mirror fit(const Pairs& pairs) {
     Matrix3d S = Matrix3d::Zero();
     for (std::size_t i = 0; i < pairs.p.size(); ++i) S += (pairs.p[i] - mean_p) * (pairs.q[i] - mean_q).transpose() / count;
     const Vector3d d = mean_q - mean_p;
-    const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(2 * (S + S.transpose()) - d * d.transpose());
+    const SymmetricEigen3 solver(2 * (S + S.transpose()) - d * d.transpose());
     return {(mean_p + mean_q) / 2, solver.eigenvectors().col(0)};
 }
 
@@ -182,7 +181,7 @@ Mirror find_mirror(Part& a, Part& b) {
         Cloud cloud{a.samples(), std::vector<double>(a.samples().size(), 1)};
         Matrix3d covariance = Matrix3d::Zero();
         for (const auto& p : cloud.points) covariance += (p - a.centroid()) * (p - a.centroid()).transpose();
-        const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(covariance);
+        const SymmetricEigen3 solver(covariance);
         for (int k = 0; k < 3; ++k) starts.push_back({a.centroid(), solver.eigenvectors().col(k)});
     }
     Mirror best;

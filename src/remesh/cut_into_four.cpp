@@ -1,4 +1,5 @@
 #include "collapse.h"
+#include "ostraka/core/angles.h"
 #include "property_carrier.h"
 #include "subdivide.h"
 
@@ -37,7 +38,7 @@ Point loop_vertex_point(const Mesh& mesh, Vertex v) {
         sum += position(mesh, mesh.source(h));
         n += 1;
     });
-    const double cosine = 3.0 / 8 + std::cos(2 * M_PI / n) / 4;
+    const double cosine = 3.0 / 8 + std::cos(2 * pi / n) / 4;
     const double share = 5.0 / 8 - cosine * cosine;
     return CGAL::ORIGIN + (1 - share) * position(mesh, v) + (share / n) * sum;
 }

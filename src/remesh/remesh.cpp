@@ -1,4 +1,5 @@
 #include "ostraka/remesh/remesh.h"
+#include "ostraka/core/angles.h"
 
 #include "metric.h"
 #include "ostraka/core/error.h"
@@ -28,7 +29,7 @@ bool too_many_pieces(const Mesh& mesh, double length, double wanted) {
 }
 
 void mark_features(const Mesh& mesh, double degrees, Mesh::Property_map<Edge, bool>& constrained) {
-    const double cosine = std::cos(degrees * M_PI / 180);
+    const double cosine = std::cos(degrees * pi / 180);
     for (const Edge e : mesh.edges()) {
         if (mesh.is_border(e)) continue;
         const Vector a = area_vector(mesh, mesh.face(mesh.halfedge(e, 0))), b = area_vector(mesh, mesh.face(mesh.halfedge(e, 1)));
@@ -120,6 +121,13 @@ RemeshResult remesh(const Mesh& mesh, const RemeshOptions& options) {
     result.deviation = project(result.mesh, tree, 1) * frame.size;
     for (const Vertex v : result.mesh.vertices()) result.mesh.point(v) = frame.world(result.mesh.point(v) - CGAL::ORIGIN);
     return result;
+}
+
+void RemeshOptions::describe(OptionList& visit) {
+    visit("vertices", vertices, "wanted number of vertices (met exactly unless the topology forbids)", Range{1, 5e8});
+    visit("iterations", iterations, "rounds of splitting, collapsing, flipping, smoothing and projecting", Range{1, 100});
+    visit("feature-angle", feature_angle, "degrees by which the faces at an edge must turn for it to stay; 0: no edge is kept",
+          Range{0, 180});
 }
 
 }  // namespace ostraka

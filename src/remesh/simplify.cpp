@@ -1,4 +1,5 @@
 #include "ostraka/remesh/simplify.h"
+#include "ostraka/core/angles.h"
 
 #include "collapse.h"
 #include "collapse_rules.h"
@@ -153,7 +154,7 @@ private:
     [[nodiscard]] bool keeps_shape(Halfedge h, const Vector& x, bool target_stays) const {
         constexpr double thinnest = 0.02;  // area over sum of squared edge lengths, twice; 0.29 for an equilateral triangle
         constexpr double flat = 1e-9;
-        const double least_cosine = std::max(1e-3, std::cos(stage_.max_normal_change * M_PI / 180));
+        const double least_cosine = std::max(1e-3, std::cos(stage_.max_normal_change * pi / 180));
         bool fine = true;
         const auto check = [&](Halfedge g) {  // g ends in the vertex that moves
             if (mesh_.is_border(g) || mesh_.face(g) == mesh_.face(h) || mesh_.face(g) == mesh_.face(mesh_.opposite(h))) return;
@@ -274,6 +275,23 @@ SimplifyResult simplify(Mesh& mesh, const SimplifyOptions& options, const Marked
     GarbageMaps maps{&result.vertex_map, &result.face_map};
     mesh.collect_garbage(maps);
     return result;
+}
+
+void SimplifyOptions::describe(OptionList& visit) {
+    visit("vertices", vertices, "wanted number of vertices", Range{1, 5e8});
+    visit("method", method,
+          "cost and place of a collapse: qem (Garland and Heckbert 1997) or lindstrom-turk (1998, without memory)",
+          Choices{"qem", "lindstrom-turk"});
+    visit("outlines", outlines,
+          "annotated outlines, lines and points: follow (they move and lose vertices, but keep their topology while that can "
+          "be), protect "
+          "(they stay exactly as they are) or ignore",
+          Choices{"follow", "protect", "ignore"});
+    visit("max-normal-change", max_normal_change,
+          "degrees that a face may turn in one collapse (given up, up to 90, if the number cannot be reached)", Range{1, 90});
+    visit("outline-weight", outline_weight,
+          "qem: weight of the distance to outlines that are followed, relative to the surface's", Range{0, 1e6});
+    visit("border-weight", border_weight, "qem: weight of the distance to the border, relative to the surface's", Range{0, 1e6});
 }
 
 }  // namespace ostraka

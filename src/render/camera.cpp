@@ -1,11 +1,11 @@
 #include "camera.h"
 
+#include "ostraka/core/angles.h"
 #include "ostraka/core/error.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace ostraka {
 
@@ -13,7 +13,7 @@ namespace {
 Eigen::Vector3d vector(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
 
 /// Tangent of half the angle under which the smaller side of a pane is seen in perspective: 30 degrees in all.
-const double half_view = std::tan(15 * std::numbers::pi / 180);
+const double half_view = std::tan(15 * pi / 180);
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 }  // namespace

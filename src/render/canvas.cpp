@@ -1,9 +1,9 @@
 #include "canvas.h"
 
+#include "ostraka/core/angles.h"
 #include "ostraka/core/error.h"
 
 #include <cstring>
-#include <numbers>
 
 #if defined(__SANITIZE_ADDRESS__)
 // The font library keeps some hundred bytes of its settings for ever, which is none of our doing.
@@ -128,7 +128,7 @@ void Canvas::polyline(const std::vector<Place>& places, const Rgb& value, double
 
 void Canvas::disc(Place centre, double radius, const Rgb& value) {
     cairo_new_path(context_.get());
-    cairo_arc(context_.get(), centre.x, centre.y, radius, 0, 2 * std::numbers::pi);
+    cairo_arc(context_.get(), centre.x, centre.y, radius, 0, 2 * pi);
     colour(value);
     cairo_fill(context_.get());
 }
@@ -164,7 +164,7 @@ void Canvas::text(const std::string& words, double x, double y, double size, con
 void Canvas::upward_text(const std::string& words, double x, double y, double size, const Rgb& value) {
     cairo_save(context_.get());
     cairo_translate(context_.get(), x, y);
-    cairo_rotate(context_.get(), -std::numbers::pi / 2);
+    cairo_rotate(context_.get(), -pi / 2);
     text(words, 0, 0, size, value, Align::centre);
     cairo_restore(context_.get());
 }

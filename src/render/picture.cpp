@@ -10,7 +10,7 @@
 namespace ostraka {
 
 namespace {
-using Surface = std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)>;
+using CairoSurface = std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)>;
 
 cairo_status_t append(void* bytes, const unsigned char* data, unsigned int length) {
     try {
@@ -56,7 +56,8 @@ Rgb parse_colour(const std::string& text) {
 }
 
 std::string png_bytes(const Picture& picture) {
-    const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_ARGB32, picture.width, picture.height), &cairo_surface_destroy);
+    const CairoSurface surface(cairo_image_surface_create(CAIRO_FORMAT_ARGB32, picture.width, picture.height),
+                               &cairo_surface_destroy);
     const auto failed = [](cairo_status_t status) {
         throw Error(ErrorKind::failure, "picture", cairo_status_to_string(status), "use a smaller size");
     };
@@ -78,7 +79,7 @@ void write_png(const Path& file, const Picture& picture) { write_file(file, png_
 Picture read_png(const Path& file) {
     const std::string bytes = read_file(file);
     Reader reader{bytes};
-    const Surface surface(cairo_image_surface_create_from_png_stream(&take, &reader), &cairo_surface_destroy);
+    const CairoSurface surface(cairo_image_surface_create_from_png_stream(&take, &reader), &cairo_surface_destroy);
     if (const auto status = cairo_surface_status(surface.get()); status != CAIRO_STATUS_SUCCESS)
         fail_input(file.string(), std::string("is not a PNG file: ") + cairo_status_to_string(status));
     const bool opaque = cairo_image_surface_get_format(surface.get()) == CAIRO_FORMAT_RGB24;

@@ -1,5 +1,6 @@
 #include "shading.h"
 
+#include "ostraka/core/angles.h"
 #include "ostraka/core/parallel.h"
 
 #include <Eigen/Geometry>
@@ -8,7 +9,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace ostraka::detail {
 
@@ -72,7 +72,7 @@ std::vector<Eigen::Vector3d> sphere_directions(int count) {
     for (int i = 0; i < count; ++i) {
         const double z = 1 - (2 * i + 1.0) / count;
         const double radius = std::sqrt(std::max(0.0, 1 - z * z));
-        const double angle = 2 * std::numbers::pi * std::fmod(i * 0.6180339887498949, 1.0);
+        const double angle = 2 * pi * std::fmod(i * 0.6180339887498949, 1.0);
         list.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);
     }
     return list;

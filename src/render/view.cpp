@@ -1,4 +1,5 @@
 #include "ostraka/render/view.h"
+#include "ostraka/core/angles.h"
 
 #include "ostraka/core/error.h"
 
@@ -47,7 +48,7 @@ double sine(double degrees) {
     if (turn == 0 || std::abs(turn) == 180) return 0;
     if (turn == 90) return 1;
     if (turn == -90) return -1;
-    return std::sin(turn * std::numbers::pi / 180);
+    return std::sin(turn * pi / 180);
 }
 double cosine(double degrees) { return sine(degrees + 90); }
 }  // namespace
@@ -55,7 +56,7 @@ double cosine(double degrees) { return sine(degrees + 90); }
 View parse_view(const std::string& text) {
     for (const View& view : standard_views())
         if (view.name == text) return view;
-    if (text == "iso") return {"iso", 45, std::atan(1 / std::numbers::sqrt2) * 180 / std::numbers::pi};
+    if (text == "iso") return {"iso", 45, std::atan(1 / std::numbers::sqrt2) * 180 / pi};
     const auto angles = numbers(text);
     if (angles.size() != 2 || std::abs(angles[1]) > 90 || std::abs(angles[0]) > 3600)
         fail_usage(

@@ -15,7 +15,7 @@ namespace {
 
 using namespace report;
 
-constexpr double row_height = 17, tree_width = 460, name_size = 12, largest_name = 220, number_size = 10.5;
+constexpr double row_height = 17, tree_width = 460, leaf_size = 12, largest_leaf = 220, number_size = 10.5;
 constexpr Rgb between{130, 130, 130}, cut_colour{200, 30, 30};
 
 void check(const Dendrogram& d) {
@@ -49,7 +49,7 @@ std::string draw(const Dendrogram& d, Sheet::Format format) {
     {
         Sheet measure(10, 10);
         for (const std::string& name : d.names)
-            names = std::max(names, std::min(largest_name, measure.width_of(name, name_size)));
+            names = std::max(names, std::min(largest_leaf, measure.width_of(name, leaf_size)));
         for (const auto& [name, index] : classes)
             legend = std::max({legend, 34 + measure.width_of(name), measure.width_of("known answers")});
         legend = std::max(legend, measure.width_of(d.title) - names - tree_width);
@@ -83,8 +83,8 @@ std::string draw(const Dendrogram& d, Sheet::Format format) {
         const auto leaf = static_cast<std::size_t>(leaves[r]);
         place[leaf] = top + (static_cast<double>(r) + 0.5) * row_height;
         cluster[leaf] = clusters[leaf];
-        sheet.text(sheet.fitted(d.names[leaf], largest_name, name_size), margin + names, place[leaf] + 0.35 * name_size, 1,
-                   name_size);
+        sheet.text(sheet.fitted(d.names[leaf], largest_leaf, leaf_size), margin + names, place[leaf] + 0.35 * leaf_size, 1,
+                   leaf_size);
         if (!classes.empty()) {
             const std::size_t of = classes.at(d.classes[leaf]);
             sheet.mark(left - 10, place[leaf], of, series_colour(of));

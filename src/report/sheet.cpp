@@ -1,5 +1,6 @@
 #include "sheet.h"
 
+#include "ostraka/core/angles.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/text.h"
 #include "ostraka/render/colour_scale.h"
@@ -8,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace ostraka::report {
 
@@ -132,7 +132,7 @@ void Sheet::frame(const Box& box, const Rgb& colour, double width) {
 
 void Sheet::dot(double x, double y, const Rgb& colour, double radius) {
     cairo_new_path(context_.get());
-    cairo_arc(context_.get(), x, y, radius, 0, 2 * std::numbers::pi);
+    cairo_arc(context_.get(), x, y, radius, 0, 2 * pi);
     set(colour);
     cairo_fill(context_.get());
 }
@@ -157,7 +157,7 @@ void Sheet::mark(double x, double y, std::size_t form, const Rgb& colour) {
             break;
         default:
             cairo_new_path(context_.get());
-            cairo_arc(context_.get(), x, y, 3.2, 0, 2 * std::numbers::pi);
+            cairo_arc(context_.get(), x, y, 3.2, 0, 2 * pi);
             stroke(colour, 1.8, false);
     }
 }
@@ -179,7 +179,7 @@ void Sheet::text(const std::string& words, double x, double y, double anchor, do
 void Sheet::upward_text(const std::string& words, double x, double y, double anchor, double size) {
     cairo_save(context_.get());
     cairo_translate(context_.get(), x, y);
-    cairo_rotate(context_.get(), -std::numbers::pi / 2);
+    cairo_rotate(context_.get(), -pi / 2);
     text(words, 0, 0, anchor, size);
     cairo_restore(context_.get());
 }
@@ -219,7 +219,7 @@ void write_sheet(const Path& file, const std::function<std::string(Sheet::Format
     const std::string ending = extension(file);
     if (ending != ".svg" && ending != ".png")
         throw Error(ErrorKind::usage, file.string(), "drawings are written as SVG or PNG", "let the name end in .svg or .png");
-    if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
+    make_folder(file.parent_path());
     write_file(file, draw(ending == ".png" ? Sheet::Format::png : Sheet::Format::svg));
 }
 

@@ -1,5 +1,6 @@
 // A sheet of slices.
 #include "ostraka/report/slice_drawing.h"
+#include "ostraka/core/angles.h"
 
 #include "drawing_parts.h"
 
@@ -59,7 +60,7 @@ void draw_slice(Sheet& sheet, const DrawnSlice& drawn, const Placing& placing) {
         const auto& d = *drawn.descriptors;
         std::vector<Vector2d> circle;
         for (int k = 0; k <= 90; ++k)
-            circle.push_back(d.fitted_centre + d.fitted_radius * Vector2d(std::cos(k * M_PI / 45), std::sin(k * M_PI / 45)));
+            circle.push_back(d.fitted_centre + d.fitted_radius * Vector2d(std::cos(k * pi / 45), std::sin(k * pi / 45)));
         sheet.polyline(placing(circle, false), lighter(guide, 0.35), true, 0.5);
     }
     for (const auto& contour : drawn.slice->contours)

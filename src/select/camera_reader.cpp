@@ -1,21 +1,16 @@
 #include "camera_reader.h"
 
+#include "ostraka/core/angles.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/limits.h"
 #include "ostraka/select/screen.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace ostraka {
 
 namespace {
-
-double number(const JsonValue& object, const char* name, double otherwise) {
-    const JsonValue* value = find_member(object, name);
-    return value == nullptr ? otherwise : value->GetDouble();
-}
 
 /// A pinhole or parallel rays from the eye to the target.
 PictureCamera looking(const JsonValue& value, const Mesh& mesh, const Vector& up, bool perspective, const PixelBox& pane,
@@ -46,10 +41,10 @@ PictureCamera looking(const JsonValue& value, const Mesh& mesh, const Vector& up
     if (by_angle && !perspective)
         fail_input(where, "parallel rays have no angle", "give pixelsPerUnit, or take a perspective camera");
     if (by_angle) {
-        const double half = number(value, "angle", 30) / 2 * std::numbers::pi / 180;
+        const double half = number_or(value, "angle", 30) / 2 * pi / 180;
         camera.scale = std::min(pane.width, pane.height) / 2 / std::tan(half) / camera.distance;
     } else {
-        camera.scale = number(value, "pixelsPerUnit", 1);
+        camera.scale = number_or(value, "pixelsPerUnit", 1);
     }
     if (!(camera.scale > 0) || !std::isfinite(camera.scale)) fail_input(where, "the camera's scale is not a number above zero");
     if (perspective) {
@@ -109,7 +104,7 @@ ScreenCamera read_camera(const JsonValue& value, const Mesh& mesh, const std::ar
         fail_input(where, error.problem(), error.remedy());
     }
     plan.up = {up.x(), up.y(), up.z()};
-    plan.zoom = number(value, "zoom", 1);
+    plan.zoom = number_or(value, "zoom", 1);
     result.camera = fit_camera(mesh, plan);
     return result;
 }

@@ -4,6 +4,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/fields/curvature.h"
 #include "ostraka/fields/statistics.h"
+#include "ostraka/measure/descriptors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -304,6 +305,52 @@ std::vector<Crease> find_creases(const Mesh& mesh, const CreaseOptions& options)
     std::stable_sort(creases.begin(), creases.end(),
                      [](const Crease& a, const Crease& b) { return a.length * a.strength > b.length * b.strength; });
     return creases;
+}
+
+namespace {
+/// Ridges are warm and hollows cold; those next in number are told apart by tone, six of each.
+std::array<int, 3> shade(bool ridge, int number) {
+    static constexpr std::array<std::array<int, 3>, 6> warm{
+        {{213, 94, 0}, {230, 159, 0}, {153, 27, 30}, {240, 120, 110}, {120, 70, 20}, {250, 200, 90}}};
+    static constexpr std::array<std::array<int, 3>, 6> cold{
+        {{0, 114, 178}, {86, 180, 233}, {0, 140, 110}, {60, 50, 150}, {120, 200, 170}, {150, 130, 220}}};
+    return (ridge ? warm : cold).at(static_cast<std::size_t>(number - 1) % 6);
+}
+}  // namespace
+
+AnnotationSet annotate_creases(const std::vector<Crease>& creases, bool regions, const std::string& unit) {
+    AnnotationSet set;
+    set.unit = unit;
+    int ridges = 0, hollows = 0;
+    for (const Crease& crease : creases) {
+        const int number = crease.ridge ? ++ridges : ++hollows;
+        Annotation annotation;
+        annotation.id = free_id(set);
+        annotation.tag = (crease.ridge ? "ridge " : "hollow ") + std::to_string(number);
+        annotation.colour = shade(crease.ridge, number);
+        annotation.type = regions ? AnnotationType::region : AnnotationType::line;
+        if (regions) annotation.faces = crease.faces;
+        else annotation.polylines = {crease.line};
+        std::vector<Quantity> quantities{{"width", {crease.width}, false, 1, {}},
+                                         {"mean curvature", {crease.mean_curvature}, false, -1, {}},
+                                         {"strength", {crease.strength}, false, 0, {}}};
+        if (!regions) quantities.insert(quantities.begin(), {"length", {crease.length}, false, 1, {}});
+        store(annotation, quantities, unit);
+        set.annotations.push_back(std::move(annotation));
+    }
+    return set;
+}
+
+void CreaseOptions::describe(OptionList& visit) {
+    visit("kind", kind, "ridges (clay that stands out), hollows (where parts meet), or both", Choices{"ridge", "hollow", "both"});
+    visit("scale", scale, "radius over which curvature is averaged, as a share of the box diagonal; about the width looked for",
+          Range{1e-6, 0.5});
+    visit("wide", wide, "radius of the surroundings that it is compared with, in multiples of the scale", Range{1.1, 20});
+    visit("weak", weak, "response that belongs to a crease, in robust deviations of the response over the surface",
+          Range{0, 1000});
+    visit("strong", strong, "response that a crease reaches somewhere, in robust deviations", Range{0, 1000});
+    visit("floor", floor, "response (curvature times scale) below which nothing is a crease", Range{0, 100});
+    visit("shortest", shortest, "least length, as a share of the box diagonal", Range{0, 10});
 }
 
 }  // namespace ostraka

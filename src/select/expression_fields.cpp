@@ -25,11 +25,6 @@ std::string key_of(const char* name, double a, double b = 0) {
     return text.str();
 }
 
-double number(const JsonValue& object, const char* name, double otherwise) {
-    const JsonValue* value = find_member(object, name);
-    return value == nullptr ? otherwise : value->GetDouble();
-}
-
 }  // namespace
 
 double ExpressionEvaluator::length(double value, PlaceFrame frame) const {
@@ -68,7 +63,7 @@ ScalarMap ExpressionEvaluator::scalar(const JsonValue& value, PlaceFrame frame, 
     const double unit = length(1, frame);
     ScalarMap map;
     if (chosen == "distance") {
-        const double limit = number(value, "below", std::numeric_limits<double>::infinity());
+        const double limit = number_or(value, "below", std::numeric_limits<double>::infinity());
         const bool quantiles = find_member(value, "quantiles") != nullptr && value["quantiles"].GetBool();
         map.values = distances_within(mesh_, surface_picks(of, frame, here),
                                       quantiles ? std::numeric_limits<double>::infinity() : unit * std::max(0.0, limit));
@@ -93,7 +88,7 @@ ScalarMap ExpressionEvaluator::scalar(const JsonValue& value, PlaceFrame frame, 
     if (chosen == "curvature") {
         const bool mean = std::string(of.GetString()) == "mean";
         CurvatureOptions options;
-        options.scale = number(value, "scale", 0);
+        options.scale = number_or(value, "scale", 0);
         const std::string key = key_of("curvature", options.scale, mean ? 1 : 0);
         if (!maps_.contains(key)) {
             Curvature found;
@@ -144,8 +139,8 @@ ScalarRange ExpressionEvaluator::interval(const JsonValue& value, const ScalarMa
 
 std::vector<bool> ExpressionEvaluator::segments(const JsonValue& value, PlaceFrame frame, const std::string& at) const {
     SegmentOptions options;
-    options.clusters = static_cast<int>(number(value, "clusters", options.clusters));
-    options.smoothing = number(value, "smoothing", options.smoothing);
+    options.clusters = static_cast<int>(number_or(value, "clusters", options.clusters));
+    options.smoothing = number_or(value, "smoothing", options.smoothing);
     const JsonValue *seeds = find_member(value, "seeds"), *numbers = find_member(value, "numbers");
     if ((seeds == nullptr) == (numbers == nullptr))
         fail(at, seeds == nullptr ? "segments without seeds or numbers" : "segments by both seeds and numbers",

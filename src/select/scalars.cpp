@@ -75,4 +75,9 @@ double quantile_of(const Mesh& mesh, const ScalarMap& map, double share, const s
     return quantile(values, weights, share, where);
 }
 
+void SegmentOptions::describe(OptionList& visit) {
+    visit("clusters", clusters, "levels of thickness that are told apart", Range{2, 100});
+    visit("smoothing", smoothing, "how much short borders in hollows are preferred, 0 to 1", Range{0, 1});
+}
+
 }  // namespace ostraka

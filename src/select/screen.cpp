@@ -1,11 +1,11 @@
 #include "ostraka/select/screen.h"
+#include "ostraka/core/angles.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <sstream>
 
 namespace ostraka {
@@ -153,7 +153,7 @@ bool is_inside(const Mesh& mesh, const Point& point) {
         const double lx = std::sqrt(x.squared_length()), ly = std::sqrt(y.squared_length()), lz = std::sqrt(z.squared_length());
         sum += 2 * std::atan2(x * CGAL::cross_product(y, z), lx * ly * lz + (x * y) * lz + (y * z) * lx + (z * x) * ly);
     }
-    return std::abs(sum) > 2 * std::numbers::pi;
+    return std::abs(sum) > 2 * pi;
 }
 
 }  // namespace ostraka

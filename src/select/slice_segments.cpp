@@ -5,6 +5,7 @@
 #include "ostraka/core/parallel.h"
 #include "ostraka/slicing/slice.h"
 #include "ostraka/slicing/slice_descriptors.h"
+#include "ostraka/stats/scores.h"
 
 #include <algorithm>
 #include <cmath>
@@ -129,6 +130,25 @@ AnnotationSet annotate_segments(const Mesh& mesh, const SliceSegments& segments)
     for (Annotation& region : set.annotations)
         region.colour = distinct_colour(static_cast<std::size_t>(segments.segments[static_cast<std::size_t>(region.id)].cluster));
     return set;
+}
+
+std::optional<double> segment_agreement(const SliceSegments& segments, const std::vector<std::int32_t>& known) {
+    std::vector<int> found, truth;
+    for (std::size_t f = 0; f < known.size(); ++f) {
+        if (known[f] < 0) continue;
+        found.push_back(segments.face_segments[f]);
+        truth.push_back(known[f]);
+    }
+    return found.empty() ? std::nullopt : std::optional(adjusted_rand_index(found, truth));
+}
+
+void SliceSegmentOptions::describe(OptionList& visit) {
+    visit("slices", slices, "slices across the object, evenly spread", Range{4, 10000});
+    visit("clusters", clusters, "kinds of slices; 0: as many as the criterion proposes", Range{0, 1000});
+    visit("least-run", least_run, "as many slices of one kind in a row make a segment; shorter runs join their longer neighbour",
+          Range{1, 1000});
+    visit("size", size, "the radius of the circle of the slice's area counts as well", Anything{});
+    count.describe(visit);
 }
 
 }  // namespace ostraka

@@ -2,6 +2,7 @@
 #include "continuity.h"
 #include "reader.h"
 
+#include "ostraka/core/angles.h"
 #include "ostraka/relation/geometric.h"
 
 namespace ostraka::semantic {
@@ -72,7 +73,7 @@ Statement axis_angle(const ReaderPtr& read, const RelationOptions& tolerances) {
     read->need(2, 0);
     std::vector<Axis> axes;
     for (std::size_t i = 0; i < read->members(); ++i) axes.push_back(axis_of(*read, i, axis_of_part));
-    const double angle = read->relationship().type == "perpendicular axes" ? M_PI / 2 : 0;
+    const double angle = read->relationship().type == "perpendicular axes" ? pi / 2 : 0;
     Statement statement;
     statement.follows = true;
     statement.lower = [read, axes, angle](const State&, const State& now) {
@@ -165,7 +166,7 @@ Statement structural_continuity(const ReaderPtr& read, const RelationOptions& to
         const std::vector<Vector3d> places = stations_of(*segment, deformed.points);
         const Vector3d direction = eigen(reference.direction), along = places.back() - places.front();
         Deviation turned = angle, off = distance;
-        turned.value = std::atan2(direction.cross(along).norm(), std::abs(direction.dot(along))) * 180 / M_PI;
+        turned.value = std::atan2(direction.cross(along).norm(), std::abs(direction.dot(along))) * 180 / pi;
         for (const Vector3d& place : places)
             off.value = std::max(*off.value, direction.cross(place - eigen(reference.point)).norm());
         return verdict_of({turned, off});

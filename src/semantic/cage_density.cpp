@@ -1,6 +1,7 @@
 #include "ostraka/semantic/cage_density.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/relation/geometric.h"
 
 #include <CGAL/Fuzzy_sphere.h>
 #include <CGAL/Kd_tree.h>
@@ -65,6 +66,17 @@ CageDensity annotation_density(const Mesh& mesh, const AnnotationSet& set, const
         for (const Weighted& entry : near) factor = std::max(factor, entry.second);
         return factor > 0 ? factor : 1.0;
     };
+}
+
+MirrorPlane find_mirror_plane(const Mesh& mesh, AnnotationSet set, const std::string& where) {
+    Relationship stated;
+    stated.type = "mirror symmetry";
+    stated.annotations = {ensure_root(set, mesh).id};
+    const RelationCheck check = RelationMeter(mesh, set).measure(stated);
+    if (check.verdict != Verdict::holds || !check.parameters.plane)
+        throw Error(ErrorKind::failure, where, "is not mirror-symmetric: " + check.text, "give the plane, or leave --mirror out");
+    const auto& [p, n] = *check.parameters.plane;
+    return {Point(p[0], p[1], p[2]), Vector(n[0], n[1], n[2])};
 }
 
 }  // namespace ostraka

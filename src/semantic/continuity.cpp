@@ -1,5 +1,6 @@
 #include "continuity.h"
 
+#include "ostraka/core/angles.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/semantic/edit.h"
 
@@ -62,7 +63,7 @@ AxisSegment continuing_segment(const Mesh& mesh, const Annotation& part, const A
     }
     if (to_back < to_front) std::reverse(line.begin(), line.end());
     const Vector3d direction = eigen(axis).normalized();
-    const double limit = std::cos(angle * M_PI / 180);
+    const double limit = std::cos(angle * pi / 180);
     int last = 0;
     for (; last < steps; ++last) {
         const Vector3d step = line[static_cast<std::size_t>(last) + 1] - line[static_cast<std::size_t>(last)];

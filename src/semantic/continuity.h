@@ -4,7 +4,7 @@
 #include "ostraka/annotation/annotation.h"
 #include "ostraka/axis/axis.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 
 namespace ostraka::semantic {
 

@@ -414,4 +414,25 @@ void check_constraint(const Mesh& mesh, const AnnotationSet& set, const Relation
     if (statement.unknown.empty()) static_cast<void>(statement.lower(state, state));
 }
 
+void DeformOptions::describe(OptionList& visit) {
+    visit("space", space,
+          "mesh (constraints hold as well as weights let them) or cage (interactive; as well as the cage can): the unknowns",
+          Choices{"mesh", "cage"});
+    visit("details", details,
+          "Laplacian displacements that the surface tends to: edited (those of the shape as the edit alone leaves it) or "
+          "rest (those of the "
+          "shape before it, as in the thesis)",
+          Choices{"edited", "rest"});
+    visit("closeness", closeness, "weight of the edited position of each vertex", Range{0, 1e9});
+    visit("laplacian", laplacian, "weight of the Laplacian displacement of each vertex", Range{0, 1e9});
+    visit("handles", handles, "weight of the positions of the handles that the edit moves, and of joints that parts stretch from",
+          Range{0, 1e9});
+    solve.describe(visit);
+    visit("rounds", rounds, "rounds in which hard constraints are enforced", Range{1, 1e6});
+    visit("passes", passes, "solutions in which constraints on axes and measures of other parts follow those", Range{1, 100});
+    visit("conflicts", conflicts,
+          "where a constraint does not hold, at most so many are left out in turn, to tell which fight; 0 for none",
+          Range{0, 1000});
+}
+
 }  // namespace ostraka

@@ -1,6 +1,7 @@
 #include "ostraka/semantic/edit.h"
 
 #include "ostraka/coords/influence.h"
+#include "ostraka/core/angles.h"
 #include "ostraka/core/error.h"
 #include "ostraka/geom/eigen.h"
 
@@ -164,7 +165,7 @@ private:
             const double angle = value["angle"].GetDouble();
             if (!std::isfinite(angle)) fail("the angle is not finite", "give degrees");
             const Eigen::Matrix3d turn =
-                Eigen::AngleAxisd(angle * M_PI / 180, vector(value["axis"], "axis", true)).toRotationMatrix();
+                Eigen::AngleAxisd(angle * pi / 180, vector(value["axis"], "axis", true)).toRotationMatrix();
             const Vector3d c = centre();
             each([&](const Vector3d& p) -> Vector3d { return c + turn * (p - c); });
         } else if (name == "scale") {

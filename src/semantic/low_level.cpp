@@ -1,4 +1,5 @@
 // Constraints of the solver stated by their own names (thesis, section 4.2), on the vertices of annotations.
+#include "ostraka/core/angles.h"
 #include "reader.h"
 
 #include <set>
@@ -166,8 +167,8 @@ Statement low_level(const ReaderPtr& read, const RelationOptions& tolerances) {
     const auto groups = std::make_shared<const std::vector<std::vector<int>>>(groups_of(*read, form));
     const bool degrees = std::string_view(form.kind) == "Angle";
     ConstraintParameters parameters;
-    if (read->has("minValue")) parameters.min = read->number("minValue", 0, 0, 1e60) * (degrees ? M_PI / 180 : 1);
-    if (read->has("maxValue")) parameters.max = read->number("maxValue", 0, 0, 1e60) * (degrees ? M_PI / 180 : 1);
+    if (read->has("minValue")) parameters.min = read->number("minValue", 0, 0, 1e60) * (degrees ? degree : 1);
+    if (read->has("maxValue")) parameters.max = read->number("maxValue", 0, 0, 1e60) * (degrees ? degree : 1);
     parameters.absolute = read->flag("absolute");
     parameters.direction = read->direction("direction");
     parameters.point = read->vector("point");

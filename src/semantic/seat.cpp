@@ -1,5 +1,6 @@
 #include "seat.h"
 
+#include "ostraka/core/dense.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/geom/with_points.h"
@@ -80,7 +81,7 @@ struct Placement {
 Placement fit(const Points& from, const Points& to) {
     const Vector3d a = from.rowwise().mean(), b = to.rowwise().mean();
     const Matrix3d m = (to.colwise() - b) * (from.colwise() - a).transpose();
-    const Eigen::JacobiSVD<Matrix3d> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const Svd3 svd(m);
     Matrix3d sign = Matrix3d::Identity();
     sign(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
     Placement result;

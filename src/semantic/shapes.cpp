@@ -1,4 +1,5 @@
 // Parts that keep their shape, and features that stand on one level.
+#include "ostraka/core/dense.h"
 #include "reader.h"
 
 namespace ostraka::semantic {
@@ -12,7 +13,7 @@ Index reference_vertex(const Points& rest, const std::vector<Index>& vertices) {
     mean /= static_cast<double>(vertices.size());
     Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
     for (const Index v : vertices) spread += (rest.col(v) - mean) * (rest.col(v) - mean).transpose();
-    const Vector3d normal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0);
+    const Vector3d normal = SymmetricEigen3(spread).eigenvectors().col(0);
     Index best = vertices.front();
     double least = std::numeric_limits<double>::infinity();
     for (const Index v : vertices) {

@@ -1,4 +1,5 @@
 #include "ostraka/shapes/fragments.h"
+#include "ostraka/core/angles.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/geom/eigen.h"
@@ -7,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 namespace ostraka {
@@ -30,8 +30,8 @@ BrokenPiece break_off(const Mesh& whole, const Point& centre, const BreakOptions
         const double length = size * std::pow(0.15, k / 11.0);
         Vector3d direction(random.normal(), random.normal(), random.normal());
         direction.normalize();
-        waves.push_back({2 * std::numbers::pi / length * direction, random.uniform(0, 2 * std::numbers::pi),
-                         options.roughness * length * std::sqrt(2.0 / 12)});
+        waves.push_back(
+            {2 * pi / length * direction, random.uniform(0, 2 * pi), options.roughness * length * std::sqrt(2.0 / 12)});
     }
     const Vector3d middle = eigen(centre);
     std::vector<double> distance(whole.number_of_faces());
@@ -82,6 +82,15 @@ BrokenPiece break_off(const Mesh& whole, const Point& centre, const BreakOptions
         result.pose = there.inverse();
     }
     return result;
+}
+
+void BreakOptions::describe(OptionList& visit) {
+    visit("share", share, "of the surface that the fragment has", Range{0.001, 1});
+    visit("roughness", roughness, "waves of the break, as a share of the fragment's size", Range{0, 1});
+    visit("noise", noise, "standard deviation along the normal, as a share of the whole's diagonal", Range{0, 0.1});
+    visit("erosion", erosion, "width of the rim that is worn away, as a share of the whole's diagonal", Range{0, 0.5});
+    visit("moved", moved, "turned and shifted at random", Anything{});
+    visit("seed", seed, "of the break, the noise and the motion", Range{0, 9007199254740992.0});
 }
 
 }  // namespace ostraka

@@ -143,4 +143,11 @@ MadeMesh make_mesh(const MadeObject& object, const MakeOptions& options) {
     return made;
 }
 
+void MakeOptions::describe(OptionList& visit) {
+    visit("vertices", vertices, "number of vertices wanted (met to 1 %)", Range{4, 5e7});
+    visit("seed", seed, "turns and shifts the lattice and draws the noise: another seed, another mesh of the same object",
+          Range{0, 9007199254740992.0});
+    visit("noise", noise, "moves each vertex along the normal by up to this share of the mean edge length", Range{0, 0.25});
+}
+
 }  // namespace ostraka

@@ -1,4 +1,5 @@
 #include "ostraka/shapes/shatter.h"
+#include "ostraka/core/angles.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/geom/eigen.h"
@@ -11,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 namespace ostraka {
@@ -20,8 +20,6 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 namespace {
-
-constexpr double pi = std::numbers::pi;
 
 /// Rings of one number of vertices each, a pole where the radius is 0.
 Mesh turned(const std::vector<Vector2d>& profile, int around) {
@@ -285,6 +283,22 @@ std::vector<Sherd> shatter(const Mesh& whole, const ShatterOptions& options) {
         sherds.push_back(std::move(sherd));
     }
     return sherds;
+}
+
+void PotOptions::describe(OptionList& visit) {
+    visit("height", height, "of the vessel", Range{1e-9, 1e9});
+    visit("radius", radius, "of the body", Range{1e-9, 1e9});
+    visit("wall", wall, "thickness of the wall", Range{1e-9, 1e9});
+    visit("edge", edge, "length of the triangles' edges", Range{1e-9, 1e9});
+    visit("shape", shape, "of the profile: another number is another vessel", Range{0, 9007199254740992.0});
+}
+
+void ShatterOptions::describe(OptionList& visit) {
+    visit("pieces", pieces, "at least so many pieces", Range{1, 1000});
+    visit("roughness", roughness, "height of the breaks' waves, share of the piece's extent", Range{0, 0.2});
+    visit("erosion", erosion, "what is worn off breaks and their edges, share of the diagonal", Range{0, 0.1});
+    visit("noise", noise, "standard deviation along the normal, share of the diagonal", Range{0, 0.1});
+    visit("seed", seed, "of cuts and noise", Range{0, 9007199254740992.0});
 }
 
 }  // namespace ostraka

@@ -1,11 +1,8 @@
 // Objects with closed formulas for area and volume.
 #include "builder.h"
-
-#include <numbers>
+#include "ostraka/core/angles.h"
 
 namespace ostraka::shapes {
-
-using std::numbers::pi;
 
 namespace {
 std::unique_ptr<MadeObject> start(const std::string& name, const std::string& description, int genus, double area,

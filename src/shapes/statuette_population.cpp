@@ -1,12 +1,13 @@
+#include "ostraka/core/angles.h"
 #include "ostraka/shapes/statuettes.h"
 
 #include "random.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/stats/random.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace ostraka {
 
@@ -19,7 +20,7 @@ public:
     double share() { return shapes::random_share(seed_, next_++); }
     double normal() {
         const double radius = std::sqrt(-2 * std::log(1 - share()));
-        return radius * std::cos(2 * std::numbers::pi * share());
+        return radius * std::cos(2 * pi * share());
     }
     /// Log-normal about its median; tails are cut at 2.5 standard deviations.
     double around(double median, double spread) { return median * std::exp(spread * std::clamp(normal(), -2.5, 2.5)); }
@@ -80,6 +81,51 @@ std::vector<StatuetteParameters> draw_population(const PopulationOptions& option
         one.beard = draw.share() < 0.5;
         one.seed = options.seed * 1000003 + i;
         one.vertices = options.vertices;
+    }
+    return list;
+}
+
+bool ProportionedOptions::is_fixed(const std::string& size) const {
+    return !none && std::find(fixed.begin(), fixed.end(), size) != fixed.end();
+}
+
+void ProportionedOptions::describe(OptionList& visit) {
+    visit("fixed", fixed, "sizes in fixed proportion to each other, with commas between them",
+          Choices(std::vector<std::string>(size_names.begin(), size_names.end())))
+        .words();
+    visit("none", none, "no fixed proportion, but that the two arms are equally long");
+    visit("objects", objects, "number of statuettes", Range{1, 100000});
+    visit("size-deviation", size_deviation, "standard deviation of the logarithm of their common size", Range{0, 0.2});
+    visit("ratio-deviation", ratio_deviation, "standard deviation of the logarithm of ratios that are not fixed", Range{0, 0.2});
+    visit("planted-deviation", planted_deviation, "standard deviation of the logarithm of fixed ratios", Range{0, 0.2});
+    visit("scan-noise", scan_noise, "standard deviation of each vertex along its normal", Range{0, 0.5}, "mm");
+    visit("seed", seed, "of the whole population", Range{0, 1e9});
+    visit("vertices", vertices, "of each mesh", Range{4000, 5e6});
+}
+
+std::vector<StatuetteParameters> draw_population(const ProportionedOptions& options) {
+    check_options(options, "population of statuettes");
+    if (!options.none && options.fixed.size() < 2) fail_usage("--fixed names one measure", "a proportion is between two");
+    PopulationOptions population;
+    population.objects = options.objects;
+    population.seed = options.seed;
+    population.vertices = options.vertices;
+    population.scan_noise = options.scan_noise;
+    std::vector<StatuetteParameters> list = draw_population(population);
+    const double ratio = options.ratio_deviation / std::sqrt(2.0), planted = options.planted_deviation / std::sqrt(2.0);
+    constexpr std::array<double, 4> medians{198, 58, 80, 42};
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        Random random(options.seed, i);
+        // Within three deviations.
+        const auto draw = [&](double deviation) { return deviation * std::clamp(random.normal(), -3.0, 3.0); };
+        const double size = draw(options.size_deviation), shared = draw(ratio);
+        for (std::size_t k = 0; k < 4; ++k) {
+            const double own = draw(ratio), small = draw(planted);
+            const bool fixed = options.is_fixed(ProportionedOptions::size_names.at(k));
+            StatuetteParameters& one = list[i];
+            double* sizes[]{&one.height, &one.base_diameter, &one.arm_length, &one.head_height};
+            *sizes[k] = medians.at(k) * std::exp(size + (fixed ? shared + small : own));
+        }
     }
     return list;
 }

@@ -1,4 +1,5 @@
 // A statuette as a scanner sees it: noise, a cavity seen in part, holes; and the places that are known on it.
+#include "ostraka/core/angles.h"
 #include "ostraka/shapes/statuettes.h"
 
 #include "random.h"
@@ -9,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace ostraka {
 
@@ -24,7 +24,7 @@ constexpr std::uint64_t noise_numbers = std::uint64_t{1} << 40, hole_numbers = s
 double normal_number(std::uint64_t seed, std::uint64_t vertex) {
     const double a = shapes::random_share(seed, noise_numbers + 2 * vertex),
                  b = shapes::random_share(seed, noise_numbers + 2 * vertex + 1);
-    return std::sqrt(-2 * std::log(1 - a)) * std::cos(2 * std::numbers::pi * b);
+    return std::sqrt(-2 * std::log(1 - a)) * std::cos(2 * pi * b);
 }
 
 void add_noise(Mesh& mesh, double deviation, std::uint64_t seed) {
@@ -137,8 +137,7 @@ std::vector<std::pair<std::string, Vector3d>> known_places(const MadeObject& obj
     // Ends of the longest diameter of the rim; of a round base, those to the sides.
     const double rim = body.frame.outline.front().y();
     const Vector2d foot = body.outside->centre(rim);
-    const double turn = p.ovality > 0 ? body.direction + p.ovality_drift * std::numbers::pi / 180 * rim / body.frame.joint_height
-                                      : 0.5 * std::numbers::pi;
+    const double turn = p.ovality > 0 ? body.direction + p.ovality_drift * pi / 180 * rim / body.frame.joint_height : 0.5 * pi;
     for (const double side : {-1.0, 1.0}) {
         const Vector2d way = (std::sin(turn) < 0 ? -side : side) * Vector2d(std::cos(turn), std::sin(turn));
         const double angle = std::atan2(way.y(), way.x());

@@ -1,4 +1,5 @@
 #include "ostraka/shapes/statuettes.h"
+#include "ostraka/core/angles.h"
 
 #include "builder.h"
 #include "random.h"
@@ -9,7 +10,6 @@
 
 #include <cmath>
 #include <map>
-#include <numbers>
 
 namespace ostraka {
 
@@ -27,7 +27,7 @@ class Draws {
 public:
     explicit Draws(std::uint64_t seed) : seed_(seed) {}
     double between(double low, double high) { return low + (high - low) * random_share(seed_, next_++); }
-    double angle() { return between(0, 2 * std::numbers::pi); }
+    double angle() { return between(0, 2 * pi); }
 
 private:
     std::uint64_t seed_, next_ = 0;
@@ -40,7 +40,7 @@ std::vector<Wave> random_waves(Draws& draw, int count, double deviation, int lea
     for (int i = 0; i < count; ++i) {
         const int around = least_around + i % (most_around - least_around + 1);
         const double side = draw.between(-1, 1) < 0 ? -1 : 1;
-        const double upward = side * 2 * std::numbers::pi / draw.between(shortest, longest);
+        const double upward = side * 2 * pi / draw.between(shortest, longest);
         waves.push_back({deviation * std::sqrt(2.0 / count), around, upward, draw.angle()});
     }
     return waves;
@@ -50,7 +50,7 @@ std::vector<Wave> random_waves(Draws& draw, int count, double deviation, int lea
 std::vector<Wave> sway_waves(Draws& draw, double deviation, double height) {
     std::vector<Wave> waves;
     const double norm = std::sqrt(1 + 1 / 4.0 + 1 / 9.0);
-    for (int k = 1; k <= 3; ++k) waves.push_back({deviation / (k * norm), 0, std::numbers::pi * k / height, draw.angle()});
+    for (int k = 1; k <= 3; ++k) waves.push_back({deviation / (k * norm), 0, pi * k / height, draw.angle()});
     return waves;
 }
 
@@ -88,10 +88,10 @@ StatuetteBody::StatuetteBody(const StatuetteParameters& p) : frame(p) {
     }
     const double high = frame.joint_height, sway = p.sway * frame.tube_radius / std::sqrt(2.0);
     direction = draw.angle();
-    std::vector<Wave> relative{{p.ovality, 2, -2 * p.ovality_drift * std::numbers::pi / 180 / high, -2 * direction}};
+    std::vector<Wave> relative{{p.ovality, 2, -2 * p.ovality_drift * pi / 180 / high, -2 * direction}};
     for (const Wave& wave : random_waves(draw, 10, p.finger_marks, 3, 7, 30, 80)) relative.push_back(wave);
     // Hands and wheel rise together: one turn for 7 mm.
-    const std::vector<Wave> grooves{{0.5 * p.grooves, 1, 2 * std::numbers::pi / 7, draw.angle()}};
+    const std::vector<Wave> grooves{{0.5 * p.grooves, 1, 2 * pi / 7, draw.angle()}};
     const std::vector<Wave> x = sway_waves(draw, sway, high), y = sway_waves(draw, sway, high);
     // Waves begin above the foot's rim and end at the neck.
     const Warp warp{.low = heights.front(),
@@ -118,7 +118,7 @@ namespace {
 std::vector<Vector2d> body_profile(const StatuetteParameters& p, const StatuetteFrame& frame) {
     const double rim = frame.outline.front().x(), lift = frame.outline.front().y();
     std::vector<Vector2d> profile{{0, 0}, {0.5 * (rim - lift), 0}, {0.85 * (rim - lift), 0}, {rim - lift, 0}};
-    for (const double angle : {std::numbers::pi / 6, std::numbers::pi / 3})
+    for (const double angle : {pi / 6, pi / 3})
         profile.emplace_back(rim - lift * (1 - std::sin(angle)), lift * (1 - std::cos(angle)));
     for (const Vector2d& point : frame.outline) profile.push_back(point);
     profile.emplace_back(frame.neck_radius, frame.joint_height + 0.04 * p.head_height);
@@ -299,6 +299,45 @@ void check_parameters(const StatuetteParameters& p) {
 std::unique_ptr<const MadeObject> statuette_object(const StatuetteParameters& parameters) {
     shapes::check_parameters(parameters);
     return shapes::build_statuette(parameters, shapes::StatuetteBody(parameters));
+}
+
+void StatuetteParameters::describe(OptionList& visit) {
+    visit("technique", technique, "wheel or hand", Choices{"wheel", "hand"});
+    visit("height", height, "from the base to the topmost point, mm", Range{100, 500});
+    visit("base-diameter", base_diameter, "mm", Range{20, 200});
+    visit("arm-length", arm_length, "from the joint along the outside to the end of the hand, mm", Range{30, 250});
+    visit("head-height", head_height, "from the joint at the back of the neck to the topmost point, mm", Range{20, 150});
+    visit("ovality", ovality, "of the body, relative to its radius", Range{0, 0.15});
+    visit("ovality-drift", ovality_drift, "degrees by which its direction turns", Range{0, 360});
+    visit("finger-marks", finger_marks, "root mean square, relative to the radius", Range{0, 0.05});
+    visit("sway", sway, "root mean square of the centres, relative to the tube's radius", Range{0, 0.2});
+    visit("grooves", grooves, "height of throwing grooves, mm", Range{0, 1});
+    visit("wall", wall, "mean thickness, mm; 0: solid", Range{0, 12});
+    visit("wall-noise", wall_noise, "root mean square, relative to the wall", Range{0, 0.25});
+    visit("off-centre", off_centre, "of the cavity, relative to the wall", Range{0, 0.4});
+    visit("cavity-seen", cavity_seen, "share of the cavity's depth", Range{0.1, 1});
+    visit("interior", interior, "what the mesh does where the scanner's sight ends", Choices{"closed", "open"});
+    visit("scan-noise", scan_noise, "standard deviation along the normal, mm", Range{0, 0.5});
+    visit("holes", holes, "patches that the scan misses", Range{0, 20});
+    visit("hole-radius", hole_radius, "mm", Range{1, 20});
+    visit("pose", pose, "of the arms", Choices{"forward", "offering", "raised", "down"});
+    visit("hat", hat, "on the head", Choices{"cone", "cap", "none"});
+    visit("beard", beard, "a piece of clay under the chin", Anything{});
+    visit("seed", seed, "of phases, noise, holes and lattice", Range{0, 9007199254740992.0});
+    visit("vertices", vertices, "of the whole mesh, before anything is missing", Range{4000, 5e6});
+}
+
+void PopulationOptions::describe(OptionList& visit) {
+    visit("objects", objects, "statuettes, half of them of each technique", Range{1, 100000});
+    visit("level", level, "difficulty: 1, the techniques far apart, to 5, nearly alike", Range{1, 5});
+    visit("seed", seed, "of the whole population", Range{0, 1e9});
+    visit("vertices", vertices, "of each mesh", Range{4000, 5e6});
+    visit("scan-noise", scan_noise, "standard deviation of each vertex along its normal, mm", Range{0, 0.5});
+    visit("interior", interior, "of hollow bodies, where the scanner's sight ends", Choices{"mixed", "closed", "open"});
+    visit("cavity-seen", cavity_seen, "least share of a cavity's depth that the scanner saw; the most is all", Range{0.1, 1});
+    visit("holes", holes, "most patches that a scan misses", Range{0, 20});
+    visit("size-spread", size_spread, "standard deviation of the logarithm of each size (height, base, arm, head)",
+          Range{0, 0.15});
 }
 
 }  // namespace ostraka

@@ -1,8 +1,8 @@
 // Made vessels: the flowered teapot and the vase.
 #include "builder.h"
+#include "ostraka/core/angles.h"
 
 #include <cmath>
-#include <numbers>
 
 namespace ostraka::shapes {
 
@@ -34,7 +34,7 @@ ObjectPointer make_teapot() {
     const double radius = 58.6, level = 52;
     const Colour3 petals[5] = {{200, 40, 60}, {220, 90, 40}, {190, 50, 130}, {140, 60, 180}, {230, 160, 40}};
     for (int i = 0; i < 5; ++i) {
-        const double angle = (36 + 72 * i) * std::numbers::pi / 180;
+        const double angle = (36 + 72 * i) * pi / 180;
         const Vector3d outward(std::cos(angle), std::sin(angle), 0);
         const int flower = add_part(*object, "flower " + std::to_string(i + 1), petals[i]);
         object->reliefs.push_back({radius * outward + Vector3d(0, 0, level), outward, 9, 1.2, 0.16, 5, flower});

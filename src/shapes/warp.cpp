@@ -1,8 +1,6 @@
 #include "warp.h"
-
-#include <Eigen/Eigenvalues>
-
-#include <numbers>
+#include "ostraka/core/angles.h"
+#include "ostraka/core/dense.h"
 
 namespace ostraka::shapes {
 
@@ -46,14 +44,12 @@ public:
             const Vector2d centre = warp_->centre(z);
             sway = std::max(sway, centre.norm());
             for (int turn = 0; turn < samples_around; ++turn) {
-                const double angle = 2 * std::numbers::pi * turn / samples_around;
+                const double angle = 2 * pi * turn / samples_around;
                 reach = std::max(reach, std::abs(warp_->displacement(angle, z)));
                 for (const double distance : {0.25 * warp_->core, 0.5 * warp_->core, 0.75 * warp_->core, warp_->core, widest}) {
                     const Vector3d p(centre.x() + distance * std::cos(angle), centre.y() + distance * std::sin(angle), z);
                     const Matrix3d change = moved_back(p).second;
-                    const Vector3d squares =
-                        Eigen::SelfAdjointEigenSolver<Matrix3d>(change.transpose() * change, Eigen::EigenvaluesOnly)
-                            .eigenvalues();
+                    const Vector3d squares = symmetric_eigenvalues(change.transpose() * change);
                     steepest_ = std::max(steepest_, std::sqrt(squares[2]));
                     least = std::min(least, std::sqrt(std::max(squares[0], 0.0)));
                 }

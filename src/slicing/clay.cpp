@@ -1,4 +1,5 @@
 #include "ostraka/slicing/clay.h"
+#include "ostraka/core/angles.h"
 
 #include "ostraka/geom/planar.h"
 #include "ostraka/slicing/slice_descriptors.h"
@@ -6,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 namespace ostraka {
@@ -70,8 +70,8 @@ double least_of(const Slice& slice, double wall) {
         } else {
             // What is left inside a wall of t, grown by t again, lies within: by Brunn and Minkowski its area is at most that
             // of the circle of equal area with its radius less t.
-            const double inside = holed[i] ? 0 : std::max(0.0, std::sqrt(area / std::numbers::pi) - wall);
-            sum += area - std::numbers::pi * inside * inside;
+            const double inside = holed[i] ? 0 : std::max(0.0, std::sqrt(area / pi) - wall);
+            sum += area - pi * inside * inside;
         }
     }
     return std::max(0.0, sum);
@@ -143,6 +143,13 @@ ClayVolume clay_volume(const Mesh& mesh, const SliceFrame& frame, const ClayOpti
     }
     result.least = std::min(result.least, result.most);
     return result;
+}
+
+void ClayOptions::describe(OptionList& visit) {
+    visit("slices", slices, "layers that the object is cut into", Range{2, 1000000});
+    visit("wall", wall,
+          "least wall that the clay is taken to have where it is not seen, in the mesh's unit; 0: a thin one of those seen",
+          Range{0, 1e60});
 }
 
 }  // namespace ostraka

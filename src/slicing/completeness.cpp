@@ -1,18 +1,18 @@
 // What is there of a slice's outline.
 #include "completeness.h"
 
+#include "ostraka/core/angles.h"
 #include "ostraka/geom/circle.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace ostraka::detail {
 
 using Eigen::Vector2d;
 
 double angle_covered(const std::vector<Contour>& contours, const Vector2d& centre) {
-    constexpr double turn = 2 * std::numbers::pi;
+    constexpr double turn = 2 * pi;
     std::vector<std::pair<double, double>> arcs;
     const auto add = [&](double from, double to) { arcs.emplace_back(from, to); };
     for (const auto& contour : contours)

@@ -1,5 +1,6 @@
 // Contours that cross one another, or themselves.
 #include "crossings.h"
+#include "ostraka/core/angles.h"
 
 #include "segment_tree.h"
 #include "strips.h"
@@ -7,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 
 namespace ostraka::detail {
 
@@ -36,7 +36,7 @@ Meeting meeting(const std::pair<double, double>& d, const std::pair<double, doub
 }
 
 /// The most that a curve of this length can enclose.
-double disc_of(double length) { return length * length / (4 * std::numbers::pi); }
+double disc_of(double length) { return length * length / (4 * pi); }
 
 /// A curve that is cut at these places (an even number of them) lies on two sides by turns: the length on the lesser side.
 double lesser_side(std::vector<double> places, double length) {

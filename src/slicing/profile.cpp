@@ -1,17 +1,16 @@
 // Half sections around an axis, and what a drawing needs beside them.
 #include "ostraka/slicing/profile.h"
+#include "ostraka/core/angles.h"
 
 #include "ostraka/slicing/silhouette.h"
 #include "ostraka/slicing/slice_descriptors.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace ostraka {
 
 using Eigen::Vector2d;
-using std::numbers::pi;
 
 namespace {
 

@@ -1,5 +1,6 @@
 // Descriptors of slices.
 #include "ostraka/slicing/slice_descriptors.h"
+#include "ostraka/core/angles.h"
 
 #include "segment_tree.h"
 
@@ -8,12 +9,10 @@
 #include "ostraka/geom/planar.h"
 
 #include <array>
-#include <numbers>
 
 namespace ostraka {
 
 using Eigen::Vector2d;
-using std::numbers::pi;
 
 namespace {
 

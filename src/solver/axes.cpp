@@ -1,8 +1,9 @@
 // Groups that turn as they are: towards a normal, onto an axis, to an angle with an axis.
 #include "kinds.h"
+#include "ostraka/core/angles.h"
+#include "ostraka/core/dense.h"
 
 #include <cmath>
-#include <numbers>
 
 namespace ostraka::solver {
 
@@ -55,9 +56,7 @@ Matrix3d turn_to_angle(const Vector3d& a, const Vector3d& d, double angle, const
     const Matrix4d near = (Matrix4d::Identity() + c) / 2, far = (Matrix4d::Identity() - c) / 2;
     const double wanted = std::pow(std::sin(angle / 2), 2);
     const auto too_far = [&](const Vector4d& q) { return (far * q).squaredNorm() > wanted * q.squaredNorm(); };
-    const auto top = [&](double l) -> Vector4d {
-        return Eigen::SelfAdjointEigenSolver<Matrix4d>(n + l * c).eigenvectors().col(3);
-    };
+    const auto top = [&](double l) -> Vector4d { return SymmetricEigen4(n + l * c).eigenvectors().col(3); };
     constexpr double most = 1e12;
     double low = -1, high = 1;
     while (low > -most && !too_far(top(low))) low *= 2;
@@ -189,7 +188,7 @@ std::unique_ptr<Constraint> make_co_axiality(Making&& m) {
 }
 
 std::unique_ptr<Constraint> make_axis_direction(Making&& m) {
-    constexpr double right_angle = std::numbers::pi / 2;
+    constexpr double right_angle = pi / 2;
     const auto range = m.range(0, m.parameters.min ? right_angle : 0.0);
     if (range.max > right_angle) m.fail("an angle between axes is at most pi / 2", "angles are in radians");
     const Vector3d direction = m.direction();

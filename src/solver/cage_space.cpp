@@ -1,11 +1,10 @@
 // The solver over the points of a cage. All is in displacements d = c - c0 of the cage from rest, so that no digits are lost far
 // from the origin: rows are r0 + M d with M = B W.
+#include "ostraka/core/dense.h"
 #include "ostraka/solver/solve.h"
 
 #include "kernels.h"
 #include "ostraka/core/parallel.h"
-
-#include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <chrono>
@@ -65,7 +64,7 @@ struct CageSpaceSolver::State {
     std::vector<Thin> parts;
     std::vector<double> part_objective;
 
-    Eigen::LLT<MatrixXd> factor;
+    Cholesky factor;
     double regularisation = 0;
     Thin right;
 
@@ -268,7 +267,7 @@ void CageSpaceSolver::State::make_factor() {
     regularisation = 0;
     const double mean = cage > 0 ? normal.trace() / static_cast<double>(cage) : 0;
     factor.compute(normal);
-    for (double share = least_regularisation; factor.info() != Eigen::Success || !(factor.rcond() > singular); share *= 100) {
+    for (double share = least_regularisation; !factor.found() || !(factor.rcond() > singular); share *= 100) {
         if (share > 1e4)
             throw Error(ErrorKind::failure, "solver", "the system cannot be factorised", "bring weights closer to each other");
         regularisation = mean > 0 ? share * mean : 1.0;

@@ -1,4 +1,5 @@
 #include "ostraka/solver/constraint.h"
+#include "ostraka/core/dense.h"
 
 #include "kinds.h"
 
@@ -92,16 +93,14 @@ Eigen::Matrix3d outer_sum(const RowsIn& a, const RowsIn& b) {
 }
 
 Eigen::Matrix3d best_rotation(const Eigen::Matrix3d& m) {
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    if (svd.info() != Eigen::Success) return Eigen::Matrix3d::Identity();  // not finite
+    const Svd3 svd(m);
+    if (!svd.found()) return Eigen::Matrix3d::Identity();  // not finite
     Eigen::Matrix3d u = svd.matrixU();
     if (u.determinant() * svd.matrixV().determinant() < 0) u.col(2) *= -1;
     return u * svd.matrixV().transpose();
 }
 
-Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(const Eigen::Matrix3d& symmetric) {
-    return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(symmetric);
-}
+SymmetricEigen3 principal(const Eigen::Matrix3d& symmetric) { return SymmetricEigen3(symmetric); }
 
 Eigen::Vector3d any_perpendicular(const Eigen::Vector3d& unit) {
     Eigen::Index least = 0;

@@ -1,9 +1,9 @@
 // Differences of points: their lengths, angles and directions.
 #include "kinds.h"
+#include "ostraka/core/angles.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 namespace ostraka::solver {
@@ -59,7 +59,7 @@ void bring_to_angle(Vector3d& u, Vector3d& v, double wanted) {
     across = sine > 1e-15 ? Vector3d(across / sine) : any_perpendicular(eu);
     const double now = std::atan2(across.dot(ev), eu.dot(ev));
     const double excess = now - wanted;  // positive: the vectors must close in
-    if (std::abs(excess) > std::numbers::pi / 2) {
+    if (std::abs(excess) > pi / 2) {
         (lu < lv ? u : v).setZero();
         return;
     }
@@ -186,13 +186,13 @@ private:
 }  // namespace
 
 std::unique_ptr<Constraint> make_angle(Making&& m) {
-    const auto range = m.range(0, std::numbers::pi);
-    if (range.max > std::numbers::pi) m.fail("an angle is at most pi", "angles are in radians");
+    const auto range = m.range(0, pi);
+    if (range.max > pi) m.fail("an angle is at most pi", "angles are in radians");
     return std::make_unique<Angle>(m, std::vector<std::pair<int, int>>{{0, 1}, {0, 2}}, range);
 }
 
 std::unique_ptr<Constraint> make_perpendicular(Making&& m) {
-    return std::make_unique<Angle>(m, pairs_of(m), Making::Interval{std::numbers::pi / 2, std::numbers::pi / 2});
+    return std::make_unique<Angle>(m, pairs_of(m), Making::Interval{pi / 2, pi / 2});
 }
 
 std::unique_ptr<Constraint> make_parallel(Making&& m) { return std::make_unique<Parallel>(m); }

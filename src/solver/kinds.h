@@ -1,6 +1,7 @@
 // What the files of constraint kinds share.
 #pragma once
 
+#include "ostraka/core/dense.h"
 #include "ostraka/solver/constraint.h"
 
 namespace ostraka::solver {
@@ -82,7 +83,7 @@ Eigen::Matrix3d outer_sum(const RowsIn& a, const RowsIn& b);
 Eigen::Matrix3d best_rotation(const Eigen::Matrix3d& m);
 
 /// Unit eigenvectors of a symmetric matrix, least eigenvalue first.
-Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(const Eigen::Matrix3d& symmetric);
+SymmetricEigen3 principal(const Eigen::Matrix3d& symmetric);
 
 /// Some unit vector at right angles to a unit vector.
 Eigen::Vector3d any_perpendicular(const Eigen::Vector3d& unit);

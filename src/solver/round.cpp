@@ -1,5 +1,6 @@
 // Circles and spheres: geometric least squares, by damped Gauss-Newton from the algebraic fit.
 #include "kinds.h"
+#include "ostraka/core/dense.h"
 
 #include <cmath>
 
@@ -22,7 +23,7 @@ double minimise(State& state, const Normal& normal, const Step& step) {
     double cost = normal(state, jj, jf), damping = 1e-6;
     for (int i = 0; i < 200 && cost > 0; ++i) {
         const Square system = jj + damping * (Square(jj.diagonal().asDiagonal()) + 1e-14 * jj.trace() * Square::Identity());
-        const Column d = -system.ldlt().solve(jf);
+        const Column d = -solve_ldlt<N>(system, jf);
         if (!d.allFinite()) break;
         const State next = step(state, d);
         const double next_cost = normal(next, next_jj, next_jf);
@@ -62,7 +63,7 @@ protected:
             normal += row * row.transpose();
             right += row * x.col(i).squaredNorm();
         }
-        const Eigen::Matrix<double, D + 1, 1> found = normal.completeOrthogonalDecomposition().solve(right);
+        const Eigen::Matrix<double, D + 1, 1> found = solve_least_squares<D + 1>(normal, right);
         return found.template head<D>();
     }
 };

@@ -1,8 +1,8 @@
 // Groups of points that keep a shape up to some motion, and quadrilaterals.
 #include "kinds.h"
+#include "ostraka/core/angles.h"
 
 #include <cmath>
-#include <numbers>
 
 namespace ostraka::solver {
 
@@ -144,7 +144,7 @@ std::unique_ptr<Constraint> make_similarity(Making&& m) {
 std::unique_ptr<Constraint> make_equilateral(Making&& m) {
     Points shape(3, static_cast<Eigen::Index>(m.ids.size()));
     for (Eigen::Index i = 0; i < shape.cols(); ++i) {
-        const double angle = 2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(shape.cols());
+        const double angle = 2 * pi * static_cast<double>(i) / static_cast<double>(shape.cols());
         shape.col(i) << std::cos(angle), std::sin(angle), 0;
     }
     return std::make_unique<Similarity>(std::move(m), shape, Making::Interval{0, std::numeric_limits<double>::infinity()});

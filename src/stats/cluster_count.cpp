@@ -1,10 +1,9 @@
 #include "check_samples.h"
+#include "ostraka/core/dense.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/stats/k_means.h"
 #include "ostraka/stats/random.h"
-
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -83,7 +82,7 @@ ClusterCount propose_cluster_count(const Eigen::MatrixXd& samples, const Cluster
     const double largest = centred.cwiseAbs().maxCoeff();
     if (!std::isfinite(largest)) fail_input("number of clusters", "the values lie too far apart", "use another unit");
     if (largest > 0) centred /= largest;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> principal(centred.transpose() * centred);
+    const SymmetricEigenX principal(centred.transpose() * centred);
     const Eigen::MatrixXd turned = centred * principal.eigenvectors();
     const double whole = centred.squaredNorm(), least = 1e-24 * (whole > 0 ? whole : 1);
 

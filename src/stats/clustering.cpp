@@ -1,4 +1,5 @@
 #include "ostraka/stats/clustering.h"
+#include "ostraka/core/angles.h"
 
 #include "check_samples.h"
 #include "ostraka/core/error.h"
@@ -6,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <numeric>
 
 namespace ostraka {
@@ -132,8 +132,7 @@ double volume_epsilon(const Eigen::MatrixXd& samples, int minimum) {
         }
     if (dimensions == 0) return 0;
     const double d = dimensions, n = static_cast<double>(samples.rows());
-    return std::exp((log_volume + std::log(minimum) + std::lgamma(d / 2 + 1) - std::log(n) - d / 2 * std::log(std::numbers::pi)) /
-                    d);
+    return std::exp((log_volume + std::log(minimum) + std::lgamma(d / 2 + 1) - std::log(n) - d / 2 * std::log(pi)) / d);
 }
 
 Linkage average_linkage(const Eigen::MatrixXd& distances) { return linkage(distances, "average"); }

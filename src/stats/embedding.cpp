@@ -1,10 +1,8 @@
 #include "ostraka/stats/embedding.h"
+#include "ostraka/core/dense.h"
 
 #include "check_samples.h"
 #include "ostraka/core/error.h"
-
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 
 #include <algorithm>
 #include <cmath>
@@ -33,8 +31,8 @@ Embedding spectral_embedding(const Eigen::MatrixXd& symmetric, int dimensions) {
     check_dimensions(dimensions);
     require_symmetric(symmetric, false, "spectral embedding");
     const Eigen::Index n = symmetric.rows(), d = std::min<Eigen::Index>(dimensions, n);
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver((symmetric + symmetric.transpose()) / 2);
-    if (solver.info() != Eigen::Success)
+    const SymmetricEigenX solver((symmetric + symmetric.transpose()) / 2);
+    if (!solver.found())
         throw Error(ErrorKind::failure, "spectral embedding", "the eigenvalues were not found",
                     "is the matrix far too large or small?");
     const Eigen::VectorXd& values = solver.eigenvalues();
@@ -58,7 +56,7 @@ PrincipalComponents principal_components(const Eigen::MatrixXd& samples, int dim
     PrincipalComponents result;
     result.mean = samples.row(0) + (samples.rowwise() - samples.row(0)).colwise().mean();
     const Eigen::MatrixXd centred = samples.rowwise() - result.mean;
-    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(centred, Eigen::ComputeThinU | Eigen::ComputeThinV);
+    const SvdX svd(centred);
     const Eigen::Index d = std::min<Eigen::Index>(dimensions, svd.singularValues().size());
     const double below = std::max<double>(1, static_cast<double>(samples.rows() - 1));
     result.directions.resize(samples.cols(), d);

@@ -201,4 +201,16 @@ std::vector<ClusterStability> cluster_stability(const std::vector<int>& labels,
     return result;
 }
 
+void BootstrapOptions::describe(OptionList& visit) {
+    visit("resamples", resamples, "resamples of the bootstrap", Range{1, 10000000});
+    visit("confidence", confidence, "confidence of intervals", Range{0.01, 0.9999});
+    visit("seed", seed, "seed of the random numbers", Range{0, 1e18});
+}
+
+void StabilityOptions::describe(OptionList& visit) {
+    visit("stability-resamples", resamples, "times the clusters are found anew in a part of the samples", Range{1, 100000});
+    visit("stability-share", share, "share of the samples in each such part", Range{0.05, 1});
+    visit("seed", seed, "seed of the random numbers", Range{0, 1e18});
+}
+
 }  // namespace ostraka

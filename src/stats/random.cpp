@@ -1,8 +1,8 @@
 #include "ostraka/stats/random.h"
+#include "ostraka/core/angles.h"
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <numeric>
 
 namespace ostraka {
@@ -34,7 +34,7 @@ double Random::normal() {
         has_spare_ = false;
         return spare_;
     }
-    const double radius = std::sqrt(-2 * std::log(1 - uniform())), angle = 2 * std::numbers::pi * uniform();
+    const double radius = std::sqrt(-2 * std::log(1 - uniform())), angle = 2 * pi * uniform();
     spare_ = radius * std::sin(angle);
     has_spare_ = true;
     return radius * std::cos(angle);

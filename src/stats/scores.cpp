@@ -215,4 +215,10 @@ CrossValidation cross_validate_threshold(const std::vector<double>& values, cons
         options);
 }
 
+void CrossValidationOptions::describe(OptionList& visit) {
+    visit("folds", folds, "parts that are left out in turn", Range{2, 100000});
+    visit("repeats", repeats, "divisions into parts", Range{1, 100000});
+    visit("seed", seed, "seed of the random numbers", Range{0, 1e18});
+}
+
 }  // namespace ostraka

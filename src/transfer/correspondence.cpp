@@ -1,8 +1,9 @@
 #include "ostraka/transfer/correspondence.h"
+#include "ostraka/core/dense.h"
 
 #include "ostraka/core/parallel.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -176,7 +177,7 @@ Agreement compare_alignment(const Mesh& source, const Mesh& target) {
     }
     const Moments s = moments(source), t = moments(target);
     result.offset = (t.centre - s.centre).norm() / std::max(source_size, target_size);
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> es(s.covariance), et(t.covariance);
+    const SymmetricEigen3 es(s.covariance), et(t.covariance);
     // An axis counts where its moment stands apart from the others' on both meshes.
     const auto distinct = [](const Eigen::Vector3d& values, int i) {
         for (int j = 0; j < 3; ++j)
@@ -212,6 +213,14 @@ Agreement compare_alignment(const Mesh& source, const Mesh& target) {
         }
     }
     return result;
+}
+
+void CorrespondenceOptions::describe(OptionList& visit) {
+    visit("max-distance", max_distance, "farthest a corresponding place may lie, as a share of the box diagonal", Range{1e-9, 1});
+    visit("max-angle", max_angle, "largest angle between the normals of vertex and target face, in degrees", Range{0, 180});
+    visit("vertex", vertex,
+          "which corner of the face that is hit corresponds: the one nearest to the projection or to the source vertex",
+          Choices{"projection", "source"});
 }
 
 }  // namespace ostraka

@@ -53,4 +53,10 @@ std::vector<Survival> smallest_resolutions(const Mesh& mesh, const AnnotationSet
     return survivals;
 }
 
+void SurvivalOptions::describe(OptionList& visit) {
+    visit("ratio", ratio, "vertices of each resolution tried, relative to the one before", Range{0.1, 0.95});
+    visit("area-error", area_error, "a region survives while its area changes by less than this share", Range{0.001, 1});
+    visit("least", least, "smallest number of vertices tried", Range{4, 1e9});
+}
+
 }  // namespace ostraka

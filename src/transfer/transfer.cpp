@@ -353,4 +353,20 @@ TransferResult transfer(const Mesh& source, const AnnotationSet& annotations, co
     return Transfer(source, annotations, target, options).run();
 }
 
+void TransferOptions::describe(OptionList& visit) {
+    correspondence.describe(visit);
+    visit("metric", metric, "what paths between corresponding vertices minimise", Choices{"euclidean", "segment", "combined"});
+    visit("spikes", spikes, "prune spikes of an outline, avoid used vertices while tracing it, or keep them",
+          Choices{"prune", "avoid", "keep"});
+    visit("rounding", rounding,
+          "faces that the true outline crosses: as the edge paths leave them (path), to the side that holds most of them "
+          "(area), or so that area and perimeter are met as well (balanced)",
+          Choices{"path", "area", "balanced"});
+    visit("cover", cover, "the transferred region overlaps the source region, encloses it or is enclosed by it",
+          Choices{"overlapping", "enclosing", "enclosed"});
+    visit("refine", refine, "insert vertices on the target so that outlines are exact", Anything{});
+    visit("overlap", overlap, "measure the overlap with the source region", Anything{});
+    visit("force", force, "go on although the meshes differ in size or position", Anything{});
+}
+
 }  // namespace ostraka

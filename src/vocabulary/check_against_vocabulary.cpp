@@ -1,5 +1,6 @@
 // Annotations against a vocabulary, and a vocabulary against itself.
 #include "ostraka/core/error.h"
+#include "ostraka/core/text.h"
 #include "ostraka/vocabulary/infer.h"
 #include "ostraka/vocabulary/text_match.h"
 #include "ostraka/vocabulary/vocabulary.h"
@@ -15,13 +16,6 @@ namespace {
 
 using std::to_string;
 
-std::string text_of(double value) {
-    std::ostringstream text;
-    text.precision(9);
-    text << value;
-    return text.str();
-}
-
 std::string quoted(const std::vector<std::string>& names) {
     std::string text;
     for (const auto& name : names) text += (text.empty() ? "'" : ", '") + name + "'";
@@ -30,8 +24,8 @@ std::string quoted(const std::vector<std::string>& names) {
 
 std::string range_text(const AllowedAttribute& attribute) {
     const std::string unit = attribute.unit.empty() ? "" : " " + attribute.unit;
-    if (attribute.min && attribute.max) return text_of(*attribute.min) + " to " + text_of(*attribute.max) + unit;
-    return attribute.min ? text_of(*attribute.min) + unit + " or more" : text_of(*attribute.max) + unit + " or less";
+    if (attribute.min && attribute.max) return digits(*attribute.min, 9) + " to " + digits(*attribute.max, 9) + unit;
+    return attribute.min ? digits(*attribute.min, 9) + unit + " or more" : digits(*attribute.max, 9) + unit + " or less";
 }
 
 class Inspector {
@@ -119,7 +113,7 @@ private:
                 return;
             }
             if ((allowed.min && *number < *allowed.min) || (allowed.max && *number > *allowed.max)) {
-                defect(at, "'" + attribute.name + "' is " + text_of(value) + (unit.empty() ? "" : " " + unit) +
+                defect(at, "'" + attribute.name + "' is " + digits(value, 9) + (unit.empty() ? "" : " " + unit) +
                                ", outside its range of " + range_text(allowed));
                 return;
             }

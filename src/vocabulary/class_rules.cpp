@@ -3,6 +3,8 @@
 #include "ostraka/core/error.h"
 #include "ostraka/vocabulary/text_match.h"
 
+#include "words.h"
+
 #include <algorithm>
 #include <map>
 #include <set>
@@ -10,20 +12,11 @@
 
 namespace ostraka {
 
+using namespace detail;
+
 namespace {
 
 using std::to_string;
-
-std::string text_of(const JsonValue& value) { return {value.GetString(), value.GetStringLength()}; }
-
-std::string text_of(double value) {
-    std::ostringstream text;
-    text.precision(9);
-    text << value;
-    return text.str();
-}
-
-std::string in_quotes(const std::string& text) { return "'" + text + "'"; }
 
 std::string alternatives(const std::vector<std::string>& list) {
     std::string text;
@@ -55,7 +48,7 @@ std::optional<Number> number_of(const JsonValue& object, const char* name) {
     return value == nullptr ? std::nullopt : std::optional<Number>(value->Get<Number>());
 }
 
-ClassRule rule_of(const JsonValue& object, const std::string& where, const std::string& at) {
+ClassRule class_rule_of(const JsonValue& object, const std::string& where, const std::string& at) {
     ClassRule rule;
     rule.id = text_of(object["id"]);
     if (const JsonValue* note = find_member(object, "note")) rule.note = text_of(*note);
@@ -306,7 +299,7 @@ ClassRules class_rules_from_json(const JsonValue& document, const std::string& w
     std::set<std::string> ids;
     for (rapidjson::SizeType i = 0; i < rules.Size(); ++i) {
         const std::string at = "/rules/" + to_string(i);
-        result.rules.push_back(rule_of(rules[i], where, at));
+        result.rules.push_back(class_rule_of(rules[i], where, at));
         if (!ids.insert(result.rules.back().id).second)
             fail_input(where, "at " + at + "/id: another rule is called '" + result.rules.back().id + "' as well",
                        "give each rule an id of its own");

@@ -1,7 +1,10 @@
 #include "ostraka/vocabulary/infer.h"
 
 #include "ostraka/core/ids.h"
+#include "ostraka/core/text.h"
 #include "ostraka/vocabulary/text_match.h"
+
+#include "words.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,16 +14,9 @@
 
 namespace ostraka {
 
+using namespace detail;
+
 namespace {
-
-std::string text_of(double value) {
-    std::ostringstream text;
-    text.precision(6);
-    text << value;
-    return text.str();
-}
-
-std::string in_quotes(const std::string& text) { return "'" + text + "'"; }
 
 /// What an operand came to, or why it came to nothing.
 struct Value {
@@ -206,7 +202,7 @@ private:
         if (!value.number) return {Verdict::unknown, {}, in_quotes(c.operand.attribute) + " is a word"};
         double number = *value.number;
         std::string text = name_of(c.operand);
-        std::string inputs = text + " " + text_of(number) + (value.unit.empty() ? "" : " " + value.unit);
+        std::string inputs = text + " " + digits(number, 6) + (value.unit.empty() ? "" : " " + value.unit);
         std::string unit;
         if (c.divisor) {
             const Value divisor = value_of(*c.divisor, i);
@@ -217,8 +213,8 @@ private:
             if (*same == 0) return {Verdict::unknown, {}, in_quotes(c.divisor->attribute) + " is zero"};
             number /= *same;
             inputs +=
-                ", " + name_of(*c.divisor) + " " + text_of(*divisor.number) + (divisor.unit.empty() ? "" : " " + divisor.unit);
-            text += " / " + name_of(*c.divisor) + " = " + text_of(number);
+                ", " + name_of(*c.divisor) + " " + digits(*divisor.number, 6) + (divisor.unit.empty() ? "" : " " + divisor.unit);
+            text += " / " + name_of(*c.divisor) + " = " + digits(number, 6);
         } else {
             unit = condition_unit(search_, rule, c);
             if (!unit.empty()) {
@@ -235,7 +231,7 @@ private:
                            (!c.below || number < *c.below);
         std::string bounds;
         const auto bound = [&](const std::optional<double>& limit, const char* sign) {
-            if (limit) bounds += (bounds.empty() ? " " : " and ") + std::string(sign) + " " + text_of(*limit);
+            if (limit) bounds += (bounds.empty() ? " " : " and ") + std::string(sign) + " " + digits(*limit, 6);
         };
         bound(c.min, ">="), bound(c.above, ">"), bound(c.max, "<="), bound(c.below, "<");
         if (!unit.empty()) bounds += " " + unit;

@@ -60,14 +60,14 @@ Owned<raptor_world> open_world(Log& log) {
     return world;
 }
 
-std::string text_of(raptor_uri* uri) {
+std::string text_of_uri(raptor_uri* uri) {
     std::size_t length = 0;
     const unsigned char* text = raptor_uri_as_counted_string(uri, &length);
     return {reinterpret_cast<const char*>(text), length};
 }
 
 RdfTerm value_of(const raptor_term* term) {
-    if (term->type == RAPTOR_TERM_TYPE_URI) return {RdfTerm::Kind::uri, text_of(term->value.uri), {}, {}};
+    if (term->type == RAPTOR_TERM_TYPE_URI) return {RdfTerm::Kind::uri, text_of_uri(term->value.uri), {}, {}};
     if (term->type == RAPTOR_TERM_TYPE_BLANK)
         return {RdfTerm::Kind::blank,
                 {reinterpret_cast<const char*>(term->value.blank.string), term->value.blank.string_len},
@@ -76,7 +76,7 @@ RdfTerm value_of(const raptor_term* term) {
     const auto& literal = term->value.literal;
     RdfTerm value{RdfTerm::Kind::text, {reinterpret_cast<const char*>(literal.string), literal.string_len}, {}, {}};
     if (literal.language != nullptr) value.language.assign(reinterpret_cast<const char*>(literal.language), literal.language_len);
-    if (literal.datatype != nullptr) value.datatype = text_of(literal.datatype);
+    if (literal.datatype != nullptr) value.datatype = text_of_uri(literal.datatype);
     if (value.datatype == "http://www.w3.org/2001/XMLSchema#string") value.datatype.clear();  // RDF 1.1: the same
     return value;
 }
@@ -89,7 +89,7 @@ struct Collector {
         auto& collector = *static_cast<Collector*>(self);
         try {
             collector.statements.push_back(
-                {value_of(statement->subject), text_of(statement->predicate->value.uri), value_of(statement->object)});
+                {value_of(statement->subject), text_of_uri(statement->predicate->value.uri), value_of(statement->object)});
         } catch (const std::bad_alloc&) {
             collector.out_of_memory = true;
         }

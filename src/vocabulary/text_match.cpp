@@ -1,10 +1,10 @@
 #include "ostraka/vocabulary/text_match.h"
+#include "ostraka/core/angles.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <map>
-#include <numbers>
 #include <numeric>
 
 namespace ostraka {
@@ -85,7 +85,7 @@ std::optional<Unit> unit_of(std::string text) {
                                                        {"cm", 1e-2}, {"dm", 0.1},         {"m", 1},
                                                        {"km", 1e3},  {"in", 0.0254},      {"ft", 0.3048}};
     if (text == "rad") return Unit{1, 0};
-    if (text == "deg" || text == "\xC2\xB0") return Unit{std::numbers::pi / 180, 0};
+    if (text == "deg" || text == "\xC2\xB0") return Unit{degree, 0};
     const bool reciprocal = text.starts_with("1/");
     if (reciprocal) text.erase(0, 2);
     int power = 1;

@@ -347,4 +347,8 @@ const Term* term_of(const AllowedAttribute& attribute, const std::string& text) 
     return nullptr;
 }
 
+void CheckVocabularyOptions::describe(OptionList& visit) {
+    visit("strict", strict, "measures and descriptors that the vocabulary does not have are defects too", Anything{});
+}
+
 }  // namespace ostraka

@@ -5,18 +5,20 @@
 #include "ostraka/core/error.h"
 #include "ostraka/vocabulary/skos.h"
 
+#include "words.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace ostraka {
 
+using namespace detail;
+
 namespace {
 
 using std::to_string;
 
-std::string text_of(const JsonValue& value) { return {value.GetString(), value.GetStringLength()}; }
-
-std::string text_of(const JsonValue& object, const char* name) {
+std::string text_in(const JsonValue& object, const char* name) {
     const JsonValue* value = find_member(object, name);
     return value == nullptr ? std::string() : text_of(*value);
 }
@@ -46,16 +48,16 @@ std::vector<std::string> names_of(const JsonValue& object, const char* name) {
 
 AllowedAttribute attribute_of(const JsonValue& object) {
     AllowedAttribute attribute;
-    attribute.name = text_of(object, "name");
+    attribute.name = text_in(object, "name");
     attribute.labels = labels_of(object, "label");
     attribute.definition = labels_of(object, "definition");
     if (const JsonValue* values = find_member(object, "values"))
         for (const auto& value : values->GetArray())
             attribute.values.push_back(value.IsString() ? Term{text_of(value), {}}
-                                                        : Term{text_of(value, "name"), labels_of(value, "label")});
+                                                        : Term{text_in(value, "name"), labels_of(value, "label")});
     attribute.min = number_of(object, "min");
     attribute.max = number_of(object, "max");
-    attribute.unit = text_of(object, "unit");
+    attribute.unit = text_in(object, "unit");
     return attribute;
 }
 
@@ -80,14 +82,14 @@ std::vector<ForeignStatement> statements_of(const JsonValue& object, const std::
     if (statements == nullptr) return list;
     for (const auto& entry : statements->GetArray()) {
         ForeignStatement statement;
-        statement.property = text_of(entry, "property");
+        statement.property = text_in(entry, "property");
         statement.is_uri = find_member(entry, "uri") != nullptr;
         if (statement.is_uri == (find_member(entry, "value") != nullptr))
             fail_input(where, "at " + at + "/other/" + to_string(list.size()) + ": a statement has a value or a uri",
                        "give one of the two");
-        statement.value = text_of(entry, statement.is_uri ? "uri" : "value");
-        statement.language = text_of(entry, "language");
-        statement.datatype = text_of(entry, "datatype");
+        statement.value = text_in(entry, statement.is_uri ? "uri" : "value");
+        statement.language = text_in(entry, "language");
+        statement.datatype = text_in(entry, "datatype");
         if (statement.datatype == skos::xsd + "string") statement.datatype.clear();  // as texts are without one
         if ((!statement.language.empty() && !statement.datatype.empty()) ||
             (statement.is_uri && (!statement.language.empty() || !statement.datatype.empty())))
@@ -101,8 +103,8 @@ std::vector<ForeignStatement> statements_of(const JsonValue& object, const std::
 
 Concept concept_of(const JsonValue& object, const std::string& where, const std::string& at) {
     Concept result;
-    result.id = text_of(object, "id");
-    result.uri = text_of(object, "uri");
+    result.id = text_in(object, "id");
+    result.uri = text_in(object, "uri");
     result.labels = labels_of(object, "label");
     if (const JsonValue* alternatives = find_member(object, "alternatives"))
         for (const auto& member : alternatives->GetObject())
@@ -118,7 +120,7 @@ Concept concept_of(const JsonValue& object, const std::string& where, const std:
 
 Operand operand_of(const JsonValue& value) {
     if (value.IsString()) return {text_of(value), {}};
-    return {text_of(value, "attribute"), text_of(value, "concept")};
+    return {text_in(value, "attribute"), text_in(value, "concept")};
 }
 
 Condition condition_of(const JsonValue& object, const std::string& where, const std::string& at) {
@@ -133,27 +135,27 @@ Condition condition_of(const JsonValue& object, const std::string& where, const 
         condition.operand = operand_of((*ratio)[0]);
         condition.divisor = operand_of((*ratio)[1]);
     } else {
-        condition.operand = {text_of(object, "attribute"), text_of(object, "concept")};
+        condition.operand = {text_in(object, "attribute"), text_in(object, "concept")};
     }
     condition.min = number_of(object, "min");
     condition.max = number_of(object, "max");
     condition.above = number_of(object, "above");
     condition.below = number_of(object, "below");
-    condition.unit = text_of(object, "unit");
+    condition.unit = text_in(object, "unit");
     condition.is = names_of(object, "is");
     return condition;
 }
 
-InferenceRule rule_of(const JsonValue& object, const std::string& where, const std::string& at) {
+InferenceRule inference_rule_of(const JsonValue& object, const std::string& where, const std::string& at) {
     InferenceRule rule;
-    rule.id = text_of(object, "id");
-    rule.note = text_of(object, "note");
-    rule.concept_id = text_of(object, "concept");
+    rule.id = text_in(object, "id");
+    rule.note = text_in(object, "note");
+    rule.concept_id = text_in(object, "concept");
     const JsonValue& conditions = object["if"];
     for (rapidjson::SizeType i = 0; i < conditions.Size(); ++i)
         rule.conditions.push_back(condition_of(conditions[i], where, at + "/if/" + to_string(i)));
-    rule.attribute = text_of(object["then"], "attribute");
-    rule.value = text_of(object["then"], "value");
+    rule.attribute = text_in(object["then"], "attribute");
+    rule.value = text_in(object["then"], "value");
     return rule;
 }
 
@@ -317,7 +319,8 @@ std::vector<InferenceRule> rules_from_json(const JsonValue& list, const std::str
     add_member(document, "rules", JsonValue(list, allocator), allocator);
     validate(document, "vocabulary", where);
     std::vector<InferenceRule> rules;
-    for (rapidjson::SizeType i = 0; i < list.Size(); ++i) rules.push_back(rule_of(list[i], where, "/rules/" + to_string(i)));
+    for (rapidjson::SizeType i = 0; i < list.Size(); ++i)
+        rules.push_back(inference_rule_of(list[i], where, "/rules/" + to_string(i)));
     return rules;
 }
 
@@ -327,7 +330,7 @@ Vocabulary vocabulary_from_json(const JsonValue& document, const std::string& wh
         fail_input(where, "at /format: the format is '" + text_of(*format) + "'", "give a vocabulary ('ostraka-vocabulary')");
     validate(document, "vocabulary", where);
     Vocabulary vocabulary;
-    vocabulary.uri = text_of(document, "uri");
+    vocabulary.uri = text_in(document, "uri");
     vocabulary.title = labels_of(document, "title");
     vocabulary.attributes = attributes_of(document);
     const JsonValue& concepts = document["concepts"];
@@ -335,7 +338,7 @@ Vocabulary vocabulary_from_json(const JsonValue& document, const std::string& wh
         vocabulary.concepts.push_back(concept_of(concepts[i], where, "/concepts/" + to_string(i)));
     if (const JsonValue* rules = find_member(document, "rules"))
         for (rapidjson::SizeType i = 0; i < rules->Size(); ++i)
-            vocabulary.rules.push_back(rule_of((*rules)[i], where, "/rules/" + to_string(i)));
+            vocabulary.rules.push_back(inference_rule_of((*rules)[i], where, "/rules/" + to_string(i)));
     vocabulary.others = statements_of(document, where, "");
     if (vocabulary.uri == skos::default_scheme) vocabulary.uri.clear();
     for (Concept& entry : vocabulary.concepts)

@@ -145,7 +145,7 @@ TEST(AnnotationCommand, WrongInputLeavesNothingBehind) {
         EXPECT_NE((result.err + result.out).find(what), std::string::npos) << arguments << "\n" << result.err << result.out;
         EXPECT_EQ(test::count_files(folder.path()), before) << arguments;
     };
-    expect("apply " + mesh, 2, "recipe is required");
+    expect("apply " + mesh, 2, "give mesh recipe output, or mesh output");
     expect("apply " + mesh + " " + recipe, 2, "output");
     expect("apply " + folder.at("none.ply") + " " + recipe + " " + out, 1, "none.ply");
     expect("apply " + mesh + " " + folder.at("none.json") + " " + out, 1, "none.json");

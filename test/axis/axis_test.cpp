@@ -222,6 +222,13 @@ TEST(CircleAxis, OfARim) {
     EXPECT_FALSE(circle_axis({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {5, 0, 0}}).found);
 }
 
+TEST(Axis, AsAnObjFile) {
+    Axis axis;
+    axis.lines = {{{0, 0, 0}, {0.1, 0, 1}}, {{1, 0, 0}, {1, 1, 0}, {1, 1, 1}}};
+    EXPECT_EQ(to_obj(axis), "# axis\nv 0 0 0\nv 0.10000000000000001 0 1\nl 1 2\nv 1 0 0\nv 1 1 0\nv 1 1 1\nl 3 4 5\n");
+    EXPECT_EQ(to_obj({}), "# axis\n");
+}
+
 TEST(SkeletonAxis, OfClosedAndCappedParts) {
     const Vector a = unit(0.2, 0.3, 1);
     const Mesh open = lathe(cylinder, a, Point(1, 1, 1));

@@ -167,6 +167,22 @@ TEST(MeasureTable, FromObjectsWithDifferentKinds) {
     EXPECT_EQ(back.unit, "cm");
 }
 
+TEST(MeasureTable, OfACollectionTellsEachNoteOnce) {
+    const MeasureDefinitions one = definitions(R"({"name": "a", "annotation": "x", "attribute": "a"})");
+    Collection collection;
+    std::vector<ObjectResult> taken;
+    for (const char* name : {"p", "q", "r"}) {
+        collection.objects.emplace_back().name = name;
+        taken.push_back({object_measures_to_json({"mm", {1}, {1}, {""}, {"no attribute b"}}), {}, false});
+    }
+    taken[1].problem = "broken";
+    std::vector<std::string> notes;
+    EXPECT_EQ(measure_table(collection, taken, one, notes, "here").objects, (std::vector<std::string>{"p", "r"}));
+    EXPECT_EQ(notes, (std::vector<std::string>{"p and 1 more: no attribute b"}));
+    for (ObjectResult& each : taken) each.problem = "broken";
+    EXPECT_THROW(measure_table(collection, taken, one, notes, "here"), Error);
+}
+
 TEST(MeasureTable, AsCsvReadsBack) {
     const Scratch scratch;
     const Path file = scratch.file(

@@ -52,6 +52,25 @@ TEST(Collection, AFolderGivesItsMeshesByName) {
     for (const auto& object : collection.objects) EXPECT_EQ(object.checksum.size(), 64U) << object.name;
 }
 
+TEST(Collection, AFolderInMemoryIsOne) {
+    const Path folder = "memory:collection-test";
+    const Mesh mesh = build_mesh(test::octahedron_sphere(1));
+    for (const char* name : {"b.ply", "a.off", "deeper/c.ply"}) write_mesh(folder / name, mesh);
+    write_file(folder / "list.study.json", R"({"format": "ostraka-study", "version": 1, "objects": [{"mesh": "deeper/c.ply"}]})");
+    const Collection collection = read_collection(folder), listed = read_collection(folder / "list.study.json");
+    EXPECT_EQ(names_of(collection), (std::vector<std::string>{"a", "b"}));
+    EXPECT_EQ(names_of(listed), (std::vector<std::string>{"c"}));
+    EXPECT_EQ(listed.objects[0].checksum, collection.objects[1].checksum);
+    const ResultStore store(folder / "kept");
+    for (const bool resumed : {false, true})
+        for (const ObjectResult& each : for_each_object(collection, store, {"faces"}, faces_of)) {
+            EXPECT_EQ(each.resumed, resumed);
+            EXPECT_EQ(each.result.GetUint64(), mesh.number_of_faces());
+        }
+    forget_memory(folder);
+    EXPECT_THROW(read_collection(folder), Error);
+}
+
 TEST(Collection, CopiesAreNoted) {
     const Scratch scratch;
     sphere_file(scratch, "a.ply");
@@ -163,6 +182,30 @@ TEST(Collection, LinksThatLeadNowhereAreLeftOut) {
     ASSERT_EQ(collection.left_out.size(), 2U);
     EXPECT_EQ(collection.left_out[0].first, "gone.ply");
     EXPECT_EQ(collection.left_out[1].first, "loop.ply");
+}
+
+TEST(Collection, MadeObjectsAreNotMixedWithOthers) {
+    const Scratch scratch;
+    EXPECT_NO_THROW(check_new_collection(scratch / "missing"));
+    write_file(scratch / "notes.txt", "x");
+    std::filesystem::create_symlink(scratch / "nowhere", scratch / "link");
+    EXPECT_NO_THROW(check_new_collection(scratch.path()));
+    const Path memory = "memory:made";
+    write_file(memory / "notes.txt", "x");
+    EXPECT_NO_THROW(check_new_collection(memory));
+    for (const char* name : {"pot.PLY", "pot.ant.json", "truth.csv"})
+        for (const Path& folder : {scratch.path(), memory}) {
+            write_file(folder / name, "x");
+            try {
+                check_new_collection(folder);
+                ADD_FAILURE() << folder / name;
+            } catch (const Error& error) {
+                EXPECT_EQ(error.kind(), ErrorKind::failure);
+                EXPECT_NE(error.problem().find(name), std::string::npos) << error.what();
+            }
+            remove_file(folder / name);
+        }
+    forget_memory(memory);
 }
 
 TEST(ForEachObject, OneThatFailsDoesNotStopTheOthers) {

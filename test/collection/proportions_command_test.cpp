@@ -206,6 +206,9 @@ TEST(StudyMakeProportionsCommand, ItsMeasuresAreThoseItDrew) {
     ASSERT_EQ(run_command(make + quoted(scratch / "again") + " --threads 1").code, 0);
     for (const char* name : {"truth.csv", "statuette-2.ply", "statuette-2.ant.json"})
         EXPECT_EQ(read_file(scratch / "again" / name), read_file(scratch / "made" / name)) << name;
+    const auto chosen = run_command(make + quoted(scratch / "chosen") + " --fixed 'arm length,head height' --json");
+    ASSERT_EQ(chosen.code, 0) << chosen.err;
+    EXPECT_STREQ(parse_json(chosen.out, "report")["result"]["fixed"].GetString(), "arm length, head height");
     EXPECT_EQ(run_command(make + quoted(scratch / "x") + " --fixed 'arm length'").code, 2);
     EXPECT_EQ(run_command(make + quoted(scratch / "x") + " --fixed 'nose,chin'").code, 2);
 }

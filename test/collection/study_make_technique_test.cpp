@@ -3,6 +3,7 @@
 #include "ostraka/collection/objects.h"
 #include "ostraka/core/csv.h"
 #include "ostraka/io/mesh_file.h"
+#include "ostraka/operations/table.h"
 #include "scratch.h"
 
 #include <gtest/gtest.h>
@@ -63,7 +64,28 @@ TEST(MakeTechniqueCommand, RefusesWhatMakesNoSense) {
     EXPECT_EQ(run_command("study make technique " + folder + " --objects 0").code, 2);
     EXPECT_EQ(run_command("study make technique " + folder + " --interior unknown").code, 2);
     const Path file = scratch.file("taken", "x");
-    EXPECT_EQ(run_command("study make technique " + file.string() + " --objects 1").code, 1);
+    const auto taken = run_command("study make technique " + file.string() + " --objects 1");
+    EXPECT_EQ(taken.code, 2);
+    EXPECT_NE(taken.err.find("is a file"), std::string::npos) << taken.err;
+}
+
+TEST(MakeCollections, InMemory) {
+    for (const std::string kind : {"technique", "proportions", "moulds"}) {
+        Context context;
+        Call call(find_operation("study make " + kind));
+        call.set("objects", 2.0);
+        call.set("vertices", 4000.0);
+        const Report report = call.run(context);
+        EXPECT_EQ(report.result()["objects"].GetInt(), 2);
+        const Path folder = *call.object("folder").as<Path>();
+        EXPECT_TRUE(is_memory(folder));
+        EXPECT_TRUE(file_exists(folder / "truth.csv")) << kind;
+        const std::vector<std::string> files = files_in(folder);
+        EXPECT_EQ(std::count_if(files.begin(), files.end(), [](const auto& name) { return name.ends_with(".ply"); }), 2) << kind;
+        const std::string mesh =
+            *std::find_if(files.begin(), files.end(), [](const auto& name) { return name.ends_with(".ply"); });
+        EXPECT_GT(read_mesh(folder / mesh).mesh.number_of_faces(), 1000U);
+    }
 }
 
 TEST(MakeCollections, DoNotMixWithWhatIsThere) {

@@ -171,3 +171,33 @@ TEST(Edit, DamagedListsEndInAClearError) {
     }
     EXPECT_LT(successes, 200U);
 }
+
+TEST(RenameUnit, UnitsOfLengthsFollowAndNoNumberChanges) {
+    const Mesh mesh = grid(4);
+    AnnotationSet set = tile_set(mesh);
+    for (const auto& [name, unit] : {std::pair{"bend", "1/mm"}, {"weight", "g"}, {"mmix", "mmol"}}) {
+        Attribute attribute;
+        attribute.id = 10 + static_cast<int>(set.annotations[1].attributes.size());
+        attribute.name = name;
+        attribute.type = AttributeType::descriptor;
+        attribute.descriptor = {{2}, false, "", unit, false};
+        set.annotations[1].attributes.push_back(attribute);
+    }
+    const auto units = [&] {
+        std::vector<std::string> list;
+        for (const Attribute& attribute : set.annotations[1].attributes)
+            if (attribute.type == AttributeType::measure) list.push_back(attribute.measure.unit);
+            else if (attribute.type == AttributeType::descriptor) list.push_back(attribute.descriptor.unit);
+        return list;
+    };
+    rename_unit(mesh, set, "cm");
+    EXPECT_EQ(set.unit, "cm");
+    EXPECT_EQ(units(), (std::vector<std::string>{"cm^2", "cm", "1/cm", "g", "mmol"}));
+    EXPECT_EQ(*set.annotations[1].attributes[2].measure.value, 4);
+    EXPECT_EQ(set.annotations[1].attributes[0].descriptor.values, std::vector<double>{4});
+    // None, and back: what is computed from the coordinates is known again.
+    rename_unit(mesh, set, "");
+    EXPECT_EQ(units(), (std::vector<std::string>{"", "", "1/cm", "g", "mmol"}));
+    rename_unit(mesh, set, "m");
+    EXPECT_EQ(units(), (std::vector<std::string>{"m^2", "m", "1/cm", "g", "mmol"}));
+}

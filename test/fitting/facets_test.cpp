@@ -170,6 +170,18 @@ TEST(FacetsCommand, WritesThreeRegions) {
     ASSERT_EQ(test::run_command(update).code, 0);
     const AnnotationSet updated = read_annotations(scratch / "sherd.ant.json", sherd.mesh);
     EXPECT_EQ(updated.unit, "mm");
+    const std::string provenance = to_text(updated.provenance);
+    for (const char* part : {"\"sherd.ply\"", "\"sherd.ant.json\"", "\"facet-edge\"", "\"force-mesh\""})
+        EXPECT_NE(provenance.find(part), std::string::npos) << part << provenance;
+    EXPECT_NE(to_text(set.provenance).find("\"unit\": \"mm\""), std::string::npos);
+    const std::string before = read_file(scratch / "sherd.ant.json");
+    ASSERT_EQ(test::run_command(update + " --output " + quoted(scratch / "other.ant.json")).code, 0);
+    EXPECT_EQ(read_file(scratch / "sherd.ant.json"), before) << "--output leaves the file as it is";
+    EXPECT_EQ(facets_of(sherd.mesh, read_annotations(scratch / "other.ant.json", sherd.mesh)), facets_of(sherd.mesh, set));
+    EXPECT_EQ(test::run_command(update + " --output " + quoted(scratch / "sherd.ant.json")).code, 2);
+    EXPECT_EQ(test::run_command("annotation facets " + quoted(scratch / "sherd.ply") + " " + quoted(scratch / "sherd.ply")).code,
+              2)
+        << "the mesh is not written over";
     EXPECT_EQ(updated.annotations.size(), 5U);
     EXPECT_EQ(facets_of(sherd.mesh, updated), facets_of(sherd.mesh, set));
     ASSERT_NE(updated.find(outer), nullptr);

@@ -86,6 +86,15 @@ TEST(OrientedBox, IsWithinOnePercentOfTheLeast) {
     }
 }
 
+TEST(Solid, OnlyClosedMeshesHaveAVolumeOfTheirOwn) {
+    TriangleSoup soup = box(2, 1, 2, 3);
+    EXPECT_NEAR(closed_volume(build_mesh(soup)), 6, 1e-12);
+    for (auto& t : soup.triangles) std::swap(t[1], t[2]);
+    EXPECT_NEAR(closed_volume(build_mesh(soup)), 6, 1e-12) << "inside out";
+    soup.triangles.pop_back();
+    EXPECT_TRUE(std::isnan(closed_volume(build_mesh(soup))));
+}
+
 TEST(Solid, OpenRegionsAreClosedByTheirOutlines) {
     // A cup: a box without its lid. The outline is plane: the fan closes it exactly and nothing is in doubt.
     TriangleSoup soup = box(6, 1, 2, 3);

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <set>
 
 using namespace ostraka;
 using namespace ostraka::test;
@@ -161,6 +162,34 @@ TEST(GeometricRelations, ExtractionFindsThePlantedOnes) {
     for (const auto& check : check_relations(made.mesh, set, graph)) EXPECT_EQ(check.verdict, Verdict::holds) << words(check);
     // Types alone.
     for (const auto& relationship : meter.extract({"same level"}, 0)) EXPECT_EQ(relationship.type, "same level");
+}
+
+TEST(GeometricRelations, WhatIsStatedIsNotExtractedAgain) {
+    const MadeMesh made = make_mesh(made_object("teapot"), {.vertices = 12000});
+    AnnotationSet set = apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data/teapot.recipe.json", made.mesh, made.face_labels);
+    const ExtractedRelations all = extract_relations(made.mesh, set);
+    EXPECT_TRUE(all.stated.empty());
+    EXPECT_TRUE(all.not_looked_for.empty());
+    RelationGraph old;
+    for (const auto& relationship : all.graph.relationships)
+        if (relationship.type == "co-axiality" || relationship.type == "adjacency") {
+            old.relationships.push_back(relationship);
+            if (relationship.type == "co-axiality") old.relationships.back().origin = "stated";
+        }
+    std::size_t stated = 0;
+    for (const auto& relationship : old.relationships) stated += relationship.origin == "stated";
+    ASSERT_GT(stated, 0U);
+    const ExtractedRelations again = extract_relations(made.mesh, set, old, {"Co-Axiality", "containment"});
+    EXPECT_EQ(again.stated.size(), stated);
+    std::set<int> ids;
+    for (const auto& relationship : again.graph.relationships) {
+        EXPECT_TRUE(ids.insert(relationship.id).second);
+        EXPECT_EQ(relationship.type, relationship.origin == "stated" ? "co-axiality" : "containment");
+    }
+    set.up.reset();
+    EXPECT_EQ(extract_relations(made.mesh, set, {}, {"same level", "containment"}).not_looked_for,
+              std::vector<std::string>{"same level"});
+    EXPECT_THROW(extract_relations(made.mesh, set, {}, {"proportion"}), Error);
 }
 
 TEST(GeometricRelations, SupportOnTheAxisOfItsLeg) {

@@ -3,6 +3,7 @@
 
 #include "meshes.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/relation/rules.h"
 
 #include <gtest/gtest.h>
 
@@ -224,6 +225,28 @@ TEST(Adjacency, NestedIsNotAdjacentAndACornerIsNotEnough) {
     std::vector<std::tuple<std::size_t, std::size_t, double>> pairs;
     for (const auto& pair : found.adjacent) pairs.emplace_back(pair.a, pair.b, pair.length);
     EXPECT_EQ(pairs, (std::vector<std::tuple<std::size_t, std::size_t, double>>{{0, 2, 1.0}, {0, 3, 2.0}, {2, 3, 1.0}}));
+}
+
+TEST(BrokenRules, RelationshipsAreThoseOfTheMeshUnlessAGraphStatesOthers) {
+    const Mesh mesh = build_mesh(grid(4, 4, false, false, [](double u, double v) {
+        return std::array<double, 3>{4 * u, 4 * v, 0};
+    }));
+    AnnotationSet set;
+    set.annotations = {region(0, {0, 1, 2, 3}), region(1, {0, 1}), region(2, {4, 5})};
+    const auto rules = [](const std::string& type) {
+        return class_rules_from_json(parse_json(R"({"format": "ostraka-rules", "version": 1, "rules": [{"id": "r", "relation":
+            {"of": "r1", "is": ")" + type + R"(", "to": "r0"}}]})",
+                                                "rules"),
+                                     "rules");
+    };
+    EXPECT_TRUE(broken_rules(mesh, set, rules("containment"), nullptr, nullptr, "rules").empty());
+    EXPECT_EQ(broken_rules(mesh, set, rules("beside"), nullptr, nullptr, "rules").size(), 1U);
+    RelationGraph graph;
+    EXPECT_EQ(broken_rules(mesh, set, rules("containment"), nullptr, &graph, "rules").size(), 1U) << "the graph states none";
+    Relationship& stated = graph.relationships.emplace_back();
+    stated.type = "beside";
+    stated.annotations = {1, 0};
+    EXPECT_TRUE(broken_rules(mesh, set, rules("beside"), nullptr, &graph, "rules").empty());
 }
 
 TEST(Topology, EmptyMeshesSetsAndSingleFaces) {

@@ -123,6 +123,12 @@ TEST_F(RenderCommand, MapsColourFacesAndVertices) {
     ASSERT_EQ(run("--size 300x300 --view front --map-label 'thickness (mm)' --map " + map.string()).code, 0);
     EXPECT_NE(picture().argb, plain.argb);
     EXPECT_EQ(run("--map-range 2,1 --map " + map.string()).code, 2);
+    // Every option and file is in the report.
+    const auto result = run("--json --map-range 0,2 --unit mm --map " + map.string());
+    const Json report = parse_json(result.out, "report");
+    EXPECT_STREQ(report["provenance"]["options"]["map-range"].GetString(), "0,2");
+    EXPECT_STREQ(report["provenance"]["options"]["unit"].GetString(), "mm");
+    EXPECT_EQ(report["provenance"]["inputs"].Size(), 2U);
 }
 
 TEST_F(RenderCommand, DrawsWhatIsNotManifold) {

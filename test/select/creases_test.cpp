@@ -136,6 +136,31 @@ TEST(Creases, JointsOfAMadeObjectAreHollows) {
     }
 }
 
+TEST(Creases, AsAnnotations) {
+    std::vector<Crease> creases(3);
+    creases[0].line = {1, 2, 3};
+    creases[0].faces = {4};
+    creases[0].length = 7;
+    creases[1].ridge = false;
+    const AnnotationSet lines = annotate_creases(creases, false, "mm"), regions = annotate_creases(creases, true);
+    ASSERT_EQ(lines.annotations.size(), 3U);
+    EXPECT_EQ(lines.unit, "mm");
+    EXPECT_EQ(regions.unit, "");
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(lines.annotations[i].id, static_cast<int>(i));
+        EXPECT_EQ(lines.annotations[i].tag, (std::vector<std::string>{"ridge 1", "hollow 1", "ridge 2"}[i]));
+        EXPECT_EQ(lines.annotations[i].type, AnnotationType::line);
+        EXPECT_EQ(regions.annotations[i].type, AnnotationType::region);
+        EXPECT_EQ(lines.annotations[i].attributes.size(), 4U);
+        EXPECT_EQ(regions.annotations[i].attributes.size(), 3U) << "a region has no length";
+    }
+    EXPECT_EQ(lines.annotations[0].polylines, std::vector<std::vector<Index>>{creases[0].line});
+    EXPECT_EQ(regions.annotations[0].faces, creases[0].faces);
+    EXPECT_EQ(lines.annotations[0].attributes[0].name, "length");
+    EXPECT_NE(lines.annotations[0].colour, lines.annotations[2].colour);
+    EXPECT_TRUE(annotate_creases({}, false).annotations.empty());
+}
+
 TEST(Creases, OptionsOutOfRangeAreRefused) {
     CreaseOptions options;
     options.scale = 0;
@@ -160,8 +185,12 @@ TEST(CreasesCommand, WritesAnnotationsOrSaysThatThereIsNothing) {
         const AnnotationSet set = read_annotations(scratch / "out.ant.json", mesh, {});
         ASSERT_EQ(set.annotations.size(), 1U);
         EXPECT_EQ(set.annotations[0].tag, "ridge 1");
+        const std::string provenance = to_text(set.provenance);
+        for (const char* option : {"\"regions\"", "\"scale\"", "\"kind\"", "\"floor\""})
+            EXPECT_NE(provenance.find(option), std::string::npos) << provenance;
+        EXPECT_EQ(provenance.find("\"unit\": \"mm\"") != std::string::npos, set.unit == "mm") << provenance;
         const bool has_unit = std::string(flags).find("--unit") != std::string::npos;
-        EXPECT_EQ(result.out.find("mean curvature, 1/mm") != std::string::npos, has_unit) << result.out;
+        EXPECT_EQ(result.out.find("mean curvature 1/mm") != std::string::npos, has_unit) << result.out;
         EXPECT_NE(result.out.find("robust deviations"), std::string::npos) << result.out;
     }
     // What stood in the file stays.

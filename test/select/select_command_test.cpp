@@ -4,6 +4,7 @@
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/core/error.h"
 #include "ostraka/io/mesh_file.h"
+#include "ostraka/operations/table.h"
 #include "ostraka/select/recipe.h"
 #include "ostraka/shapes/make_mesh.h"
 #include "scratch.h"
@@ -100,7 +101,7 @@ TEST(SelectCommand, HelpSaysDefaultsAndUnits) {
     const std::string help = run_command("annotation select --help").out;
     for (const char* words : {"=30,20", "=1200x900", "=orthographic", "=mesh", "in degrees", "in pixels", "any text"})
         EXPECT_NE(help.find(words), std::string::npos) << words << "\n" << help;
-    EXPECT_NE(run_command("annotation apply --help").out.find("[OPTIONS] mesh recipe [output]"), std::string::npos);
+    EXPECT_NE(run_command("annotation apply --help").out.find("mesh recipe output; or mesh output"), std::string::npos);
 }
 
 TEST(SelectCommand, EditsBegunWithoutARecipeReplayOnWhatWasThere) {
@@ -122,6 +123,79 @@ TEST(SelectCommand, EditsBegunWithoutARecipeReplayOnWhatWasThere) {
     EXPECT_EQ(read_annotations(folder / "a.ant.json", mesh).annotations.size(), 1U) << "--output leaves the file as it is";
 }
 
+TEST(SelectCommand, TheRecipeMayGoElsewhere) {
+    const Folder folder;
+    const std::string record = " --record " + folder.at("r.recipe.json");
+    ASSERT_EQ(folder.select("--tag cap --sphere 0,0,1,0.5" + record).code, 0);
+    const std::string before = read_file(folder / "a.ant.json"), recipe = read_file(folder / "r.recipe.json");
+    const std::string elsewhere = " --output " + folder.at("b.ant.json") + " --recipe " + folder.at("s.recipe.json");
+    const auto more = folder.select("--tag foot --sphere 0,0,-1,0.5" + record + elsewhere);
+    ASSERT_EQ(more.code, 0) << more.err;
+    EXPECT_EQ(more.err, "");
+    EXPECT_EQ(read_file(folder / "a.ant.json"), before);
+    EXPECT_EQ(read_file(folder / "r.recipe.json"), recipe);
+    ASSERT_EQ(run_command("annotation apply " + folder.at("ball.ply") + " " + folder.at("s.recipe.json") + " " +
+                          folder.at("replayed.ant.json"))
+                  .code,
+              0);
+    EXPECT_EQ(read_file(folder / "replayed.ant.json"), read_file(folder / "b.ant.json"));
+    EXPECT_EQ(folder.select("--tag x --all --output " + folder.at("a.ant.json")).code, 2) << "an input is not an output";
+    EXPECT_EQ(folder.select("--tag x --all --record " + folder.at("a.ant.json")).code, 2) << "two outputs of one name";
+    EXPECT_EQ(folder.select("--tag x --all", "no/a.ant.json").code, 1) << "there is no such folder";
+}
+
+TEST(SelectCommand, StepsOnValuesOfAFileReplayToTheByte) {
+    const Folder folder;
+    std::string values;
+    for (std::size_t i = 0; i < spheres(4).number_of_vertices(); ++i) values += std::to_string(i) + "\n";
+    write_file(folder / "v.txt", values);
+    const std::string record = " --record " + folder.at("r.recipe.json");
+    for (const char* step : {"--tag first --threshold v.txt --below 600", "--tag cap --sphere 0,0,1,0.5"}) {
+        const auto result = folder.select(step + record);
+        ASSERT_EQ(result.code, 0) << result.err;
+        EXPECT_EQ(result.err, "") << step;
+        ASSERT_EQ(run_command("annotation apply " + folder.at("ball.ply") + " " + folder.at("r.recipe.json") + " " +
+                              folder.at("replayed.ant.json"))
+                      .code,
+                  0);
+        EXPECT_EQ(read_file(folder / "replayed.ant.json"), read_file(folder / "a.ant.json")) << step;
+    }
+}
+
+TEST(SelectCommand, BringsObjectsInMemoryUpToDate) {
+    Context context;
+    const auto mesh = std::make_shared<const Mesh>(spheres(4));
+    std::optional<Object> set, recipe;
+    for (const int count : {1, 2}) {
+        Call call(find_operation("annotation select"));
+        call.set_object("mesh", Object(mesh, "ball.ply"));
+        if (set) call.set_object("annotations", *set);
+        if (recipe) call.set_object("record", *recipe);
+        else call.want("recipe");
+        call.set("tag", "part");
+        Json sphere = parse_json("[0, 0, 1, 0.5]", "sphere"), values(rapidjson::kObjectType);
+        values.AddMember("sphere", sphere, values.GetAllocator());
+        call.set(values);
+        const Report report = call.run(context);
+        EXPECT_TRUE(report.noted().empty()) << "the recipe alone gives it";
+        EXPECT_EQ(report.result()["id"].GetInt(), count - 1);
+        set = call.object("output");
+        recipe = call.object("recipe");
+        EXPECT_EQ(set->as<AnnotationSet>()->annotations.size(), static_cast<std::size_t>(count));
+        EXPECT_EQ(parse_json(*recipe->as<std::string>(), "recipe")["annotations"].Size(), static_cast<unsigned>(count));
+    }
+    // The annotations begun in memory, the recipe in a file.
+    const Scratch scratch;
+    Call call(find_operation("annotation select"));
+    call.set_object("mesh", Object(mesh, "ball.ply"));
+    call.set_file("record", scratch / "r.recipe.json");
+    call.set("tag", "all");
+    call.set("all", true);
+    static_cast<void>(call.run(context));
+    EXPECT_EQ(call.object("output").as<AnnotationSet>()->annotations.size(), 1U);
+    EXPECT_TRUE(std::filesystem::exists(scratch / "r.recipe.json"));
+}
+
 TEST(SelectCommand, WhatIsRefusedLeavesTheFilesAsTheyWere) {
     const Folder folder;
     const std::string record = " --record " + folder.at("r.recipe.json");
@@ -140,7 +214,8 @@ TEST(SelectCommand, WhatIsRefusedLeavesTheFilesAsTheyWere) {
     refuse("--tag x --all --sphere 0,0,1,1", 2, "two tools at once");
     refuse("--sphere 0,0,1,1", 2, "needs a tag");
     refuse("--tag x --sphere 0,0,1", 2, "takes 4 numbers");
-    refuse("--tag x --sphere 0,zero,1,1", 2, "not a list of numbers");
+    refuse("--tag x --sphere 0,zero,1,1", 2, "option sphere is '0,zero,1,1' (use a number");
+    refuse("--tag x --sphere 0,nan,1,1", 2, "not finite");
     refuse("--tag x --sphere 0,0,9,1", 1, "selects no face");
     refuse("--tag x --sphere 0,0,1,-1", 1, "minimum");
     refuse("--tag x --rectangle 5000,0,6000,9", 1, "outside the picture");

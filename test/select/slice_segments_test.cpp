@@ -84,6 +84,18 @@ TEST(SliceSegments, RegionsPartTheMesh) {
     EXPECT_NE(set.annotations[0].colour, set.annotations[1].colour);
 }
 
+TEST(SliceSegments, AgreementIsOverTheFacesThatHaveALabel) {
+    const Mesh mesh = lofted(three_parts, 60);
+    const SliceSegments found = segment_by_slices(mesh, Vector(0, 0, 1));
+    std::vector<std::int32_t> known = found.face_segments;
+    EXPECT_DOUBLE_EQ(*segment_agreement(found, known), 1);
+    for (std::size_t f = 0; f < known.size(); f += 2) known[f] = -1;
+    EXPECT_DOUBLE_EQ(*segment_agreement(found, known), 1);
+    known[1] = (known[1] + 1) % 3;
+    EXPECT_LT(*segment_agreement(found, known), 1);
+    EXPECT_FALSE(segment_agreement(found, {}));
+}
+
 TEST(SliceSegments, ShortRunsJoinTheirLongerNeighbour) {
     // A round foot, and a board with a round waist of two slices' height.
     const Mesh mesh = lofted(

@@ -159,13 +159,13 @@ TEST(SliceCommand, BadInputIsSaidAndWritesNothing) {
     expect_fails("slice " + vase + "--plane 0,0,1", 2, "six numbers");
     expect_fails("slice " + vase + "--plane 0,0,1,0,0,0", 2, "no direction");
     expect_fails("slice " + vase + "--range 0.4,0.2", 2, "--range");
-    expect_fails("slice " + vase + "--heights 1,two", 2, "--heights");
-    expect_fails("slice " + vase + "--heights 1e999", 2, "--heights");
+    expect_fails("slice " + vase + "--heights 1,two", 2, "heights is '1,two'");
+    expect_fails("slice " + vase + "--heights 1e999", 2, "heights is '1e999'");
     expect_fails("slice " + vase + "--direction 0,0,0", 2, "--direction");
     expect_fails("slice " + vase + "--direction sideways", 2, "--direction");
     expect_fails("slice " + vase + "--spacing 1e-9", 2, "spacing");
     expect_fails("slice " + vase + "--annotation nothing", 1, "nothing");
-    expect_fails("slice " + vase + "--medial-axis 2 --output " + file, 2, "residue");
+    expect_fails("slice " + vase + "--medial-axis 2 --output " + file, 2, "use a value from 0.001 to 1");
     expect_fails("slice " + vase + "--colour-by beauty --output " + (scratch / "o.ply").string(), 2, "beauty");
     expect_fails("slice " + vase + "--output " + (scratch / "o.txt").string(), 2, "end its name in");
     expect_fails("slice " + vase + "--profile " + (scratch / "o.pdf").string(), 2, "no drawing");
@@ -186,8 +186,8 @@ TEST(SliceCommand, NumbersThatMakeNoSenseAreNamed) {
     fails("--plane 0,0,0,0,0,0", "its normal has no direction");
     fails("--plane 0,0,0,inf,0,0", "its normal has no direction");
     for (const char* angle : {"nan", "inf", "1e300", "3,4", "x"})
-        fails(std::string("--profile-angle ") + angle, "--profile-angle");
-    for (const char* spacing : {"nan", "inf", "0", "-1", "1e300", "x"}) fails(std::string("--spacing ") + spacing, "--spacing");
+        fails(std::string("--profile-angle ") + angle, "profile-angle is ");
+    for (const char* spacing : {"nan", "inf", "0", "-1", "1e300", "x"}) fails(std::string("--spacing ") + spacing, "spacing is ");
     // How many it would be, and what is reasonable.
     const auto many = run_command("slice " + vase + "--spacing 1e-9");
     EXPECT_EQ(many.code, 2);
@@ -200,10 +200,10 @@ TEST(SliceCommand, NumbersThatMakeNoSenseAreNamed) {
         EXPECT_NE(result.err.find("--heights has "), std::string::npos) << result.err;
         EXPECT_LT(result.err.size(), 200U);  // not three hundred digits
     }
-    fails("--range nan,1", "--range");
-    fails("--count 0", "--count");
-    fails("--drawn 0", "--drawn");
-    fails("--medial-axis 0.1,nan,0.2", "--medial-axis has a residue of nan");
+    fails("--range nan,1", "range is nan");
+    fails("--count 0", "count is 0");
+    fails("--drawn 0", "drawn is 0");
+    fails("--medial-axis 0.1,nan,0.2", "medial-axis is nan");
     fails("--similarity nan", "similarity");
     // A plane that misses says where the mesh is.
     const auto missed = run_command("slice " + vase + "--plane 0,0,1000,0,0,1");
@@ -212,12 +212,12 @@ TEST(SliceCommand, NumbersThatMakeNoSenseAreNamed) {
 }
 
 TEST(SliceCommand, OutputsThatCannotBe) {
-    expect_fails("slice " + vase + "--count 3 --output ''", 2, "--output");
-    expect_fails("slice " + vase + "--count 3 --profile ''", 2, "--profile");
-    expect_fails("slice " + vase + "--count 3 --output /dev/full", 2, "is no folder");
+    expect_fails("slice " + vase + "--count 3 --output ''", 2, "output is empty");
+    expect_fails("slice " + vase + "--count 3 --profile ''", 2, "profile is empty");
+    expect_fails("slice " + vase + "--count 3 --output /dev/full", 2, "is a file");
     const Scratch scratch;
     write_file(scratch / "taken", "text");
-    expect_fails("slice " + vase + "--count 3 --output " + (scratch / "taken").string(), 2, "is no folder");
+    expect_fails("slice " + vase + "--count 3 --output " + (scratch / "taken").string(), 2, "is a file");
     expect_fails("slice " + vase + "--count 3 --output " + (scratch / "taken" / "within").string(), 1, "cannot be made");
     std::filesystem::create_symlink("/dev/full", scratch / "full.csv");
     expect_fails("slice " + vase + "--count 3 --output " + (scratch / "full.csv").string(), 1, "cannot be written");

@@ -72,6 +72,12 @@ struct Annotation {
 };
 
 struct AnnotationSet {
+    AnnotationSet() = default;
+    AnnotationSet(const AnnotationSet& other);
+    AnnotationSet& operator=(const AnnotationSet& other);
+    AnnotationSet(AnnotationSet&&) = default;
+    AnnotationSet& operator=(AnnotationSet&&) = default;
+
     std::string object_class;  ///< "class" in the file
     std::string unit;
     std::optional<std::array<double, 3>> up;
@@ -84,6 +90,8 @@ struct AnnotationSet {
 };
 
 std::string to_string(AnnotationType type);
+/// As messages name it: "annotation 3 ('spout')".
+std::string name_of(const Annotation& annotation);
 
 /// The annotation that stands for the whole object: a region with `all`. Made in front of the others if there is none, with
 /// the class as its tag ("object" if the class is not known), and a free id. The object's own attributes (total height, site of

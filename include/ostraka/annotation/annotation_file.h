@@ -10,10 +10,7 @@ namespace ostraka {
 struct ReadAnnotationsOptions {
     bool force_mesh = false;  ///< take the file although it was made for another mesh; indices and edges are checked all the same
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("force-mesh", force_mesh, "use annotations made for another mesh if their indices and edges fit", Anything{});
-    }
+    void describe(OptionList& visit);
 };
 
 /// Reads the annotations of `mesh`: our files, the thesis's (no format and no mesh member) and, as well as may be and with

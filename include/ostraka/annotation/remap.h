@@ -17,7 +17,12 @@ std::vector<Index> read_index_map(const Path& file, const std::string& kind, std
 AnnotationSet remap_annotations(const Mesh& before, const AnnotationSet& set, const Mesh& after,
                                 const std::vector<Index>& vertex_map, const std::vector<Index>& face_map = {});
 
-/// Labels per face likewise; new faces that no old one maps to get `no_label`.
+/// The annotations of `whole` on a piece of it, whose vertices and faces are those listed of the whole. Left out is what is not
+/// on the piece as it was: points that lack one, lines and regions of which less than a line or a region is left.
+AnnotationSet annotations_of_piece(const Mesh& whole, const AnnotationSet& set, const Mesh& piece,
+                                   const std::vector<Index>& vertices, const std::vector<Index>& faces);
+
+/// Labels per face along a map; new faces that no old one maps to get `no_label`.
 std::vector<std::int32_t> remap_labels(const std::vector<std::int32_t>& labels, const std::vector<Index>& face_map,
                                        std::size_t face_count);
 

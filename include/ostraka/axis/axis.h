@@ -18,17 +18,7 @@ struct AxisOptions {
     int smoothing = 2;
     std::uint64_t seed = 1;
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("method", method, "how the axis is found", Choices{"rotation", "slices", "skeleton", "principal"});
-        visit("tolerance", tolerance,
-              "rotation: distance from the turned profile that counts as on it, share of its largest diameter", Range{0, 1});
-        visit("least-quality", least_quality, "rotation: share of the surface that must lie on the turned profile", Range{0, 1});
-        visit("slices", slices, "slices: number of planes across the part", Range{4, 10000});
-        visit("trials", trials, "rotation: random sets of normals tried", Range{0, 1000000});
-        visit("smoothing", smoothing, "rotation: how often normals are averaged over their neighbours", Range{0, 100});
-        visit("seed", seed, "rotation: of the random sets", Anything{});
-    }
+    void describe(OptionList& visit);
 };
 
 /// A number that describes the axis; lengths are in the mesh's unit.
@@ -78,6 +68,9 @@ Axis principal_axis(const Mesh& mesh, const std::vector<Index>& faces, const Axi
 /// Circle through the vertices of a curve (the rim of a sherd, say): its axis, diameter and the per cent of it that is there.
 /// Quality: 1 - rms distance / radius. No axis: fewer than three vertices, or all on one line.
 Axis circle_axis(const std::vector<Point>& points);
+
+/// The poly-lines of an axis as a Wavefront OBJ file: exact coordinates, one element "l" each.
+std::string to_obj(const Axis& axis);
 
 /// Centroid and covariance of the area of the faces, exact for triangles.
 struct AreaMoments {

@@ -4,6 +4,7 @@
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/cage/cage.h"
+#include "ostraka/core/options.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/relation/graph.h"
 #include "ostraka/vocabulary/class_rules.h"
@@ -34,11 +35,7 @@ struct TemplateOptions {
     bool allow_outside = false;  ///< parts may stand outside the template's folder
     bool force_mesh = false;     ///< annotations made for another mesh are taken if their indices and edges fit
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("allow-outside", allow_outside, "parts may stand outside the folder of the template", Anything{});
-        visit("force-mesh", force_mesh, "take annotations made for another mesh if their indices and edges fit", Anything{});
-    }
+    void describe(OptionList& visit);
 };
 
 /// Reads a template's file; its parts are not opened. Throws Error (input) that names the file, the JSON pointer and the remedy:
@@ -79,5 +76,15 @@ struct Template {
 /// upward directions and classes that contradict each other (the template's counts), a cage that does not enclose the mesh, parts
 /// without a checksum. Throws only where there is no memory.
 Template load_template(TemplateFile file, const TemplateOptions& options = {});
+
+/// For work that needs a template with nothing wrong in it, and a mesh: throws Error (input) that names the file and the part.
+void check_usable(const Template& known, const std::string& file);
+
+/// What a template's file in `folder` calls a part: relative to the folder, with '/'.
+std::string part_name(const Path& folder, const Path& part);
+
+/// Copies the parts of a template into a folder, flat, and returns the template there, checksums anew; `name` is the file it is
+/// to have. Written atomically. Throws Error (input) where two parts have one name.
+TemplateFile copy_template(const TemplateFile& file, const Path& folder, const std::string& name, const Provenance& provenance);
 
 }  // namespace ostraka

@@ -17,18 +17,7 @@ struct CageOptions {
     double offset = 0.0167;  ///< distance of the wrap from the mesh, as a share of the diagonal
     std::string genus = "follow";  ///< handles and holes through the object: "follow" or "fill"
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("vertices", vertices, "wanted number of vertices", Range{4, 1e6});
-        visit("alpha", alpha,
-              "what is narrower than this share of the diagonal is wrapped over; 0: a fortieth, and more where the wanted number "
-              "of vertices needs it",
-              Range{0, 1});
-        visit("offset", offset, "distance of the wrap from the mesh, as a share of the diagonal", Range{1e-4, 0.5});
-        visit("genus", genus,
-              "holes through the object: follow (the cage has those that the wrap leaves open) or fill (the cage has none)",
-              Choices{"follow", "fill"});
-    }
+    void describe(OptionList& visit);
 };
 
 struct MirrorPlane {

@@ -72,6 +72,14 @@ ObjectMeasures object_measures_from_json(const JsonValue& value);
 MeasureTable measure_table(const std::vector<std::string>& names, const std::vector<std::optional<ObjectMeasures>>& objects,
                            const MeasureDefinitions& definitions, std::vector<std::string>& notes);
 
+/// The measures of every object of a collection, as JSON; results are kept in the store.
+std::vector<ObjectResult> take_measures(const Collection& collection, const MeasureDefinitions& definitions,
+                                        const ResultStore& store = ResultStore());
+/// Their table. What the same note says of several objects is one note. Throws Error (input) where not one object could be
+/// measured; `where` is what the collection was read from.
+MeasureTable measure_table(const Collection& collection, const std::vector<ObjectResult>& taken,
+                           const MeasureDefinitions& definitions, std::vector<std::string>& notes, const std::string& where);
+
 /// A table from a CSV file: first the column of names, then a column a measure, headed "arm length" or "arm length [mm]"; empty
 /// cells and "-" are missing. A column "unit" gives the unit of each object's lengths. Brackets of the powers of a length
 /// ([cm^2]) make areas and volumes; other brackets and [-] make values without a length. Throws Error (input) naming line and

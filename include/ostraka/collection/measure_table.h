@@ -51,23 +51,7 @@ struct MadeMeasuresOptions {
     double missing = 0;
     std::uint64_t seed = 1;
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("objects", objects, "number of objects", Range{1, 100000});
-        visit("measures", measures, "number of measures", Range{1, 60});
-        visit("groups", groups, "groups of measures with fixed proportions among each other", Range{0, 30});
-        visit("group-size", group_size, "measures in each such group", Range{2, 60});
-        visit("ratio-deviation", ratio_deviation, "standard deviation of the logarithm of ratios that are not fixed",
-              Range{0, 2});
-        visit("planted-deviation", planted_deviation, "standard deviation of the logarithm of fixed ratios", Range{0, 2});
-        visit("size-deviation", size_deviation, "standard deviation of the logarithm of the objects' common size", Range{0, 2});
-        visit("spread", spread,
-              "how different measures are in how closely they follow the size: their deviations are multiplied by factors evenly "
-              "from 1 - spread to 1 + spread",
-              Range{0, 0.95});
-        visit("missing", missing, "share of values that are missing", Range{0, 0.95});
-        visit("seed", seed, "seed of the random numbers", Range{0, 1e18});
-    }
+    void describe(OptionList& visit);
 };
 
 struct MadeMeasures {

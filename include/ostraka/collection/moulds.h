@@ -3,13 +3,14 @@
 
 #include "ostraka/collection/objects.h"
 #include "ostraka/core/mesh.h"
+#include "ostraka/core/options.h"
 #include "ostraka/registration/align.h"
 #include "ostraka/registration/consistent.h"
 #include "ostraka/registration/mesh_sift.h"
 #include "ostraka/stats/clustering.h"
 #include "ostraka/stats/inference.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 
 #include <string>
 #include <vector>
@@ -23,15 +24,7 @@ struct CompareOptions {
     ConsistentOptions consistent;
     AlignOptions align;
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        features.describe(visit);
-        matches.describe(visit);
-        visit("loose-ratio", loose_ratio, "as --ratio, for the matches among which consistent ones are looked for", Range{0, 1});
-        consistent.describe(visit);  // shrinkage holds for the registration as well
-        visit("trim", align.trim, "share of the pairs of points that a registration goes by, the nearest ones", Range{0.1, 1});
-        visit("samples", align.samples, "points on each surface that are laid onto the other", Range{10, 1e6});
-    }
+    void describe(OptionList& visit);
 };
 
 /// A head made ready to be compared.
@@ -94,23 +87,7 @@ struct GroupOptions {
     int expected_size = 0;  ///< heads of one mould that are expected, for knn; 0: the square root of the number of heads
     int dimensions = 3;     ///< of the embedding
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("method", method,
-              "linkage: tree of mean distances, cut at epsilon; dbscan: steps of at most epsilon connect; embedding: the same in "
-              "the "
-              "spectral embedding (thesis, 3.3.2)",
-              Choices{"linkage", "dbscan", "embedding"});
-        visit(
-            "epsilon", epsilon,
-            "distance within groups: a number (shares of the largest distance for embedding), knn (mean distance to the nearest "
-            "neighbours), volume (evenly spread points), knee (bend of the curve of nearest distances), silhouette (groups that "
-            "stand out best), nested (these, and again within each as long as parts stand out)",
-            Anything{});
-        visit("expected-size", expected_size, "heads of one mould that are expected, for knn; 0: the square root of their number",
-              Range{0, 1e9});
-        visit("dimensions", dimensions, "eigenvectors of the embedding", Range{1, 20});
-    }
+    void describe(OptionList& visit);
 };
 
 struct MouldGroups {

@@ -33,6 +33,10 @@ struct Collection {
 /// Whether `read_collection` of its folder would take the file for an object's: by its ending a mesh, annotations or markups.
 bool is_object_file(const Path& file);
 
+/// Throws Error (failure) where the folder holds files of objects or tables already, with which made objects would be mixed. It
+/// may be missing.
+void check_new_collection(const Path& folder);
+
 /// A folder: every OBJ, PLY, OFF or STL file directly in it is an object, named as the file without its ending (with it, where
 /// two files differ in the ending only); NAME.ant.json and NAME.mrk.json beside it belong to it; markups without a mesh are
 /// objects of landmarks; names that results cannot be kept under (longer than 200 bytes, with control characters or a backslash,

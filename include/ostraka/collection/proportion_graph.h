@@ -3,6 +3,7 @@
 
 #include "ostraka/collection/measure_definitions.h"
 #include "ostraka/collection/proportions.h"
+#include "ostraka/core/options.h"
 #include "ostraka/relation/graph.h"
 
 namespace ostraka {
@@ -12,12 +13,7 @@ struct ProposalOptions {
     double weight = 1;
     bool hard = false;
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("stable", stable, "propose ratios that are stable as well, not only fixed ones", Anything{});
-        visit("weight", weight, "weight of the proposed constraints", Range{0, 1e12});
-        visit("hard", hard, "propose hard constraints", Anything{});
-    }
+    void describe(OptionList& visit);
 };
 
 struct Proposals {

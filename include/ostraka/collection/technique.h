@@ -19,14 +19,7 @@ struct TechniqueOptions {
     double least_turn = 0.8;
     int least_slices = 20;
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("slices", slices, "slices of each object", Range{2, 100000});
-        visit("from", from, "where they begin, as a share of the height", Range{0, 1});
-        visit("to", to, "where they end, as a share of the height (the thesis: the lowest two fifths)", Range{0, 1});
-        visit("least-turn", least_turn, "an open outline is used if it covers this share of the full turn", Range{0.5, 1});
-        visit("least-slices", least_slices, "an object needs as many slices that can be used", Range{2, 100000});
-    }
+    void describe(OptionList& visit);
 };
 
 /// One slice of the body; lengths are relative to the radius of the circle that fits its outline. NaN where a value is not known.

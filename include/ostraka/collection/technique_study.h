@@ -3,6 +3,7 @@
 #pragma once
 
 #include "ostraka/collection/technique.h"
+#include "ostraka/core/options.h"
 #include "ostraka/stats/inference.h"
 #include "ostraka/stats/scores.h"
 
@@ -37,20 +38,7 @@ struct TechniqueStudyOptions {
     double unlike_from = 6;
     std::uint64_t seed = 1;
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("positive", positive, "the label that F1 is of; else the one whose bodies are rounder", Anything{});
-        visit("answer-by", answer_by, "the classifier that answers for each object (see the table of classifiers)", Anything{});
-        visit("folds", folds, "parts of the cross-validation", Range{2, 1000});
-        visit("repeats", repeats, "divisions into parts", Range{1, 1000});
-        visit("resamples", resamples, "resampled collections that each answer is asked of", Range{10, 100000});
-        visit("simulations", simulations, "collections of one group that a division into two is compared with",
-              Range{19, 100000});
-        visit("unlike-from", unlike_from,
-              "an object that lies as many robust standard deviations outside the labelled ones by any descriptor gets no answer",
-              Range{1, 1e6});
-        visit("seed", seed, "seed of the random numbers", Range{0, 1e18});
-    }
+    void describe(OptionList& visit);
 };
 
 struct ClassifierResult {

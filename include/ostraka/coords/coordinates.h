@@ -27,11 +27,7 @@ struct CoordinateOptions {
     /// A point nearer to a vertex, an edge or a face of the cage than this share of the cage's diagonal counts as lying on it.
     double snap = 4e-15;
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("snap", snap, "distance, as a share of the cage's diagonal, below which a point counts as lying on the cage",
-              Range{0, 1e-6});
-    }
+    void describe(OptionList& visit);
 };
 
 /// A kind of coordinates. `compute` may rely on a cage that is closed, of triangles, without garbage, and on finite numbers.

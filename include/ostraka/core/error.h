@@ -7,9 +7,10 @@
 namespace ostraka {
 
 enum class ErrorKind {
-    input,    ///< a file or a mesh is not what it should be (exit code 1)
-    failure,  ///< the work could not be done: no space, no memory, no solution (exit code 1)
-    usage     ///< the caller's words or options do not make sense (exit code 2)
+    input,     ///< a file or a mesh is not what it should be (exit code 1)
+    failure,   ///< the work could not be done: no space, no memory, no solution (exit code 1)
+    usage,     ///< the caller's words or options do not make sense (exit code 2)
+    cancelled  ///< the caller wanted the work to stop (exit code 130)
 };
 
 /// What went wrong, where (file, line, element), and how to mend it.

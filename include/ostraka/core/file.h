@@ -1,4 +1,5 @@
-// Files: read whole, written atomically.
+// Files: read whole, written atomically. A name that begins with "memory:" is that of a file in this process's memory: it is read
+// and written like any other, and touches no disk.
 #pragma once
 
 #include <cstdio>
@@ -12,8 +13,47 @@ namespace ostraka {
 
 using Path = std::filesystem::path;
 
+/// Throws Error (input) as read_file does where the file is missing, a directory or cannot be opened.
+void check_readable(const Path& file);
+
 /// The file's bytes. Throws Error (input) if it is missing, a directory, unreadable or larger than memory allows.
 std::string read_file(const Path& file);
+
+/// Whether the name is that of a file in memory.
+bool is_memory(const Path& file);
+/// Removes the file in memory, or all that lie in the folder of that name.
+void forget_memory(const Path& file);
+
+/// The same questions for files on disk and in memory.
+bool file_exists(const Path& file);
+/// In bytes; 0 where there is no such file.
+std::size_t size_of_file(const Path& file);
+bool is_folder(const Path& folder);
+/// Names of the files in a folder (not of its folders), sorted. `others`: gets the names of what is neither a file nor a folder,
+/// such as links to nothing.
+std::vector<std::string> files_in(const Path& folder, std::vector<std::string>* others = nullptr);
+/// Makes the folder and those it lies in. Throws Error (failure) where it cannot be made or is a file.
+void make_folder(const Path& folder);
+void remove_file(const Path& file);
+/// Whether two names are of one place: links and relative spellings seen through, whether anything stands there or not.
+bool same_place(const Path& a, const Path& b);
+
+/// Lists what `read_file` reads on this thread while it lives.
+class ReadRecord {
+public:
+    ReadRecord();
+    ~ReadRecord();
+    ReadRecord(const ReadRecord&) = delete;
+    ReadRecord& operator=(const ReadRecord&) = delete;
+    struct Entry {
+        Path file;
+        std::string sha256;
+    };
+    std::vector<Entry> files;  ///< in the order in which they were first read
+
+private:
+    ReadRecord* outer_;
+};
 
 /// A file that appears under its name only when complete: bytes go to a temporary file beside it, `commit` flushes
 /// them to the disk and renames, or leaves the renaming to the OutputTransaction that is open; without `commit` (an exception,
@@ -33,6 +73,7 @@ private:
     Path file_;
     Path temporary_;
     std::FILE* stream_ = nullptr;
+    std::string memory_;  ///< of a file in memory
 };
 
 /// Several outputs that appear together or not at all: while one is open on this thread, files that AtomicFile commits are on

@@ -35,6 +35,9 @@ JsonValue json_string(std::string_view text, JsonAllocator& allocator);
 void add_member(JsonValue& object, std::string_view name, JsonValue value, JsonAllocator& allocator);
 void add_member(JsonValue& object, std::string_view name, std::string_view text, JsonAllocator& allocator);
 
+/// The number in a member, or another where there is none.
+double number_or(const JsonValue& object, std::string_view name, double otherwise);
+
 /// Member or nullptr.
 const JsonValue* find_member(const JsonValue& object, std::string_view name);
 

@@ -1,90 +1,166 @@
-// One field list per options struct: it gives the flag, the JSON key, the help line and the range check.
+// One list of options per operation or options struct: it gives flags, JSON keys, help, checks, provenance and schemas.
 //
-// An options struct has a member template
-//     template <class Visitor> void describe(Visitor& visit) {
-//         visit("max-distance", max_distance, "farthest a correspondence may lie, as a share of the box diagonal", Range{0, 1});
-//         visit("metric", metric, "distance that paths minimise", Choices{"euclidean", "segment", "combined"});
-//     }
-// with members of type bool, int, double, std::string or std::uint64_t.
+// An options struct has a member
+//     void describe(OptionList& visit);
+// which lists its fields once:
+//     visit("max-distance", max_distance, "farthest a correspondence may lie", Range{0, 1}, "share of the box diagonal");
+//     visit("metric", metric, "distance that paths minimise", Choices{"euclidean", "segment", "combined"});
 #pragma once
 
 #include "ostraka/core/error.h"
 
-#include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <initializer_list>
-#include <sstream>
+#include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace ostraka {
 
+struct Anything {};
 struct Range {
     double min, max;
 };
 struct Choices {
     std::vector<std::string> names;
-    Choices(std::initializer_list<std::string> list) : names(list) {}
+    Choices(std::initializer_list<const char*> list) : names(list.begin(), list.end()) {}
     explicit Choices(std::vector<std::string> list) : names(std::move(list)) {}
 };
-struct Anything {};
+using OptionRule = std::variant<Anything, Range, Choices>;
 
-namespace detail {
-struct CheckVisitor {
-    std::string where;
-    void operator()(const char* name, const double& value, const char*, Range range) const {
-        if (!(value >= range.min && value <= range.max)) out_of_range(name, std::to_string(value), range);
-    }
-    void operator()(const char* name, const int& value, const char*, Range range) const {
-        if (value < range.min || value > range.max) out_of_range(name, std::to_string(value), range);
-    }
-    void operator()(const char* name, const std::uint64_t& value, const char*, Range range) const {
-        const auto v = static_cast<double>(value);
-        if (v < range.min || v > range.max) out_of_range(name, std::to_string(value), range);
-    }
-    void operator()(const char* name, const std::string& value, const char*, const Choices& choices) const {
-        if (std::find(choices.names.begin(), choices.names.end(), value) != choices.names.end()) return;
-        std::string list;
-        for (const auto& choice : choices.names) list += (list.empty() ? "" : ", ") + choice;
-        throw Error(ErrorKind::usage, where, "option " + std::string(name) + " is '" + value + "'", "use one of: " + list);
-    }
-    template <class T>
-    void operator()(const char*, const T&, const char*, Anything) const {}
+/// An enumeration whose values 0, 1, ... are named by the option's Choices in their order.
+struct EnumValue {
+    void* value;
+    std::size_t (*get)(const void*);
+    void (*set)(void*, std::size_t);
+};
+
+/// Where the value of an option is: a reference to a variable of one of these types.
+class OptionValue {
+public:
+    using Place = std::variant<bool*, int*, std::uint64_t*, double*, std::string*, std::vector<std::string>*,
+                               std::vector<double>*, std::vector<int>*, std::optional<bool>*, std::optional<int>*,
+                               std::optional<std::uint32_t>*, std::optional<double>*, std::optional<std::string>*, EnumValue>;
+    // NOLINTBEGIN(google-explicit-constructor): any of these is meant to be handed over as it is
+    OptionValue(bool& value) : place(&value) {}
+    OptionValue(int& value) : place(&value) {}
+    OptionValue(std::uint64_t& value) : place(&value) {}
+    OptionValue(double& value) : place(&value) {}
+    OptionValue(std::string& value) : place(&value) {}
+    OptionValue(std::vector<std::string>& value) : place(&value) {}
+    OptionValue(std::vector<double>& value) : place(&value) {}
+    OptionValue(std::vector<int>& value) : place(&value) {}
+    OptionValue(std::optional<bool>& value) : place(&value) {}
+    OptionValue(std::optional<int>& value) : place(&value) {}
+    OptionValue(std::optional<std::uint32_t>& value) : place(&value) {}
+    OptionValue(std::optional<double>& value) : place(&value) {}
+    OptionValue(std::optional<std::string>& value) : place(&value) {}
+    template <class Enum>
+    requires std::is_enum_v<Enum> OptionValue(Enum& value)
+        : place(EnumValue{&value, [](const void* at) { return static_cast<std::size_t>(*static_cast<const Enum*>(at)); },
+                          [](void* at, std::size_t index) { *static_cast<Enum*>(at) = static_cast<Enum>(index); }}) {}
+    // NOLINTEND(google-explicit-constructor)
+    Place place;
+};
+
+/// What kind of values an option takes; "texts", "numbers" and "integers" are lists.
+enum class OptionType { boolean, integer, number, text, choice, texts, numbers, integers };
+
+struct Option {
+    std::string name;  ///< as flag (--name) and as JSON key
+    OptionValue value;
+    std::string help;
+    OptionRule rule;
+    std::string unit = {};       ///< of the value; empty: none, or said in the help
+    std::string group = {};      ///< under which the help lists it; empty: with the others
+    std::string initial = {};    ///< the value before anything was set, as text; empty: none
+    bool needed = false;         ///< must be given
+    bool given = false;          ///< was set from outside
+    bool is_positional = false;  ///< given without its name
+    bool affects_result = true;  ///< false: not recorded in the provenance
+    bool takes_words = false;    ///< a list of which several words may follow one flag
+
+    Option& required() { return needed = true, initial.clear(), *this; }
+    Option& positional() { return is_positional = true, *this; }
+    Option& words() { return takes_words = true, *this; }
+    /// Only how and where results are shown or kept.
+    Option& unrecorded() { return affects_result = false, *this; }
+
+    [[nodiscard]] OptionType type() const;
+    [[nodiscard]] bool is_list() const;
+    /// No value is there: an empty text or list, or nothing where nothing is allowed.
+    [[nodiscard]] bool empty() const;
+    /// The value as text: numbers with 17 digits, true or false, lists of numbers with commas, of texts with "; ".
+    [[nodiscard]] std::string text() const;
+    [[nodiscard]] std::vector<std::string> texts() const;
+
+    /// Sets the value from words of a command line, more than one for lists only (numbers and choices also as "1,2,3"). Throws
+    /// Error (usage) that names the option, the word and what is allowed; the rule is checked as well.
+    void set(const std::vector<std::string>& words);
+    void set(bool value);
+    void set(double value);
+    void set(std::int64_t value);
+    void set(const std::vector<double>& values);
+    /// Throws Error (usage) that names the option, its value and what is allowed.
+    void check(const std::string& where = {}) const;
+    /// "a number from 0 to 1", "one of: a, b".
+    [[nodiscard]] std::string allowed() const;
+};
+
+class OptionList {
+public:
+    Option& operator()(std::string name, OptionValue value, std::string help, OptionRule rule = Anything{},
+                       std::string unit = {});
+
+    /// Options that are added from here on stand under this title in the help.
+    void group(std::string title) { group_ = std::move(title); }
+
+    [[nodiscard]] Option* find(const std::string& name);
+    [[nodiscard]] const Option* find(const std::string& name) const { return const_cast<OptionList*>(this)->find(name); }
+    void check(const std::string& where) const;
+    /// Names and values as text, for provenance; empty where there is no value.
+    [[nodiscard]] std::vector<std::pair<std::string, std::string>> values() const;
+
+    [[nodiscard]] auto begin() { return options_.begin(); }
+    [[nodiscard]] auto end() { return options_.end(); }
+    [[nodiscard]] auto begin() const { return options_.begin(); }
+    [[nodiscard]] auto end() const { return options_.end(); }
 
 private:
-    void out_of_range(const char* name, const std::string& value, Range range) const {
-        std::ostringstream text;
-        text << "use a value from " << range.min << " to " << range.max;
-        throw Error(ErrorKind::usage, where, "option " + std::string(name) + " is " + value, text.str());
-    }
+    std::deque<Option> options_;
+    std::string group_;
 };
 
-struct ListVisitor {
-    std::vector<std::pair<std::string, std::string>> list;
-    template <class T, class Rule>
-    void operator()(const char* name, const T& value, const char*, const Rule&) {
-        std::ostringstream text;
-        text.precision(17);
-        text << std::boolalpha << value;
-        list.emplace_back(name, text.str());
-    }
-};
-}  // namespace detail
+template <class Options>
+OptionList options_of(const Options& options) {
+    OptionList list;
+    const_cast<Options&>(options).describe(list);
+    return list;
+}
 
 /// Throws Error (usage) that names the option, its value and what is allowed.
 template <class Options>
 void check_options(const Options& options, const std::string& where) {
-    detail::CheckVisitor visitor{where};
-    const_cast<Options&>(options).describe(visitor);
+    options_of(options).check(where);
 }
 
 /// Names and values as text, for provenance.
 template <class Options>
 std::vector<std::pair<std::string, std::string>> list_options(const Options& options) {
-    detail::ListVisitor visitor;
-    const_cast<Options&>(options).describe(visitor);
-    return std::move(visitor.list);
+    return options_of(options).values();
+}
+
+/// The same as one text: equal for equal options.
+template <class Options>
+std::string options_text(const Options& options) {
+    std::string text;
+    for (const auto& [name, value] : list_options(options)) text += name + "=" + value + "\n";
+    return text;
 }
 
 }  // namespace ostraka

@@ -35,15 +35,7 @@ struct MergeOptions {
     bool merge_faces = false;
     bool renumber = false;
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("prefer", prefer, "whose change counts where both changed one thing in two ways",
-              Choices{"none", "ours", "theirs"});
-        visit("merge-faces", merge_faces,
-              "where both changed a region, take the changes of both face by face instead of a conflict", Anything{});
-        visit("renumber", renumber, "where both added an annotation under one id, give theirs a new one instead of a conflict",
-              Anything{});
-    }
+    void describe(OptionList& visit);
 };
 
 struct MergedAnnotations {

@@ -40,4 +40,8 @@ std::vector<AnnotationEdit> edits_from_json(const JsonValue& document, const std
 std::vector<std::string> edit_annotations(const Mesh& mesh, AnnotationSet& set, const std::vector<AnnotationEdit>& edits,
                                           const std::string& where);
 
+/// Calls the unit of length another ("": none); no number changes. The units of measures, and of descriptors that are computed
+/// from the coordinates or whose unit is made of the old one ("mm^2", "1/mm"), follow.
+void rename_unit(const Mesh& mesh, AnnotationSet& set, const std::string& unit);
+
 }  // namespace ostraka

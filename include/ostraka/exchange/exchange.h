@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ostraka/annotation/annotation_file.h"
+#include "ostraka/core/options.h"
 #include "ostraka/exchange/landmarks.h"
 
 namespace ostraka {
@@ -17,10 +18,7 @@ std::string guess_exchange_format(const Path& file, const std::string& bytes = {
 struct ExportOptions {
     LandmarkFileOptions landmarks;
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        landmarks.describe(visit);
-    }
+    void describe(OptionList& visit);
 };
 
 struct ExportedAnnotations {
@@ -39,11 +37,7 @@ struct ImportOptions {
     LandmarkFileOptions landmarks;
     PlaceOptions place;
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        landmarks.describe(visit);
-        place.describe(visit);
-    }
+    void describe(OptionList& visit);
 };
 
 /// Reads `bytes` of a file of the format onto the mesh. `onto` is the set that a table of attributes belongs to; what other

@@ -41,14 +41,7 @@ struct LandmarkFileOptions {
     std::string mesh_space = "LPS";
     std::string specimen;
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("mesh-space", mesh_space,
-              "space of the mesh's coordinates, for files that state theirs: LPS (x to the left, y to the back; what 3D Slicer "
-              "writes since 4.11) or RAS (x to the right, y to the front; older ones)",
-              Choices{"LPS", "RAS"});
-        visit("specimen", specimen, "which specimen of a TPS file is meant: its ID, or its number from 1", Anything{});
-    }
+    void describe(OptionList& visit);
 };
 
 /// Reads landmarks into the space of the mesh: files that say LPS or RAS are turned where the mesh has the other. Places not yet
@@ -74,12 +67,7 @@ struct PlaceOptions {
     double tolerance = 0.02;
     bool skip_far = false;
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("tolerance", tolerance,
-              "farthest that a place of the file may lie from the surface, as a share of the box diagonal", Range{0, 1});
-        visit("skip-far", skip_far, "leave out what lies farther, with a note, instead of refusing the file", Anything{});
-    }
+    void describe(OptionList& visit);
 };
 
 /// Where something of the file came to lie on the mesh.

@@ -17,10 +17,6 @@ void write_class(const Path& folder, const ShapeClass& learnt, const Provenance&
 /// is missing or has other sizes, a mean, modes or coefficients that do not go together, an archetype that is no member.
 ShapeClass read_class(const Path& file);
 
-/// Copies the parts of a template into a folder, flat, and returns the template there, checksums anew; `name` is the file it is
-/// to have. Written atomically. Throws Error (input) where two parts have one name.
-TemplateFile copy_template(const TemplateFile& file, const Path& folder, const std::string& name, const Provenance& provenance);
-
 /// The report of a classification (doc/schema/classification.schema.json).
 JsonValue classification_to_json(const Classification& answer, JsonAllocator& allocator);
 

@@ -1,6 +1,7 @@
 // Whether an object belongs to a class, and what speaks against it.
 #pragma once
 
+#include "ostraka/core/options.h"
 #include "ostraka/family/shape_class.h"
 
 namespace ostraka {
@@ -11,17 +12,7 @@ struct ClassifyOptions {
     bool attributes = false;
     double close = 0.05;
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        fit.describe(visit);
-        visit(
-            "correspondence", correspondence,
-            "an object whose triangles are the template's is taken as it is (auto, given); the template is fitted to it (fitted)",
-            Choices{"auto", "given", "fitted"});
-        visit("attributes", attributes, "values of attributes out of their range speak against it, too", Anything{});
-        visit("close", close, "classes whose scores differ by less than this share of the better one cannot be told apart",
-              Range{0, 1});
-    }
+    void describe(OptionList& visit);
 };
 
 /// One quantity of the object against what was learnt of it.

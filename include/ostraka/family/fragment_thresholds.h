@@ -2,6 +2,9 @@
 #pragma once
 
 #include "ostraka/family/shape_class.h"
+#include "ostraka/fitting/reconstruct.h"
+
+#include <functional>
 
 namespace ostraka {
 
@@ -22,6 +25,18 @@ struct FragmentThreshold {
 };
 /// Those that three members or more say something of.
 std::vector<FragmentThreshold> fragment_thresholds(const ShapeClass& learnt);
+
+/// A threshold that a verdict goes by.
+struct UsedThreshold : FragmentThreshold {
+    std::string from;  ///< "class", "told" or "default"
+};
+/// What the class's members show takes the place of the defaults in `options`, not of what was told (`told` says of which
+/// options). What scans and measuring leave is not seen on members: a constraint may always be off by the default. Returns
+/// "residual", "scale-tolerance" and "slack" as they are then; without a class none of them changes.
+std::vector<UsedThreshold> take_thresholds(ReconstructOptions& options, const ShapeClass* learnt,
+                                           const std::function<bool(const std::string&)>& told);
+/// As an assembly has them.
+JsonValue thresholds_to_json(const std::vector<UsedThreshold>& thresholds, JsonAllocator& allocator);
 
 /// A checksum of how many vertices there are and which of them the faces join, in their order: the same for members in
 /// correspondence, wherever their vertices lie.

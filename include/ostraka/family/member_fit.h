@@ -1,6 +1,7 @@
 // A template laid onto a whole object of its class: correspondence of vertices, and how far the two are apart.
 #pragma once
 
+#include "ostraka/core/options.h"
 #include "ostraka/fitting/fit.h"
 #include "ostraka/fitting/placement.h"
 #include "ostraka/registration/align.h"
@@ -24,25 +25,7 @@ struct MemberFitOptions {
         fit.last_reach = 0.05;
     }
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        placement.describe(visit);
-        alignment.describe(visit);
-        annotations.describe(visit);
-        fit.describe(visit);
-        visit("ignore-landmarks", ignore_landmarks, "lay the template onto objects by their surfaces alone", Anything{});
-        visit("tries", tries,
-              "without landmarks: placements that are fitted, the nearest ones of those by principal axes and as the files have "
-              "it; the best fit is kept",
-              Range{1, 5});
-        visit("observed", observed, "surfaces farther apart than this share of the diagonal do not lie on each other",
-              Range{0, 1});
-        visit(
-            "most-off", most_off,
-            "a template does not lie on an object if a larger share of both surfaces (mean of unmatched and unexplained) is off "
-            "the other after the fit",
-            Range{0, 1});
-    }
+    void describe(OptionList& visit);
 };
 
 /// A whole object.

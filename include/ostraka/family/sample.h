@@ -1,6 +1,7 @@
 // New members of a class, drawn at random and kept only where the class's constraints hold.
 #pragma once
 
+#include "ostraka/core/options.h"
 #include "ostraka/family/classify.h"
 
 namespace ostraka {
@@ -13,18 +14,7 @@ struct SampleOptions {
     double edit = 0.2;
     int attempts = 20;
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("count", count, "members to draw", Range{1, 1e6});
-        visit("seed", seed, "seed of the random numbers", Range{0, 1e18});
-        visit("by", by,
-              "modes: normal coefficients within the range of the members'; edits: the mean shape with one to three random parts "
-              "stretched or scaled",
-              Choices{"modes", "edits"});
-        visit("spread", spread, "coefficients go so many times as far as the members'", Range{0, 10});
-        visit("edit", edit, "standard deviation of the logarithm of a part's stretch", Range{0, 2});
-        visit("attempts", attempts, "draws for each member wanted, at most", Range{1, 1e6});
-    }
+    void describe(OptionList& visit);
 };
 
 struct ClassSample {

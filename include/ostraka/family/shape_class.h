@@ -1,6 +1,7 @@
 // A class of objects learnt from members: ranges of what is measured, mean shape, modes of variation, thresholds (thesis 1.2).
 #pragma once
 
+#include "ostraka/core/options.h"
 #include "ostraka/core/provenance.h"
 #include "ostraka/family/quantities.h"
 #include "ostraka/fitting/shape_prior.h"
@@ -14,23 +15,7 @@ struct LearnOptions {
     double reject = 0.05;
     double resolution = 0.02;
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        fit.describe(visit);
-        modes.describe(visit);
-        visit(
-            "correspondence", correspondence,
-            "members whose triangles are the template's are taken as they are, the template is fitted to others (auto); all have "
-            "to be in correspondence (given); it is fitted to all (fitted)",
-            Choices{"auto", "given", "fitted"});
-        visit(
-            "false-reject", reject,
-            "share of members that are refused, at most, where what is measured of them is normal or log-normal: all thresholds "
-            "together",
-            Range{1e-6, 0.5});
-        visit("resolution", resolution, "standard deviation of what is measured of one member, as a share of its value",
-              Range{0, 1});
-    }
+    void describe(OptionList& visit);
 };
 
 /// The values that one quantity has on the members, and what is accepted of another object.

@@ -1,6 +1,7 @@
 // Mean shape and principal modes of variation of shapes in correspondence (Cootes et al. 1995; Dryden and Mardia 2016).
 #pragma once
 
+#include "ostraka/core/options.h"
 #include "ostraka/registration/procrustes.h"
 
 namespace ostraka {
@@ -10,12 +11,7 @@ struct ModeOptions {
     int most = 1000;        ///< modes kept
     double variance = 1.0;  ///< modes are kept until they have this share of the variance
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("sizes", sizes, "the size of an object counts; else all are brought to one size first", Anything{});
-        visit("modes", most, "modes of variation that are kept, at most", Range{0, 1e6});
-        visit("variance", variance, "modes are kept until they have this share of the variance", Range{0, 1});
-    }
+    void describe(OptionList& visit);
 };
 
 struct ShapeModes {

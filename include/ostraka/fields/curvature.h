@@ -11,13 +11,7 @@ namespace ostraka {
 struct CurvatureOptions {
     double scale = 0;  ///< radius of the neighbourhood, as a share of the box diagonal; 0 = the ring of faces around the vertex
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("scale", scale,
-              "radius over which curvature is averaged, as a share of the box diagonal: larger is smoother and bears more noise; "
-              "0 = the faces around the vertex",
-              Range{0, 1});
-    }
+    void describe(OptionList& visit);
 };
 
 /// One value a vertex; 0 where there is nothing to measure (isolated vertices, faces without area).

@@ -13,14 +13,7 @@ struct ThicknessOptions {
     double cone = 60;     ///< opening of the cone, degrees
     double scale = 0.01;  ///< radius over which normals are averaged to find the cone's axis, as a share of the box diagonal
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("rays", rays, "rays sent inward from each face", Range{1, 1000});
-        visit("cone", cone, "opening of the cone of rays, in degrees", Range{0, 175});
-        visit("thickness-scale", scale,
-              "radius over which normals are averaged for the cone's axis, as a share of the box diagonal; more bears more noise",
-              Range{0, 1});
-    }
+    void describe(OptionList& visit);
 };
 
 /// The shape diameter (Shapira, Shamir and Cohen-Or 2008) of each face in the mesh's unit: rays inside a cone around the inward

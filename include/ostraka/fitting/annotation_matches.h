@@ -14,10 +14,7 @@ namespace ostraka {
 struct AnnotationMatchOptions {
     double least_score = 0.4;
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("least-score", least_score, "annotations that agree less are not matched", Range{0, 1});
-    }
+    void describe(OptionList& visit);
 };
 
 /// An annotation of a fragment and its counterpart.

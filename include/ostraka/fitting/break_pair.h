@@ -22,22 +22,7 @@ struct PairOptions {
     double least_confidence = 0.5;  ///< below it cannot be told how the fragments go together
     int candidates = 5;             ///< told
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("frames", frames, "places along the rim of each fracture that are laid onto each other", Range{4, 2000});
-        visit("samples", samples, "points on the fracture, and as many on the rest of the surface", Range{50, 1e6});
-        visit("starts", starts, "poses that are refined quickly: the best of all tried", Range{1, 10000});
-        visit("refined", refined, "poses that are refined to the end", Range{1, 1000});
-        visit("reach", reach,
-              "farthest that two fractures lie apart at first, share of the smaller fragment's size (root of its area)",
-              Range{1e-4, 1});
-        visit("last-reach", last_reach, "the same at the end; deeper in each other than this they do not go together",
-              Range{1e-4, 1});
-        visit("edges", edges, "weight of the fractures' rims against their surfaces", Range{0, 1000});
-        visit("least-contact", least_contact, "share of the smaller fracture that must be in contact", Range{0, 1});
-        visit("least-confidence", least_confidence, "below this it cannot be told how they go together", Range{0, 1});
-        visit("candidates", candidates, "poses told, best first", Range{1, 1000});
-    }
+    void describe(OptionList& visit);
 };
 
 /// A way to lay the second fragment onto the first.

@@ -18,17 +18,7 @@ struct BreakTurnOptions {
     double hold = 0.5;              ///< weight of the place on the template against the breaks
     double least_confidence = 0.5;  ///< of a joint; below it is not decided
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("turns", turns, "turns about a vessel's axis that are open are decided by the breaks: auto; or never",
-              Choices{"auto", "never"});
-        visit("turn-frames", frames, "places along the rim of each fracture", Range{4, 5000});
-        visit("turn-samples", samples, "points on each fracture", Range{50, 1e6});
-        visit("turn-candidates", candidates, "turns of two sherds that are refined: the best of all tried", Range{1, 1000});
-        visit("turn-beam", beam, "assemblies of all sherds that are followed at once", Range{1, 100000});
-        visit("turn-hold", hold, "weight of a sherd's place on the template against the breaks", Range{0, 1000});
-        visit("least-joint", least_confidence, "confidence of a joint; below it is not decided", Range{0, 1});
-    }
+    void describe(OptionList& visit);
 };
 
 /// A sherd on the template. Fixed: its turn is known (landmarks), the others come to it.

@@ -22,17 +22,7 @@ struct CompleteOptions {
     bool join = true;         ///< false: the template's own triangles everywhere
     double least = 0.01;      ///< pieces below this share of the fragment's area are left out
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("seam-angle", angle, "normals of a fragment and of the fitted template differ by at most this, degrees",
-              Range{0, 90});
-        visit("seam-width", blend, "width over which the template gives way to a fragment's edge, as a share of the diagonal",
-              Range{0, 1});
-        visit("confidence-length", halving,
-              "length over which confidence halves away from what was observed, as a share of the diagonal", Range{1e-6, 1e6});
-        visit("join", join, "the completed mesh has the fragments' own triangles where they lie", Anything{});
-        visit("least-piece", least, "pieces of a fragment's surface below this share of its area are left out", Range{0, 1});
-    }
+    void describe(OptionList& visit);
 };
 
 /// Why a fragment could not be joined.

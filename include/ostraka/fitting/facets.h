@@ -15,14 +15,7 @@ struct FacetOptions {
     double coherence = 0.3;  ///< how much neighbours count against what a face shows by itself
     double rough = 0.01;     ///< a break in a solid deviates from a smooth surface by more than this share of its size
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("facet-edge", edge, "turn of the surface, in degrees, over an edge where a break may begin", Range{5, 120});
-        visit("facet-wall", wall, "walls are thinner than this share of the square root of the area", Range{0.01, 1});
-        visit("facet-coherence", coherence, "weight of neighbours against what a face shows by itself", Range{0, 100});
-        visit("facet-rough", rough, "solids: a break deviates from a smooth surface by more than this share of its size",
-              Range{0, 1});
-    }
+    void describe(OptionList& visit);
 };
 
 /// Faces of one kind joined over edges.

@@ -30,37 +30,7 @@ struct NonRigidOptions {
     double guides = 1;                     ///< weight of outlines and landmarks of matched annotations
     bool outlines = true;                  ///< outlines and lines guide by the position along them, not only landmarks
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("space", space,
-              "what is solved for: the template's vertices (mesh), those of a cage around it (cage: fewer degrees of freedom, no "
-              "face "
-              "folds by noise), or those of the cage and in the last level the template's (both)",
-              Choices{"mesh", "cage", "both"});
-        visit("smoothing", start, "length below which the first level fits no detail, as a share of the template's diagonal",
-              Range{1e-3, 10});
-        visit("detail", end, "the same of the last level", Range{1e-4, 10});
-        visit("levels", levels, "levels of stiffness", Range{1, 100});
-        visit("steps", steps, "matches and solutions in each level, at most", Range{1, 1000});
-        visit("transition", stay,
-              "length over which the deformation of the first level fades where nothing is observed, as a share of the diagonal",
-              Range{1e-3, 1e3});
-        visit("fade", fade, "what a later level adds fades over so many of its smoothing lengths", Range{0.1, 1e3});
-        visit("reach", reach, "farthest match in the first level, as a share of the diagonal", Range{0, 10});
-        visit("last-reach", last_reach, "farthest match in the last level", Range{0, 10});
-        visit("match-angle", angle, "normals of matches differ by at most this, degrees", Range{0, 180});
-        visit("counterparts", counterparts,
-              "of vertices in matched annotations: closest places of the surface (surface), or vertices by distance, outline and "
-              "position along it (equation 5.1): the best of each (best), or each given once (one-to-one)",
-              Choices{"surface", "best", "one-to-one"});
-        visit("boundary-weight", vertices.boundary, "equation 5.1: of vertices on an outline against vertices inside",
-              Range{0, 1e6});
-        visit("distance-weight", vertices.distance, "equation 5.1: of the distance", Range{0, 1e6});
-        visit("outline-weight", vertices.outline, "equation 5.1: of the positions along the outline", Range{0, 1e6});
-        visit("guides", guides, "weight of matched outlines and landmarks against that of the surface", Range{0, 1e6});
-        visit("outlines", outlines,
-              "matched outlines and lines guide the fit by the position along them, from landmark to landmark", Anything{});
-    }
+    void describe(OptionList& visit);
 };
 
 /// A fragment on the template, and what it is matched with.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ostraka/core/file.h"
+#include "ostraka/core/options.h"
 #include "ostraka/fitting/facets.h"
 #include "ostraka/fitting/point_cloud.h"
 
@@ -12,15 +13,7 @@ struct FragmentFileOptions {
     FacetOptions finding;
     CloudOptions cloud;
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("facets", facets,
-              "outer, inner and fracture surface: as annotated; auto: from the shape, annotations override; either: as "
-              "annotated where there are such annotations, else from the shape if it is closed; none: all outer",
-              Choices{"either", "annotated", "auto", "none"});
-        finding.describe(visit);
-        cloud.describe(visit);
-    }
+    void describe(OptionList& visit);
 };
 
 struct FragmentFile {

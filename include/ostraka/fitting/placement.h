@@ -29,16 +29,7 @@ struct PlacementOptions {
     double unit_ratio = 3;    ///< a fragment whose own scale differs from the others' by more is of another unit
     double collinear = 0.03;  ///< landmarks whose second extent is below this share of the first are on a line
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("outlier", outlier,
-              "a landmark that is off by more than this share of the spread of the template's landmarks may be a wrong one",
-              Range{0, 1});
-        visit("unit-ratio", unit_ratio, "fragments whose own scales differ by more than this factor are not of one unit",
-              Range{1, 1e6});
-        visit("collinear", collinear, "landmarks whose second extent is below this share of the first lie on a line",
-              Range{0, 1});
-    }
+    void describe(OptionList& visit);
 };
 
 /// How one landmark fits.

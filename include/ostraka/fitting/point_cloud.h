@@ -27,12 +27,7 @@ struct CloudOptions {
     double longest = 8;      ///< edges of the surface that are longer than this many times the spacing are left out
     double close_holes = 1;  ///< holes of up to this share of the diagonal are closed
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("cloud-neighbours", neighbours, "points without faces: neighbours that a normal comes from", Range{6, 1000});
-        visit("cloud-edge", longest, "longest edge of the surface, as a multiple of the points' spacing; 0: any", Range{0, 1e6});
-        visit("cloud-holes", close_holes, "widest hole of the surface that is closed, as a share of the diagonal", Range{0, 1});
-    }
+    void describe(OptionList& visit);
 };
 
 /// Unit normals: directions from quadrics through each point's neighbours (jets; Cazals and Pouget 2005), sides from a minimum

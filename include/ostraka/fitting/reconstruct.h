@@ -1,6 +1,7 @@
 // From fragments to the whole object: placement, non-rigid fit, constraints, completion, verdict (thesis, section 5.3.1).
 #pragma once
 
+#include "ostraka/core/options.h"
 #include "ostraka/fitting/complete.h"
 #include "ostraka/fitting/free_turns.h"
 #include "ostraka/fitting/placement.h"
@@ -32,34 +33,7 @@ struct ReconstructOptions {
     double overlap = 20;          ///< per cent of it that lies where another fragment is seen, at most
     bool restore = true;          ///< constraints are solved for what was not observed
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        placement.describe(visit);
-        search.describe(visit);
-        visit("refine", refine, "poses are refined by closest points of the surface, landmarks as anchors", Anything{});
-        alignment.describe(visit);
-        turns.describe(visit);
-        annotations.describe(visit);
-        prior.describe(visit);
-        fit.describe(visit);
-        completion.describe(visit);
-        visit("observed", observed, "vertices farther from the fragments than this share of the diagonal are not observed",
-              Range{0, 1});
-        visit("scale-tolerance", scale_tolerance,
-              "per cent by which the template's scale as one fragment alone has it may differ from that of the others",
-              Range{0, 1000});
-        visit("slack", slack,
-              "per cent that a constraint in per cent may be off before it speaks against the fragments: what scans and "
-              "measuring leave",
-              Range{0, 1000});
-        visit("residual", residual,
-              "root mean square of a fragment's landmarks, as a share of their spread, above which it does not fit",
-              Range{0, 10});
-        visit("lying", lying, "per cent of a fragment's outer surface that lies on the fitted template, at least", Range{0, 100});
-        visit("overlap", overlap, "per cent of a fragment's outer surface that lies where another one is seen, at most",
-              Range{0, 100});
-        visit("restore", restore, "constraints of the graph are solved for what was not observed", Anything{});
-    }
+    void describe(OptionList& visit);
 };
 
 /// Causes before what follows from them.
@@ -151,5 +125,9 @@ Reconstruction reconstruct(const Mesh& mesh, const AnnotationSet& set, const Rel
                            const std::vector<const Fragment*>& fragments, const ReconstructOptions& options = {},
                            const std::vector<std::vector<StatedMatch>>& stated = {}, const ShapePrior* prior = nullptr,
                            const TemplateCage* cage = nullptr);
+
+/// The template's annotations on the completed object, carried over from the fitted template, where it has them: measures are
+/// those taken before (`refresh_measures`).
+AnnotationSet carry_annotations(const Mesh& mesh, const AnnotationSet& set, const Reconstruction& result);
 
 }  // namespace ostraka

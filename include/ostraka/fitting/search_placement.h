@@ -1,6 +1,7 @@
 // Fragments that landmarks do not place, placed by a search (doc/pose-search.md).
 #pragma once
 
+#include "ostraka/core/options.h"
 #include "ostraka/fitting/fragment.h"
 #include "ostraka/fitting/placement.h"
 #include "ostraka/fitting/pose_searches.h"
@@ -15,12 +16,7 @@ struct SearchOptions {
     std::string search = "auto";  ///< "auto": where a fragment has fewer than three landmarks; "always"; "never"
     PoseSearchOptions poses;
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("search", search, "poses are searched without landmarks: auto is where a fragment has fewer than three",
-              Choices{"auto", "always", "never"});
-        poses.describe(visit);
-    }
+    void describe(OptionList& visit);
 };
 
 /// Searches the poses of fragments that have fewer than three landmarks (of all, with "always") on the template and writes them

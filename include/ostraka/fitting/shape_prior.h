@@ -4,7 +4,7 @@
 #include "ostraka/core/options.h"
 #include "ostraka/fitting/fit.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 
 #include <vector>
 
@@ -28,13 +28,7 @@ struct PriorOptions {
     double reach = 0.1;   ///< farthest match, as a share of the diagonal
     double angle = 60;    ///< of the normals of matches, degrees
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("class-iterations", iterations, "most steps of the fit of a class's modes", Range{1, 1000});
-        visit("class-limit", most, "standard deviations that a mode may go from the mean", Range{0, 100});
-        visit("class-samples", samples,
-              "least number of independent places that the observed surface counts as, against the class", Range{1, 1e9});
-    }
+    void describe(OptionList& visit);
 };
 
 struct PriorFit {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ostraka/axis/axis.h"
+#include "ostraka/core/options.h"
 #include "ostraka/fitting/fragment.h"
 
 #include <string>
@@ -17,15 +18,7 @@ struct TurnOptions {
     std::uint64_t vertices = 25000;  ///< of the template
     AxisOptions axis;
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("rows", rows, "heights at which the walls are looked at", Range{10, 20000});
-        visit("columns", columns, "directions around the axis", Range{8, 7200});
-        visit("presence", presence, "degrees of wall that a height must have to count", Range{0, 360});
-        visit("profile-smoothing", smoothing, "of the profile: standard deviation in rows", Range{0, 50});
-        visit("vertices", vertices, "of the template, about", Range{100, 1e7});
-        axis.describe(visit);
-    }
+    void describe(OptionList& visit);
 };
 
 /// How one sherd lies on the template.

@@ -20,18 +20,7 @@ struct VertexAssignmentOptions {
     int candidates = 12;               ///< one-to-one: counterparts tried for each vertex
     double unassigned = 1;             ///< one-to-one: cost of a vertex without one, as a share of the weights' sum
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("counterpart", counterpart, "of a template vertex: its best one, or one-to-one", Choices{"best", "one-to-one"});
-        visit("boundary-weight", boundary, "of vertices on an outline against vertices inside", Range{0, 1e6});
-        visit("distance-weight", distance, "of the distance of counterparts", Range{0, 1e6});
-        visit("outline-weight", outline, "of the positions along the outline, from landmark to landmark", Range{0, 1e6});
-        visit("assignment-reach", reach, "farthest counterpart, in the meshes' unit; 0: any", Range{0, 1e60});
-        visit("assignment-angle", angle, "of the normals of counterparts, degrees", Range{0, 180});
-        visit("candidates", candidates, "one-to-one: counterparts tried for each vertex", Range{1, 1000});
-        visit("unassigned", unassigned, "one-to-one: cost of a vertex without counterpart, as a share of the weights' sum",
-              Range{0, 1e6});
-    }
+    void describe(OptionList& visit);
 };
 
 struct VertexAssignment {

@@ -3,7 +3,7 @@
 
 #include "ostraka/core/mesh.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 
 namespace ostraka {
 

@@ -1,6 +1,7 @@
 // A small motion that brings points onto planes.
 #pragma once
 
+#include "ostraka/core/dense.h"
 #include "ostraka/geom/rigid_fit.h"
 
 #include <cmath>
@@ -36,7 +37,7 @@ public:
         const int n = scaled ? 7 : 6;
         Eigen::Matrix<double, 7, 7> damped = normal_;
         damped.diagonal().array() += damping * damped.topLeftCorner(n, n).trace() + 1e-30;
-        const Eigen::VectorXd x = damped.topLeftCorner(n, n).ldlt().solve(right_.head(n));
+        const Eigen::VectorXd x = solve_ldlt<Eigen::Dynamic>(damped.topLeftCorner(n, n), right_.head(n));
         Step step;
         step.turn = x.head<3>();
         step.shift = unit_ * x.segment<3>(3);

@@ -1,7 +1,7 @@
 // The motion that carries one set of points onto another, in closed form.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 
 #include <vector>
 

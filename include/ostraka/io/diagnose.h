@@ -13,10 +13,7 @@ namespace ostraka {
 
 struct DiagnoseOptions {
     bool skip_self_intersections = false;  ///< leave out the most expensive check; the verdict is then without it
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("skip-self-intersections", skip_self_intersections, "leave out the search for self-intersections", Anything{});
-    }
+    void describe(OptionList& visit);
 };
 
 struct BorderLoop {

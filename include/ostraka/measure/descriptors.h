@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
+#include "ostraka/core/options.h"
 #include "ostraka/fields/curvature.h"
 #include "ostraka/fields/statistics.h"
 #include "ostraka/fields/thickness.h"
@@ -35,13 +36,7 @@ struct DescriptorOptions {
     CurvatureOptions curvature_options;
     ThicknessOptions thickness_options;
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("curvature", curvature, "statistics of mean and Gaussian curvature at the vertices", Anything{});
-        visit("thickness", thickness, "statistics of the thickness under the faces (shape diameter)", Anything{});
-        curvature_options.describe(visit);
-        thickness_options.describe(visit);
-    }
+    void describe(OptionList& visit);
 };
 
 /// Computes quantities of annotations on one mesh, which must outlive it; what is needed of the whole mesh (curvature, thickness)

@@ -23,6 +23,9 @@ struct RegionSolid {
 /// Throws Error (usage) for a face out of range. Linear but for the hulls (n log n in the length of an outline).
 RegionSolid region_solid(const Mesh& mesh, const std::vector<Index>& faces);
 
+/// Volume of a mesh without border, however it is oriented; NaN where it is open.
+double closed_volume(const Mesh& mesh);
+
 /// Area-weighted mean of the faces' centroids; the mean of the corners where the area vanishes. Throws as above, and for no
 /// faces.
 Point surface_centroid(const Mesh& mesh, const std::vector<Index>& faces);

@@ -17,14 +17,7 @@ struct AlignOptions {
     int samples = 1000;    ///< on each surface
     int iterations = 60;
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("shrinkage", shrinkage, "surfaces may differ in size by up to this share; 0: rigid", Range{0, 0.5});
-        visit("trim", trim, "share of the pairs of points that count, the nearest ones", Range{0.1, 1});
-        visit("pair-angle", angle, "pairs whose normals differ by more are left out, degrees", Range{1, 180});
-        visit("samples", samples, "points on each surface that are laid onto the other", Range{10, 1e6});
-        visit("iterations", iterations, "most steps of a registration", Range{1, 10000});
-    }
+    void describe(OptionList& visit);
 };
 
 /// What is asked of a surface again and again: points evenly spread over it, and the nearest vertex of any place.

@@ -1,6 +1,7 @@
 // Matches of features that one motion explains.
 #pragma once
 
+#include "ostraka/core/options.h"
 #include "ostraka/geom/rigid_fit.h"
 #include "ostraka/registration/mesh_sift.h"
 
@@ -11,13 +12,7 @@ struct ConsistentOptions {
     double angle = 30;        ///< and how far their normals may differ, degrees
     double shrinkage = 0;     ///< casts may differ in size by up to this share; 0: rigid
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("tolerance", tolerance, "matched features lie this near to each other once moved, as a share of the size",
-              Range{0, 1});
-        visit("normal-angle", angle, "and their normals differ by at most this, degrees", Range{0, 180});
-        visit("shrinkage", shrinkage, "objects may differ in size by up to this share; 0: rigid", Range{0, 0.5});
-    }
+    void describe(OptionList& visit);
 };
 
 struct ConsistentMatches {

@@ -4,7 +4,7 @@
 #include "ostraka/core/mesh.h"
 #include "ostraka/core/options.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 
 #include <vector>
 
@@ -19,21 +19,7 @@ struct SiftOptions {
     double contrast = 0.01;      ///< least |sigma (H' - H)| of a feature
     double second_direction = 0.8;
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("feature-size", size, "length that scales are shares of, in the mesh's unit; 0 = the square root of its area",
-              Range{0, 1e60});
-        visit("first-scale", first_scale, "standard deviation of the first smoothing, as a share of the size", Range{1e-4, 0.5});
-        visit("scales", scales, "levels of smoothing", Range{4, 20});
-        visit("scales-per-octave", per_octave, "levels in which the standard deviation doubles", Range{1, 8});
-        visit("border", border, "no features within this many standard deviations of the border", Range{0, 10});
-        visit("contrast", contrast, "least difference of curvature between two levels, times the standard deviation",
-              Range{0, 10});
-        visit("second-direction", second_direction,
-              "peaks of the histogram of directions above this share of the highest give a "
-              "feature each",
-              Range{0.1, 1});
-    }
+    void describe(OptionList& visit);
 };
 
 /// A salient point with a direction in its tangent plane. A point with several directions is there several times.
@@ -68,10 +54,7 @@ struct FeatureMatch {
 };
 struct MatchOptions {
     double ratio = 0.8;  ///< of the smallest angle over the second smallest; 1 takes every nearest feature
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("ratio", ratio, "a match's angle over that of the next best feature, at most", Range{0, 1});
-    }
+    void describe(OptionList& visit);
 };
 /// For each feature of `a` the one of `b` under the smallest angle, if the ratio allows.
 std::vector<FeatureMatch> match_features(const FeatureSet& a, const FeatureSet& b, const MatchOptions& options = {});

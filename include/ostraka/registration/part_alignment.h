@@ -17,15 +17,7 @@ struct PartAlignmentOptions {
     int samples = 3000;  ///< points of the part that are laid onto the whole, evenly spread
     int iterations = 60;
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("icp-trim", trim, "share of the pairs of points that count, the nearest ones", Range{0.1, 1});
-        visit("icp-reach", reach, "farthest pair, as a share of the whole's diagonal", Range{0, 10});
-        visit("icp-angle", angle, "pairs whose normals differ by more are left out, degrees", Range{1, 180});
-        visit("icp-landmarks", anchors, "weight of all landmarks together against that of the surface", Range{0, 1e9});
-        visit("icp-samples", samples, "points of a fragment that are laid onto the template", Range{10, 1e7});
-        visit("icp-iterations", iterations, "most steps of a registration", Range{0, 10000});
-    }
+    void describe(OptionList& visit);
 };
 
 /// A place of the part that belongs to a place of the whole.

@@ -21,20 +21,7 @@ struct PoseSearchOptions {
     int candidates = 10;                     ///< poses that are refined on the whole's own faces
     std::uint64_t seed = 1;
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("search-least-scale", least_scale, "smallest scale of the template that is searched", Range{1e-6, 1e6});
-        visit("search-most-scale", most_scale, "largest scale of the template that is searched", Range{1e-6, 1e6});
-        visit("search-tolerance", tolerance, "what lies nearer is on the template, as a share of the fragment's size",
-              Range{1e-6, 1});
-        visit("least-confidence", least_confidence, "of a pose that was searched; below it the fragment is not placed",
-              Range{0, 1});
-        visit("search-points", points, "points spread over the template", Range{50, 4000});
-        visit("search-references", references, "points of a fragment for which places are sought", Range{1, 4000});
-        visit("search-partners", partners, "other points of the fragment that vote for each of them", Range{1, 100000});
-        visit("search-candidates", candidates, "poses that are refined on the template's faces", Range{1, 1000});
-        visit("search-seed", seed, "of what the search draws", Range{0, 9007199254740992.0});
-    }
+    void describe(OptionList& visit);
 };
 
 /// A place of the part on the whole.

@@ -28,11 +28,7 @@ struct SimilarityMap {
 struct ProcrustesOptions {
     bool scaling = false;
     bool reflection = false;
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("scaling", scaling, "sizes are made equal; else they stay", Anything{});
-        visit("reflection", reflection, "mirror images count as the same", Anything{});
-    }
+    void describe(OptionList& visit);
 };
 
 /// The rotation and translation, and with `scaling` the scale, that bring `from` nearest to `to` in the sum of squares, by the

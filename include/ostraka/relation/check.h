@@ -13,14 +13,7 @@ struct RelationOptions {
     double tilt = 20;
     double ratio = 10;
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("distance", distance, "tolerance of distances and heights, as a share of the mesh's diagonal: 0.01 is one per cent",
-              Range{0, 1});
-        visit("angle", angle, "tolerance of angles between axes, degrees", Range{0, 90});
-        visit("tilt", tilt, "tolerance of the tilt of a contact, degrees", Range{0, 90});
-        visit("ratio", ratio, "tolerance of areas, shapes and values of attributes, per cent", Range{0, 100});
-    }
+    void describe(OptionList& visit);
 };
 
 enum class Verdict { holds, fails, unknown };

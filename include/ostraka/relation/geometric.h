@@ -4,6 +4,7 @@
 #include "ostraka/axis/axis.h"
 #include "ostraka/core/options.h"
 #include "ostraka/relation/check.h"
+#include "ostraka/relation/topology.h"
 
 #include <memory>
 
@@ -28,6 +29,22 @@ private:
     struct State;
     std::unique_ptr<State> state_;
 };
+
+/// What selections and geometry tell of an annotated mesh.
+struct ExtractedRelations {
+    RelationGraph graph;  ///< what was stated, then what was found, with fresh ids
+    ContainmentOrder order;
+    std::vector<int> stated;                  ///< ids of stated relationships that were found too, and not added again
+    std::vector<std::string> not_looked_for;  ///< types that need an upward direction, which the set does not have
+};
+
+/// All relationships that hold, of these types (all if empty), beside those of `old` that were not extracted. Throws Error
+/// (usage) for a type that geometry does not tell.
+ExtractedRelations extract_relations(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& old = {},
+                                     const std::vector<std::string>& types = {}, const RelationOptions& options = {});
+
+/// The types under their own spelling. Throws Error (usage), with the nearest name, for one that geometry does not tell.
+std::vector<std::string> geometric_types(const std::vector<std::string>& names);
 
 /// The axis of a part that relationships about axes measure: of its slices where it is longer than wide and not bent, else of
 /// rotation, or the shortest principal axis of what is flat and round.

@@ -16,16 +16,7 @@ struct RefineOptions {
     int levels = 0;              ///< number of uniform subdivisions, or 0
     std::string scheme = "midpoint";
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("vertices", vertices, "wanted number of vertices (met exactly)", Range{0, 5e8});
-        visit("levels", levels, "number of times each triangle is cut into four", Range{0, 12});
-        visit("scheme", scheme,
-              "midpoint (each triangle into four, the shape stays; the last part of a wanted number by longest edges), loop (the "
-              "same with Loop's "
-              "smoothing) or longest-edge (edges halved in the order of their length, the shape stays)",
-              Choices{"midpoint", "loop", "longest-edge"});
-    }
+    void describe(OptionList& visit);
 };
 
 struct RefineResult {

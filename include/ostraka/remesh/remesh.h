@@ -13,13 +13,7 @@ struct RemeshOptions {
     int iterations = 3;          ///< rounds of splitting, collapsing, flipping, smoothing and projecting
     double feature_angle = 0;    ///< degrees; edges between faces that turn by more stay; 0 = none
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("vertices", vertices, "wanted number of vertices (met exactly unless the topology forbids)", Range{1, 5e8});
-        visit("iterations", iterations, "rounds of splitting, collapsing, flipping, smoothing and projecting", Range{1, 100});
-        visit("feature-angle", feature_angle,
-              "degrees by which the faces at an edge must turn for it to stay; 0: no edge is kept", Range{0, 180});
-    }
+    void describe(OptionList& visit);
 };
 
 struct RemeshResult {

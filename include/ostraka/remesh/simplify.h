@@ -18,24 +18,7 @@ struct SimplifyOptions {
     double outline_weight = 1;        ///< weight of the distance to marked edges, relative to the distance to faces (qem only)
     double border_weight = 1;         ///< weight of the distance to border edges (qem only)
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("vertices", vertices, "wanted number of vertices", Range{1, 5e8});
-        visit("method", method,
-              "cost and place of a collapse: qem (Garland and Heckbert 1997) or lindstrom-turk (1998, without memory)",
-              Choices{"qem", "lindstrom-turk"});
-        visit("outlines", outlines,
-              "annotated outlines, lines and points: follow (they move and lose vertices, but keep their topology while that can "
-              "be), protect "
-              "(they stay exactly as they are) or ignore",
-              Choices{"follow", "protect", "ignore"});
-        visit("max-normal-change", max_normal_change,
-              "degrees that a face may turn in one collapse (given up, up to 90, if the number cannot be reached)", Range{1, 90});
-        visit("outline-weight", outline_weight,
-              "qem: weight of the distance to outlines that are followed, relative to the surface's", Range{0, 1e6});
-        visit("border-weight", border_weight, "qem: weight of the distance to the border, relative to the surface's",
-              Range{0, 1e6});
-    }
+    void describe(OptionList& visit);
 };
 
 /// Parts of the mesh that mean something: outlines and poly-lines as edges, annotated points as vertices. Empty = none.

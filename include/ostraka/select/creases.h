@@ -1,6 +1,7 @@
 // Ridges and hollows: where clay was pressed on, joined or smeared, as candidates for lines and regions.
 #pragma once
 
+#include "ostraka/annotation/annotation.h"
 #include "ostraka/core/mesh.h"
 #include "ostraka/core/options.h"
 
@@ -18,20 +19,7 @@ struct CreaseOptions {
     double floor = 0.03;
     double shortest = 0.05;
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("kind", kind, "ridges (clay that stands out), hollows (where parts meet), or both",
-              Choices{"ridge", "hollow", "both"});
-        visit("scale", scale,
-              "radius over which curvature is averaged, as a share of the box diagonal; about the width looked for",
-              Range{1e-6, 0.5});
-        visit("wide", wide, "radius of the surroundings that it is compared with, in multiples of the scale", Range{1.1, 20});
-        visit("weak", weak, "response that belongs to a crease, in robust deviations of the response over the surface",
-              Range{0, 1000});
-        visit("strong", strong, "response that a crease reaches somewhere, in robust deviations", Range{0, 1000});
-        visit("floor", floor, "response (curvature times scale) below which nothing is a crease", Range{0, 100});
-        visit("shortest", shortest, "least length, as a share of the box diagonal", Range{0, 10});
-    }
+    void describe(OptionList& visit);
 };
 
 struct Crease {
@@ -55,6 +43,11 @@ struct Crease {
 /// log n in each crease. Throws Error (usage) for options out of range, `weak` above `strong`, or a scale below the mean
 /// length of the edges.
 std::vector<Crease> find_creases(const Mesh& mesh, const CreaseOptions& options = {});
+
+/// One annotation for each crease in their order: "ridge 1", "ridge 2", ... in warm and "hollow 1", ... in cold colours, as lines
+/// along the crests or as regions, with length (of lines), width, mean curvature and strength as descriptors. `unit`: of the
+/// mesh's coordinates, "" if unknown.
+AnnotationSet annotate_creases(const std::vector<Crease>& creases, bool regions, const std::string& unit = {});
 
 /// The response of every vertex, a number without unit.
 std::vector<double> crease_response(const Mesh& mesh, const CreaseOptions& options = {});

@@ -38,11 +38,7 @@ struct SegmentOptions {
     int clusters = 5;
     double smoothing = 0.26;
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("clusters", clusters, "levels of thickness that are told apart", Range{2, 100});
-        visit("smoothing", smoothing, "how much short borders in hollows are preferred, 0 to 1", Range{0, 1});
-    }
+    void describe(OptionList& visit);
 };
 
 /// Parts of like thickness (Shapira, Shamir and Cohen-Or 2008, as CGAL implements it): the values of `thickness`, one a face, are

@@ -5,6 +5,8 @@
 #include "ostraka/core/options.h"
 #include "ostraka/stats/k_means.h"
 
+#include <optional>
+
 namespace ostraka {
 
 struct SliceSegmentOptions {
@@ -14,15 +16,7 @@ struct SliceSegmentOptions {
     bool size = false;
     ClusterCountOptions count;
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("slices", slices, "slices across the object, evenly spread", Range{4, 10000});
-        visit("clusters", clusters, "kinds of slices; 0: as many as the criterion proposes", Range{0, 1000});
-        visit("least-run", least_run,
-              "as many slices of one kind in a row make a segment; shorter runs join their longer neighbour", Range{1, 1000});
-        visit("size", size, "the radius of the circle of the slice's area counts as well", Anything{});
-        count.describe(visit);
-    }
+    void describe(OptionList& visit);
 };
 
 /// Slices in a row of one kind.
@@ -54,5 +48,8 @@ SliceSegments segment_by_slices(const Mesh& mesh, const Vector& up, const SliceS
 /// A region for each segment, "segment 1" the lowest one; segments of one kind have one colour. Segments too thin to hold a face
 /// have none.
 AnnotationSet annotate_segments(const Mesh& mesh, const SliceSegments& segments);
+
+/// Adjusted Rand index of the segments and known labels of faces, over the faces that have a label; none where no face has one.
+std::optional<double> segment_agreement(const SliceSegments& segments, const std::vector<std::int32_t>& known);
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// Where annotations want the vertices of a cage.
+// Where annotations want the vertices of a cage, and the plane that a symmetric cage is mirrored in.
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
@@ -11,5 +11,9 @@ namespace ostraka {
 /// point, to a line, or to an outline of a region other than the whole get 4. Elsewhere 1. The result owns what it needs.
 CageDensity annotation_density(const Mesh& mesh, const AnnotationSet& set,
                                const std::vector<std::pair<int, double>>& factors = {});
+
+/// The plane in which the whole object is mirror-symmetric (relation/geometric.h). Throws Error (failure) that names `where` if
+/// there is none.
+MirrorPlane find_mirror_plane(const Mesh& mesh, AnnotationSet set, const std::string& where);
 
 }  // namespace ostraka

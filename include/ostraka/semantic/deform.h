@@ -19,27 +19,7 @@ struct DeformOptions {
     int passes = 5;     ///< in which constraints on the axes and measures of other parts follow those
     int conflicts = 8;  ///< where a constraint fails, at most so many are left out in turn to see which fight; 0: none
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("space", space,
-              "mesh (constraints hold as well as weights let them) or cage (interactive; as well as the cage can): the unknowns",
-              Choices{"mesh", "cage"});
-        visit("details", details,
-              "Laplacian displacements that the surface tends to: edited (those of the shape as the edit alone leaves it) or "
-              "rest (those of the "
-              "shape before it, as in the thesis)",
-              Choices{"edited", "rest"});
-        visit("closeness", closeness, "weight of the edited position of each vertex", Range{0, 1e9});
-        visit("laplacian", laplacian, "weight of the Laplacian displacement of each vertex", Range{0, 1e9});
-        visit("handles", handles,
-              "weight of the positions of the handles that the edit moves, and of joints that parts stretch from", Range{0, 1e9});
-        solve.describe(visit);
-        visit("rounds", rounds, "rounds in which hard constraints are enforced", Range{1, 1e6});
-        visit("passes", passes, "solutions in which constraints on axes and measures of other parts follow those", Range{1, 100});
-        visit("conflicts", conflicts,
-              "where a constraint does not hold, at most so many are left out in turn, to tell which fight; 0 for none",
-              Range{0, 1000});
-    }
+    void describe(OptionList& visit);
 };
 
 /// What became of one constraint.

@@ -17,15 +17,7 @@ struct BreakOptions {
     bool moved = true;       ///< turned and shifted at random
     std::uint64_t seed = 1;
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("share", share, "of the surface that the fragment has", Range{0.001, 1});
-        visit("roughness", roughness, "waves of the break, as a share of the fragment's size", Range{0, 1});
-        visit("noise", noise, "standard deviation along the normal, as a share of the whole's diagonal", Range{0, 0.1});
-        visit("erosion", erosion, "width of the rim that is worn away, as a share of the whole's diagonal", Range{0, 0.5});
-        visit("moved", moved, "turned and shifted at random", Anything{});
-        visit("seed", seed, "of the break, the noise and the motion", Range{0, 9007199254740992.0});
-    }
+    void describe(OptionList& visit);
 };
 
 struct BrokenPiece {

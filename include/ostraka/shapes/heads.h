@@ -46,13 +46,7 @@ struct ArchetypeOptions {
     double difference = 1;   ///< how far archetypes lie apart: 1 = proportions vary by about 8 % (standard deviation)
     std::uint64_t seed = 1;
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("long-hair", long_hair, "locks that fall behind the ears instead of a cap of short hair", Anything{});
-        visit("hand-made", hand_made, "formed by hand: freely varied, with a hat", Anything{});
-        visit("difference", difference, "how far archetypes lie apart: 1 = proportions vary by about 8 %", Range{0, 3});
-        visit("archetype-seed", seed, "draws the proportions", Range{0, 9007199254740992.0});
-    }
+    void describe(OptionList& visit);
 };
 /// Draws an archetype.
 HeadShape head_archetype(const ArchetypeOptions& options);

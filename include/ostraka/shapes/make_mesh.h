@@ -14,13 +14,7 @@ struct MakeOptions {
     std::uint64_t seed = 1;          ///< turns and shifts the lattice, so that seeds give independent meshes of one object
     double noise = 0;                ///< vertices are moved along the normal by up to this share of the mean edge length
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("vertices", vertices, "number of vertices wanted (met to 1 %)", Range{4, 5e7});
-        visit("seed", seed, "turns and shifts the lattice and draws the noise: another seed, another mesh of the same object",
-              Range{0, 9007199254740992.0});
-        visit("noise", noise, "moves each vertex along the normal by up to this share of the mean edge length", Range{0, 0.25});
-    }
+    void describe(OptionList& visit);
 };
 
 struct MadeMesh {

@@ -15,14 +15,7 @@ struct PotOptions {
     double wall = 0.6;        ///< thickness
     double edge = 0.35;       ///< of the triangles
     std::uint64_t shape = 1;  ///< one number a shape
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("height", height, "of the vessel", Range{1e-9, 1e9});
-        visit("radius", radius, "of the body", Range{1e-9, 1e9});
-        visit("wall", wall, "thickness of the wall", Range{1e-9, 1e9});
-        visit("edge", edge, "length of the triangles' edges", Range{1e-9, 1e9});
-        visit("shape", shape, "of the profile: another number is another vessel", Range{0, 9007199254740992.0});
-    }
+    void describe(OptionList& visit);
 };
 
 /// A thrown vessel with a floor about the vertical axis: closed, oriented outwards. Throws Error (usage) for options out of
@@ -35,14 +28,7 @@ struct ShatterOptions {
     double erosion = 0;       ///< what is worn off breaks, and rounded at their edges, as a share of the whole's diagonal
     double noise = 0;         ///< standard deviation of each vertex along its normal, as a share of the whole's diagonal
     std::uint64_t seed = 1;
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("pieces", pieces, "at least so many pieces", Range{1, 1000});
-        visit("roughness", roughness, "height of the breaks' waves, share of the piece's extent", Range{0, 0.2});
-        visit("erosion", erosion, "what is worn off breaks and their edges, share of the diagonal", Range{0, 0.1});
-        visit("noise", noise, "standard deviation along the normal, share of the diagonal", Range{0, 0.1});
-        visit("seed", seed, "of cuts and noise", Range{0, 9007199254740992.0});
-    }
+    void describe(OptionList& visit);
 };
 
 /// A piece of a closed mesh, where it was.

@@ -36,32 +36,7 @@ struct StatuetteParameters {
     std::uint64_t seed = 1;  ///< of the waves' phases, the noise, the holes and the mesh's lattice
     std::uint64_t vertices = 10000;
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("technique", technique, "wheel or hand", Choices{"wheel", "hand"});
-        visit("height", height, "from the base to the topmost point, mm", Range{100, 500});
-        visit("base-diameter", base_diameter, "mm", Range{20, 200});
-        visit("arm-length", arm_length, "from the joint along the outside to the end of the hand, mm", Range{30, 250});
-        visit("head-height", head_height, "from the joint at the back of the neck to the topmost point, mm", Range{20, 150});
-        visit("ovality", ovality, "of the body, relative to its radius", Range{0, 0.15});
-        visit("ovality-drift", ovality_drift, "degrees by which its direction turns", Range{0, 360});
-        visit("finger-marks", finger_marks, "root mean square, relative to the radius", Range{0, 0.05});
-        visit("sway", sway, "root mean square of the centres, relative to the tube's radius", Range{0, 0.2});
-        visit("grooves", grooves, "height of throwing grooves, mm", Range{0, 1});
-        visit("wall", wall, "mean thickness, mm; 0: solid", Range{0, 12});
-        visit("wall-noise", wall_noise, "root mean square, relative to the wall", Range{0, 0.25});
-        visit("off-centre", off_centre, "of the cavity, relative to the wall", Range{0, 0.4});
-        visit("cavity-seen", cavity_seen, "share of the cavity's depth", Range{0.1, 1});
-        visit("interior", interior, "what the mesh does where the scanner's sight ends", Choices{"closed", "open"});
-        visit("scan-noise", scan_noise, "standard deviation along the normal, mm", Range{0, 0.5});
-        visit("holes", holes, "patches that the scan misses", Range{0, 20});
-        visit("hole-radius", hole_radius, "mm", Range{1, 20});
-        visit("pose", pose, "of the arms", Choices{"forward", "offering", "raised", "down"});
-        visit("hat", hat, "on the head", Choices{"cone", "cap", "none"});
-        visit("beard", beard, "a piece of clay under the chin", Anything{});
-        visit("seed", seed, "of phases, noise, holes and lattice", Range{0, 9007199254740992.0});
-        visit("vertices", vertices, "of the whole mesh, before anything is missing", Range{4000, 5e6});
-    }
+    void describe(OptionList& visit);
 };
 
 /// A named place on the surface.
@@ -114,22 +89,28 @@ struct PopulationOptions {
     int holes = 0;
     double size_spread = 0.07;
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("objects", objects, "statuettes, half of them of each technique", Range{1, 100000});
-        visit("level", level, "difficulty: 1, the techniques far apart, to 5, nearly alike", Range{1, 5});
-        visit("seed", seed, "of the whole population", Range{0, 1e9});
-        visit("vertices", vertices, "of each mesh", Range{4000, 5e6});
-        visit("scan-noise", scan_noise, "standard deviation of each vertex along its normal, mm", Range{0, 0.5});
-        visit("interior", interior, "of hollow bodies, where the scanner's sight ends", Choices{"mixed", "closed", "open"});
-        visit("cavity-seen", cavity_seen, "least share of a cavity's depth that the scanner saw; the most is all", Range{0.1, 1});
-        visit("holes", holes, "most patches that a scan misses", Range{0, 20});
-        visit("size-spread", size_spread, "standard deviation of the logarithm of each size (height, base, arm, head)",
-              Range{0, 0.15});
-    }
+    void describe(OptionList& visit);
 };
 
 /// Parameters of every statuette of a population; object i is the same whatever the number of objects.
 std::vector<StatuetteParameters> draw_population(const PopulationOptions& options);
+
+/// Statuettes thrown on the wheel whose sizes vary with a common size and by themselves, some of them in fixed proportion.
+struct ProportionedOptions {
+    int objects = 40;
+    std::vector<std::string> fixed{"arm length", "base diameter"};  ///< in fixed proportion to each other, of `size_names`
+    bool none = false;                                              ///< none is
+    double size_deviation = 0.12, ratio_deviation = 0.15, planted_deviation = 0.03, scan_noise = 0.05;
+    std::uint64_t seed = 1, vertices = 10000;
+
+    static constexpr std::array<const char*, 4> size_names{"total height", "base diameter", "arm length", "head height"};
+    /// Whether the size of this name is one of those in fixed proportion.
+    [[nodiscard]] bool is_fixed(const std::string& size) const;
+    void describe(OptionList& visit);
+};
+
+/// Medians as in the thesis's Table 3.1; object i is the same whatever the number of objects. Throws Error (usage) for options
+/// out of range and where a single size is to be fixed.
+std::vector<StatuetteParameters> draw_population(const ProportionedOptions& options);
 
 }  // namespace ostraka

@@ -13,13 +13,7 @@ struct ClayOptions {
     int slices = 400;
     double wall = 0;
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("slices", slices, "layers that the object is cut into", Range{2, 1000000});
-        visit("wall", wall,
-              "least wall that the clay is taken to have where it is not seen, in the mesh's unit; 0: a thin one of those seen",
-              Range{0, 1e60});
-    }
+    void describe(OptionList& visit);
 };
 
 /// Volumes in the mesh's unit cubed. NaN: not known.

@@ -55,14 +55,7 @@ struct TubeOptions {
     double similarity = 0.1;
     std::uint64_t seed = 1;
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("least-eccentricity", least_eccentricity, "tube: least breadth / length of a slice's rectangle", Range{0, 1});
-        visit("most-roundness", most_roundness,
-              "tube: largest mean distance of a slice's outline from its circle, share of the radius", Range{0, 10});
-        visit("similarity", similarity, "tube: largest rms distance of a group's slices from its centre", Range{1e-6, 1e6});
-        visit("tube-seed", seed, "tube: seed of the grouping", Range{0, 1e18});
-    }
+    void describe(OptionList& visit);
 };
 
 struct Tube {

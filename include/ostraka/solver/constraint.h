@@ -9,7 +9,7 @@
 
 #include "ostraka/core/error.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 
 #include <cstdint>
 #include <functional>

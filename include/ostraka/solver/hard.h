@@ -1,6 +1,7 @@
 // Constraints that must hold to a tolerance, beside others that need not: an augmented Lagrangian around the local/global solver.
 #pragma once
 
+#include "ostraka/core/options.h"
 #include "ostraka/solver/solve.h"
 
 namespace ostraka {
@@ -10,12 +11,7 @@ struct HardOptions {
     int rounds = 100;
     double tolerance = 1e-6;  ///< a hard constraint holds when none of its rows is farther off than this share of the diagonal
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        inner.describe(visit);
-        visit("rounds", rounds, "rounds in which hard constraints are enforced", Range{1, 1e6});
-        visit("hard-tolerance", tolerance, "share of the diagonal to which hard constraints must hold", Range{1e-15, 1});
-    }
+    void describe(OptionList& visit);
 };
 
 struct HardSummary {

@@ -20,13 +20,7 @@ struct SolveOptions {
     double residual = 0;  ///< stop when the root mean square of the weighted rows' distances falls to this, in the points' unit
     int window = 5;       ///< steps that Anderson acceleration looks back; 0: plain iterations
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("iterations", iterations, "at most so many global steps", Range{0, 1e7});
-        visit("tolerance", tolerance, "stop when no point moves by more than this share of the diagonal", Range{0, 1});
-        visit("residual", residual, "stop when the weighted root mean square of distances falls to this", Range{0, 1e300});
-        visit("window", window, "steps that the acceleration looks back; 0 for plain iterations", Range{0, 50});
-    }
+    void describe(OptionList& visit);
 };
 
 enum class StopReason { converged, residual, iterations, stalled };

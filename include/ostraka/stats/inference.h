@@ -31,12 +31,7 @@ struct BootstrapOptions {
     int resamples = 2000;
     double confidence = 0.95;
     std::uint64_t seed = 1;
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("resamples", resamples, "resamples of the bootstrap", Range{1, 10000000});
-        visit("confidence", confidence, "confidence of intervals", Range{0.01, 0.9999});
-        visit("seed", seed, "seed of the random numbers", Range{0, 1e18});
-    }
+    void describe(OptionList& visit);
 };
 
 /// A statistic of the samples with these indices; none where it is not defined.
@@ -59,12 +54,7 @@ struct StabilityOptions {
     int resamples = 100;
     double share = 0.8;  ///< of the samples, drawn without replacement
     std::uint64_t seed = 1;
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("stability-resamples", resamples, "times the clusters are found anew in a part of the samples", Range{1, 100000});
-        visit("stability-share", share, "share of the samples in each such part", Range{0.05, 1});
-        visit("seed", seed, "seed of the random numbers", Range{0, 1e18});
-    }
+    void describe(OptionList& visit);
 };
 
 /// How a cluster fares when clusters are found in parts of the samples.

@@ -14,13 +14,7 @@ struct KMeansOptions {
     int restarts = 20;     ///< beginnings, of which the one with the least cost is kept
     int iterations = 300;  ///< at most, of each
     std::uint64_t seed = 1;
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("clusters", clusters, "number of clusters", Range{1, 100000});
-        visit("restarts", restarts, "beginnings of k-means, of which the best is kept", Range{1, 100000});
-        visit("iterations", iterations, "iterations of k-means at most", Range{1, 1000000});
-        visit("seed", seed, "seed of the random numbers", Range{0, 1e18});
-    }
+    void describe(OptionList& visit);
 };
 
 struct KMeansResult {
@@ -52,15 +46,7 @@ struct ClusterCountOptions {
     std::string criterion = "silhouette";
     int references = 50;
     KMeansOptions k_means = {};  ///< its number of clusters is not used
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("most-clusters", most, "largest number of clusters that is tried", Range{1, 10000});
-        visit("criterion", criterion, "how the number of clusters is proposed", Choices{"silhouette", "gap"});
-        visit("references", references, "reference sets of the gap statistic", Range{2, 100000});
-        visit("restarts", k_means.restarts, "beginnings of k-means, of which the best is kept", Range{1, 100000});
-        visit("iterations", k_means.iterations, "iterations of k-means at most", Range{1, 1000000});
-        visit("seed", k_means.seed, "seed of the random numbers", Range{0, 1e18});
-    }
+    void describe(OptionList& visit);
 };
 
 struct ClusterCount {

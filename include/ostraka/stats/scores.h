@@ -60,12 +60,7 @@ struct CrossValidationOptions {
     int folds = 10;
     int repeats = 10;
     std::uint64_t seed = 1;
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("folds", folds, "parts that are left out in turn", Range{2, 100000});
-        visit("repeats", repeats, "divisions into parts", Range{1, 100000});
-        visit("seed", seed, "seed of the random numbers", Range{0, 1e18});
-    }
+    void describe(OptionList& visit);
 };
 
 struct CrossValidation {

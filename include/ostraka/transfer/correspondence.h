@@ -14,15 +14,7 @@ struct CorrespondenceOptions {
     double max_distance = 0.02;  ///< share of the target's box diagonal
     double max_angle = 90;       ///< degrees between the normals of vertex and target face
     std::string vertex = "projection";
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("max-distance", max_distance, "farthest a corresponding place may lie, as a share of the box diagonal",
-              Range{1e-9, 1});
-        visit("max-angle", max_angle, "largest angle between the normals of vertex and target face, in degrees", Range{0, 180});
-        visit("vertex", vertex,
-              "which corner of the face that is hit corresponds: the one nearest to the projection or to the source vertex",
-              Choices{"projection", "source"});
-    }
+    void describe(OptionList& visit);
 };
 
 enum class CorrespondenceKind {

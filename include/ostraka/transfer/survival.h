@@ -1,6 +1,7 @@
 // The smallest resolution at which an annotation survives.
 #pragma once
 
+#include "ostraka/core/options.h"
 #include "ostraka/transfer/transfer.h"
 
 #include <cstdint>
@@ -12,12 +13,7 @@ struct SurvivalOptions {
     double ratio = 0.7;
     double area_error = 0.25;
     std::uint64_t least = 20;
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("ratio", ratio, "vertices of each resolution tried, relative to the one before", Range{0.1, 0.95});
-        visit("area-error", area_error, "a region survives while its area changes by less than this share", Range{0.001, 1});
-        visit("least", least, "smallest number of vertices tried", Range{4, 1e9});
-    }
+    void describe(OptionList& visit);
 };
 
 struct Survival {

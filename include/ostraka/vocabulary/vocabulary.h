@@ -155,10 +155,7 @@ const Term* term_of(const AllowedAttribute& attribute, const std::string& text);
 struct CheckVocabularyOptions {
     bool strict = false;  ///< quantities that the vocabulary does not have are defects as well
 
-    template <class Visitor>
-    void describe(Visitor& visit) {
-        visit("strict", strict, "measures and descriptors that the vocabulary does not have are defects too", Anything{});
-    }
+    void describe(OptionList& visit);
 };
 
 /// Which tags and attributes of a set do not fit. Defects: a tag that no concept has or that several have, a qualitative

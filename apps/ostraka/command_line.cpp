@@ -1,0 +1,305 @@
+// The only file that knows CLI11.
+#include "command_line.h"
+
+#include "ostraka/core/parallel.h"
+#include "ostraka/core/text.h"
+#include "ostraka/operations/pages.h"
+#include "ostraka/operations/table.h"
+
+#include <CLI/CLI.hpp>
+
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <iostream>
+#include <map>
+
+namespace ostraka::app {
+
+namespace {
+
+std::vector<std::string> words_of(const std::string& name) {
+    std::vector<std::string> words;
+    std::istringstream stream(name);
+    for (std::string word; stream >> word;) words.push_back(word);
+    return words;
+}
+
+[[noreturn]] void refuse_word(const std::string& word, const std::string& what, const std::vector<std::string>& names,
+                              const std::string& help) {
+    const std::string near = nearest_name(word, names);
+    fail_usage("'" + printable(word, 60) + "' is no " + what, near.empty() ? help : "did you mean '" + near + "'?");
+}
+
+/// The operation whose words begin the arguments; null where they name a group or nothing. Throws where they name neither.
+const OperationEntry* named_operation(int argc, char** argv) {
+    std::vector<std::string> given;
+    for (int i = 1; i < argc && argv[i][0] != '-'; ++i) given.emplace_back(argv[i]);
+    const OperationEntry* best = nullptr;
+    std::size_t most = 0, agreeing = 0;
+    std::vector<std::string> next;  // words that may follow those that agree
+    for (const OperationEntry& entry : operations()) {
+        const auto words = words_of(entry.name);
+        std::size_t same = 0;
+        while (same < words.size() && same < given.size() && words[same] == given[same]) ++same;
+        if (same == words.size() && same > most) best = &entry, most = same;
+        if (same > agreeing) agreeing = same, next.clear();
+        if (same == agreeing && same < words.size()) next.push_back(words[same]);
+    }
+    if (best == nullptr && agreeing < given.size()) {
+        std::string before;
+        for (std::size_t i = 0; i < agreeing; ++i) before += given[i] + " ";
+        refuse_word(given[agreeing],
+                    agreeing == 0 ? "command" : "command of 'ostraka " + before.substr(0, before.size() - 1) + "'", next,
+                    "'ostraka " + before + "--help' shows them");
+    }
+    return best;
+}
+
+std::string type_of(const Option& option) {
+    static constexpr const char* names[]{"", "INT", "FLOAT", "TEXT", "TEXT", "TEXT", "FLOATS", "INTS"};
+    std::string text = names[static_cast<std::size_t>(option.type())];
+    if (const auto* choices = std::get_if<Choices>(&option.rule)) {
+        std::string list;
+        for (const auto& name : choices->names) list += (list.empty() ? "" : ",") + name;
+        text = "{" + list + "}";
+    }
+    if (const auto* range = std::get_if<Range>(&option.rule))
+        text += " in [" + digits(range->min, 6) + ", " + digits(range->max, 6) + "]";
+    return text;
+}
+
+void add_option(CLI::App& command, Option& option) {
+    const std::string flag = "--" + option.name, help = option.help + (option.unit.empty() ? "" : " (" + option.unit + ")");
+    CLI::Option* added = nullptr;
+    if (option.type() == OptionType::boolean) {
+        const std::string names = option.initial == "true" ? flag + ",!--no-" + option.name : flag;
+        added = command.add_flag_function(
+            names, [&option](std::int64_t count) { option.set(count > 0); }, help);
+    } else {
+        added = command.add_option_function<std::vector<std::string>>(
+            option.is_positional ? option.name : flag, [&option](const std::vector<std::string>& words) { option.set(words); },
+            help);
+        added->type_name(type_of(option))->expected(1);
+        if (option.is_list())
+            added->expected(1, option.takes_words ? 1'000'000 : 1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+        added->allow_extra_args(option.takes_words);
+        const OptionType type = option.type();
+        if (type == OptionType::integer || type == OptionType::number) {
+            if (!option.initial.empty()) added->default_str(digits(std::stod(option.initial)));
+        } else if (!option.initial.empty()) {
+            added->default_str(option.initial);
+        }
+    }
+    if (option.needed) added->required();
+    if (!option.group.empty()) added->group(option.group);
+}
+
+void add_slot(CLI::App& command, Call& call, const Slot& slot) {
+    const std::string name = slot.name;
+    auto* added = command.add_option_function<std::vector<std::string>>(
+        slot.is_positional ? name : "--" + name,
+        [&call, name](const std::vector<std::string>& files) {
+            for (const auto& file : files) call.set_file(name, file);
+        },
+        slot.help);
+    added->type_name("FILE");
+    if (slot.repeated) added->expected(slot.is_positional ? -1 : 1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    else added->expected(1);
+    added->allow_extra_args(slot.takes_words || (slot.is_positional && slot.repeated));
+    if (slot.repeated && slot.takes_words) added->expected(1, 1'000'000);
+    if (slot.needed) added->required();
+}
+
+bool is_repeated(Call& call, const std::string& name) {
+    const Slot* slot = call.parameters().slot(name);
+    return slot != nullptr ? slot->repeated : call.parameters().options.find(name)->is_list();
+}
+
+std::string shown_order(Call& call, const std::vector<std::string>& order) {
+    std::string text;
+    for (const auto& name : order) text += (text.empty() ? "" : " ") + name + (is_repeated(call, name) ? " ..." : "");
+    return text;
+}
+
+/// Arguments without flags where the order depends on how many there are.
+void take_positionals(Call& call, const std::vector<std::string>& words) {
+    const auto& orders = call.parameters().orders;
+    const auto fits = [&](const std::vector<std::string>& order) {
+        const bool open = std::any_of(order.begin(), order.end(), [&](const auto& name) { return is_repeated(call, name); });
+        return open ? words.size() >= order.size() : words.size() == order.size();
+    };
+    const auto order = std::find_if(orders.begin(), orders.end(), fits);
+    if (order == orders.end()) {
+        std::string ways;
+        for (const auto& one : orders) ways += (ways.empty() ? "" : ", or ") + shown_order(call, one);
+        throw Error(ErrorKind::usage, call.entry().name, std::to_string(words.size()) + " arguments are given", "give " + ways);
+    }
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < order->size(); ++i) {
+        const std::size_t take = is_repeated(call, (*order)[i]) ? words.size() - order->size() + 1 : 1;
+        const std::vector<std::string> mine(words.begin() + static_cast<long>(at), words.begin() + static_cast<long>(at + take));
+        if (call.parameters().slot((*order)[i]) != nullptr)
+            for (const auto& file : mine) call.set_file((*order)[i], file);
+        else call.option((*order)[i]).set(mine);
+        at += take;
+    }
+}
+
+/// Flags of all commands.
+struct Common {
+    bool json = false, quiet = false;
+    std::string show = "table";
+    int threads = 0;
+};
+
+/// Declares the operation's flags. True where `take_positionals` is to take the arguments without flags, from `words`.
+bool add_parameters(CLI::App& command, Call& call, std::vector<std::string>& words) {
+    Parameters& parameters = call.parameters();
+    const auto& orders = parameters.orders;
+    bool plain = orders.size() == 1;
+    if (plain)
+        for (std::size_t i = 0; i + 1 < orders[0].size(); ++i) plain = plain && !is_repeated(call, orders[0][i]);
+    const auto in_order = [&](const std::string& name) {
+        return std::any_of(orders.begin(), orders.end(),
+                           [&](const auto& order) { return std::find(order.begin(), order.end(), name) != order.end(); });
+    };
+    if (plain) {
+        for (const auto& name : orders[0])
+            if (const Slot* slot = parameters.slot(name)) add_slot(command, call, *slot);
+            else add_option(command, *parameters.options.find(name));
+    } else {
+        std::string help;
+        for (const auto& order : orders) help += (help.empty() ? "" : "; or ") + shown_order(call, order);
+        std::vector<std::string> told;
+        for (const auto& order : orders)
+            for (const auto& name : order) {
+                if (std::find(told.begin(), told.end(), name) != told.end()) continue;
+                told.push_back(name);
+                const Slot* slot = parameters.slot(name);
+                help += "\n" + name + ": " + (slot != nullptr ? slot->help : parameters.options.find(name)->help);
+            }
+        command.add_option("files", words, help)->type_name("FILE ...");
+    }
+    for (const Slot* slot : parameters.slots())
+        if (!in_order(slot->name)) add_slot(command, call, *slot);
+    for (Option& option : parameters.options)
+        if (!in_order(option.name)) add_option(command, option);
+    return !plain;
+}
+
+void check_standard_output() {
+    std::cout.flush();
+    if (!std::cout) throw Error(ErrorKind::failure, "standard output", "cannot be written", "free some space or mend the pipe");
+}
+
+Watch* watch_of_signals = nullptr;
+void cancel_on_signal(int signal) {
+    if (watch_of_signals != nullptr) watch_of_signals->cancel();
+    std::signal(signal, SIG_DFL);  // a second one ends the process
+}
+
+int run_call(Call& call, const Common& common) {
+    set_threads(common.threads);
+    Context context;
+    const bool draws = !common.quiet && ::isatty(2) != 0;
+    if (!common.quiet) context.on_note = [](const std::string& text) { std::cerr << "note: " << printable(text) << '\n'; };
+    if (draws)
+        context.watch.on_progress = [](const std::string& phase, double share) {
+            if (share < 1) std::fprintf(stderr, "\r%s %3d %%\033[K", phase.c_str(), static_cast<int>(100 * share));
+            else std::fprintf(stderr, "\r\033[K");
+        };
+    watch_of_signals = &context.watch;
+    std::signal(SIGINT, cancel_on_signal);
+    std::signal(SIGTERM, cancel_on_signal);
+    const auto show = [&](const Report& report) {
+        const ReportFormat format = common.json || common.show == "json" ? ReportFormat::json
+                                    : common.show == "csv"               ? ReportFormat::csv
+                                    : common.show == "markdown"          ? ReportFormat::markdown
+                                                                         : ReportFormat::table;
+        std::cout << report.to_text(format);
+        // Where the report could not be given, nothing is replaced.
+        check_standard_output();
+    };
+    const Report report = call.run(context, show);
+    watch_of_signals = nullptr;
+    if (!common.quiet)
+        if (const std::string times = report.times(); !times.empty()) std::cerr << "time: " << times << '\n';
+    return report.holds() ? done : answer_is_no;
+}
+
+}  // namespace
+
+int run_command_line(int argc, char** argv) {
+    if (argc > 1 && std::string_view(argv[1]) == "--complete") {  // asked by a shell
+        for (const std::string& word : completions({argv + 2, argv + argc})) std::cout << printable(word) << '\n';
+        return done;
+    }
+    CLI::App tool("Semantics-aware modelling of 3D shapes", "ostraka");
+    tool.set_version_flag("--version", version());
+    tool.require_subcommand(1);
+    Common common;
+    std::vector<std::string> words;
+    bool by_count = false;
+    std::unique_ptr<Call> call;
+    CLI::App* running = nullptr;
+    const OperationEntry* wanted = named_operation(argc, argv);
+    std::map<std::string, CLI::App*> known_groups;
+    const auto group_of = [&](CLI::App& parent, const std::string& path, const std::string& word) {
+        CLI::App*& group = known_groups[path];
+        if (group != nullptr) return group;
+        const auto groups = operation_groups();
+        const auto known =
+            std::find_if(groups.begin(), groups.end(), [&](const OperationGroup& one) { return one.name == path; });
+        group = parent.add_subcommand(word, known == groups.end() ? "" : known->help);
+        group->require_subcommand(1);
+        return group;
+    };
+    for (const OperationEntry& entry : operations()) {
+        CLI::App* parent = &tool;
+        const auto parts = words_of(entry.name);
+        std::string path;
+        for (std::size_t i = 0; i + 1 < parts.size(); ++i) {
+            path += (path.empty() ? "" : " ") + parts[i];
+            parent = group_of(*parent, path, parts[i]);
+        }
+        CLI::App* command = parent->add_subcommand(parts.back(), entry.help);
+        if (&entry != wanted) continue;
+        running = command;
+        call = std::make_unique<Call>(entry);
+        command->add_flag("--json", common.json, "print the report for machines instead of tables");
+        command->add_option("--show", common.show, "how the report is printed")
+            ->check(CLI::IsMember({"table", "json", "csv", "markdown"}))
+            ->capture_default_str();
+        command->add_flag("--quiet", common.quiet, "no notes and no progress bar");
+        command->add_option("--threads", common.threads, "number of threads, 0 for all cores; results do not depend on it")
+            ->check(CLI::Range(0, 1024));
+        by_count = add_parameters(*command, *call, words);
+        command->allow_extras();
+    }
+    try {
+        tool.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        if (tool.exit(error) != 0) return wrong_usage;
+        std::cout.flush();
+        return std::cout ? done : failed;
+    }
+    if (running == nullptr) return wrong_usage;
+    for (const std::string& extra : running->remaining()) {
+        if (extra.size() < 2 || extra[0] != '-')
+            throw Error(ErrorKind::usage, call->entry().name, "'" + printable(extra, 60) + "' is one argument too many",
+                        "'ostraka " + std::string(call->entry().name) + " --help' shows what it takes");
+        static_cast<void>(
+            call->option(extra.substr(extra.find_first_not_of('-') == std::string::npos ? 0 : extra.find_first_not_of('-'))));
+        throw Error(ErrorKind::usage, call->entry().name, "has no option '" + printable(extra, 60) + "'",
+                    "options begin with --");
+    }
+    if (by_count) take_positionals(*call, words);
+    for (const Slot* slot : call->parameters().slots())
+        if (slot->needed && slot->sources.empty())
+            throw Error(ErrorKind::usage, call->entry().name, slot->name + " is missing", "give " + slot->help);
+    return run_call(*call, common);
+}
+
+}  // namespace ostraka::app

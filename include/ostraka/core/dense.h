@@ -1,0 +1,122 @@
+// Small dense linear algebra behind plain functions, compiled once. Each is Eigen's algorithm of that name, to the bit.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <memory>
+
+namespace ostraka {
+
+template <int N>
+class SymmetricEigen;
+/// Eigenvalues (ascending) and vectors of A x = lambda B x, A symmetric, B symmetric and positive definite.
+SymmetricEigen<Eigen::Dynamic> generalised_eigen(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+
+/// Eigenvalues (ascending) and eigenvectors (columns) of a symmetric matrix, of which the lower triangle is read. N: 2, 3, 4 or
+/// Eigen::Dynamic.
+template <int N>
+class SymmetricEigen {
+public:
+    using Matrix = Eigen::Matrix<double, N, N>;
+    using Vector = Eigen::Matrix<double, N, 1>;
+    explicit SymmetricEigen(const Matrix& symmetric);
+
+    [[nodiscard]] const Vector& eigenvalues() const { return values_; }
+    [[nodiscard]] const Matrix& eigenvectors() const { return vectors_; }
+    /// False where the iteration did not converge, as for numbers that are not finite.
+    [[nodiscard]] bool found() const { return found_; }
+
+private:
+    friend SymmetricEigen<Eigen::Dynamic> generalised_eigen(const Eigen::MatrixXd&, const Eigen::MatrixXd&);
+    SymmetricEigen() = default;
+    Vector values_;
+    Matrix vectors_;
+    bool found_ = false;
+};
+using SymmetricEigen2 = SymmetricEigen<2>;
+using SymmetricEigen3 = SymmetricEigen<3>;
+using SymmetricEigen4 = SymmetricEigen<4>;
+using SymmetricEigenX = SymmetricEigen<Eigen::Dynamic>;
+extern template class SymmetricEigen<2>;
+extern template class SymmetricEigen<3>;
+extern template class SymmetricEigen<4>;
+extern template class SymmetricEigen<Eigen::Dynamic>;
+
+/// The eigenvalues alone, ascending.
+Eigen::Vector3d symmetric_eigenvalues(const Eigen::Matrix3d& symmetric);
+
+/// Singular value decomposition (Jacobi) of a 3 x 3 matrix: U diag(s) V^T, singular values descending.
+class Svd3 {
+public:
+    explicit Svd3(const Eigen::Matrix3d& matrix);
+    [[nodiscard]] const Eigen::Matrix3d& matrixU() const { return u_; }
+    [[nodiscard]] const Eigen::Matrix3d& matrixV() const { return v_; }
+    [[nodiscard]] const Eigen::Vector3d& singularValues() const { return values_; }
+    /// False for numbers that are not finite.
+    [[nodiscard]] bool found() const { return found_; }
+
+private:
+    Eigen::Matrix3d u_, v_;
+    Eigen::Vector3d values_;
+    bool found_;
+};
+
+/// The singular values of a 2 x 2 matrix, descending.
+Eigen::Vector2d singular_values(const Eigen::Matrix2d& matrix);
+
+/// Singular value decomposition (Jacobi) of any matrix; U thin, V thin or full.
+class SvdX {
+public:
+    explicit SvdX(const Eigen::MatrixXd& matrix, bool full_v = false);
+    [[nodiscard]] const Eigen::MatrixXd& matrixU() const { return u_; }
+    [[nodiscard]] const Eigen::MatrixXd& matrixV() const { return v_; }
+    [[nodiscard]] const Eigen::VectorXd& singularValues() const { return values_; }
+
+private:
+    Eigen::MatrixXd u_, v_;
+    Eigen::VectorXd values_;
+};
+
+/// Solves A x = b for a symmetric, positive or negative semidefinite A by LDL^T. N: 3, 4, 6 or Eigen::Dynamic.
+template <int N>
+Eigen::Matrix<double, N, 1> solve_ldlt(const Eigen::Matrix<double, N, N>& a, const Eigen::Matrix<double, N, 1>& b);
+extern template Eigen::Matrix<double, 3, 1> solve_ldlt<3>(const Eigen::Matrix3d&, const Eigen::Vector3d&);
+extern template Eigen::Matrix<double, 4, 1> solve_ldlt<4>(const Eigen::Matrix4d&, const Eigen::Vector4d&);
+extern template Eigen::Matrix<double, 6, 1> solve_ldlt<6>(const Eigen::Matrix<double, 6, 6>&, const Eigen::Matrix<double, 6, 1>&);
+extern template Eigen::VectorXd solve_ldlt<Eigen::Dynamic>(const Eigen::MatrixXd&, const Eigen::VectorXd&);
+
+/// The smallest of the x that minimise |A x - b|, by a complete orthogonal decomposition. N: 3, 4 or Eigen::Dynamic. `threshold`:
+/// pivots below this share of the largest count as zero; 0: as Eigen takes it.
+template <int N>
+Eigen::Matrix<double, N, 1> solve_least_squares(const Eigen::Matrix<double, N, N>& a, const Eigen::Matrix<double, N, 1>& b,
+                                                double threshold = 0);
+extern template Eigen::Matrix<double, 3, 1> solve_least_squares<3>(const Eigen::Matrix3d&, const Eigen::Vector3d&, double);
+extern template Eigen::Matrix<double, 4, 1> solve_least_squares<4>(const Eigen::Matrix4d&, const Eigen::Vector4d&, double);
+extern template Eigen::VectorXd solve_least_squares<Eigen::Dynamic>(const Eigen::MatrixXd&, const Eigen::VectorXd&, double);
+
+/// The X that minimises |A X - B| for an A of full rank with more rows than columns (Householder).
+Eigen::MatrixXd solve_full_rank(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+
+/// The factor of a symmetric positive definite matrix (LL^T).
+class Cholesky {
+public:
+    Cholesky();
+    explicit Cholesky(const Eigen::MatrixXd& a);
+    ~Cholesky();
+    Cholesky(Cholesky&&) noexcept;
+    Cholesky& operator=(Cholesky&&) noexcept;
+
+    void compute(const Eigen::MatrixXd& a);
+    /// False where the matrix is not positive definite.
+    [[nodiscard]] bool found() const;
+    /// Estimate of the reciprocal condition number.
+    [[nodiscard]] double rcond() const;
+    [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
+    [[nodiscard]] Eigen::MatrixX3d solve(const Eigen::MatrixX3d& b) const;
+
+private:
+    struct Factor;
+    std::unique_ptr<Factor> factor_;
+};
+
+}  // namespace ostraka

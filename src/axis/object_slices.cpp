@@ -1,0 +1,94 @@
+#include "ostraka/axis/object_slices.h"
+
+#include "ostraka/core/error.h"
+
+#include <numeric>
+
+namespace ostraka {
+
+namespace {
+
+Axis axis_by(const std::string& method, const Mesh& mesh, std::vector<Index> faces, AxisOptions options) {
+    if (faces.empty()) {
+        faces.resize(mesh.number_of_faces());
+        std::iota(faces.begin(), faces.end(), Index{0});
+    }
+    options.method = method;
+    return find_axis(mesh, faces, options);
+}
+
+/// An error says that it is the axis to slice along that is missing.
+Axis axis_to_cut_along(const Mesh& mesh, const std::vector<Index>& faces, const CutOptions& options) {
+    try {
+        return axis_by(options.direction, mesh, faces, options.axis);
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::input) throw;
+        fail_input("mesh", "no " + options.direction + " axis to slice along: the mesh (or part) " + error.problem(),
+                   "repair or simplify it (ostraka mesh), or slice along another --direction, such as up or 0,0,1");
+    }
+}
+
+}  // namespace
+
+CutObject cut_object(const Mesh& mesh, const std::vector<Index>& faces, const CutOptions& options) {
+    require_surface(mesh, faces);
+    const auto box = bounding_box(mesh);
+    Point through((box.xmin() + box.xmax()) / 2, (box.ymin() + box.ymax()) / 2, (box.zmin() + box.zmax()) / 2);
+    Vector along = options.up;
+    if (options.direction != "up") {
+        const Axis axis = axis_to_cut_along(mesh, faces, options);
+        if (!axis.found) {
+            CutObject none;
+            none.reason = "no " + options.direction + " axis to slice along: " + axis.reason;
+            return none;
+        }
+        if (options.direction == "skeleton") return cut_across(mesh, axis.lines.at(0), options.places.count, faces);
+        along = axis.direction * along < 0 ? -axis.direction : axis.direction;
+        through = axis.point;
+    }
+    SliceFrame frame = slice_frame(through, along);
+    const auto [low, high] = height_range(mesh, frame, faces);
+    frame.origin = through + low * frame.normal;
+    CutObject cut = cut_parallel(mesh, frame, options.places.in(high - low), faces);
+    cut.lowest = 0, cut.highest = high - low;  // without the rounding of the origin
+    return cut;
+}
+
+std::vector<ComparedAxis> compared_axes(const Mesh& mesh, const std::vector<Index>& faces, const CutObject& cut, bool by_shape,
+                                        const AxisOptions& options) {
+    std::vector<ComparedAxis> list;
+    const std::vector<Point> centres = cut.centres();
+    if (centres.size() < 2) return list;
+    const auto add_line = [&](const std::string& name, const SliceLine& line) {
+        list.push_back({name, {}, line, {}, straightness(centres, line)});
+    };
+    const auto add_curve = [&](const std::string& name, const std::vector<Point>& curve) {
+        list.push_back({name, {}, {}, curve, straightness(centres, curve)});
+    };
+    const auto add_none = [&](const std::string& name, const std::string& reason) { list.push_back({name, reason, {}, {}, {}}); };
+    const auto attempt = [&](const std::string& name, const auto& add) {
+        try {
+            add();
+        } catch (const Error& error) {
+            add_none(name, error.problem());
+        }
+    };
+    const std::string regression = "regression of barycentres";
+    if (cut.parallel) add_line("mean of barycentres", mean_line(cut.frames[0], centres));
+    if (centres.size() == 2) add_none(regression, "two places are always in line");
+    else attempt(regression, [&] { add_line(regression, regression_line(cut.frames[0], centres)); });
+    if (!cut.curve.empty()) add_curve("skeleton", cut.curve);
+    if (!by_shape) return list;
+    for (const std::string method : {"rotation", "principal", "slices", "skeleton"}) {
+        if (method == "skeleton" && !cut.curve.empty()) continue;
+        attempt(method, [&] {
+            const Axis axis = axis_by(method, mesh, faces, options);
+            if (!axis.found) add_none(method, axis.reason);
+            else if (method == "rotation" || method == "principal") add_line(method, {axis.point, axis.direction});
+            else add_curve(method, axis.lines.at(0));
+        });
+    }
+    return list;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,99 @@
+#include "ostraka/core/dense.h"
+
+// What the decompositions leave unset for numbers that are not finite is not read.
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <Eigen/SVD>
+
+namespace ostraka {
+
+template <int N>
+SymmetricEigen<N>::SymmetricEigen(const Matrix& symmetric) {
+    const Eigen::SelfAdjointEigenSolver<Matrix> solver(symmetric);
+    values_ = solver.eigenvalues();
+    vectors_ = solver.eigenvectors();
+    found_ = solver.info() == Eigen::Success;
+}
+template class SymmetricEigen<2>;
+template class SymmetricEigen<3>;
+template class SymmetricEigen<4>;
+template class SymmetricEigen<Eigen::Dynamic>;
+
+Eigen::Vector3d symmetric_eigenvalues(const Eigen::Matrix3d& symmetric) {
+    return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(symmetric, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
+Svd3::Svd3(const Eigen::Matrix3d& matrix) {
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    found_ = svd.info() == Eigen::Success;
+    if (found_) {
+        u_ = svd.matrixU();
+        v_ = svd.matrixV();
+        values_ = svd.singularValues();
+    } else {
+        u_ = v_ = Eigen::Matrix3d::Identity();
+        values_.setZero();
+    }
+}
+
+Eigen::Vector2d singular_values(const Eigen::Matrix2d& matrix) {
+    return Eigen::JacobiSVD<Eigen::Matrix2d>(matrix).singularValues();
+}
+
+SvdX::SvdX(const Eigen::MatrixXd& matrix, bool full_v) {
+    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(
+        matrix, static_cast<unsigned>(Eigen::ComputeThinU) | (full_v ? Eigen::ComputeFullV : Eigen::ComputeThinV));
+    u_ = svd.matrixU();
+    v_ = svd.matrixV();
+    values_ = svd.singularValues();
+}
+
+template <int N>
+Eigen::Matrix<double, N, 1> solve_ldlt(const Eigen::Matrix<double, N, N>& a, const Eigen::Matrix<double, N, 1>& b) {
+    return a.ldlt().solve(b);
+}
+template Eigen::Matrix<double, 3, 1> solve_ldlt<3>(const Eigen::Matrix3d&, const Eigen::Vector3d&);
+template Eigen::Matrix<double, 4, 1> solve_ldlt<4>(const Eigen::Matrix4d&, const Eigen::Vector4d&);
+template Eigen::Matrix<double, 6, 1> solve_ldlt<6>(const Eigen::Matrix<double, 6, 6>&, const Eigen::Matrix<double, 6, 1>&);
+template Eigen::VectorXd solve_ldlt<Eigen::Dynamic>(const Eigen::MatrixXd&, const Eigen::VectorXd&);
+
+template <int N>
+Eigen::Matrix<double, N, 1> solve_least_squares(const Eigen::Matrix<double, N, N>& a, const Eigen::Matrix<double, N, 1>& b,
+                                                double threshold) {
+    Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix<double, N, N>> solver(a.rows(), a.cols());
+    if (threshold > 0) solver.setThreshold(threshold);
+    solver.compute(a);
+    return solver.solve(b);
+}
+template Eigen::Matrix<double, 3, 1> solve_least_squares<3>(const Eigen::Matrix3d&, const Eigen::Vector3d&, double);
+template Eigen::Matrix<double, 4, 1> solve_least_squares<4>(const Eigen::Matrix4d&, const Eigen::Vector4d&, double);
+template Eigen::VectorXd solve_least_squares<Eigen::Dynamic>(const Eigen::MatrixXd&, const Eigen::VectorXd&, double);
+
+Eigen::MatrixXd solve_full_rank(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) { return a.householderQr().solve(b); }
+
+SymmetricEigenX generalised_eigen(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(a, b);
+    SymmetricEigenX result;
+    result.values_ = solver.eigenvalues();
+    result.vectors_ = solver.eigenvectors();
+    result.found_ = solver.info() == Eigen::Success;
+    return result;
+}
+
+struct Cholesky::Factor : Eigen::LLT<Eigen::MatrixXd> {};
+
+Cholesky::Cholesky() : factor_(std::make_unique<Factor>()) {}
+Cholesky::Cholesky(const Eigen::MatrixXd& a) : Cholesky() { factor_->compute(a); }
+Cholesky::~Cholesky() = default;
+Cholesky::Cholesky(Cholesky&&) noexcept = default;
+Cholesky& Cholesky::operator=(Cholesky&&) noexcept = default;
+void Cholesky::compute(const Eigen::MatrixXd& a) { factor_->compute(a); }
+bool Cholesky::found() const { return factor_->info() == Eigen::Success; }
+double Cholesky::rcond() const { return factor_->rcond(); }
+Eigen::VectorXd Cholesky::solve(const Eigen::VectorXd& b) const { return factor_->solve(b); }
+Eigen::MatrixX3d Cholesky::solve(const Eigen::MatrixX3d& b) const { return factor_->solve(b); }
+
+}  // namespace ostraka

@@ -1,0 +1,261 @@
+#include "ostraka/core/options.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/text.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+namespace ostraka {
+
+namespace {
+
+template <class... Cases>
+struct Overloaded : Cases... {
+    using Cases::operator()...;
+};
+
+std::string word_of(bool value) { return value ? "true" : "false"; }
+std::string word_of(const std::string& value) { return value; }
+template <class Number>
+std::string word_of(Number value) {
+    std::ostringstream text;
+    text.precision(17);
+    text << value;
+    return text.str();
+}
+
+[[noreturn]] void refuse(const Option& option, const std::string& value, const std::string& where = {}) {
+    throw Error(ErrorKind::usage, where, "option " + option.name + " is '" + value + "'", "use " + option.allowed());
+}
+
+/// `given`: the word that it is a part of, which an error shows.
+template <class Number>
+Number parse(const Option& option, const std::string& word, const std::string& given) {
+    Number value{};
+    const char *begin = word.data(), *const end = begin + word.size();
+    if (word.size() > 1 && word[0] == '+' && word[1] != '-') ++begin;
+    const auto [rest, code] = std::from_chars(begin, end, value);
+    if (word.empty() || code != std::errc() || rest != end) refuse(option, given);
+    return value;
+}
+template <>
+bool parse<bool>(const Option& option, const std::string& word, const std::string&) {
+    if (word == "true" || word == "1" || word == "yes" || word == "on") return true;
+    if (word == "false" || word == "0" || word == "no" || word == "off") return false;
+    refuse(option, word);
+}
+template <>
+std::string parse<std::string>(const Option&, const std::string& word, const std::string&) {
+    return word;
+}
+
+std::vector<std::string> split(const std::string& list) {
+    std::vector<std::string> words(1);
+    for (const char c : list)
+        if (c == ',') words.emplace_back();
+        else words.back() += c;
+    return words;
+}
+
+std::string shown(double bound) {
+    std::ostringstream text;
+    text << bound;
+    return text.str();
+}
+
+const std::vector<std::string>& names_of(const Option& option) {
+    const auto* choices = std::get_if<Choices>(&option.rule);
+    if (choices == nullptr) throw std::logic_error("option " + option.name + " has no choices");
+    return choices->names;
+}
+
+}  // namespace
+
+OptionType Option::type() const {
+    if (std::holds_alternative<Choices>(rule) && !is_list()) return OptionType::choice;
+    return std::visit(
+        Overloaded{
+            [](bool*) { return OptionType::boolean; }, [](int*) { return OptionType::integer; },
+            [](std::uint64_t*) { return OptionType::integer; }, [](double*) { return OptionType::number; },
+            [](std::string*) { return OptionType::text; }, [](std::vector<std::string>*) { return OptionType::texts; },
+            [](std::vector<double>*) { return OptionType::numbers; }, [](std::vector<int>*) { return OptionType::integers; },
+            [](std::optional<bool>*) { return OptionType::boolean; }, [](std::optional<int>*) { return OptionType::integer; },
+            [](std::optional<std::uint32_t>*) { return OptionType::integer; },
+            [](std::optional<double>*) { return OptionType::number; },
+            [](std::optional<std::string>*) { return OptionType::text; }, [](const EnumValue&) { return OptionType::choice; }},
+        value.place);
+}
+
+bool Option::is_list() const {
+    return std::holds_alternative<std::vector<std::string>*>(value.place) ||
+           std::holds_alternative<std::vector<double>*>(value.place) || std::holds_alternative<std::vector<int>*>(value.place);
+}
+
+bool Option::empty() const {
+    return std::visit(
+        Overloaded{[](std::string* text) { return text->empty(); }, []<class T>(std::vector<T>* list) { return list->empty(); },
+                   []<class T>(std::optional<T>* maybe) { return !maybe->has_value(); }, [](const auto&) { return false; }},
+        value.place);
+}
+
+std::vector<std::string> Option::texts() const {
+    return std::visit(Overloaded{[&](const EnumValue& named) { return std::vector{names_of(*this).at(named.get(named.value))}; },
+                                 []<class T>(std::vector<T>* list) {
+                                     std::vector<std::string> words;
+                                     for (const T& one : *list) words.push_back(word_of(one));
+                                     return words;
+                                 },
+                                 []<class T>(std::optional<T>* maybe) {
+                                     return maybe->has_value() ? std::vector{word_of(**maybe)} : std::vector<std::string>();
+                                 },
+                                 [](auto* one) { return std::vector{word_of(*one)}; }},
+                      value.place);
+}
+
+std::string Option::text() const {
+    std::string all;
+    const char* between = std::holds_alternative<std::vector<std::string>*>(value.place) ? "; " : ",";
+    for (const std::string& word : texts()) all += (all.empty() ? "" : between) + word;
+    return all;
+}
+
+void Option::set(const std::vector<std::string>& words) {
+    if (!is_list() && words.size() != 1)
+        throw Error(ErrorKind::usage, "", "option " + name + " is given " + std::to_string(words.size()) + " times",
+                    "give it once");
+    const auto numbers = [&]<class T>(std::vector<T>* list) {
+        list->clear();
+        for (const std::string& word : words)
+            for (const std::string& one : split(word)) list->push_back(parse<T>(*this, one, word));
+    };
+    const auto texts_of = [&](std::vector<std::string>* list) {
+        list->clear();
+        for (const std::string& word : words)
+            for (std::string& part : std::holds_alternative<Choices>(rule) ? split(word) : std::vector{word})
+                list->push_back(std::move(part));
+    };
+    std::visit(Overloaded{[&](std::vector<std::string>* list) { texts_of(list); },
+                          [&](std::vector<double>* list) { numbers(list); }, [&](std::vector<int>* list) { numbers(list); },
+                          [&]<class T>(std::optional<T>* maybe) { *maybe = parse<T>(*this, words.front(), words.front()); },
+                          [&](const EnumValue& named) {
+                              const auto& names = names_of(*this);
+                              const auto found = std::find(names.begin(), names.end(), words.front());
+                              if (found == names.end()) refuse(*this, words.front());
+                              named.set(named.value, static_cast<std::size_t>(found - names.begin()));
+                          },
+                          [&]<class T>(T* one) { *one = parse<T>(*this, words.front(), words.front()); }},
+               value.place);
+    given = true;
+    check();
+}
+
+void Option::set(bool fresh) {
+    if (auto* place = std::get_if<bool*>(&value.place)) **place = fresh;
+    else if (auto* maybe = std::get_if<std::optional<bool>*>(&value.place)) **maybe = fresh;
+    else refuse(*this, word_of(fresh));
+    given = true;
+}
+
+void Option::set(std::int64_t fresh) {
+    if (type() == OptionType::boolean || type() == OptionType::text || type() == OptionType::choice)
+        refuse(*this, word_of(fresh));
+    set(std::vector{word_of(fresh)});
+}
+
+void Option::set(double fresh) {
+    if (type() != OptionType::number && type() != OptionType::numbers) refuse(*this, word_of(fresh));
+    set(std::vector{word_of(fresh)});
+}
+
+void Option::set(const std::vector<double>& values) {
+    std::vector<std::string> words;
+    for (const double one : values) words.push_back(word_of(one));
+    if (type() != OptionType::numbers && type() != OptionType::integers) {
+        std::string list;
+        for (const auto& word : words) list += (list.empty() ? "" : ",") + word;
+        // Directions and the like: three numbers, or a word.
+        if (type() != OptionType::text) refuse(*this, list);
+        set(std::vector{list});
+        return;
+    }
+    set(words);
+}
+
+std::string Option::allowed() const {
+    if (const auto* choices = std::get_if<Choices>(&rule)) {
+        std::string list;
+        for (const auto& choice : choices->names) list += (list.empty() ? "" : ", ") + choice;
+        return "one of: " + list;
+    }
+    const OptionType kind = type();
+    const bool whole = kind == OptionType::integer || kind == OptionType::integers;
+    std::string what = kind == OptionType::boolean                                 ? "true or false"
+                       : whole                                                     ? "a whole number"
+                       : kind == OptionType::number || kind == OptionType::numbers ? "a number"
+                                                                                   : "a text";
+    if (const auto* range = std::get_if<Range>(&rule)) what = "a value from " + shown(range->min) + " to " + shown(range->max);
+    if (is_list() && kind != OptionType::texts) what += ", with commas between several";
+    return what + (unit.empty() ? "" : " (" + unit + ")");
+}
+
+void Option::check(const std::string& where) const {
+    if (const auto* range = std::get_if<Range>(&rule)) {
+        const auto within = [&](double number) { return number >= range->min && number <= range->max; };
+        const auto look = [&](double number, const std::string& word) {
+            if (within(number)) return;
+            throw Error(ErrorKind::usage, where, "option " + name + " is " + word, "use " + allowed());
+        };
+        std::visit(Overloaded{[&](double* one) { look(*one, digits(*one)); }, [&](int* one) { look(*one, std::to_string(*one)); },
+                              [&](std::uint64_t* one) { look(static_cast<double>(*one), std::to_string(*one)); },
+                              [&](std::optional<double>* one) {
+                                  if (*one) look(**one, digits(**one));
+                              },
+                              [&](std::optional<int>* one) {
+                                  if (*one) look(**one, std::to_string(**one));
+                              },
+                              [&](std::optional<std::uint32_t>* one) {
+                                  if (*one) look(**one, std::to_string(**one));
+                              },
+                              [&](std::vector<double>* list) {
+                                  for (const double one : *list) look(one, digits(one));
+                              },
+                              [&](std::vector<int>* list) {
+                                  for (const int one : *list) look(one, std::to_string(one));
+                              },
+                              [](const auto&) {}},
+                   value.place);
+    }
+    if (std::holds_alternative<Choices>(rule) && !std::holds_alternative<EnumValue>(value.place))
+        for (const std::string& word : texts())
+            if (const auto& names = names_of(*this); std::find(names.begin(), names.end(), word) == names.end())
+                refuse(*this, word, where);
+}
+
+Option& OptionList::operator()(std::string name, OptionValue value, std::string help, OptionRule rule, std::string unit) {
+    if (find(name) != nullptr) throw std::logic_error("option " + name + " is declared twice");
+    Option option{std::move(name), value, std::move(help), std::move(rule), std::move(unit), group_};
+    option.initial = option.text();
+    return options_.emplace_back(std::move(option));
+}
+
+Option* OptionList::find(const std::string& name) {
+    const auto found = std::find_if(options_.begin(), options_.end(), [&](const Option& option) { return option.name == name; });
+    return found == options_.end() ? nullptr : &*found;
+}
+
+void OptionList::check(const std::string& where) const {
+    for (const Option& option : options_) option.check(where);
+}
+
+std::vector<std::pair<std::string, std::string>> OptionList::values() const {
+    std::vector<std::pair<std::string, std::string>> list;
+    for (const Option& option : options_)
+        if (option.affects_result) list.emplace_back(option.name, option.text());
+    return list;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,61 @@
+// annotation creases: ridges and hollows of the surface as candidates for joints.
+#include "operations.h"
+
+#include "ostraka/select/creases.h"
+
+namespace ostraka {
+
+namespace {
+
+class AnnotationCreases final : public Operation {
+public:
+    void describe(Parameters& p) override {
+        p.input("mesh", Kind::mesh, mesh, "mesh file");
+        p.output("output", Kind::annotations, output, "annotations to write (.ant.json): lines along the crests");
+        p.options("regions", regions, "regions instead of lines");
+        p.options("unit", unit, "unit of the mesh's coordinates, e.g. mm");
+        options.describe(p.options);
+        p.report.table("creases", {{"id", FieldType::integer, "id"},
+                                   {"tag", FieldType::text, "tag"},
+                                   {"closed", FieldType::boolean, "closed"},
+                                   {"length", FieldType::number, "length", "length"},
+                                   {"width", FieldType::number, "width", "length"},
+                                   {"mean curvature", FieldType::number, "mean curvature", "1/length"},
+                                   {"strength", FieldType::number, "strength"}});
+    }
+
+    void run(Context&, Report& report) override {
+        report.set_unit(unit);
+        const Mesh& on = mesh->mesh;
+        const std::vector<Crease> creases = in_file(mesh.file(), [&] { return find_creases(on, options); });
+        AnnotationSet set = annotate_creases(creases, regions, unit);
+        report.empty_table("creases");
+        for (std::size_t i = 0; i < creases.size(); ++i) {
+            const Crease& crease = creases[i];
+            report.row("creases")("id", set.annotations[i].id)("tag", set.annotations[i].tag)("closed", crease.closed)(
+                "length", crease.length)("width", crease.width)("mean curvature", crease.mean_curvature)(
+                "strength", crease.strength, number(crease.strength, 3));
+        }
+        if (creases.empty()) {
+            report.note("nothing stands out at this scale, so " + output.file() +
+                        " is not written: try another --scale, or a lower --weak and --strong");
+            return report.answer_no();
+        }
+        report.line("strength: mean response along the line, in robust deviations of the response over the surface (--weak " +
+                    number(options.weak) + ", --strong " + number(options.strong) + ")");
+        output.write(std::move(set), on, mesh.file());
+    }
+
+private:
+    MeshInput mesh;
+    AnnotationsOutput output;
+    bool regions = false;
+    std::string unit;
+    CreaseOptions options;
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_annotation_creases() { return make<AnnotationCreases>(); }
+
+}  // namespace ostraka

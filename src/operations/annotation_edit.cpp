@@ -1,0 +1,142 @@
+// annotation edit
+#include "differences.h"
+#include "operations.h"
+
+#include "ostraka/exchange/edit.h"
+
+#include <algorithm>
+#include <charconv>
+
+namespace ostraka {
+
+namespace {
+
+/// An id, or a tag or name.
+EntryName entry_name(const std::string& text) {
+    int value = 0;
+    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool whole = !text.empty() && code == std::errc() && end == text.data() + text.size();
+    return {whole ? std::optional(value) : std::nullopt, text};
+}
+
+/// "200,30,60", "200 30 60" or "#c81e3c".
+std::array<int, 3> named_colour(const std::string& text) {
+    std::array<int, 3> colour{};
+    const bool hexadecimal = text.size() == 7 && text[0] == '#';
+    bool good = true;
+    const char *place = text.data() + (hexadecimal ? 1 : 0), *const end = text.data() + text.size();
+    for (std::size_t k = 0; k < 3; ++k) {
+        while (!hexadecimal && place != end && (*place == ' ' || (*place == ',' && k > 0))) ++place;
+        const auto [next, code] = std::from_chars(place, hexadecimal ? place + 2 : end, colour[k], hexadecimal ? 16 : 10);
+        good = good && code == std::errc() && colour[k] >= 0 && colour[k] <= 255 && (!hexadecimal || next == place + 2);
+        place = next;
+    }
+    while (place != end && *place == ' ') ++place;
+    if (!good || place != end)
+        fail_usage("the colour '" + printable(text, 60) + "' is not known",
+                   "give red, green and blue from 0 to 255 as 200,30,60 or #c81e3c");
+    return colour;
+}
+
+class AnnotationEditing final : public Operation {
+public:
+    void describe(Parameters& p) override {
+        p.input("mesh", Kind::mesh, mesh, "mesh file");
+        p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)");
+        p.output("output", Kind::annotations, output, "annotations to write");
+        p.input("edits", Kind::edit, list, "list of edits (JSON, doc/schema/annotation-edits.schema.json)").optional().flag();
+        p.options("annotation", annotation, "the annotation to edit: its id, or its tag if no other has it");
+        p.options("merge", merge, "another annotation that becomes part of this one; may be given more than once");
+        p.options("tag", tag, "new tag");
+        p.options("note", note, "new note");
+        p.options("colour", colour, "new colour: 200,30,60 or #c81e3c");
+        p.options("id", id, "new id");
+        p.options("remove-attribute", remove_attributes, "id or name of an attribute to remove; may be given more than once");
+        p.options("attribute", attributes, "NAME=TEXT: a semantic attribute, new or changed; may be given more than once");
+        p.options("set-class", object_class, "class of the object, of the whole file; '' for none");
+        p.options("set-unit", unit,
+                  "unit of the coordinates, of the whole file (any text, such as mm); no number changes; '' for none");
+        p.options("set-up", up, "x,y,z: upward direction, of the whole file; '' for none");
+        p.options("duplicate", duplicate, "add a copy; the other changes are made to the copy, the original stays");
+        p.options("split", split, "make each patch, poly-line or point an annotation of its own");
+        p.options("remove", remove, "remove the annotation");
+        p.report.value("annotations", FieldType::integer);
+        declare_differences(p.report, "changes");
+    }
+
+    void check() const override {
+        const bool of_set = object_class || unit || up;
+        if (static_cast<bool>(list) == !annotation.empty() && !(of_set && !list))
+            fail_usage(
+                "one annotation or a list of edits",
+                "name an annotation with --annotation, or give --edits FILE, not both; or --set-class, --set-unit, --set-up");
+        static_cast<void>(direction());
+        if (!annotation.empty()) static_cast<void>(by_options());
+    }
+
+    void run(Context&, Report& report) override {
+        const Mesh& on = mesh->mesh;
+        const AnnotationSet& before = annotations.on(on);
+        AnnotationSet set = before;
+        std::vector<AnnotationEdit> edits;
+        if (list) edits = list.load<std::vector<AnnotationEdit>>(read_edits);
+        else if (!annotation.empty()) edits = {by_options()};
+        // A tag may be a number as well.
+        if (!list && !edits.empty() && edits[0].annotation.id && set.find(*edits[0].annotation.id) == nullptr)
+            edits[0].annotation.id.reset();
+        std::vector<std::string> notes = edit_annotations(on, set, edits, list ? list.file() : "flags");
+        if (object_class) set.object_class = *object_class;
+        if (up) set.up = direction();
+        if (unit && *unit != set.unit) {
+            rename_unit(on, set, *unit);
+            notes.emplace_back("the numbers stay as they are: the unit is that of the mesh's coordinates");
+        }
+        report.notes(notes);
+        report.value("annotations", set.annotations.size());
+        add_differences(report, "changes", differences(before, set), "nothing changed");
+        output.write(std::move(set), on, mesh.file());
+    }
+
+private:
+    [[nodiscard]] std::optional<std::array<double, 3>> direction() const {
+        if (!up || up->empty()) return {};
+        return direction_of(*up, "--set-up");
+    }
+
+    [[nodiscard]] AnnotationEdit by_options() const {
+        AnnotationEdit edit;
+        edit.annotation = entry_name(annotation);
+        edit.tag = tag;
+        edit.note = note;
+        if (!colour.empty()) edit.colour = named_colour(colour);
+        edit.id = id;
+        for (const auto& name : merge) edit.merge.push_back(entry_name(name));
+        for (const auto& name : remove_attributes) edit.remove_attributes.push_back(entry_name(name));
+        for (const auto& text : attributes) {
+            const std::size_t equals = text.find('=');
+            if (equals == std::string::npos || equals == 0)
+                fail_usage("the attribute '" + text + "' is not NAME=TEXT", "for measures and descriptors use --edits FILE");
+            edit.texts.emplace_back(text.substr(0, equals), text.substr(equals + 1));
+        }
+        edit.duplicate = duplicate;
+        edit.split = split;
+        edit.remove = remove;
+        return edit;
+    }
+
+    MeshInput mesh;
+    AnnotationsInput annotations;
+    AnnotationsOutput output;
+    FileInput list;
+    std::string annotation, colour;
+    std::optional<std::string> tag, note, object_class, unit, up;
+    std::optional<int> id;
+    std::vector<std::string> attributes, remove_attributes, merge;
+    bool duplicate = false, split = false, remove = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_annotation_edit() { return make<AnnotationEditing>(); }
+
+}  // namespace ostraka

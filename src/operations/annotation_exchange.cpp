@@ -1,0 +1,110 @@
+// annotation export, import
+#include "operations.h"
+
+#include "ostraka/exchange/exchange.h"
+
+namespace ostraka {
+
+namespace {
+
+void describe_format(Parameters& p, std::optional<std::string>& format) {
+    p.options("format", format, "format of the file, if its ending does not tell", Choices(exchange_formats()));
+}
+
+class AnnotationExport final : public Operation {
+public:
+    void describe(Parameters& p) override {
+        p.input("mesh", Kind::mesh, mesh, "mesh file");
+        p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)");
+        p.output("output", Kind::text, output, "file to write");
+        describe_format(p, format);
+        options.describe(p.options);
+        p.report.value("format", FieldType::text).value("annotations", FieldType::integer).value("bytes", FieldType::integer);
+        p.report.value("sha256", FieldType::text);
+    }
+
+    void run(Context& context, Report& report) override {
+        if (!format) format = guess_exchange_format(output.file());
+        const AnnotationSet& set = annotations.on(mesh->mesh);
+        const ExportedAnnotations exported =
+            export_annotations(mesh->mesh, set, *format, mesh.file(), context.provenance(), options);
+        report.notes(exported.notes);
+        report.value("format", *format);
+        report.value("annotations", exported.annotations);
+        report.value("bytes", exported.bytes.size());
+        report.value("sha256", sha256(exported.bytes));
+        const std::size_t all = set.annotations.size(), written = exported.annotations;
+        report.line(std::to_string(written) + (written == all ? "" : " of " + std::to_string(all)) +
+                    (all == 1 ? " annotation" : " annotations") + " as " + *format + ", " +
+                    std::to_string(exported.bytes.size()) + " bytes");
+        output.write(exported.bytes);
+    }
+
+private:
+    MeshInput mesh;
+    AnnotationsInput annotations;
+    FileOutput output;
+    std::optional<std::string> format;
+    ExportOptions options;
+};
+
+class AnnotationImport final : public Operation {
+public:
+    void describe(Parameters& p) override {
+        p.input("mesh", Kind::mesh, mesh, "mesh file");
+        p.input("input", Kind::text, input, "file to read");
+        p.output("output", Kind::annotations, output, "annotations to write (.ant.json)");
+        describe_format(p, format);
+        p.input("onto", Kind::annotations, onto,
+                "annotations to which the file's are added, or that its table of attributes is of")
+            .optional()
+            .flag();
+        options.describe(p.options);
+        p.report.value("format", FieldType::text).value("annotations", FieldType::integer);
+        p.report.table("placed", {{"id", FieldType::integer, "id"},
+                                  {"tag", FieldType::text, "tag"},
+                                  {"by", FieldType::text, "by"},
+                                  {"points", FieldType::integer, "points"},
+                                  {"toSurface", FieldType::number, "to surface", "length"},
+                                  {"toVertex", FieldType::number, "to vertex", "length"}});
+    }
+
+    void run(Context& context, Report& report) override {
+        const auto& bytes = input.load<std::string>(read_file);
+        if (!format) format = guess_exchange_format(input.file(), bytes);
+        const Mesh& on = mesh->mesh;
+        const AnnotationSet* base = onto ? &onto.on(on) : nullptr;
+        PlacedAnnotations placed = [&] {
+            try {
+                return import_annotations(on, bytes, *format, input.file(), base, options);
+            } catch (const Error& error) {
+                // What is wrong with the mesh is said of its file.
+                if (error.kind() != ErrorKind::input || error.where() != "mesh") throw;
+                fail_input(mesh.file(), error.problem(), error.remedy());
+            }
+        }();
+        context.notes("", placed.set.notes);
+        report.value("format", *format);
+        report.value("annotations", placed.set.annotations.size());
+        report.empty_table("placed", false);
+        for (const PlacedAnnotation& one : placed.placements)
+            report.row("placed")("id", one.id)("tag", one.tag)("by", one.how)("points", one.points)(
+                "toSurface", one.to_surface, number(one.to_surface, 3))("toVertex", one.to_vertex, number(one.to_vertex, 3));
+        output.write(std::move(placed.set), on, mesh.file());
+    }
+
+private:
+    MeshInput mesh;
+    FileInput input;
+    AnnotationsInput onto;
+    AnnotationsOutput output;
+    std::optional<std::string> format;
+    ImportOptions options;
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_annotation_export() { return make<AnnotationExport>(); }
+std::unique_ptr<Operation> make_annotation_import() { return make<AnnotationImport>(); }
+
+}  // namespace ostraka

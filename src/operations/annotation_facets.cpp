@@ -1,0 +1,73 @@
+// annotation facets: outer, inner and fracture surface of a fragment.
+#include "operations.h"
+
+#include "ostraka/fitting/fragment_file.h"
+
+namespace ostraka {
+
+namespace {
+
+class AnnotationFacets final : public Operation {
+public:
+    void describe(Parameters& p) override {
+        p.input("mesh", Kind::mesh, mesh, "mesh file of the fragment");
+        p.input("annotations", Kind::annotations, annotations,
+                "annotations (.ant.json), brought up to date or made: regions \"outer\", \"inner\" and \"fracture\"; called "
+                "NAME.ant.json beside NAME.ply they are what 'fit' and 'pair' go by");
+        p.output("output", Kind::annotations, output, "write the annotations here and leave the file as it is")
+            .optional()
+            .flag()
+            .updates(annotations);
+        p.options("unit", unit, "of a new file: unit of the mesh's coordinates, e.g. mm");
+        options.describe(p.options);
+        p.report.value("shell", FieldType::boolean).value("thickness", FieldType::number, "", "length");
+        p.report.value("confidence", FieldType::number);
+        p.report.table("segments", {{"facet", FieldType::text, "facet"},
+                                    {"faces", FieldType::integer, "faces"},
+                                    {"area", FieldType::number, "area", "length^2"},
+                                    {"confidence", FieldType::number, "confidence"}});
+    }
+
+    void run(Context&, Report& report) override {
+        const Mesh& on = mesh->mesh;
+        AnnotationSet set;
+        if (annotations.exists()) set = annotations.on(on);
+        if (!unit.empty() && !set.unit.empty() && unit != set.unit)
+            fail_usage("--unit is '" + printable(unit, 60) + "', but the unit of " + annotations.file() + " is '" +
+                           printable(set.unit, 60) + "'",
+                       "leave --unit away");
+        if (set.unit.empty()) set.unit = unit;
+        report.set_unit(set.unit);
+        const Facets facets = in_file(mesh.file(), [&] { return find_facets(on, options); });
+        report.notes(facets.notes);
+        report.empty_table("segments");
+        for (const FacetSegment& segment : facets.segments)
+            report.row("segments")("facet", to_string(segment.facet))("faces", segment.faces.size())("area", segment.area)(
+                "confidence", segment.confidence, number(segment.confidence, 2));
+        report.value("shell", facets.shell);
+        if (facets.shell) report.value("thickness", facets.thickness);
+        report.value("confidence", facets.confidence);
+        report.line(!facets.shell ? "a solid: no wall with two sides"
+                                  : "a wall " + number(facets.thickness, 3) +
+                                        (set.unit.empty() ? "" : " " + printable(set.unit, 60)) + " thick");
+        if (facets.area(Facet::fracture) > 0) {
+            update_facet_annotations(set, facets);
+            return output.write(std::move(set), on, mesh.file());
+        }
+        report.note("no fracture is found, so " + output.file() + " is not written");
+        report.answer_no();
+    }
+
+private:
+    MeshInput mesh;
+    AnnotationsInput annotations;
+    AnnotationsOutput output;
+    std::string unit;
+    FacetOptions options;
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_annotation_facets() { return make<AnnotationFacets>(); }
+
+}  // namespace ostraka

@@ -1,0 +1,132 @@
+// annotation diff, merge
+#include "differences.h"
+#include "operations.h"
+
+#include <algorithm>
+
+namespace ostraka {
+
+void declare_differences(ReportLayout& layout, const std::string& table) {
+    layout.table(table, {{"id", FieldType::integer, "id"},
+                         {"tag", FieldType::text, "tag"},
+                         {"kind", FieldType::text, "what"},
+                         {"field", FieldType::text, "field"},
+                         {"before", FieldType::text, "before"},
+                         {"after", FieldType::text, "after"},
+                         {"onlyBefore", FieldType::integer},
+                         {"onlyAfter", FieldType::integer}});
+}
+
+namespace {
+
+/// Differences and conflicts are of an annotation, or of the set.
+template <class Change>
+Report::Row named_row(Report& report, const std::string& table, const Change& change) {
+    Report::Row row = report.row(table);
+    if (change.id) row("id", *change.id)("tag", change.tag);
+    else row.shown("id", "set").shown("tag", change.tag);
+    return row("field", change.field);
+}
+
+}  // namespace
+
+void add_differences(Report& report, const std::string& table, const std::vector<Difference>& list, const std::string& none) {
+    report.empty_table(table, false);
+    if (list.empty()) report.line(none);
+    for (const Difference& one : list) {
+        Report::Row row = named_row(report, table, one);
+        row("kind", one.kind == Difference::Kind::added     ? "added"
+                    : one.kind == Difference::Kind::removed ? "removed"
+                                                            : "changed");
+        std::string counts;
+        if (one.field == "geometry") {
+            row("onlyBefore", one.only_before)("onlyAfter", one.only_after);
+            counts = " (-" + std::to_string(one.only_before) + " +" + std::to_string(one.only_after) + ")";
+        }
+        row("before", one.before)("after", one.after, one.after + counts);
+    }
+}
+
+namespace {
+
+class AnnotationDiff final : public Operation {
+public:
+    void describe(Parameters& p) override {
+        p.input("mesh", Kind::mesh, mesh, "mesh of both");
+        p.input("before", Kind::annotations, before, "annotations (.ant.json)");
+        p.input("after", Kind::annotations, after, "annotations to compare with them");
+        p.report.value("same", FieldType::boolean);
+        declare_differences(p.report, "differences");
+    }
+
+    void run(Context&, Report& report) override {
+        const auto list = differences(before.on(mesh->mesh), after.on(mesh->mesh));
+        report.value("same", list.empty());
+        add_differences(report, "differences", list, "no difference");
+        if (!list.empty()) report.answer_no();
+    }
+
+private:
+    MeshInput mesh;
+    AnnotationsInput before, after;
+};
+
+class AnnotationMerge final : public Operation {
+public:
+    void describe(Parameters& p) override {
+        p.input("mesh", Kind::mesh, mesh, "mesh of all");
+        p.input("base", Kind::annotations, base, "annotations that both began with");
+        p.input("ours", Kind::annotations, ours, "one's annotations");
+        p.input("theirs", Kind::annotations, theirs, "the other's annotations");
+        p.output("output", Kind::annotations, output, "annotations to write");
+        options.describe(p.options);
+        p.report.value("merged", FieldType::boolean).value("annotations", FieldType::integer);
+        p.report.table("conflicts", {{"id", FieldType::integer, "id"},
+                                     {"tag", FieldType::text, "tag"},
+                                     {"field", FieldType::text, "conflict"},
+                                     {"base", FieldType::text, "base"},
+                                     {"ours", FieldType::text, "ours"},
+                                     {"theirs", FieldType::text, "theirs"}});
+    }
+
+    void run(Context&, Report& report) override {
+        const Mesh& on = mesh->mesh;
+        const MergedAnnotations merged = merge_annotations(base.on(on), ours.on(on), theirs.on(on), options);
+        const bool settled = merged.settled(options);
+        report.notes(merged.notes);
+        report.value("merged", settled);
+        report.value("annotations", merged.set.annotations.size());
+        report.empty_table("conflicts", false);
+        for (const Conflict& conflict : merged.conflicts)
+            named_row(report, "conflicts", conflict)("base", conflict.base)("ours", conflict.ours)("theirs", conflict.theirs);
+        const std::size_t count = merged.conflicts.size();
+        if (settled) {
+            report.line(std::to_string(merged.set.annotations.size()) + " annotations" +
+                        (count == 0 ? "" : ", conflicts settled for " + options.prefer));
+            output.write(merged.set, on, mesh.file());
+            return;
+        }
+        report.answer_no();
+        const auto any = [&](const std::string& field) {
+            return std::any_of(merged.conflicts.begin(), merged.conflicts.end(),
+                               [&](const Conflict& conflict) { return conflict.field == field; });
+        };
+        report.line(std::to_string(count) + (count == 1 ? " conflict" : " conflicts") +
+                    "; nothing written (settle them in the files, or choose with --prefer" +
+                    (any("both added") ? "; --renumber keeps both where both added under one id" : "") +
+                    (any("geometry") ? "; --merge-faces joins regions that both changed" : "") + ")");
+    }
+
+private:
+    MeshInput mesh;
+    AnnotationsInput base, ours, theirs;
+    AnnotationsOutput output;
+    MergeOptions options;
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_annotation_diff() { return make<AnnotationDiff>(); }
+std::unique_ptr<Operation> make_annotation_merge() { return make<AnnotationMerge>(); }
+
+}  // namespace ostraka

@@ -1,0 +1,57 @@
+// annotation segment
+#include "operations.h"
+
+#include "ostraka/annotation/label_file.h"
+#include "ostraka/fields/thickness.h"
+#include "ostraka/measure/examine.h"
+#include "ostraka/select/scalars.h"
+
+namespace ostraka {
+
+namespace {
+
+class AnnotationSegment final : public Operation {
+public:
+    void describe(Parameters& p) override {
+        p.input("mesh", Kind::mesh, mesh, "mesh file, closed");
+        p.output("output", Kind::annotations, output, "annotations to write (.ant.json)");
+        p.output("labels-out", Kind::labels, labels_out, "write the number of each face's segment, one a line").optional().flag();
+        options.describe(p.options);
+        thickness_options.describe(p.options);
+        p.report.table("segments", {{"id", FieldType::integer, "id"},
+                                    {"tag", FieldType::text, "tag"},
+                                    {"faces", FieldType::integer, "faces"},
+                                    {"area", FieldType::number, "area", "length^2"}});
+    }
+
+    void run(Context&, Report& report) override {
+        const Mesh& on = mesh->mesh;
+        std::vector<std::int32_t> labels;
+        AnnotationSet set = in_file(mesh.file(), [&] {
+            const std::vector<Index> number = segment(on, thickness(on, thickness_options), options);
+            labels.assign(number.begin(), number.end());
+            std::map<std::int32_t, std::string> names;
+            for (const std::int32_t label : labels) names.try_emplace(label, "segment " + std::to_string(label));
+            return regions_from_labels(on, labels, names);
+        });
+        for (const Annotation& annotation : set.annotations) {
+            const AnnotationSummary summary = summarise(on, annotation);
+            report.row("segments")("id", annotation.id)("tag", annotation.tag)("faces", summary.elements)("area", summary.area);
+        }
+        if (labels_out) write_labels(labels_out.path(), labels);
+        output.write(std::move(set), on, mesh.file());
+    }
+
+private:
+    MeshInput mesh;
+    AnnotationsOutput output;
+    FileOutput labels_out{".seg"};
+    SegmentOptions options;
+    ThicknessOptions thickness_options;
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_annotation_segment() { return make<AnnotationSegment>(); }
+
+}  // namespace ostraka

@@ -1,0 +1,42 @@
+// annotation survival
+#include "operations.h"
+
+#include "ostraka/transfer/survival.h"
+
+namespace ostraka {
+
+namespace {
+
+class AnnotationSurvival final : public Operation {
+public:
+    void describe(Parameters& p) override {
+        p.input("mesh", Kind::mesh, mesh, "the annotated mesh");
+        p.input("annotations", Kind::annotations, annotations, "its annotations");
+        options.describe(p.options);
+        p.report.table("annotations", {{"id", FieldType::integer, "id"},
+                                       {"tag", FieldType::text, "tag"},
+                                       {"vertices", FieldType::integer, "smallest number of vertices"},
+                                       {"end", FieldType::text, "and below"}});
+    }
+
+    void run(Context&, Report& report) override {
+        report.empty_table("annotations");
+        for (const Survival& survival : smallest_resolutions(mesh->mesh, annotations.on(mesh->mesh), options)) {
+            Report::Row row = report.row("annotations");
+            row("id", survival.id)("tag", survival.tag)("vertices", survival.vertices);
+            if (survival.end.empty()) row.shown("end", "survived every resolution tried");
+            else row("end", survival.end);
+        }
+    }
+
+private:
+    MeshInput mesh;
+    AnnotationsInput annotations;
+    SurvivalOptions options;
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_annotation_survival() { return make<AnnotationSurvival>(); }
+
+}  // namespace ostraka

@@ -1,0 +1,184 @@
+// annotation transfer
+#include "operations.h"
+
+#include "ostraka/annotation/colouring.h"
+#include "ostraka/transfer/transfer.h"
+
+#include <cmath>
+
+namespace ostraka {
+
+namespace {
+
+/// Less than 1e-9 % is what rounding leaves of nothing.
+std::string percent(double share) { return std::abs(share) < 1e-11 ? "0" : number(100 * share, 3); }
+
+std::string remarks_on(const TransferScore& score) {
+    std::string remarks = score.outcome == "kept" ? "" : score.outcome;
+    const auto remark = [&](const std::string& text) { remarks += (remarks.empty() ? "" : "; ") + text; };
+    if (score.by_closest_point > 0) remark(std::to_string(score.by_closest_point) + " by closest point");
+    if (score.without_place > 0) remark(std::to_string(score.without_place) + " without a place");
+    if (score.relocated > 0) remark(std::to_string(score.relocated) + " on another layer, placed again");
+    if (score.detours > 0) remark(std::to_string(score.detours) + " detours");
+    if (score.voted) remark("outlines crossed, filled face by face");
+    else if (score.crossings_resolved) remark("crossing outlines resolved");
+    if (!score.note.empty()) remark(score.note);
+    return remarks;
+}
+
+class AnnotationTransfer final : public Operation {
+public:
+    void describe(Parameters& p) override {
+        p.input("source", Kind::mesh, source, "the annotated mesh");
+        p.input("annotations", Kind::annotations, annotations, "its annotations");
+        p.input("target", Kind::mesh, target, "the mesh at another resolution");
+        p.output("output", Kind::annotations, output, "the annotations on the target (*.ant.json)");
+        p.output("back", Kind::annotations, back, "transfer them back to the source as well, into this file, and score that")
+            .optional()
+            .flag();
+        p.output("ply", Kind::mesh, coloured,
+                 "write the target in the colours of its annotations (PLY or another format with colours)")
+            .optional()
+            .flag();
+        p.output("refined-mesh", Kind::mesh, refined, "with --refine: the target with the inserted vertices").optional().flag();
+        p.output("map", Kind::index_map, map, "with --refine: new face -> old face, as JSON").optional().flag();
+        options.describe(p.options);
+
+        for (const char* direction : {"annotations", "back"})
+            p.report.table(direction, {{"id", FieldType::integer, "id"},
+                                       {"tag", FieldType::text, "tag"},
+                                       {"sourceType", FieldType::text},
+                                       {"targetType", FieldType::text, "type"},
+                                       {"outcome", FieldType::text},
+                                       {"note", FieldType::text},
+                                       {"sourceArea", FieldType::number, "", "length^2"},
+                                       {"targetArea", FieldType::number, "", "length^2"},
+                                       {"sourcePerimeter", FieldType::number, "", "length"},
+                                       {"targetPerimeter", FieldType::number, "", "length"},
+                                       {"distortion.A", FieldType::number, "A %"},
+                                       {"distortion.P", FieldType::number, "P %"},
+                                       {"distortion.P/A", FieldType::number, "P/A %"},
+                                       {"distortion.A/P", FieldType::number, "A/P %"},
+                                       {"distortion.C", FieldType::number, "C %"},
+                                       {"distortion.average", FieldType::number, "mean %"},
+                                       {"sourceLength", FieldType::number, "", "length"},
+                                       {"targetLength", FieldType::number, "", "length"},
+                                       {"hausdorff", FieldType::number, "Hausdorff"},
+                                       {"overlap", FieldType::number, "overlap"},
+                                       {"wrongSide", FieldType::number},
+                                       {"", FieldType::text, "by ray"},
+                                       {"correspondence.vertices", FieldType::integer},
+                                       {"correspondence.byRay", FieldType::integer},
+                                       {"correspondence.byClosestPoint", FieldType::integer},
+                                       {"correspondence.withoutPlace", FieldType::integer},
+                                       {"correspondence.relocated", FieldType::integer},
+                                       {"correspondence.detours", FieldType::integer},
+                                       {"crossingsResolved", FieldType::boolean},
+                                       {"voted", FieldType::boolean},
+                                       {"", FieldType::text, "remarks"}});
+    }
+
+    void check() const override {
+        if (options.refine != static_cast<bool>(refined))
+            fail_usage("--refine inserts vertices on the target",
+                       "give --refine together with --refined-mesh FILE for the mesh that results");
+        if (map && !refined) fail_usage("--map goes with --refine", "leave it out or refine");
+        if (const std::string kind = extension(refined.file()); kind == ".stl" || kind == ".glb")
+            fail_usage("annotations need a mesh whose vertices keep their order, which " + kind + " files do not",
+                       "write a .ply, .obj or .off");
+    }
+
+    void run(Context&, Report& report) override {
+        const Stopwatch reading;
+        const Mesh& from = source->mesh;
+        const AnnotationSet& set = annotations.on(from);
+        const Mesh& onto = target->mesh;
+        report.run("reading", reading.seconds());
+        const Stopwatch tree;
+        const auto search = in_file(target.file(), [&] { return std::make_unique<SurfaceSearch>(onto); });
+        report.run("tree", tree.seconds());
+        TransferResult there = in_file(target.file(), [&] { return transfer(from, set, *search, options); });
+        const Mesh& on = there.refined ? there.refined->mesh : onto;
+        std::optional<TransferResult> again;
+        if (back) {
+            const auto home = in_file(source.file(), [&] { return std::make_unique<SurfaceSearch>(from); });
+            TransferOptions how = options;
+            how.refine = false;
+            again = transfer(on, there.annotations, *home, how);
+        }
+
+        // All work is done: what is written now is complete.
+        if (coloured) coloured.write(on, colour_by_annotation(on, there.annotations));
+        if (map) map.write({"face-origin", there.refined->face_origin, onto.number_of_faces()});
+        for (const auto& [name, seconds] : {std::pair{"correspondence", there.times.correspondence},
+                                            {"paths", there.times.paths},
+                                            {"regions", there.times.regions},
+                                            {"scores", there.times.scores}})
+            report.run(name, seconds);
+        report.line(source.file_name() + " -> " + target.file_name());
+        tell(report, "annotations", there.scores);
+        if (again) {
+            report.line("and back");
+            tell(report, "back", again->scores);
+            back.write(std::move(again->annotations), from, source.file());
+        }
+        output.write(std::move(there.annotations), on, there.refined ? refined.file() : target.file());
+        if (refined) refined.write(std::move(there.refined->mesh));
+    }
+
+private:
+    static void tell(Report& report, const std::string& table, const std::vector<TransferScore>& scores) {
+        report.empty_table(table);
+        for (const TransferScore& score : scores) {
+            Report::Row row = report.row(table);
+            row("id", score.id)("tag", score.tag)("sourceType", to_string(score.source_type))(
+                "targetType", to_string(score.target_type))("outcome", score.outcome);
+            if (!score.note.empty()) row("note", score.note);
+            const Distortions d = distortions(score);
+            const bool kept = score.outcome == "kept", region = score.source_type == AnnotationType::region,
+                       both = region && score.target_type == AnnotationType::region;
+            if (region) {
+                row("sourceArea", score.source_area)("targetArea", score.target_area)("sourcePerimeter", score.source_length)(
+                    "targetPerimeter", score.target_length);
+                if (both && score.target_area > 0)
+                    for (const auto& [name, value] : {std::pair{"A", d.area},
+                                                      {"P", d.perimeter},
+                                                      {"P/A", d.perimeter_by_area},
+                                                      {"A/P", d.area_by_perimeter},
+                                                      {"C", d.circularity},
+                                                      {"average", d.mean}})
+                        row("distortion." + std::string(name), value, kept ? percent(value) : "-");
+                if (score.overlap) row("overlap", *score.overlap, both && kept ? number(*score.overlap, 5) : "-");
+                if (score.wrong_side) row("wrongSide", *score.wrong_side);
+            } else {
+                row("sourceLength", score.source_length)("targetLength", score.target_length);
+            }
+            if (score.source_length > 0 && kept) row.shown("distortion.P", percent(d.perimeter));
+            if (score.hausdorff) row("hausdorff", *score.hausdorff, number(*score.hausdorff, 3));
+            for (const auto& [name, count] : {std::pair{"vertices", score.vertices},
+                                              {"byRay", score.by_ray},
+                                              {"byClosestPoint", score.by_closest_point},
+                                              {"withoutPlace", score.without_place},
+                                              {"relocated", score.relocated},
+                                              {"detours", score.detours}})
+                row("correspondence." + std::string(name), count);
+            row("crossingsResolved", score.crossings_resolved)("voted", score.voted);
+            row.shown("by ray", std::to_string(score.by_ray) + "/" + std::to_string(score.vertices));
+            row.shown("remarks", remarks_on(score));
+            if (score.outcome == "lost" && table == "annotations") report.answer_no();
+        }
+    }
+
+    MeshInput source, target;
+    AnnotationsInput annotations;
+    AnnotationsOutput output, back;
+    MeshOutput coloured, refined;
+    IndexMapOutput map;
+    TransferOptions options;
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_annotation_transfer() { return std::make_unique<AnnotationTransfer>(); }
+
+}  // namespace ostraka

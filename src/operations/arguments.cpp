@@ -1,0 +1,72 @@
+#include "arguments.h"
+
+#include "ostraka/measure/measure.h"
+#include "ostraka/operation/report.h"
+
+#include <charconv>
+#include <cmath>
+
+namespace ostraka {
+
+template <class Number>
+std::vector<Number> numbers_of(const std::string& text, const std::string& option) {
+    std::vector<Number> numbers;
+    const char *place = text.data(), *const end = text.data() + text.size();
+    while (place != end) {
+        Number value{};
+        const auto [next, code] = std::from_chars(place, end, value);
+        if (code != std::errc() || (next != end && *next != ',') || next + 1 == end)
+            fail_usage(option + " is '" + printable(text, 60) + "'", "give numbers with commas between them, like 12,88");
+        numbers.push_back(value);
+        place = next == end ? end : next + 1;
+    }
+    if (numbers.empty()) fail_usage(option + " is empty", "give numbers with commas between them");
+    return numbers;
+}
+template std::vector<double> numbers_of<double>(const std::string&, const std::string&);
+template std::vector<std::uint32_t> numbers_of<std::uint32_t>(const std::string&, const std::string&);
+template std::vector<std::uint64_t> numbers_of<std::uint64_t>(const std::string&, const std::string&);
+template std::vector<int> numbers_of<int>(const std::string&, const std::string&);
+
+std::array<double, 3> direction_of(const std::string& text, const std::string& option) {
+    for (std::size_t k = 0; k < 3; ++k)
+        for (const double sign : {1.0, -1.0})
+            if (text == std::string(sign < 0 ? "-" : "") + "xyz"[k]) {
+                std::array<double, 3> axis{0, 0, 0};
+                axis.at(k) = sign;
+                return axis;
+            }
+    const auto fails = [&](const char* remedy) { fail_usage(option + " is '" + printable(text, 60) + "'", remedy); };
+    if (!text.empty() && text.find_first_of("0123456789") == std::string::npos)
+        fails("use x, y, z, -x, -y, -z or three numbers like 0,1,0");
+    const auto numbers = numbers_of<double>(text, option);
+    if (numbers.size() != 3) fails("give three numbers, like 0,0,1");
+    for (const double x : numbers)
+        if (!std::isfinite(x)) fails("give finite numbers");
+    if (numbers[0] == 0 && numbers[1] == 0 && numbers[2] == 0) fails("give a vector that is not zero");
+    return {numbers[0], numbers[1], numbers[2]};
+}
+
+const Annotation& find_annotation(const AnnotationSet& set, const std::string& name, const std::string& file) {
+    int id = 0;
+    const auto [end, code] = std::from_chars(name.data(), name.data() + name.size(), id);
+    if (code == std::errc() && end == name.data() + name.size())
+        if (const Annotation* found = set.find(id)) return *found;
+    std::vector<const Annotation*> tagged;
+    for (const Annotation& annotation : set.annotations)
+        if (annotation.tag == name) tagged.push_back(&annotation);
+    if (tagged.empty())
+        fail_input(file, "has no annotation '" + printable(name, 60) + "'",
+                   "give the id or the tag of one; 'ostraka annotation list' shows them");
+    if (tagged.size() > 1)
+        fail_input(file, "has " + std::to_string(tagged.size()) + " annotations tagged '" + printable(name, 60) + "'",
+                   "give the id of one");
+    return *tagged.front();
+}
+
+std::string in_unit(const std::string& quantity, const AnnotationSet& set) {
+    const std::string unit = descriptor_unit(quantity, set.unit);
+    return quantity + (unit.empty() ? "" : " " + printable(unit, 20));
+}
+
+}  // namespace ostraka

@@ -1,0 +1,126 @@
+// axis
+#include "ostraka/axis/axis.h"
+
+#include "operations.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace ostraka {
+
+namespace {
+
+class FindAxis final : public Operation {
+public:
+    void describe(Parameters& p) override {
+        p.input("mesh", Kind::mesh, mesh, "mesh file");
+        p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)").optional();
+        p.output("output", Kind::report, output, "write the axis as poly-lines (.json, .obj)").optional().flag();
+        p.options("annotation", names, "id or tag of the part; more than one: all together; a line or points: its circle")
+            .words();
+        options.describe(p.options);
+
+        p.report.value("found", FieldType::boolean, "axis").value("reason", FieldType::text);
+        p.report.value("point", FieldType::numbers, "through").value("direction", FieldType::numbers, "direction");
+        p.report.structure("polylines").value("quality", FieldType::number, "quality").structure("figures");
+    }
+
+    void check() const override {
+        if (static_cast<bool>(annotations) == names.empty())
+            fail_usage(names.empty() ? "no annotation is named" : "there are no annotations",
+                       "give an annotation file and --annotation ID or TAG, or neither for the whole mesh");
+        const std::string kind = extension(output.file());
+        if (!output.file().empty() && kind != ".json" && kind != ".obj")
+            fail_usage("'" + output.file() + "' is not a file of axes", "end its name in .json or .obj");
+    }
+
+    void run(Context& context, Report& report) override {
+        std::string unit;
+        const Axis axis = find(mesh->mesh, unit);
+        tell(report, axis, unit);
+        if (!output) return;
+        if (extension(output.file()) == ".obj") return output.write(to_obj(axis));
+        Json document(rapidjson::kObjectType);
+        auto& allocator = document.GetAllocator();
+        add_member(document, "format", "ostraka-axis", allocator);
+        add_member(document, "version", JsonValue(1), allocator);
+        add_member(document, "axis", JsonValue(report.result(), allocator), allocator);
+        add_member(document, "provenance", context.provenance().to_json(allocator), allocator);
+        output.write(to_text(document));
+    }
+
+private:
+    [[nodiscard]] Axis find(const Mesh& whole, std::string& unit) const {
+        std::vector<Index> faces;
+        if (!annotations) {
+            faces.resize(whole.number_of_faces());
+            std::iota(faces.begin(), faces.end(), Index{0});
+            return in_file(mesh.file(), [&] { return find_axis(whole, faces, options); });
+        }
+        const AnnotationSet& set = annotations.on(whole);
+        unit = set.unit;
+        std::vector<Point> rim;
+        for (const auto& name : names) {
+            const Annotation& annotation = find_annotation(set, name, annotations.file());
+            if (annotation.type == AnnotationType::region)
+                faces.insert(faces.end(), annotation.faces.begin(), annotation.faces.end());
+            else
+                for (const Index v : touched_vertices(whole, annotation)) rim.push_back(whole.point(Vertex(v)));
+        }
+        if (!rim.empty() && !faces.empty())
+            fail_usage("regions and curves have no axis together", "name regions only, or lines and points only");
+        if (!rim.empty()) return circle_axis(rim);
+        std::sort(faces.begin(), faces.end());
+        faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+        return in_file(annotations.file(), [&] { return find_axis(whole, faces, options); });
+    }
+
+    static void tell(Report& report, const Axis& axis, const std::string& unit) {
+        auto& allocator = report.allocator();
+        const auto three = [](const auto& p) { return std::vector<double>{p.x(), p.y(), p.z()}; };
+        report.value("found", axis.found, axis.found ? "found" : "none");
+        if (axis.found) {
+            report.value("point", three(axis.point));
+            report.value("direction", three(axis.direction));
+            JsonValue lines(rapidjson::kArrayType);
+            for (const auto& line : axis.lines) {
+                JsonValue points(rapidjson::kArrayType);
+                for (const auto& p : line) {
+                    JsonValue point(rapidjson::kArrayType);
+                    for (const double x : three(p)) point.PushBack(x, allocator);
+                    points.PushBack(point, allocator);
+                }
+                lines.PushBack(points, allocator);
+            }
+            report.value("polylines", std::move(lines));
+        } else {
+            report.value("reason", axis.reason);
+            report.answer_no();
+        }
+        report.value("quality", axis.quality, number(axis.quality, 4));
+        JsonValue figures(rapidjson::kArrayType);
+        for (const auto& figure : axis.figures) {
+            const std::string in = figure.unit == "length" ? unit : figure.unit;
+            JsonValue entry(rapidjson::kObjectType);
+            add_member(entry, "name", figure.name, allocator);
+            add_member(entry, "value", JsonValue(figure.value), allocator);
+            if (!in.empty()) add_member(entry, "unit", in, allocator);
+            figures.PushBack(entry, allocator);
+            report.people(figure.name, number(figure.value) + (in.empty() ? "" : " " + in));
+        }
+        report.value("figures", std::move(figures));
+        if (!axis.found) report.line("has no axis: " + axis.reason);
+    }
+
+    MeshInput mesh;
+    AnnotationsInput annotations;
+    FileOutput output{".json"};
+    std::vector<std::string> names;
+    AxisOptions options;
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_axis() { return make<FindAxis>(); }
+
+}  // namespace ostraka

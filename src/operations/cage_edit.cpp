@@ -1,0 +1,68 @@
+// cage edit: moves the vertices of a cage by an edit that knows no mesh.
+#include "operations.h"
+
+#include "ostraka/cage/cage.h"
+#include "ostraka/semantic/edit.h"
+
+#include <algorithm>
+
+namespace ostraka {
+
+namespace {
+
+class CageEdit final : public Operation {
+public:
+    void describe(Parameters& p) override {
+        p.input("cage", Kind::cage, cage, "cage file");
+        p.input("edit", Kind::edit, edit, "what is done to its vertices (.edit.json): select cageVertices, box or all");
+        p.output("output", Kind::cage, output, "cage to write");
+        p.report.value("steps", FieldType::integer).value("moved", FieldType::integer).value("intersects", FieldType::boolean);
+    }
+
+    void run(Context&, Report& report) override {
+        const Mesh& rest = cage->mesh;
+        const Json& steps = *edit;
+        refuse_annotations(steps);
+        const AnnotationSet none;
+        const Coordinates own{"own", WeightMatrix::Identity(rest.number_of_vertices(), rest.number_of_vertices()), {}};
+        const auto states = follow_edit(steps, {rest, none, &rest, &own}, edit.file());
+        Mesh moved = rest;
+        std::size_t touched = 0;
+        if (!states.empty()) {
+            for (const Vertex v : moved.vertices()) moved.point(v) = states.back().handles[v];
+            touched = static_cast<std::size_t>(std::count(states.back().touched.begin(), states.back().touched.end(), true));
+        }
+        const bool intersects = !check_cage(moved, Mesh()).intersections.empty();
+        report.value("steps", states.size());
+        report.value("moved", touched);
+        report.value("intersects", intersects);
+        report.line(std::to_string(states.size()) + (states.size() == 1 ? " step, " : " steps, ") + std::to_string(touched) +
+                    " of " + std::to_string(moved.number_of_vertices()) + " vertices moved");
+        if (intersects) report.note("the moved cage intersects itself, which deforms a mesh all the same, but may fold it");
+        output.write(std::move(moved), cage->extras);
+    }
+
+private:
+    /// A step may select by annotation, but not here.
+    void refuse_annotations(const Json& document) const {
+        const JsonValue* steps = document.IsObject() ? find_member(document, "steps") : nullptr;
+        if (steps == nullptr || !steps->IsArray()) return;
+        for (rapidjson::SizeType i = 0; i < steps->Size(); ++i) {
+            const JsonValue* select = (*steps)[i].IsObject() ? find_member((*steps)[i], "select") : nullptr;
+            if (select != nullptr && select->IsObject() && find_member(*select, "annotation") != nullptr)
+                fail_input(edit.file() + ", /steps/" + std::to_string(i),
+                           "selects by annotation, and 'cage edit' knows no annotations",
+                           "select cageVertices, box or all, or use 'ostraka deform'");
+        }
+    }
+
+    MeshInput cage;
+    JsonInput edit;
+    MeshOutput output;
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_cage_edit() { return make<CageEdit>(); }
+
+}  // namespace ostraka

@@ -1,0 +1,179 @@
+// cage weights, cage influence
+#include "operations.h"
+
+#include "ostraka/coords/influence.h"
+#include "ostraka/render/colour_scale.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace ostraka {
+
+namespace {
+
+/// A cage, whose polygons are cut where coordinates are asked for.
+const Mesh& triangles_of_cage(const MeshInput& cage, Report& report) {
+    if (!cage->triangle_polygon.empty())
+        report.note("the cage's polygons were cut into " + std::to_string(cage->mesh.number_of_faces()) + " triangles");
+    return cage->mesh;
+}
+
+class CageCoordinates final : public Operation {
+public:
+    void describe(Parameters& p) override {
+        p.input("mesh", Kind::mesh, mesh, "mesh file");
+        p.input("cage", Kind::cage, cage, "closed mesh around it (polygons are cut into triangles)");
+        p.output("output", Kind::coordinates, output, "weights to write (.npy; a .coordinates.json goes beside it)");
+        p.options("kind", kind, "mean-value, or green (strictly inside; without constraints only)", Choices(coordinate_kinds()));
+        options.describe(p.options);
+        p.report.value("kind", FieldType::text, "coordinates").value("points", FieldType::integer, "points");
+        p.report.value("cageVertices", FieldType::integer, "cage vertices").value("cageFaces", FieldType::integer, "cage faces");
+        p.report.structure("certificate").value("holds", FieldType::boolean, "verdict");
+        p.report.table("", {{"", FieldType::text, "property"}, {"", FieldType::text, "value"}, {"", FieldType::text, "meaning"}});
+    }
+
+    void run(Context&, Report& report) override {
+        const Mesh &subject = mesh->mesh, &around = triangles_of_cage(cage, report);
+        Coordinates coordinates = in_file(cage.file(), [&] { return compute_coordinates(kind, around, subject, options); });
+        const CoordinateCertificate certificate =
+            in_file(cage.file(), [&] { return certify(coordinates, around, points_of(subject), options); });
+        if (coordinates.has_normals())
+            report.note(kind +
+                        " coordinates serve deformation without constraints only: the constrained solve through the cage "
+                        "leaves out their normal term");
+        tell(report, certificate);
+        output.write(std::move(coordinates), subject, around, certificate);
+    }
+
+private:
+    static void tell(Report& report, const CoordinateCertificate& c) {
+        report.value("kind", c.kind);
+        report.value("points", c.points);
+        report.value("cageVertices", c.vertices);
+        report.value("cageFaces", c.faces);
+        report.value("certificate", to_json(c, report.allocator()));
+        const auto row = [&](const char* property, const std::string& value, const char* meaning) {
+            report.row("").shown("property", property).shown("value", value).shown("meaning", meaning);
+        };
+        const auto share = [](double part) { return number(100 * part, 4) + " %"; };
+        const auto on_cage = [&](const char* property, const std::optional<double>& value, const char* meaning) {
+            row(property, value ? number(*value, 3) : "-", value ? meaning : "not defined on the cage");
+        };
+        row("partition of unity", number(c.partition, 3), "largest |sum of a point's weights - 1|");
+        row("linear precision", number(c.linear, 3), "largest error of a point at rest, in diagonals of the cage");
+        on_cage("Lagrange property", c.lagrange, "largest deviation at the cage's vertices");
+        on_cage("linear on edges", c.edges, "largest deviation at three points an edge");
+        on_cage("linear on faces", c.on_faces, "largest deviation at three points a face");
+        row("negative weights", share(c.negative), "of all");
+        row("points with one", share(c.negative_rows), "of all");
+        row("least, most", number(c.least) + ", " + number(c.most), "weight");
+        row("negative sum", number(c.negative_sum), "largest of a point");
+        row("locality", number(c.carriers_mean, 4) + " mean, " + std::to_string(c.carriers_most) + " most",
+            "weights that carry 95 % at a point");
+        report.value("holds", c.holds(),
+                     c.holds() ? "fit for deformation" : "not fit for deformation: partition or linear precision fails");
+        if (!c.holds()) report.answer_no();
+    }
+
+    MeshInput mesh, cage;
+    CoordinatesOutput output;
+    std::string kind = "mean-value";
+    CoordinateOptions options;
+};
+
+class CageInfluence final : public Operation {
+public:
+    void describe(Parameters& p) override {
+        p.input("mesh", Kind::mesh, mesh, "mesh file");
+        p.input("cage", Kind::cage, cage, "its cage");
+        p.input("weights", Kind::coordinates, weights, "weights of 'cage weights' (.npy)");
+        p.output("output", Kind::mesh, output,
+                 "coloured mesh to write (PLY, with the numbers as the property quality): the cage for --annotation, else the "
+                 "mesh; without a choice coloured by the number of cage vertices that carry 95 %");
+        p.input("annotations", Kind::annotations, annotations, "annotations of the mesh (.ant.json)").optional().flag();
+        p.options("cage-vertex", cage_vertex, "the weights of this cage vertex on the mesh");
+        p.options("annotation", annotation, "id or tag: the influence of each cage vertex on its vertices");
+        p.options("by", by, "influence on an annotation: largest weight on its vertices, or their sum", Choices{"max", "sum"});
+        p.options("threshold", threshold, "list the cage vertices with an influence above this");
+        p.report.value("what", FieldType::text, "what").value("on", FieldType::text, "on the");
+        p.report.value("min", FieldType::number, "min").value("max", FieldType::number, "max");
+        p.report.structure("above").structure("strongest");
+    }
+
+    void check() const override {
+        if (static_cast<bool>(annotations) == annotation.empty())
+            fail_usage(annotations ? "--annotations without an annotation" : "--annotation without a file",
+                       "give both --annotations FILE and --annotation ID");
+        if (!annotation.empty() && cage_vertex)
+            fail_usage("--cage-vertex with --annotation", "ask for the influence of the one or on the other");
+        if (annotation.empty() && threshold) fail_usage("--threshold without --annotation", "it chooses cage vertices for one");
+        if (threshold && !std::isfinite(*threshold)) fail_usage("--threshold is not finite", "give a number");
+    }
+
+    void run(Context&, Report& report) override {
+        const Mesh &subject = mesh->mesh, &around = triangles_of_cage(cage, report);
+        const Coordinates& coordinates = weights.of(subject, around);
+        const bool on_cage = static_cast<bool>(annotations);
+        std::string what;
+        std::vector<double> values;
+        if (cage_vertex) {
+            values = influence_of(coordinates, *cage_vertex);
+            what = "weight of cage vertex " + std::to_string(*cage_vertex);
+        } else if (on_cage) {
+            const Annotation& chosen = find_annotation(annotations.on(subject), annotation, annotations.file());
+            values = influence_on(coordinates, touched_vertices(subject, chosen), by);
+            what = (by == "max" ? "largest weight on '" : "sum of the weights on '") + chosen.tag + "'";
+        } else {
+            for (const Index count : carriers(coordinates.vertex)) values.push_back(count);
+            what = "cage vertices that carry 95 %";
+        }
+        const auto [low, high] = std::minmax_element(values.begin(), values.end());
+        report.value("what", what);
+        report.value("on", on_cage ? "cage" : "mesh");
+        report.value("min", *low);
+        report.value("max", *high);
+        if (on_cage) list(report, values);
+        const ColourScale scale = scale_of({&values}, "the weights");
+        MeshExtras extras;
+        for (const double value : values) {
+            const Rgb c = colour_of(scale, value);
+            extras.vertex_colours.push_back({c.red, c.green, c.blue, 255});
+        }
+        WriteOptions writing;
+        writing.vertex_quality = std::move(values);
+        output.write(on_cage ? around : subject, std::move(extras), std::move(writing));
+    }
+
+private:
+    /// Cage vertices above the threshold, or the ten strongest.
+    void list(Report& report, const std::vector<double>& values) const {
+        std::vector<Index> order(values.size());
+        std::iota(order.begin(), order.end(), Index{0});
+        std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return values[a] > values[b]; });
+        JsonValue chosen(rapidjson::kArrayType);
+        std::string text;
+        for (const Index v : order) {
+            if (threshold ? !(values[v] > *threshold) : chosen.Size() == 10) break;
+            text += (chosen.Empty() ? "" : ", ") + std::to_string(v);
+            chosen.PushBack(v, report.allocator());
+        }
+        report.value(threshold ? "above" : "strongest", std::move(chosen));
+        report.people(threshold ? "cage vertices above" : "strongest cage vertices", text.empty() ? "none" : text);
+    }
+
+    MeshInput mesh, cage;
+    CoordinatesInput weights;
+    AnnotationsInput annotations;
+    MeshOutput output;
+    std::optional<Index> cage_vertex;
+    std::string annotation, by = "max";
+    std::optional<double> threshold;
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_cage_weights() { return make<CageCoordinates>(); }
+std::unique_ptr<Operation> make_cage_influence() { return make<CageInfluence>(); }
+
+}  // namespace ostraka

@@ -1,0 +1,169 @@
+#include "ostraka/operations/pages.h"
+
+#include <algorithm>
+#include <sstream>
+
+namespace ostraka {
+
+namespace {
+
+/// Endings of the files of a kind; none: any file.
+std::vector<std::string> endings_of(Kind kind) {
+    switch (kind) {
+        case Kind::mesh:
+        case Kind::cage:
+            return {".ply", ".obj", ".off", ".stl", ".glb"};
+        case Kind::annotations:
+            return {".ant.json", ".ant"};
+        case Kind::graph:
+            return {".graph.json"};
+        case Kind::edit:
+            return {".edit.json", ".json"};
+        case Kind::recipe:
+            return {".recipe.json"};
+        case Kind::rules:
+            return {".rules.json"};
+        case Kind::template_package:
+            return {".template.json"};
+        case Kind::vocabulary:
+            return {".vocabulary.json", ".ttl", ".rdf"};
+        case Kind::shape_class:
+            return {".class.json"};
+        case Kind::assembly:
+            return {".assembly.json"};
+        case Kind::coordinates:
+            return {".npy"};
+        default:
+            return {};
+    }
+}
+
+/// Files and folders whose names begin with what was written.
+void add_files(std::vector<std::string>& list, const std::string& begun, const std::vector<std::string>& endings) {
+    const std::size_t slash = begun.rfind('/');
+    const std::string folder = slash == std::string::npos ? "" : begun.substr(0, slash + 1);
+    std::error_code code;
+    for (std::filesystem::directory_iterator entry(folder.empty() ? "." : folder, code), end; !code && entry != end;
+         entry.increment(code)) {
+        const std::string name = folder + entry->path().filename().string();
+        std::error_code own;
+        if (!name.starts_with(begun)) continue;
+        if (entry->is_directory(own)) list.push_back(name + "/");
+        else if (endings.empty() ||
+                 std::any_of(endings.begin(), endings.end(), [&](const auto& ending) { return name.ends_with(ending); }))
+            list.push_back(name);
+    }
+}
+
+/// Tags of the annotation files among the words.
+void add_tags(std::vector<std::string>& list, const std::vector<std::string>& words) {
+    for (const std::string& word : words) {
+        if (!word.ends_with(".ant.json")) continue;
+        try {
+            const Json document = read_json(word);
+            const JsonValue* annotations = document.IsObject() ? find_member(document, "annotations") : nullptr;
+            if (annotations == nullptr || !annotations->IsArray()) continue;
+            for (const auto& one : annotations->GetArray())
+                if (const JsonValue* tag = one.IsObject() ? find_member(one, "tag") : nullptr; tag != nullptr && tag->IsString())
+                    list.emplace_back(tag->GetString());
+        } catch (const Error&) {  // nothing is known of it
+            continue;
+        }
+    }
+}
+
+void add_flags(std::vector<std::string>& list, const Call& call) {
+    for (const Slot* slot : call.parameters().slots())
+        if (!slot->is_positional) list.push_back("--" + slot->name);
+    for (const Option& option : call.parameters().options)
+        if (!option.is_positional)
+            list.push_back((option.type() == OptionType::boolean && option.initial == "true" ? "--no-" : "--") + option.name);
+    for (const char* common : {"--json", "--show", "--quiet", "--threads", "--help"}) list.emplace_back(common);
+}
+
+}  // namespace
+
+std::vector<std::string> completions(const std::vector<std::string>& words) {
+    if (words.empty()) return {};
+    std::vector<std::string> list;
+    const std::string& begun = words.back();
+    const OperationEntry* named = nullptr;
+    std::size_t length = 0;
+    for (const OperationEntry& entry : operations()) {
+        std::istringstream stream(entry.name);
+        std::size_t same = 0;
+        std::string word;
+        bool agrees = true;
+        while (stream >> word) {
+            if (same + 1 < words.size() && words[same] == word) {
+                ++same;
+                continue;
+            }
+            agrees = false;
+            if (same + 1 == words.size() && word.starts_with(begun)) list.push_back(word);
+            break;
+        }
+        if (agrees && same > length) named = &entry, length = same;
+    }
+    if (named != nullptr) {
+        const Call call(*named);
+        list.clear();
+        const std::string& before = words[words.size() - 2];
+        const std::string flag = before.starts_with("--") ? before.substr(2) : "";
+        const Option* option = flag.empty() ? nullptr : call.parameters().options.find(flag);
+        const Slot* slot = flag.empty() ? nullptr : call.parameters().slot(flag);
+        if (begun.starts_with("-")) {
+            add_flags(list, call);
+        } else if (slot != nullptr) {
+            add_files(list, begun, endings_of(slot->kind));
+        } else if (option != nullptr && option->type() != OptionType::boolean) {
+            if (const auto* choices = std::get_if<Choices>(&option->rule)) list = choices->names;
+            else if (option->type() == OptionType::text || option->type() == OptionType::texts) add_tags(list, words);
+        } else {
+            // The next argument without a flag.
+            std::size_t place = 0;
+            for (std::size_t i = length; i + 1 < words.size(); ++i) {
+                if (!words[i].starts_with("-")) ++place;
+                else if (const Option* other = words[i].size() > 2 ? call.parameters().options.find(words[i].substr(2)) : nullptr;
+                         (other != nullptr && other->type() != OptionType::boolean) ||
+                         call.parameters().slot(words[i].substr(2)) != nullptr)
+                    ++i;
+            }
+            const auto& order = call.parameters().orders.front();
+            const Slot* next = order.empty() ? nullptr : call.parameters().slot(order[std::min(place, order.size() - 1)]);
+            if (next != nullptr) add_files(list, begun, endings_of(next->kind));
+        }
+    }
+    std::erase_if(list, [&](const std::string& one) { return !one.starts_with(begun); });
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    return list;
+}
+
+std::string completion_script(Shell shell) {
+    switch (shell) {
+        case Shell::bash:
+            return "# bash completion for ostraka\n"
+                   "_ostraka() {\n"
+                   "    local IFS=$'\\n'\n"
+                   "    COMPREPLY=($(ostraka --complete \"${COMP_WORDS[@]:1:COMP_CWORD}\" 2>/dev/null))\n"
+                   "    [[ ${#COMPREPLY[@]} == 1 && ${COMPREPLY[0]} == */ ]] && compopt -o nospace\n"
+                   "    [[ ${#COMPREPLY[@]} -gt 0 ]] && COMPREPLY=($(printf '%q\\n' \"${COMPREPLY[@]}\"))\n"
+                   "}\n"
+                   "complete -o default -F _ostraka ostraka\n";
+        case Shell::zsh:
+            return "#compdef ostraka\n"
+                   "_ostraka() {\n"
+                   "    local -a found\n"
+                   "    found=(\"${(@f)$(ostraka --complete \"${(@)words[2,CURRENT]}\" 2>/dev/null)}\")\n"
+                   "    if [[ -n ${found[1]} ]]; then compadd -Q -- \"${(@q)found}\"; else _files; fi\n"
+                   "}\n"
+                   "compdef _ostraka ostraka\n";
+        case Shell::fish:
+            return "# fish completion for ostraka\n"
+                   "complete -c ostraka -a '(ostraka --complete (commandline -opc)[2..-1] (commandline -ct) 2>/dev/null)'\n";
+    }
+    return {};
+}
+
+}  // namespace ostraka

@@ -1,0 +1,278 @@
+// deform: an edit of a shape that keeps what its annotations and relations ask for.
+#include "operations.h"
+
+#include "ostraka/geom/with_points.h"
+#include "ostraka/io/diagnose.h"
+#include "ostraka/measure/measure.h"
+#include "ostraka/semantic/deform.h"
+
+namespace ostraka {
+
+namespace {
+
+class Deform final : public Operation {
+public:
+    void describe(Parameters& p) override {
+        p.input("template", Kind::template_package, bundle,
+                "template (.template.json), with its graph, cage and coordinates, in place of mesh and annotations")
+            .optional();
+        p.input("mesh", Kind::mesh, mesh, "mesh file").optional();
+        p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)").optional();
+        p.input("edit", Kind::edit, edit, "the edit (.edit.json)");
+        p.output("output", Kind::mesh, output, "the deformed mesh to write");
+        p.order({"mesh", "annotations", "edit", "output"});
+        p.order({"template", "edit", "output"});
+        p.input("graph", Kind::graph, graph,
+                "relationships (.graph.json): those that are constraints are kept; instead of the template's")
+            .optional()
+            .flag();
+        p.input("cage", Kind::cage, cage, "cage whose vertices are the handles; without it, the mesh's own are")
+            .optional()
+            .flag();
+        p.input("weights", Kind::coordinates, weights, "weights of 'cage weights' (.npy)").optional().flag();
+        p.output("annotations-out", Kind::annotations, annotations_out, "annotations of the deformed mesh, measures taken anew")
+            .optional()
+            .flag();
+        p.output("cage-out", Kind::cage, cage_out, "the cage after the deformation").optional().flag();
+        p.options("states", states, "also write the shape after each step of the edit, before constraints: output-step1 ...");
+        options.describe(p.options);
+        tolerances.describe(p.options);
+        p.report.value("acceptable", FieldType::boolean)
+            .value("iterations", FieldType::integer)
+            .value("rounds", FieldType::integer);
+        p.report.value("stopped", FieldType::text).value("passes", FieldType::integer);
+        p.report.value("selfIntersections", FieldType::integer);
+        p.report.table("constraints", {{"id", FieldType::integer, "id"},
+                                       {"type", FieldType::text, "constraint"},
+                                       {"weight", FieldType::number, "weight"},
+                                       {"hard", FieldType::boolean},
+                                       {"used", FieldType::boolean},
+                                       {"before", FieldType::text},
+                                       {"verdict", FieldType::text, "verdict"},
+                                       {"text", FieldType::text},
+                                       {"deviations", FieldType::any, "how well"},
+                                       {"residual.mean", FieldType::number},
+                                       {"residual.median", FieldType::number},
+                                       {"residual.min", FieldType::number},
+                                       {"residual.max", FieldType::number},
+                                       {"residual.greatest distance", FieldType::number},
+                                       {"residual.constraints", FieldType::integer}});
+        p.report.table("conflicts", {{"id", FieldType::integer}, {"freed", FieldType::numbers}, {"deviations", FieldType::any}});
+    }
+
+    void check() const override {
+        if (bundle ? mesh || annotations : !mesh || !annotations)
+            fail_usage("what to deform is not clear", "give a mesh and its annotations, or a template");
+        if (static_cast<bool>(cage) != static_cast<bool>(weights))
+            fail_usage("--cage and --weights belong together", "give both: see 'cage weights'");
+        if (cage_out && !bundle && !cage) fail_without_cage();
+    }
+
+    void run(Context& context, Report& report) override {
+        validate(*edit, "edit", edit.file());
+        const auto step = [](std::size_t i) { return "-step" + std::to_string(i + 1); };
+        if (states) {
+            std::vector<Path> files;
+            for (std::size_t i = 0; i < (*edit)["steps"].Size(); ++i) files.emplace_back(output.part_file(step(i)));
+            context.check_outputs(files);
+        }
+        const Stopwatch stopwatch;
+        Subject subject = bundle ? of_template(context) : Subject{&*mesh, &annotations.on(mesh->mesh)};
+        if (cage) {
+            subject.around = &*cage;
+            subject.coordinates = &weights.of(subject.object->mesh, cage->mesh);
+        }
+        if (graph) subject.relations = &graph.on(*subject.set);
+        if (cage_out && subject.coordinates == nullptr) fail_without_cage();
+        const HandleSpace space{subject.object->mesh, *subject.set, subject.around ? &subject.around->mesh : nullptr,
+                                subject.coordinates};
+        const DeformResult result = deform(space, *subject.relations, *edit, edit.file(), options, tolerances,
+                                           graph ? graph.file() : "the template's graph");
+        report.run("seconds", stopwatch.seconds());
+
+        const Mesh shaped = with_points(space.mesh, result.points);
+        if (cage_out) cage_out.write(with_points(*space.cage, result.cage), subject.around->extras);
+        if (annotations_out) {
+            AnnotationSet set = space.set;
+            report.notes(refresh_measures(shaped, set).notes);
+            annotations_out.write(std::move(set), shaped, output.file());
+        }
+        // Constraints say nothing of what else became of the surface.
+        const auto crossings = [](const Mesh& one) { return self_intersections(to_soup(one), 100'000).pairs.size(); };
+        const std::size_t crossing = crossings(shaped), before = crossing > 0 ? crossings(space.mesh) : 0;
+        output.write(shaped, subject.object->extras);
+        if (states) {
+            const auto followed = follow_edit(*edit, space, edit.file());
+            for (std::size_t i = 0; i < followed.size(); ++i) {
+                const std::vector<Point>& handles = followed[i].handles;
+                const auto points = space.cage != nullptr ? deformed(*space.coordinates, *space.cage, handles) : handles;
+                output.write_part(step(i), with_points(space.mesh, points), subject.object->extras);
+            }
+        }
+        if (crossing > before)
+            report.note("the deformed surface crosses itself in " + std::to_string(crossing) + " pairs of faces (" +
+                        std::to_string(before) + " before): look at it; 'mesh info' tells where");
+        const std::string handles = std::to_string((space.cage != nullptr ? *space.cage : space.mesh).number_of_vertices()) +
+                                    (space.cage != nullptr ? " cage vertices" : " vertices");
+        for (std::size_t i = 0; i < result.selected.size(); ++i)
+            report.note("step " + std::to_string(i + 1) + ": " + std::to_string(result.selected[i]) + " of " + handles);
+        report.value("selfIntersections", crossing);
+        tell(report, result);
+        if (!result.acceptable) report.answer_no();
+    }
+
+private:
+    /// What is deformed, from files of its own or from a template.
+    struct Subject {
+        const MeshFile* object = nullptr;
+        const AnnotationSet* set = nullptr;
+        const RelationGraph* relations = &none();
+        const MeshFile* around = nullptr;
+        const Coordinates* coordinates = nullptr;
+
+        static const RelationGraph& none() {
+            static const RelationGraph graph;
+            return graph;
+        }
+    };
+
+    [[noreturn]] static void fail_without_cage() {
+        fail_usage("--cage-out without a cage", "add --cage and --weights, or a cage and its coordinates to the template");
+    }
+
+    Subject of_template(Context& context) {
+        const Template& loaded = *bundle;
+        for (const Finding& finding : loaded.findings)
+            if (finding.defect)
+                fail_input(bundle.file() + ", " + finding.where, finding.text, "mend it: 'template check' tells all");
+        if (!loaded.mesh) fail_input(bundle.file(), "has no mesh", "pack one");
+        if (!loaded.annotations) fail_input(bundle.file(), "has no annotations", "pack them, or give a mesh and its annotations");
+        Subject subject{&*loaded.mesh, &*loaded.annotations};
+        if (loaded.graph) subject.relations = &*loaded.graph;
+        // The first cage that has coordinates.
+        std::string why_not;
+        for (std::size_t i = 0; i < loaded.cages.size() && !cage; ++i)
+            for (const TemplatePart* part : loaded.file.of("coordinates")) {
+                if (subject.coordinates != nullptr || !loaded.cages[i]) continue;
+                try {
+                    context.record([&] { own_weights = read_coordinates(part->file, loaded.mesh->mesh, *loaded.cages[i]); });
+                    own_cage.mesh = *loaded.cages[i];
+                    subject.around = &own_cage;
+                    subject.coordinates = &own_weights;
+                } catch (const Error& error) {
+                    why_not = error.what();  // those of another cage, perhaps
+                }
+            }
+        if (!cage && subject.coordinates == nullptr && !why_not.empty())
+            fail_input(bundle.file(), "has a cage and coordinates that do not go together: " + why_not,
+                       "make them anew with 'cage weights', or give --cage and --weights");
+        return subject;
+    }
+
+    static JsonValue deviation_json(const Deviation& d, std::optional<double> before, JsonAllocator& allocator) {
+        JsonValue deviation(rapidjson::kObjectType);
+        add_member(deviation, "quantity", d.quantity, allocator);
+        if (before) add_member(deviation, "before", JsonValue(*before), allocator);
+        add_member(deviation, "value", JsonValue(*d.value), allocator);
+        add_member(deviation, "tolerance", JsonValue(*d.tolerance), allocator);
+        add_member(deviation, "unit", d.unit, allocator);
+        return deviation;
+    }
+
+    static void tell(Report& report, const DeformResult& result) {
+        report.value("acceptable", result.acceptable);
+        report.value("iterations", result.summary.iterations);
+        report.value("rounds", result.rounds);
+        const std::string stopped = result.passes > 0 ? std::string(ostraka::describe(result.summary.stop)) : "nothing to solve";
+        report.value("stopped", stopped);
+        report.value("passes", result.passes);
+        report.empty_table("constraints", false);
+        for (const ConstraintReport& constraint : result.constraints) tell(report, constraint);
+        if (result.passes > 0)
+            report.line((result.rounds > 0 ? std::to_string(result.rounds) + (result.rounds == 1 ? " round" : " rounds") +
+                                                 " for the hard constraints, the last with "
+                                           : "") +
+                        std::to_string(result.summary.iterations) +
+                        (result.summary.iterations == 1 ? " iteration: " : " iterations: ") + stopped +
+                        (result.passes > 1 ? "; " + std::to_string(result.passes) + " passes" : ""));
+        report.empty_table("conflicts");
+        for (const ConstraintConflict& conflict : result.conflicts) tell(report, result, conflict);
+        if (result.untried > 0)
+            report.line(std::to_string(result.untried) + " constraints were not left out to see: raise --conflicts to try them");
+        report.line(result.constraints.empty() ? "no constraints"
+                    : result.acceptable        ? "acceptable: every constraint holds"
+                                               : "not acceptable: a constraint does not hold");
+    }
+
+    static void tell(Report& report, const ConstraintReport& constraint) {
+        JsonValue deviations(rapidjson::kArrayType);
+        std::string words;
+        for (std::size_t i = 0; i < constraint.deviations.size(); ++i) {
+            const Deviation& d = constraint.deviations[i];
+            const double before = i < constraint.before_values.size() ? constraint.before_values[i] : 0;
+            deviations.PushBack(deviation_json(d, before, report.allocator()), report.allocator());
+            words += (words.empty() ? "" : "; ") + d.quantity + " " + number(*d.value, 4) + " (was " + number(before, 4) +
+                     ", at most " + number(*d.tolerance, 4) + ")" + (d.unit.empty() ? "" : " " + d.unit);
+        }
+        if (!constraint.text.empty()) words += (words.empty() ? "" : "; ") + constraint.text;
+        Report::Row row = report.row("constraints");
+        row("id", constraint.id)("type", constraint.type);
+        row("weight", constraint.weight, number(constraint.weight) + (constraint.hard ? ", hard" : ""));
+        row("hard", constraint.hard)("used", constraint.used)("before", to_string(constraint.before));
+        row("verdict", to_string(constraint.verdict), constraint.used ? to_string(constraint.verdict) : "left out");
+        row("text", constraint.text)("deviations", std::move(deviations)).shown("deviations", words);
+        for (const auto& [name, value] : {std::pair{"mean", constraint.mean},
+                                          {"median", constraint.median},
+                                          {"min", constraint.least},
+                                          {"max", constraint.most},
+                                          {"greatest distance", constraint.distance}})
+            row("residual." + std::string(name), value);
+        row("residual.constraints", constraint.low_level);
+    }
+
+    /// What fights with what.
+    static void tell(Report& report, const DeformResult& result, const ConstraintConflict& conflict) {
+        const auto name = [&](int id) {
+            for (const ConstraintReport& one : result.constraints)
+                if (one.id == id) return std::to_string(id) + " (" + one.type + ")";
+            return std::to_string(id);
+        };
+        JsonValue freed(rapidjson::kArrayType), deviations(rapidjson::kArrayType);
+        std::string others, gives;
+        for (const int id : conflict.freed) {
+            freed.PushBack(id, report.allocator());
+            others += (others.empty() ? "" : ", ") + name(id);
+        }
+        for (const Deviation& d : conflict.deviations) {
+            deviations.PushBack(deviation_json(d, {}, report.allocator()), report.allocator());
+            if (*d.value > *d.tolerance)
+                gives += (gives.empty() ? "" : "; ") + d.quantity + " " + number(*d.value, 4) + " instead of at most " +
+                         number(*d.tolerance, 4) + (d.unit.empty() ? "" : " " + d.unit);
+        }
+        const std::string id = std::to_string(conflict.id);
+        report.row("conflicts")("id", conflict.id)("freed", std::move(freed))("deviations", std::move(deviations));
+        report.line(printable(name(conflict.id) + " fights with " + others + ": if " + id + " is left out, " +
+                              (conflict.freed.size() == 1 ? "the other holds" : "the others hold") +
+                              (gives.empty() ? ", and so does " + id : "; " + id + " would have to give: " + gives)));
+    }
+
+    TemplateInput bundle;
+    MeshInput mesh, cage;
+    AnnotationsInput annotations;
+    JsonInput edit;
+    GraphInput graph;
+    CoordinatesInput weights;
+    MeshOutput output, cage_out;
+    AnnotationsOutput annotations_out;
+    bool states = false;
+    DeformOptions options;
+    RelationOptions tolerances;
+    MeshFile own_cage;  ///< of the template, with its coordinates
+    Coordinates own_weights;
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_deform() { return make<Deform>(); }
+
+}  // namespace ostraka

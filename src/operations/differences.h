@@ -1,0 +1,14 @@
+// Differences of two sets of annotations in reports.
+#pragma once
+
+#include "ostraka/exchange/difference.h"
+#include "ostraka/operation/report.h"
+
+namespace ostraka {
+
+/// A table of differences.
+void declare_differences(ReportLayout& layout, const std::string& table);
+/// Its rows; where there are none, people read `none`.
+void add_differences(Report& report, const std::string& table, const std::vector<Difference>& list, const std::string& none);
+
+}  // namespace ostraka

@@ -1,0 +1,307 @@
+// fit: from fragments to the whole object.
+#include "operations.h"
+
+#include "ostraka/family/fragment_thresholds.h"
+#include "ostraka/family/member_file.h"
+#include "ostraka/fitting/assembly.h"
+#include "ostraka/fitting/fragment_file.h"
+#include "ostraka/fitting/pose_searches.h"
+#include "ostraka/measure/measure.h"
+
+#include <algorithm>
+#include <set>
+
+namespace ostraka {
+
+namespace {
+
+class Fit final : public Operation {
+public:
+    void describe(Parameters& p) override {
+        p.input("template", Kind::template_package, known, "template of the object's class (.template.json)");
+        p.input(
+             "fragments", Kind::mesh, files,
+             "a mesh file, or points without faces, for each fragment; NAME.ant.json beside it are its annotations: points with "
+             "the template's tags are landmarks, regions \"outer\", \"inner\", \"fracture\" its facets")
+            .many();
+        p.output("output", Kind::folder, output,
+                 "folder for completed.ply, completed.ant.json and fit.assembly.json; made if it is missing")
+            .flag();
+        p.input("assembly", Kind::assembly, assembly, "an assembly: its matches of annotations with \"stated\": true hold")
+            .optional()
+            .flag();
+        p.input("class", Kind::shape_class, class_file,
+                "a class learnt with this template (NAME.class.json of 'template learn'): what no fragment shows is as in its "
+                "members that look so where one does; thresholds that are not told are those of its members")
+            .optional()
+            .flag();
+        p.options("fresh", fresh, "search poses anew, whatever an earlier fit in the folder found").unrecorded();
+        p.options("placed", placed, "also write each fragment where it lies: NAME.placed.ply");
+        options.describe(p.options);
+        reading.describe(p.options);
+        for (const char* name : {"residual", "scale-tolerance", "slack"}) thresholds[name] = p.options.find(name);
+        p.report.schema = "assembly";
+        const auto people = [](const std::vector<const char*>& titles) {
+            std::vector<Field> fields;
+            for (const char* title : titles) fields.push_back({"", FieldType::text, title});
+            return fields;
+        };
+        p.report.table("", people({"fragment", "place", "landmarks", "residual", "own scale", "wrong landmarks"}), "fragments");
+        p.report.table("", people({"breaks", "turn, degrees", "contact %", "rim %", "residual", "confidence", "turn"}), "joints");
+        p.report.table("", people({"id", "constraint", "verdict", "how well"}), "constraints");
+    }
+
+    void check() const override {
+        std::set<std::string> taken;
+        for (std::size_t k = 0; k < files.size(); ++k)
+            if (const std::string name = Path(files.file(k)).stem().string(); !taken.insert(name).second)
+                fail_usage("two fragments are called '" + name + "'", "rename one of the files");
+        if (class_file && options.fit.space != "mesh")
+            fail_usage("--class changes the template's shape, and its cage does not follow", "leave --class or --space out");
+    }
+
+    void run(Context& context, Report& report) override {
+        check_usable(*known, known.file());
+        if (!known->annotations) fail_input(known.file(), "has no annotations", "pack them: what is common is found by them");
+        const Mesh& mesh = known->mesh->mesh;
+        names.template_file = known.file_name();
+        std::vector<std::vector<StatedMatch>> stated = read_fragments(context, report);
+        const RelationGraph& graph = class_template(*known).graph;
+        std::optional<ShapePrior> prior;
+        const ShapeClass* learnt = nullptr;
+        if (class_file) {
+            learnt = &class_file.load<ShapeClass>(read_class);
+            check_topology(*learnt, class_file.file(), mesh, known.file());
+            prior = prior_of(learnt->modes);
+            if (learnt->modes.variances.empty())
+                report.note(class_file.file() + " has no modes (one member, or all of one shape): its mean shape alone counts");
+        }
+        used = take_thresholds(options, learnt, [&](const std::string& name) { return thresholds.at(name)->given; });
+        std::optional<TemplateCage> cage;
+        if (options.fit.space != "mesh") {
+            context.record([&] { cage = in_file(known.file(), [&] { return cage_of(*known); }); });
+            if (!cage) {
+                report.note("the template has no cage: one of 200 vertices was made around it");
+                cage = made_cage(mesh);
+            }
+        }
+        Reconstructor reconstructor(mesh, *known->annotations, graph, options, prior ? &*prior : nullptr,
+                                    cage ? &*cage : nullptr);
+        for (std::size_t k = 0; k < fragments.size(); ++k) reconstructor.add(*fragments[k], std::move(stated[k]));
+        // No fragment stands where a result will be written: told before the work.
+        for (const char* name : {"fit.assembly.json", searches_file, "completed.ply", "completed.ant.json"})
+            static_cast<void>(output.in(name));
+        for (const std::string& name : names.fragments) static_cast<void>(output.in(name + ".placed.ply"));
+        PoseSearches& searches = reconstructor.searches();
+        if (!fresh) remember(searches, report);
+        const Reconstruction result = reconstructor.run();
+        if (searches.reused() > 0)
+            report.note(std::to_string(searches.reused()) + " of " + std::to_string(searches.reused() + searches.made()) +
+                        " searches of poses are those of an earlier fit in " + output.file() +
+                        ": template, fragment and options are the same");
+        if (const double scale = result.placement.scale;
+            result.placement.any() && (scale > options.placement.unit_ratio || scale * options.placement.unit_ratio < 1))
+            report.note("the template is scaled by " + number(scale, 4) + ": are all files in one unit?");
+        write(context, report, result, searches);
+        tell(report, result);
+        for (const auto& [phase, time] : result.seconds) report.run("seconds." + phase, time);
+        if (result.verdict != Compatibility::compatible) report.answer_no();
+    }
+
+private:
+    /// What a person stated of each.
+    std::vector<std::vector<StatedMatch>> read_fragments(Context& context, Report& report) {
+        std::vector<std::vector<StatedMatch>> stated;
+        if (assembly) validate(*assembly, "assembly", assembly.file());
+        for (std::size_t k = 0; k < files.size(); ++k) {
+            const FragmentFile& one = files.load<FragmentFile>([&](const Path& file) { return read_fragment(file, reading); }, k,
+                                                               options_text(reading));
+            context.notes(files.file(k), one.notes);
+            fragments.push_back(&one.fragment);
+            names.fragments.push_back(one.fragment.name);
+            stated.push_back(assembly ? stated_matches(*assembly, one.fragment, *known->annotations, assembly.file())
+                                      : std::vector<StatedMatch>());
+            if (one.fragment.facets.empty()) continue;
+            std::array<double, 3> area{};
+            for (const Face face : one.fragment.mesh.faces())
+                area.at(static_cast<std::size_t>(one.fragment.facets[face])) += face_area(one.fragment.mesh, face);
+            const auto share = [&](std::size_t i) { return number(100 * area.at(i) / (area[0] + area[1] + area[2]), 3) + " %"; };
+            report.line(printable(one.fragment.name) + ": facets by " + one.facets_from + ": outer " + share(0) + ", inner " +
+                        share(1) + ", fracture " + share(2));
+        }
+        if (assembly)
+            for (const std::string& name : unused_statements(*assembly, names.fragments))
+                report.note(assembly.file() + " states matches of '" + name + "', which is no fragment here");
+        for (std::size_t k = 0; k < files.size(); ++k)
+            if (const std::string& ours = known->annotations->unit, &theirs = fragments[k]->annotations.unit;
+                !ours.empty() && !theirs.empty() && ours != theirs)
+                fail_input(files.file(k), "is in " + printable(theirs) + ", and the template in " + printable(ours),
+                           "bring all files to one unit");
+        return stated;
+    }
+
+    static constexpr const char* searches_file = "fit.searches.json";
+
+    /// Searches that an earlier fit in the folder made. Whether one is of use here its key says.
+    void remember(PoseSearches& searches, Report& report) const {
+        const Path file = output.in(searches_file);
+        if (!file_exists(file)) return;
+        try {
+            const std::size_t damaged = searches.add(read_json(file), file.string());
+            if (damaged > 0)
+                report.note(std::to_string(damaged) + " searches in " + file.string() +
+                            " were changed since they were made: they are made anew");
+        } catch (const Error& error) {
+            report.note(file.string() + " is not used, and written anew: " + error.problem());
+        }
+    }
+
+    void write(Context& context, Report& report, const Reconstruction& result, const PoseSearches& searches) const {
+        const Provenance provenance = context.provenance();
+        const auto write_document = [&](const char* name, JsonValue&& content, Json& document) {
+            add_member(content, "provenance", provenance.to_json(document.GetAllocator()), document.GetAllocator());
+            write_json(output.in(name), content);
+        };
+        Json document;
+        JsonValue content = assembly_to_json(result, names, document.GetAllocator());
+        add_member(content, "thresholds", thresholds_to_json(used, document.GetAllocator()), document.GetAllocator());
+        report.values(content);
+        write_document("fit.assembly.json", std::move(content), document);
+        if (!searches.empty()) write_document(searches_file, searches.to_json(document.GetAllocator()), document);
+        WriteOptions how;
+        how.comment = provenance.to_line();
+        if (!result.points.empty()) {
+            write_object(result.object, how);
+            for (std::size_t k = 0; k < result.notes.size(); ++k) context.notes(names.fragments[k], result.notes[k]);
+            for (const CompletionNote& note : result.object.notes)
+                report.note(names.fragments[static_cast<std::size_t>(note.fragment)] + ": " + note.text +
+                            "; the template's triangles show what was seen of it");
+            AnnotationSet carried = carry_annotations(known->mesh->mesh, *known->annotations, result);
+            report.notes(refresh_measures(result.object.mesh, carried).notes);
+            write_annotations(output.in("completed.ant.json"), carried, result.object.mesh, "completed.ply", provenance);
+        }
+        for (std::size_t k = 0; placed && k < fragments.size(); ++k)
+            if (const FragmentPlacement& one = result.placement.fragments[k]; one.problem.empty())
+                write_mesh(output.in(names.fragments[k] + ".placed.ply"), moved(fragments[k]->mesh, one.pose), {}, how);
+    }
+
+    /// Colours and labels say what was seen.
+    void write_object(const CompletedObject& object, WriteOptions how) const {
+        MeshExtras extras;
+        FaceValues fragment{"fragment", {}}, distance{"distance", {}}, confidence{"confidence", {}};
+        for (std::size_t f = 0; f < object.origin.size(); ++f) {
+            const Origin origin = object.origin[f];
+            extras.face_labels.push_back(static_cast<std::int32_t>(origin));
+            extras.face_colours.push_back(origin == Origin::observed       ? Colour{186, 120, 82, 255}
+                                          : origin == Origin::interpolated ? Colour{214, 180, 120, 255}
+                                                                           : Colour{200, 205, 210, 255});
+            fragment.values.push_back(static_cast<float>(object.fragment[f] + 1));
+            distance.values.push_back(static_cast<float>(object.distance[f]));
+            confidence.values.push_back(static_cast<float>(object.confidence[f]));
+        }
+        how.face_values = {std::move(fragment), std::move(distance), std::move(confidence)};
+        write_mesh(output.in("completed.ply"), object.mesh, extras, how);
+    }
+
+    void tell(Report& report, const Reconstruction& result) const {
+        for (std::size_t k = 0; k < names.fragments.size(); ++k) tell_fragment(report, result, k);
+        if (result.turns) tell_turns(report, *result.turns);
+        report.line("scale of the template " + number(result.placement.scale, 4) + "; observed " +
+                    number(100 * result.observed_share, 3) + " % of the surface");
+        if (result.crossings > 0)
+            report.line(std::to_string(result.crossings) +
+                        " pairs of faces cross each other that did not in the template: look at the picture; a larger --detail "
+                        "may help");
+        for (const ConstraintReport& constraint : result.constraints) tell_constraint(report, result, constraint);
+        for (const UsedThreshold& one : used)
+            if (one.from == "class")
+                report.line("--" + one.option + " " + number(one.value, 3) + " as " + std::to_string(one.members) +
+                            " members of the class have it");
+        for (const Objection& objection : result.objections)
+            report.line((objection.fragment >= 0
+                             ? "against " + printable(names.fragments[static_cast<std::size_t>(objection.fragment)]) + ": "
+                             : "constraint " + std::to_string(objection.constraint) + ": ") +
+                        printable(objection.text));
+        report.line(to_string(result.verdict) + (result.undecided.empty() ? "" : ": cannot decide, because " + result.undecided));
+    }
+
+    void tell_fragment(Report& report, const Reconstruction& result, std::size_t k) const {
+        const FragmentPlacement& one = result.placement.fragments[k];
+        const PoseSearchResult* search =
+            k < result.searched.size() && result.searched[k].has_value() ? &*result.searched[k] : nullptr;
+        std::size_t count = 0;
+        std::string wrong;
+        for (const LandmarkResidual& landmark : one.landmarks) {
+            count += landmark.used ? 1 : 0;
+            if (!landmark.used && one.problem.empty() && search == nullptr) wrong += (wrong.empty() ? "" : ", ") + landmark.name;
+        }
+        report.row("fragments")
+            .shown("fragment", names.fragments[k])
+            .shown("place", !one.problem.empty() ? "left out"
+                            : search == nullptr
+                                ? "placed"
+                                : "found, confidence " + number(search->confidence, 3) +
+                                      (search->freedom.kind == FreedomKind::none ? "" : "; open: " + search->freedom.text()))
+            .shown("landmarks", std::to_string(count) + " of " + std::to_string(one.landmarks.size()))
+            .shown("residual", one.problem.empty() ? number(one.residual, 3) : "-")
+            .shown("own scale", one.own_scale > 0 ? number(one.own_scale, 4) : "-")
+            .shown("wrong landmarks", wrong);
+    }
+
+    /// The joints by which turns were decided, and the fragments without one.
+    void tell_turns(Report& report, const BreakTurns& turns) const {
+        for (const BreakJoint& joint : turns.joints)
+            report.row("joints")
+                .shown("breaks", names.fragments[static_cast<std::size_t>(joint.first)] + " - " +
+                                     names.fragments[static_cast<std::size_t>(joint.second)])
+                .shown("turn, degrees", number(joint.turn, 4))
+                .shown("contact %", number(100 * joint.contact, 3))
+                .shown("rim %", number(100 * joint.rim, 3))
+                .shown("residual", number(joint.residual, 3))
+                .shown("confidence", joint.carries ? number(joint.confidence, 2) : "-")
+                .shown("turn", !joint.carries  ? "closes a cycle"
+                               : joint.decided ? "decided"
+                                               : "not decided");
+        for (std::size_t k = 0; k < names.fragments.size() && k < turns.notes.size(); ++k)
+            if (!turns.notes[k].empty()) report.line(printable(names.fragments[k]) + ": " + printable(turns.notes[k]));
+    }
+
+    static void tell_constraint(Report& report, const Reconstruction& result, const ConstraintReport& constraint) {
+        std::string words = constraint.text;
+        for (std::size_t i = 0; i < constraint.deviations.size(); ++i) {
+            const Deviation& d = constraint.deviations[i];
+            words += (words.empty() ? "" : "; ") + d.quantity + " " + number(d.value.value_or(0), 4) + " (was " +
+                     number(i < constraint.before_values.size() ? constraint.before_values[i] : 0, 4) + ", at most " +
+                     number(d.tolerance.value_or(0), 4) + ")" + (d.unit.empty() ? "" : " " + d.unit);
+        }
+        const bool objected = std::any_of(result.objections.begin(), result.objections.end(), [&](const Objection& one) {
+            return one.kind == ObjectionKind::constraint && one.constraint == constraint.id;
+        });
+        report.row("constraints")
+            .shown("id", std::to_string(constraint.id))
+            .shown("constraint", constraint.type)
+            .shown("verdict", !constraint.used                                    ? "left out"
+                              : constraint.verdict == Verdict::fails && !objected ? "holds within --slack"
+                                                                                  : to_string(constraint.verdict))
+            .shown("how well", words);
+    }
+
+    TemplateInput known;
+    FileInput files, class_file;
+    JsonInput assembly;
+    FolderOutput output;
+    bool placed = false, fresh = false;
+    ReconstructOptions options;
+    FragmentFileOptions reading;
+    std::map<std::string, const Option*> thresholds;  ///< options that a class has a say in
+
+    std::vector<const Fragment*> fragments;
+    AssemblyNames names;
+    std::vector<UsedThreshold> used;
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_fit() { return make<Fit>(); }
+
+}  // namespace ostraka

@@ -1,0 +1,128 @@
+// measure clay: how much clay an object holds, with what is not seen of its inside.
+#include "operations.h"
+
+#include "ostraka/measure/solid.h"
+#include "ostraka/slicing/clay.h"
+
+#include <cmath>
+
+namespace ostraka {
+
+namespace {
+
+class MeasureClay final : public Operation {
+public:
+    void describe(Parameters& p) override {
+        p.input("mesh", Kind::mesh, mesh, "mesh file, closed or open");
+        p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json): unit and upward direction")
+            .optional();
+        p.options(
+            "up", up,
+            "x, y, z, -x, -y, -z or three numbers: direction that slices lie across; else as the annotations say, else 0,0,1");
+        p.options("unit", unit, "unit of the mesh's coordinates, e.g. mm; else as the annotations say");
+        options.describe(p.options);
+        for (const Figure& figure : figures_of({})) p.report.value(figure.name, FieldType::any, "", figure.unit);
+        p.report.value("unit", FieldType::text).value("volume of the mesh", FieldType::number, "", "length^3");
+    }
+
+    void check() const override {
+        if (!up.empty()) static_cast<void>(direction_of(up, "--up"));
+    }
+
+    void run(Context&, Report& report) override {
+        std::array<double, 3> direction{0, 0, 1};
+        if (!up.empty()) direction = direction_of(up, "--up");
+        length_unit = unit;
+        if (annotations) {
+            const AnnotationSet& set = annotations.on(mesh->mesh);
+            if (unit.empty()) length_unit = set.unit;
+            if (up.empty() && set.up) direction = *set.up;
+        }
+        const SliceFrame frame = slice_frame(Point(0, 0, 0), Vector(direction[0], direction[1], direction[2]));
+        const ClayVolume clay = in_file(mesh.file(), [&] { return clay_volume(mesh->mesh, frame, options); });
+        const double own = closed_volume(mesh->mesh);
+        for (const Figure& figure : figures_of(clay)) {
+            const bool known = !std::isnan(figure.value);
+            report.value(figure.name, known ? JsonValue(figure.value) : JsonValue());
+            report.people(figure.name, known ? number(figure.value) + unit_text(figure.unit) : "unknown");
+        }
+        report.value("unit", length_unit);
+        report.value("volume of the mesh", own);
+        report.line(sentence(clay, own));
+        add_notes(report, clay);
+        if (std::isnan(clay.most)) report.answer_no();
+    }
+
+private:
+    struct Figure {
+        std::string name;
+        double value;
+        std::string unit;
+    };
+    static std::vector<Figure> figures_of(const ClayVolume& clay) {
+        return {{"most clay", clay.most, "length^3"},
+                {"least clay", clay.least, "length^3"},
+                {"within the outer surface", clay.envelope, "length^3"},
+                {"wall taken for least", clay.wall, "length"},
+                {"wall seen, mean", clay.wall_mean, "length"},
+                {"wall seen, least (5 % quantile)", clay.wall_least, "length"},
+                {"wall seen, most (95 % quantile)", clay.wall_most, "length"},
+                {"slices", double(clay.slices), ""},
+                {"slices with a cavity seen", double(clay.with_cavity), ""},
+                {"slices without an outline", double(clay.without_outline), ""},
+                {"slices whose contours cross", double(clay.crossing), ""},
+                {"slices read against their orientation", double(clay.reversed ? clay.slices : clay.turned), ""}};
+    }
+
+    [[nodiscard]] std::string unit_text(const std::string& of) const {
+        return of.empty() || length_unit.empty() ? "" : " " + length_unit + of.substr(std::string("length").size());
+    }
+
+    /// "12345 mm^3 (12.3 cm^3)": large ones in larger units beside.
+    [[nodiscard]] std::string volume(double value) const {
+        std::string text = number(value) + unit_text("length^3");
+        const double cubic_cm = length_unit == "mm" ? value / 1000 : length_unit == "cm" ? value : 0;
+        if (cubic_cm >= 1000) text += " (" + number(cubic_cm / 1000, 3) + " litres)";
+        else if (length_unit == "mm" && cubic_cm >= 1) text += " (" + number(cubic_cm, 3) + " cm^3)";
+        return text;
+    }
+
+    [[nodiscard]] std::string sentence(const ClayVolume& clay, double own) const {
+        std::string text = std::isnan(clay.most)    ? "the clay is not known"
+                           : std::isnan(clay.least) ? "clay: at most " + volume(clay.most)
+                                                    : "clay: between " + volume(clay.least) + " and " + volume(clay.most);
+        if (std::isnan(own)) return text + "; the mesh is open, so that it has no volume of its own";
+        return text + "; the mesh is closed, and its own volume is " + volume(own);
+    }
+
+    static void add_notes(Report& report, const ClayVolume& clay) {
+        const auto some = [&](int count, const std::string& what) {
+            if (count > 0) report.note(std::to_string(count) + " slices have " + what);
+        };
+        if (std::isnan(clay.least) && !std::isnan(clay.most))
+            report.note("no wall is seen, so there is no least: give one with --wall");
+        some(clay.without_outline, "no closed outline: taken as between their neighbours");
+        some(clay.crossing,
+             "contours that cross, since parts of the mesh pass through each other: the most is a bound that may count them "
+             "twice, the least takes them as nothing (ostraka mesh repair --wrap makes one surface of them)");
+        some(clay.turned,
+             "contours that ran against their nesting, as a cavity does that is oriented outwards: read by their nesting");
+        if (clay.reversed) report.note("the mesh is inside out: read the other way round (ostraka mesh repair mends it)");
+        if (clay.slices == 0) report.note("no slice meets the mesh: it has no height along this direction; give another --up");
+        else if (std::isnan(clay.most))
+            report.note(
+                "no slice has a closed outline, so there is no volume: is the mesh open along its height, or inside out?");
+    }
+
+    MeshInput mesh;
+    AnnotationsInput annotations;
+    std::string up, unit;
+    std::string length_unit;  ///< the unit asked for, or that of the annotations
+    ClayOptions options;
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_measure_clay() { return make<MeasureClay>(); }
+
+}  // namespace ostraka

@@ -1,0 +1,122 @@
+// measure describe: what can be computed of annotations.
+#include "measured_object.h"
+
+#include "ostraka/measure/descriptors.h"
+
+#include <algorithm>
+
+namespace ostraka {
+
+namespace {
+
+class MeasureDescribe final : public Operation {
+public:
+    void describe(Parameters& p) override {
+        object.describe(p);
+        p.input("map", Kind::values, maps, "NAME=FILE: a map of one value a vertex (.npy, or text with a number a line)")
+            .optional()
+            .flag()
+            .many()
+            .named();
+        p.options("annotation", chosen, "id or tag of an annotation; once for each, all if left out");
+        options.describe(p.options);
+        p.report.table("annotations", {{"id", FieldType::integer}, {"tag", FieldType::text}, {"quantities", FieldType::any}});
+        p.report.table("", {{"", FieldType::text, "id"},
+                            {"", FieldType::text, "tag"},
+                            {"", FieldType::text, "quantity"},
+                            {"", FieldType::text, "value"},
+                            {"", FieldType::text, "unit"}});
+    }
+
+    void run(Context&, Report& report) override {
+        const Mesh& mesh = object.mesh->mesh;
+        const std::vector<NamedMap> named = read_maps(mesh);
+        AnnotationSet set = object.read(report);
+        DescriptorSearch search(mesh, options);
+        report.empty_table("annotations");
+        report.empty_table("");
+        for (Annotation* annotation : selected(set)) {
+            const std::vector<Quantity> quantities = quantities_of(*annotation, search, named);
+            store(*annotation, quantities, set.unit);
+            tell(report, *annotation, quantities, set.unit);
+        }
+        object.write(std::move(set));
+    }
+
+private:
+    [[nodiscard]] std::vector<NamedMap> read_maps(const Mesh& mesh) const {
+        std::vector<NamedMap> named;
+        for (std::size_t i = 0; i < maps.size(); ++i) {
+            const NamedMap& map = named.emplace_back(NamedMap{maps.label(i), maps.get(i), {}});
+            if (map.values.size() != mesh.number_of_vertices())
+                fail_input(maps.file(i),
+                           "has " + std::to_string(map.values.size()) + " values for " +
+                               std::to_string(mesh.number_of_vertices()) + " vertices",
+                           "give one value for each vertex of the mesh");
+        }
+        return named;
+    }
+
+    /// Those chosen, each once; all if none was.
+    [[nodiscard]] std::vector<Annotation*> selected(AnnotationSet& set) const {
+        std::vector<Annotation*> list;
+        for (const auto& name : chosen)
+            if (Annotation* one = &object.one(set, name); std::find(list.begin(), list.end(), one) == list.end())
+                list.push_back(one);
+        if (chosen.empty())
+            for (Annotation& annotation : set.annotations) list.push_back(&annotation);
+        return list;
+    }
+
+    /// What is wrong with a map is said of its file.
+    [[nodiscard]] std::vector<Quantity> quantities_of(const Annotation& annotation, DescriptorSearch& search,
+                                                      const std::vector<NamedMap>& named) const {
+        try {
+            return in_file(object.file(), [&] { return search.describe(annotation, named); });
+        } catch (const Error& error) {
+            for (std::size_t i = 0; i < named.size(); ++i)
+                if (error.where().ends_with("map '" + named[i].name + "'"))
+                    throw Error(error.kind(), maps.file(i) + ", at " + error.where(), error.problem(), error.remedy());
+            throw;
+        }
+    }
+
+    static void tell(Report& report, const Annotation& annotation, const std::vector<Quantity>& quantities,
+                     const std::string& unit) {
+        auto& allocator = report.allocator();
+        JsonValue list(rapidjson::kArrayType);
+        for (const Quantity& quantity : quantities) {
+            JsonValue item(rapidjson::kObjectType), numbers(rapidjson::kArrayType);
+            std::string text;
+            const bool axes = quantity.name == "box axes" && quantity.values.size() == 9;  // three vectors
+            for (std::size_t i = 0; i < quantity.values.size(); ++i) {
+                numbers.PushBack(quantity.values[i], allocator);
+                text += (text.empty() ? "" : " ") + std::string(axes && i % 3 == 0 ? "(" : "") + number(quantity.values[i], 6) +
+                        (axes && i % 3 == 2 ? ")" : "");
+            }
+            add_member(item, "name", quantity.name, allocator);
+            if (quantity.is_list) add_member(item, "value", std::move(numbers), allocator);
+            else add_member(item, "value", JsonValue(quantity.values.front()), allocator);
+            add_member(item, "unit", unit_of(quantity, unit), allocator);
+            list.PushBack(item, allocator);
+            report.row("")
+                .shown("id", std::to_string(annotation.id))
+                .shown("tag", annotation.tag)
+                .shown("quantity", quantity.name)
+                .shown("value", text)
+                .shown("unit", unit_of(quantity, unit));
+        }
+        report.row("annotations")("id", annotation.id)("tag", annotation.tag)("quantities", std::move(list));
+    }
+
+    MeasuredObject object;
+    ValuesInput maps;
+    std::vector<std::string> chosen;
+    DescriptorOptions options;
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_measure_describe() { return make<MeasureDescribe>(); }
+
+}  // namespace ostraka

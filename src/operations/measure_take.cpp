@@ -1,0 +1,171 @@
+// measure take: a ruler, a tape, or two planes.
+#include "measured_object.h"
+
+#include "ostraka/core/ids.h"
+#include "ostraka/core/limits.h"
+#include "ostraka/geom/surface_search.h"
+#include "ostraka/measure/measure.h"
+#include "ostraka/select/selections.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ostraka {
+
+namespace {
+
+class MeasureTake final : public Operation {
+public:
+    void describe(Parameters& p) override {
+        object.describe(p);
+        p.options("tool", tool, "ruler (straight), tape (over the surface) or bounding (between two planes)",
+                  Choices{"ruler", "tape", "bounding"})
+            .required();
+        p.options("points", points, "pins as vertex indices, like 12,88", Range{0, largest_index});
+        p.options("at", places, "a pin as coordinates x,y,z: the nearest vertex; once for each pin");
+        p.options("direction", direction,
+                  "direction of a bounding measure: x, y, z, -x, -y, -z or three numbers; without pins the whole annotation is "
+                  "measured along it");
+        p.options("geodesic", geodesic, "a tape along edges, or the exact shortest curve over the faces",
+                  Choices{"edges", "exact"});
+        p.options("repeat", repeats,
+                  "the pins picked again, as vertex indices like 12,88, as many as the measure has; once for each picking: "
+                  "the value is the mean");
+        p.options("annotation", annotation, "id or tag of the annotation that gets it; the whole object if left out");
+        p.options("name", name, "name of the attribute; the tool if left out");
+        p.report.value("name", FieldType::text).value("annotation", FieldType::integer).value("tool", FieldType::text);
+        p.report.structure("points").value("value", FieldType::number).value("unit", FieldType::text);
+        for (const char* figure : {"uncertainty", "resolution", "spread"}) p.report.value(figure, FieldType::number);
+        p.report.value("pickings", FieldType::integer);
+    }
+
+    void check() const override {
+        const bool bounding = tool == "bounding";
+        if (geodesic == Geodesic::exact && tool != "tape") fail_usage("--geodesic exact with a " + tool, "it belongs to a tape");
+        if (bounding && direction.empty()) fail_usage("a bounding measure without a direction", "add --direction x,y,z");
+        if (!bounding && !direction.empty()) fail_usage("--direction with a " + tool, "it belongs to a bounding measure");
+        if (!direction.empty()) static_cast<void>(direction_of(direction, "--direction"));
+        if (!points.empty() && !places.empty()) fail_usage("--points and --at", "give the pins in one way");
+        for (const auto& text : places) static_cast<void>(place_of(text));
+        for (const auto& text : repeats) static_cast<void>(numbers_of<Index>(text, "--repeat"));
+        const std::size_t pins = points.size() + places.size();
+        if (bounding ? pins == 1 : pins < 2)
+            fail_usage("a " + tool + " with " + std::to_string(pins) + (pins == 1 ? " pin" : " pins"),
+                       bounding ? "give two or more, or none and the whole annotation is measured" : "give two or more");
+    }
+
+    void run(Context&, Report& report) override {
+        const Mesh& mesh = object.mesh->mesh;
+        AnnotationSet set = object.read(report);
+        Annotation& holder = annotation.empty() ? ensure_root(set, mesh) : object.one(set, annotation);
+        Measure measure = pinned(mesh, holder, report);
+        measure.unit = set.unit;
+        const Evaluated taken = in_file(object.mesh.file(), [&] { return evaluate_with_uncertainty(mesh, holder, measure); });
+        measure.value = taken.value;
+        measure.uncertainty = taken.uncertainty;
+        keep(holder, measure, report);
+        tell(report, holder, measure, taken);
+        object.write(std::move(set));
+    }
+
+private:
+    enum class Geodesic { edges, exact };
+    static constexpr int largest_index = std::numeric_limits<int>::max();
+
+    [[nodiscard]] const std::string& called() const { return name.empty() ? tool : name; }
+
+    static Point place_of(const std::string& text) {
+        const auto numbers = numbers_of<double>(text, "--at");
+        const std::string what = "--at is '" + printable(text, 60) + "'";
+        if (numbers.size() != 3) fail_usage(what, "give three numbers, like 0,0,1");
+        if (std::any_of(numbers.begin(), numbers.end(), [](double x) { return !std::isfinite(x); }))
+            fail_usage(what, "give finite numbers");
+        if (!is_place(numbers[0], numbers[1], numbers[2]))
+            fail_usage(what + ", beyond what can be computed with (coordinates up to 1e60)",
+                       "give a place on the surface, in the unit of the mesh");
+        return {numbers[0], numbers[1], numbers[2]};
+    }
+
+    /// The measure as it was asked for, with its pins on vertices.
+    [[nodiscard]] Measure pinned(const Mesh& mesh, const Annotation& holder, Report& report) const {
+        Measure measure;
+        measure.tool = tool;
+        measure.exact = geodesic == Geodesic::exact;
+        if (!direction.empty()) measure.direction = direction_of(direction, "--direction");
+        measure.points.assign(points.begin(), points.end());
+        for (const auto& text : places) measure.points.push_back(pin(mesh, place_of(text), report));
+        for (const auto& text : repeats) measure.repeats.push_back(numbers_of<Index>(text, "--repeat"));
+        if (measure.points.empty()) {
+            const auto ends = extremes(mesh, holder, *measure.direction);
+            measure.points.assign(ends.begin(), ends.end());
+        }
+        return measure;
+    }
+
+    /// The nearest vertex; a place far from the surface is a mistake, of the unit or of the position, say.
+    [[nodiscard]] Index pin(const Mesh& mesh, const Point& place, Report& report) const {
+        const Index found = in_file(object.mesh.file(), [&] { return nearest_vertex(mesh, place); });
+        const double moved = std::sqrt(CGAL::squared_distance(place, mesh.point(Vertex(found)))), diagonal = box_diagonal(mesh);
+        const std::string where = number(place.x(), 6) + "," + number(place.y(), 6) + "," + number(place.z(), 6);
+        if (moved > 0.02 * diagonal) {
+            const double away = SurfaceSearch(mesh).closest(place).distance;
+            if (away > 0.02 * diagonal)
+                fail_input("--at " + where,
+                           "the surface is " + number(away, 4) + " away, farther than 2 % of the diagonal (" +
+                               number(0.02 * diagonal, 4) + ")",
+                           "give a place on the surface, in the unit of the mesh, or vertices with --points");
+        }
+        if (moved > 0.001 * diagonal)
+            report.note("the pin at " + where + " is vertex " + std::to_string(found) + ", " + number(moved, 3) + " away");
+        return found;
+    }
+
+    void keep(Annotation& holder, const Measure& measure, Report& report) const {
+        const auto other = std::find_if(holder.attributes.begin(), holder.attributes.end(),
+                                        [&](const Attribute& known) { return known.name == called(); });
+        if (other != holder.attributes.end())
+            report.note("annotation " + std::to_string(holder.id) + " has an attribute '" + called() + "' (id " +
+                        std::to_string(other->id) +
+                        ") already, and both are kept: give another --name, remove one with 'annotation edit "
+                        "--remove-attribute ID', or join pickings with 'measure refresh --merge-pickings'");
+        Attribute attribute;
+        attribute.name = called();
+        attribute.type = AttributeType::measure;
+        attribute.measure = measure;
+        attribute.id = next_free_id(holder.attributes);
+        holder.attributes.push_back(std::move(attribute));
+    }
+
+    void tell(Report& report, const Annotation& holder, const Measure& measure, const Evaluated& taken) const {
+        JsonValue pins(rapidjson::kArrayType);
+        for (const Index v : measure.points) pins.PushBack(v, report.allocator());
+        report.value("name", called());
+        report.value("annotation", holder.id);
+        report.value("tool", tool);
+        report.value("points", std::move(pins));
+        report.value("value", taken.value);
+        report.value("unit", measure.unit);
+        report.value("uncertainty", taken.uncertainty);
+        report.value("resolution", taken.resolution);
+        report.value("spread", taken.spread);
+        report.value("pickings", taken.pickings);
+        std::string line = printable(called(), 60) + " " + number(taken.value, 9) + " " + printable(measure.unit, 20) +
+                           (measure.unit.empty() ? "" : " ") + "+- " + number(taken.uncertainty, 3);
+        if (taken.pickings > 1)
+            line += " (" + std::to_string(taken.pickings) + " pickings, spread " + number(taken.spread, 3) + ", resolution " +
+                    number(taken.resolution, 3) + ")";
+        report.line(line);
+    }
+
+    MeasuredObject object;
+    std::string tool, direction, annotation, name;
+    std::vector<int> points;
+    std::vector<std::string> places, repeats;
+    Geodesic geodesic = Geodesic::edges;
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_measure_take() { return make<MeasureTake>(); }
+
+}  // namespace ostraka

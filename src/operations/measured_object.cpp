@@ -1,0 +1,36 @@
+#include "measured_object.h"
+
+namespace ostraka {
+
+Slot& MeasuredObject::describe(Parameters& p) {
+    p.input("mesh", Kind::mesh, mesh, "mesh file");
+    Slot& named =
+        p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json); without, the whole object is meant")
+            .optional()
+            .flag();
+    p.output("output", Kind::annotations, output, "annotations to write, with the values as attributes (.ant.json)")
+        .optional()
+        .flag();
+    p.options("unit", unit, "unit of the coordinates, where the annotations do not say (any text, such as mm)");
+    return named;
+}
+
+AnnotationSet MeasuredObject::read(Report& report) const {
+    AnnotationSet set;
+    if (annotations) set = annotations.on(mesh->mesh);
+    else ensure_root(set, mesh->mesh);
+    if (!unit.empty() && !set.unit.empty() && set.unit != unit)
+        report.note("the annotations are in " + set.unit + ", not in " + unit + "; theirs counts");
+    if (set.unit.empty()) set.unit = unit;
+    return set;
+}
+
+Annotation& MeasuredObject::one(AnnotationSet& set, const std::string& name) const {
+    return *set.find(find_annotation(set, name, file()).id);
+}
+
+void MeasuredObject::write(AnnotationSet set) const {
+    if (output) output.write(std::move(set), mesh->mesh, mesh.file());
+}
+
+}  // namespace ostraka

@@ -1,0 +1,104 @@
+// mesh break: a fragment whose pose and place on the whole are known.
+#include "operations.h"
+
+#include "ostraka/annotation/remap.h"
+#include "ostraka/fitting/pose_json.h"
+#include "ostraka/geom/eigen.h"
+#include "ostraka/shapes/fragments.h"
+
+#include <cmath>
+
+namespace ostraka {
+
+namespace {
+
+class MeshBreak final : public Operation {
+public:
+    void describe(Parameters& p) override {
+        p.input("input", Kind::mesh, input, "mesh file");
+        p.output("output", Kind::mesh, output, "mesh file of the fragment to write");
+        p.input("annotations", Kind::annotations, annotations, "annotations of the whole (.ant.json)").optional().flag();
+        p.output("annotations-out", Kind::annotations, annotations_out, "those of the fragment to write").optional().flag();
+        p.output("pose-out", Kind::pose, pose_out, "4 x 4 matrix (JSON) that carries the fragment back to its place on the whole")
+            .optional()
+            .flag();
+        options.describe(p.options);
+        p.options("at", at, "middle of the fragment: a place x,y,z, or the tag of an annotation").required();
+        p.report.value("vertices", FieldType::integer).value("faces", FieldType::integer).structure("pose");
+    }
+
+    void check() const override {
+        if (annotations_out && !annotations)
+            fail_usage("--annotations-out is given without --annotations", "give those of the whole too");
+    }
+
+    void run(Context&, Report& report) override {
+        const Mesh& whole = input->mesh;
+        const AnnotationSet* set = annotations ? &annotations.on(whole) : nullptr;
+        BrokenPiece piece = in_file(input.file(), [&] { return break_off(whole, place(whole, set), options); });
+
+        report.value("vertices", piece.vertices.size());
+        report.value("faces", piece.faces.size());
+        JsonValue pose = pose_to_json(piece.pose, report.allocator());
+        if (pose_out) pose_out.write(pose);
+        report.value("pose", std::move(pose));
+        report.line((output.file().empty() ? "fragment" : printable(output.file())) + ": " +
+                    std::to_string(piece.vertices.size()) + " vertices, " + std::to_string(piece.faces.size()) + " faces");
+        if (annotations_out) {
+            AnnotationSet rest = annotations_of_piece(whole, *set, piece.mesh, piece.vertices, piece.faces);
+            rest.up.reset();
+            annotations_out.write(std::move(rest), piece.mesh, output.file_name());
+        }
+        MeshExtras extras;
+        const auto take = [](const auto& from, const std::vector<Index>& kept, auto& to) {
+            if (!from.empty())
+                for (const Index i : kept) to.push_back(from[i]);
+        };
+        take(input->extras.vertex_colours, piece.vertices, extras.vertex_colours);
+        take(input->extras.vertex_labels, piece.vertices, extras.vertex_labels);
+        take(input->extras.face_colours, piece.faces, extras.face_colours);
+        take(input->extras.face_labels, piece.faces, extras.face_labels);
+        output.write(std::move(piece.mesh), std::move(extras));
+    }
+
+private:
+    [[nodiscard]] Point place(const Mesh& mesh, const AnnotationSet* set) const {
+        if (set != nullptr)
+            for (const Annotation& one : set->annotations) {
+                if (one.tag != at) continue;
+                const auto vertices = touched_vertices(mesh, one);
+                Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+                for (const Index v : vertices) sum += eigen(mesh.point(Vertex(v)));
+                if (!vertices.empty()) return point_of(sum / static_cast<double>(vertices.size()));
+            }
+        std::vector<double> numbers;
+        try {
+            numbers = numbers_of<double>(at, "--at");
+        } catch (const Error&) {
+            numbers.clear();  // said below, with what else it may be
+        }
+        if (numbers.size() != 3)
+            fail_usage("--at is '" + printable(at, 60) + (set != nullptr ? "', and no annotation has this tag" : "'"),
+                       set != nullptr ? "give the tag of an annotation, or three numbers like 0,0,10"
+                                      : "give three numbers like 0,0,10, or --annotations that have this tag");
+        if (set != nullptr && !annotations_out)
+            fail_usage("--annotations are neither needed for --at nor written", "give --annotations-out, or leave them away");
+        for (const double x : numbers)
+            if (!std::isfinite(x)) fail_usage("--at is not finite", "give a place on the object");
+        return {numbers[0], numbers[1], numbers[2]};
+    }
+
+    MeshInput input;
+    MeshOutput output;
+    AnnotationsInput annotations;
+    AnnotationsOutput annotations_out;
+    JsonOutput pose_out;
+    BreakOptions options;
+    std::string at;
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_mesh_break() { return make<MeshBreak>(); }
+
+}  // namespace ostraka

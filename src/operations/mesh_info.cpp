@@ -1,0 +1,88 @@
+// mesh info: what a file holds and what is wrong with it.
+#include "diagnosis.h"
+#include "operations.h"
+
+#include <algorithm>
+
+namespace ostraka {
+
+namespace {
+
+/// Names of what the file holds beside its geometry.
+std::vector<std::string> names_of(const MeshExtras& extras) {
+    std::vector<std::string> names;
+    if (!extras.vertex_colours.empty()) names.emplace_back("vertex colours");
+    if (!extras.face_colours.empty()) names.emplace_back("face colours");
+    if (!extras.vertex_labels.empty()) names.emplace_back("vertex labels");
+    if (!extras.face_labels.empty()) names.emplace_back("face labels");
+    if (!extras.vertex_texture.empty()) names.emplace_back("texture coordinates per vertex");
+    if (!extras.corner_texture.empty()) names.emplace_back("texture coordinates per corner");
+    return names;
+}
+
+/// Polygons with fewer than three distinct corners, which give no triangle.
+std::size_t count_degenerate(const PolygonSoup& soup) {
+    std::size_t count = 0;
+    std::vector<Index> corners;
+    for (std::size_t p = 0; p < soup.polygon_count(); ++p) {
+        corners.assign(soup.corners.begin() + soup.polygon_begin[p], soup.corners.begin() + soup.polygon_begin[p + 1]);
+        std::sort(corners.begin(), corners.end());
+        count += std::unique(corners.begin(), corners.end()) - corners.begin() < 3;
+    }
+    return count;
+}
+
+class MeshInfo final : public Operation {
+public:
+    void describe(Parameters& p) override {
+        p.input("input", Kind::mesh, input, "mesh to read: .ply, .obj, .off, .stl");
+        options.describe(p.options);
+        declare_diagnosis(p.report);
+        p.report.value("polygons", FieldType::integer).value("degenerate_polygons", FieldType::integer);
+        p.report.value("holds", FieldType::texts);
+    }
+
+    void run(Context& context, Report& report) override {
+        std::vector<std::pair<std::string, double>> seconds;
+        Stopwatch stopwatch;
+        const auto lap = [&](const char* part) {
+            seconds.emplace_back(part, stopwatch.seconds());
+            stopwatch = {};
+        };
+        PolygonSoup polygons = input.take_polygons();
+        lap("read");
+        const std::size_t polygon_count = polygons.polygon_count(), degenerate = count_degenerate(polygons);
+        const std::vector<std::string> extras = names_of(polygons.extras);
+        const TriangulatedSoup triangles = triangulate(std::move(polygons));
+        lap("triangulate");
+        const MeshDiagnosis diagnosis = in_file(input.file(), [&] { return diagnose(triangles.soup, options); });
+        seconds.insert(seconds.end(), diagnosis.seconds.begin(), diagnosis.seconds.end());
+        context.notes("", triangles.notes);
+        add_diagnosis(report, diagnosis);
+        const bool sound = diagnosis.defects().empty() && degenerate == 0;
+        report.value("sound", sound);
+        report.value("polygons", polygon_count);
+        report.value("degenerate_polygons", degenerate);
+        report.value("holds", extras);
+        for (const auto& [part, time] : seconds) report.run("seconds." + part, time);
+
+        auto rows = rows_of(diagnosis);
+        rows.insert(rows.begin() + 2, {{"polygons", std::to_string(polygon_count)},
+                                       {"polygons with fewer than three corners", std::to_string(degenerate)}});
+        std::string held;
+        for (const auto& name : extras) held += (held.empty() ? "" : ", ") + name;
+        rows.insert(rows.end() - 1, {"holds", held.empty() ? "nothing but the geometry" : held});
+        for (const auto& [what, value] : rows) report.people(what, value);
+        if (!sound) report.answer_no();
+    }
+
+private:
+    MeshInput input;
+    DiagnoseOptions options;
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_mesh_info() { return make<MeshInfo>(); }
+
+}  // namespace ostraka

@@ -1,0 +1,142 @@
+// mesh make: objects whose parts are known exactly.
+#include "operations.h"
+
+#include "ostraka/annotation/label_file.h"
+#include "ostraka/shapes/make_mesh.h"
+
+namespace ostraka {
+
+namespace {
+
+class MeshMake final : public Operation {
+public:
+    void describe(Parameters& p) override {
+        p.options("object", wanted, "what to make (see --list)").positional();
+        p.output("output", Kind::mesh, output, "mesh file to write; PLY keeps labels and colours of faces and vertices")
+            .optional();
+        p.output("labels", Kind::labels, labels, "text file to write: the label of each face, one a line").optional().flag();
+        p.order({"object", "output"});
+        p.options("list", list, "show the objects, their parts and labels").unrecorded();
+        options.describe(p.options);
+
+        p.report.value("object", FieldType::text)
+            .value("class", FieldType::text)
+            .value("unit", FieldType::text)
+            .value("vertices", FieldType::integer)
+            .value("faces", FieldType::integer)
+            .value("genus", FieldType::integer)
+            .value("area", FieldType::number, "", "length^2")
+            .value("meanEdgeLength", FieldType::number, "", "length");
+        p.report.table("parts", {{"label", FieldType::integer, "label"},
+                                 {"name", FieldType::text, "part"},
+                                 {"faces", FieldType::integer, "faces"},
+                                 {"vertices", FieldType::integer},
+                                 {"area", FieldType::number, "area", "length^2"},
+                                 {"", FieldType::number, "% of area"}});
+        p.report.table("objects", {{"name", FieldType::text},
+                                   {"class", FieldType::text},
+                                   {"description", FieldType::text},
+                                   {"unit", FieldType::text},
+                                   {"genus", FieldType::integer},
+                                   {"minimumVertices", FieldType::integer},
+                                   {"parts", FieldType::texts}});
+        p.report.table("", {{"", FieldType::text, "object"},
+                            {"", FieldType::integer, "genus"},
+                            {"", FieldType::integer, "least vertices"},
+                            {"", FieldType::integer, "label"},
+                            {"", FieldType::text, "part"}});
+    }
+
+    void check() const override {
+        if (list) return;
+        if (wanted.empty()) fail_usage("no object is named", "name one of those that 'ostraka mesh make --list' shows");
+        const MadeObject& object = made_object(wanted);
+        if (!output)
+            fail_usage("no output file is named", "write: ostraka mesh make " + object.name + " " + object.name + ".ply");
+    }
+
+    void run(Context&, Report& report) override {
+        if (list) {
+            for (const std::string& name : wanted.empty() ? made_object_names() : std::vector{wanted})
+                show(report, made_object(name));
+            return;
+        }
+        const MadeObject& object = made_object(wanted);
+        const Stopwatch stopwatch;
+        MadeMesh made = make_mesh(object, options);
+        report.run("seconds", stopwatch.seconds());
+        tell(report, object, made);
+
+        if (labels) write_labels(labels.path(), made.face_labels);
+        MeshExtras extras;
+        const auto colour = [&](std::int32_t label) {
+            const auto& [red, green, blue] = object.part_colours[static_cast<std::size_t>(label)];
+            return Colour{red, green, blue, 255};
+        };
+        for (const auto label : made.face_labels) extras.face_colours.push_back(colour(label));
+        for (const auto label : made.vertex_labels) extras.vertex_colours.push_back(colour(label));
+        extras.face_labels = std::move(made.face_labels);
+        extras.vertex_labels = std::move(made.vertex_labels);
+        output.write(std::move(made.mesh), std::move(extras));
+    }
+
+private:
+    static void show(Report& report, const MadeObject& object) {
+        report.row("objects")("name", object.name)("class", object.object_class)("description", object.description)(
+            "unit", object.unit)("genus", object.genus)("minimumVertices", object.minimum_vertices)("parts", object.parts);
+        for (std::size_t part = 0; part < object.parts.size(); ++part) {
+            Report::Row row = report.row("");
+            row.shown("label", std::to_string(part)).shown("part", object.parts[part]);
+            if (part == 0)
+                row.shown("object", object.name)
+                    .shown("genus", std::to_string(object.genus))
+                    .shown("least vertices", std::to_string(object.minimum_vertices));
+        }
+    }
+
+    static void tell(Report& report, const MadeObject& object, const MadeMesh& made) {
+        struct Part {
+            std::size_t faces = 0, vertices = 0;
+            double area = 0;
+        };
+        std::vector<Part> parts(object.parts.size());
+        for (const Face face : made.mesh.faces()) {
+            Part& part = parts[static_cast<std::size_t>(made.face_labels[face.idx()])];
+            ++part.faces;
+            part.area += face_area(made.mesh, face);
+        }
+        for (const auto label : made.vertex_labels) ++parts[static_cast<std::size_t>(label)].vertices;
+        double area = 0;
+        for (const Part& part : parts) area += part.area;
+        const double edge = mean_edge_length(made.mesh);
+        const std::size_t vertices = made.mesh.number_of_vertices(), faces = made.mesh.number_of_faces();
+        report.set_unit(object.unit);
+        report.value("object", object.name);
+        report.value("class", object.object_class);
+        report.value("unit", object.unit);
+        report.value("vertices", vertices);
+        report.value("faces", faces);
+        report.value("genus", object.genus);
+        report.value("area", area);
+        report.value("meanEdgeLength", edge);
+        report.line(object.object_class + ": " + std::to_string(vertices) + " vertices, " + std::to_string(faces) +
+                    " faces, genus " + std::to_string(object.genus) + ", mean edge " + number(edge, 3) + " " + object.unit);
+        for (std::size_t i = 0; i < parts.size(); ++i)
+            report
+                .row("parts")("label", i)("name", object.parts[i])("faces", parts[i].faces)("vertices", parts[i].vertices)(
+                    "area", parts[i].area)
+                .shown("% of area", number(100 * parts[i].area / area, 3));
+    }
+
+    std::string wanted;
+    bool list = false;
+    MeshOutput output;
+    FileOutput labels{".txt"};
+    MakeOptions options;
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_mesh_make() { return make<MeshMake>(); }
+
+}  // namespace ostraka

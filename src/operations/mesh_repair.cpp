@@ -1,0 +1,82 @@
+// mesh repair: an oriented manifold out of any file with faces.
+#include "diagnosis.h"
+#include "operations.h"
+
+#include "ostraka/io/repair.h"
+
+namespace ostraka {
+
+namespace {
+
+class MeshRepair final : public Operation {
+public:
+    void describe(Parameters& p) override {
+        p.input("input", Kind::mesh, input, "mesh to read: .ply, .obj, .off, .stl");
+        p.output("output", Kind::mesh, output, "mesh to write: .ply, .obj, .off, .stl, .glb");
+        p.output("vertex-map", Kind::index_map, vertex_map, "JSON file to write: old vertex to new vertex, -1 for dropped")
+            .optional()
+            .flag();
+        p.output("face-map", Kind::index_map, face_map, "JSON file to write: old triangle to new triangle, -1 for dropped")
+            .optional()
+            .flag();
+        p.output("report", Kind::report, written, "JSON file to write: the report of --json").optional().flag();
+        options.describe(p.options);
+        p.report.value("sound", FieldType::boolean).value("maps", FieldType::text).structure("after");
+        p.report.table("steps", {{"step", FieldType::text}, {"counts", FieldType::any}});
+        p.report.table("", {{"", FieldType::text, "step"}, {"", FieldType::text, "what"}, {"", FieldType::integer, "count"}});
+    }
+
+    void run(Context& context, Report& report) override {
+        const TriangulatedSoup read = triangulate(input.take_polygons());
+        const RepairResult repaired = in_file(input.file(), [&] { return repair(read.soup, read.extras, options); });
+        context.notes("", read.notes);
+        report.notes(repaired.notes);
+        const bool sound = repaired.after.defects().empty();
+        if (!sound) report.answer_no();
+        report.value("sound", sound);
+        report.value("maps", repaired.maps_by_distance ? "nearest" : "exact");
+        report.value("after", to_json(repaired.after, report.allocator()));
+        report.empty_table("steps");
+        for (const RepairStep& step : repaired.steps) tell(report, step);
+        report.line("after");
+        for (const auto& [what, value] : rows_of(repaired.after))
+            for (const char* shown : {"vertices", "triangles", "components", "border loops", "area", "volume", "verdict"})
+                if (what == shown) report.people(what, value);
+
+        output.write(repaired.mesh, repaired.extras);
+        const auto map = [&](const char* kind, const std::vector<Index>& to, std::size_t count) {
+            return IndexMap{kind, to, count, {}, repaired.maps_by_distance};
+        };
+        if (vertex_map) vertex_map.write(map("vertex", repaired.vertex_map, repaired.mesh.number_of_vertices()));
+        if (face_map) face_map.write(map("face", repaired.face_map, repaired.mesh.number_of_faces()));
+        if (!written) return;
+        report.set_provenance(context.provenance());
+        written.write(report.to_json());
+    }
+
+private:
+    static void tell(Report& report, const RepairStep& step) {
+        JsonValue counts(rapidjson::kObjectType);
+        std::string name = step.name;  // once, beside its first count
+        for (const auto& [what, count] : step.counts) {
+            add_member(counts, what, JsonValue(static_cast<std::uint64_t>(count)), report.allocator());
+            if (count == 0) continue;
+            report.row("").shown("step", name).shown("what", what).shown("count", std::to_string(count));
+            name.clear();
+        }
+        if (!name.empty()) report.row("").shown("step", name).shown("what", "nothing to do").shown("count", "-");
+        report.row("steps")("step", step.name)("counts", std::move(counts));
+    }
+
+    MeshInput input;
+    MeshOutput output;
+    IndexMapOutput vertex_map, face_map;
+    JsonOutput written;
+    RepairOptions options;
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_mesh_repair() { return make<MeshRepair>(); }
+
+}  // namespace ostraka

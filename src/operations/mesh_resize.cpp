@@ -1,0 +1,247 @@
+// mesh simplify, refine, remesh: the same object at another resolution.
+#include "operations.h"
+
+#include "ostraka/annotation/label_file.h"
+#include "ostraka/remesh/remesh.h"
+#include "ostraka/transfer/bound_mesh.h"
+
+namespace ostraka {
+
+namespace {
+
+/// What all three declare and tell.
+class MeshResize : public Operation {
+protected:
+    void describe_meshes(Parameters& p) {
+        p.input("input", Kind::mesh, input, "mesh to read: .ply, .obj, .off, .stl");
+        p.output("output", Kind::mesh, output.with_encoding(), "mesh to write: .ply, .obj, .off, .stl, .glb");
+        for (const std::string mesh : {"input", "output"})
+            p.report.value(mesh + ".vertices", FieldType::integer)
+                .value(mesh + ".faces", FieldType::integer)
+                .value(mesh + ".area", FieldType::number, "", "length^2");
+        p.report.table("", {{"", FieldType::text, "mesh"},
+                            {"", FieldType::integer, "vertices"},
+                            {"", FieldType::integer, "faces"},
+                            {"", FieldType::number, "area"}});
+    }
+    static void tell_totals(Report& report, const BoundMesh::Totals& before, const BoundMesh::Totals& after) {
+        for (const auto& [mesh, when, totals] : {std::tuple{"input.", "before", before}, {"output.", "after", after}}) {
+            report.value(std::string(mesh) + "vertices", totals.vertices);
+            report.value(std::string(mesh) + "faces", totals.faces);
+            report.value(std::string(mesh) + "area", totals.area);
+            report.row("")
+                .shown("mesh", when)
+                .shown("vertices", std::to_string(totals.vertices))
+                .shown("faces", std::to_string(totals.faces))
+                .shown("area", number(totals.area));
+        }
+    }
+
+    MeshInput input;
+    MeshOutput output;
+};
+
+/// What annotations, labels and colours follow.
+class MeshResizeBound : public MeshResize {
+public:
+    void check() const override {
+        if (static_cast<bool>(annotations) != static_cast<bool>(annotations_out))
+            fail_usage("annotations are read from one file and written to another",
+                       "give both --annotations and --annotations-out, or neither");
+        const std::string kind = extension(output.file());
+        if (annotations_out && (kind == ".stl" || kind == ".glb"))
+            fail_usage("a " + kind + " file does not keep the vertices that annotations name",
+                       "write the mesh as .ply, .obj or .off");
+    }
+
+protected:
+    void describe_bound(Parameters& p) {
+        describe_meshes(p);
+        p.input("annotations", Kind::annotations, annotations, "annotations of the input mesh (.ant.json)").optional().flag();
+        p.output("annotations-out", Kind::annotations, annotations_out, "where to write the annotations of the output mesh")
+            .optional()
+            .flag();
+        p.output("labels-out", Kind::labels, labels_out, "where to write the face labels that the input mesh carries, one a line")
+            .optional()
+            .flag();
+        p.report.table("annotations", {{"id", FieldType::integer, "id"},
+                                       {"tag", FieldType::text, "tag"},
+                                       {"type", FieldType::text, "type"},
+                                       {"before.elements", FieldType::integer, "elements"},
+                                       {"after.elements", FieldType::integer, "after"},
+                                       {"before.area", FieldType::number, "area", "length^2"},
+                                       {"after.area", FieldType::number, "", "length^2"},
+                                       {"", FieldType::text, "change of area"},
+                                       {"before.length", FieldType::number, "length", "length"},
+                                       {"after.length", FieldType::number, "", "length"},
+                                       {"", FieldType::text, "change of length"},
+                                       {"degenerate", FieldType::boolean},
+                                       {"note", FieldType::text, "note"}});
+    }
+
+    /// Calls `resize(mesh)` in between, tells of it and writes.
+    template <class Resize>
+    auto resize(Context& context, Report& report, const Resize& work) {
+        const AnnotationSet* set = annotations ? &annotations.on(input->mesh) : nullptr;
+        if (labels_out && input->extras.face_labels.empty())
+            fail_usage(input.file() + " holds no face labels to write", "leave out --labels-out");
+        BoundMesh bound(input.take(), set != nullptr ? std::optional(*set) : std::nullopt);
+        const Stopwatch stopwatch;
+        const auto result = in_file(input.file(), [&] { return work(bound); });
+        report.run("seconds", stopwatch.seconds());
+        report.notes(bound.notes);
+        tell_totals(report, bound.before, bound.after);
+        if (labels_out) write_labels(labels_out.path(), bound.extras.face_labels);
+        if (set != nullptr) {
+            tell_changes(report, bound.changes);
+            context.notes("", bound.annotations->notes);
+            annotations_out.write(std::move(*bound.annotations), bound.mesh, output.file_name());
+        }
+        output.write(std::move(bound.mesh), std::move(bound.extras));
+        return result;
+    }
+
+private:
+    static void tell_changes(Report& report, const std::vector<BoundMesh::Change>& changes) {
+        const auto percent = [](double before, double after) {
+            return before > 0 ? number(100 * (after / before - 1), 3) + " %" : std::string();
+        };
+        report.line("");
+        report.empty_table("annotations");
+        for (const BoundMesh::Change& one : changes) {
+            Report::Row row = report.row("annotations");
+            row("id", one.id)("tag", one.tag)("type", to_string(one.type));
+            for (const auto& [when, size] : {std::pair{"before.", one.before}, {"after.", one.after}})
+                row(std::string(when) + "elements", size.elements)(std::string(when) + "area", size.area)(
+                    std::string(when) + "length", size.length);
+            row.shown("change of area", percent(one.before.area, one.after.area));
+            row.shown("change of length", percent(one.before.length, one.after.length));
+            row("degenerate", one.degenerate)("note", one.note);
+        }
+    }
+
+    AnnotationsInput annotations;
+    AnnotationsOutput annotations_out;
+    FileOutput labels_out{".txt"};
+};
+
+class MeshSimplify final : public MeshResizeBound {
+public:
+    void describe(Parameters& p) override {
+        describe_bound(p);
+        p.output("vertex-map", Kind::index_map, vertex_map, "JSON file to write: the new vertex of each old one")
+            .optional()
+            .flag();
+        p.output("face-map", Kind::index_map, face_map, "JSON file to write: the new face of each old one, -1 where it vanished")
+            .optional()
+            .flag();
+        options.describe(p.options);
+        p.options.find("vertices")->required();
+        outlines = p.options.find("outlines");
+        p.options("protect-outlines", protect, "the same as --outlines protect; pins of measures stay too").unrecorded();
+        p.report.value("reached", FieldType::boolean)
+            .value("stop_reason", FieldType::text)
+            .value("collapses", FieldType::integer)
+            .value("outlines_broken", FieldType::boolean)
+            .value("isolated_dropped", FieldType::integer);
+    }
+
+    void check() const override {
+        MeshResizeBound::check();
+        if (protect && outlines->given) fail_usage("--protect-outlines and --outlines", "give one of them");
+    }
+
+    void run(Context& context, Report& report) override {
+        if (protect) options.outlines = "protect";
+        std::size_t vertices = 0, faces = 0;
+        SimplifyResult result = resize(context, report, [&](BoundMesh& bound) {
+            SimplifyResult simplified = bound.simplify(options);
+            vertices = bound.mesh.number_of_vertices(), faces = bound.mesh.number_of_faces();
+            return simplified;
+        });
+        report.value("reached", result.reached);
+        report.value("stop_reason", result.stop_reason);
+        report.value("collapses", result.collapses);
+        report.value("outlines_broken", result.outlines_broken);
+        report.value("isolated_dropped", result.isolated_dropped);
+        if (!result.reached) {
+            report.note("the wanted number could not be reached: " + result.stop_reason);
+            report.answer_no();
+        }
+        if (result.outlines_broken) report.note("outlines or lines had to be merged to reach the number");
+        if (result.isolated_dropped > 0) report.note(std::to_string(result.isolated_dropped) + " isolated vertices were dropped");
+        if (vertex_map) vertex_map.write({"vertex", std::move(result.vertex_map), vertices});
+        if (face_map) face_map.write({"face", std::move(result.face_map), faces});
+    }
+
+private:
+    IndexMapOutput vertex_map, face_map;
+    SimplifyOptions options;
+    bool protect = false;
+    const Option* outlines = nullptr;
+};
+
+class MeshRefine final : public MeshResizeBound {
+public:
+    void describe(Parameters& p) override {
+        describe_bound(p);
+        options.describe(p.options);
+        p.report.value("levels", FieldType::integer).value("bisections", FieldType::integer);
+    }
+
+    void run(Context& context, Report& report) override {
+        const RefineResult result = resize(context, report, [&](BoundMesh& bound) { return bound.refine(options); });
+        report.value("levels", result.levels);
+        report.value("bisections", result.bisections);
+    }
+
+private:
+    RefineOptions options;
+};
+
+class MeshRemesh final : public MeshResize {
+public:
+    void describe(Parameters& p) override {
+        describe_meshes(p);
+        options.describe(p.options);
+        p.options.find("vertices")->required();
+        p.report.value("reached", FieldType::boolean)
+            .value("target_edge_length", FieldType::number, "", "length")
+            .value("vertices_before_adjustment", FieldType::integer)
+            .value("deviation", FieldType::number, "", "length");
+    }
+
+    void run(Context&, Report& report) override {
+        const Mesh& mesh = input->mesh;
+        const MeshExtras& extras = input->extras;
+        if (!extras.vertex_colours.empty() || !extras.face_colours.empty() || !extras.vertex_labels.empty() ||
+            !extras.face_labels.empty() || !extras.vertex_texture.empty() || !extras.corner_texture.empty())
+            report.note("colours, labels and texture coordinates belong to the old mesh and are left out");
+        const Stopwatch stopwatch;
+        RemeshResult result = in_file(input.file(), [&] { return remesh(mesh, options); });
+        report.run("seconds", stopwatch.seconds());
+        tell_totals(report, {mesh.number_of_vertices(), mesh.number_of_faces(), surface_area(mesh)},
+                    {result.mesh.number_of_vertices(), result.mesh.number_of_faces(), surface_area(result.mesh)});
+        report.value("reached", result.reached);
+        report.value("target_edge_length", result.target_edge_length);
+        report.value("vertices_before_adjustment", result.remeshed);
+        report.value("deviation", result.deviation);
+        if (!result.reached) {
+            report.note("the wanted number could not be reached: stopped at " + std::to_string(result.mesh.number_of_vertices()) +
+                        " vertices, fewer would change the topology or turn faces over");
+            report.answer_no();
+        }
+        output.write(std::move(result.mesh));
+    }
+
+private:
+    RemeshOptions options;
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_mesh_simplify() { return make<MeshSimplify>(); }
+std::unique_ptr<Operation> make_mesh_refine() { return make<MeshRefine>(); }
+std::unique_ptr<Operation> make_mesh_remesh() { return make<MeshRemesh>(); }
+
+}  // namespace ostraka

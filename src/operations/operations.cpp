@@ -1,0 +1,74 @@
+// operations: the table itself
+#include "operations.h"
+
+#include "ostraka/operations/pages.h"
+
+#include <algorithm>
+
+namespace ostraka {
+
+namespace {
+
+class Operations final : public Operation {
+public:
+    void describe(Parameters& p) override {
+        p.options("name", name, "only the operations whose names begin with this").positional();
+        p.output("pages", Kind::folder, pages, "write a page of Markdown for each first word of the names").optional().flag();
+        p.output("manuals", Kind::folder, manuals, "write a manual page for each operation").optional().flag();
+        p.output("completions", Kind::folder, shells, "write what bash, zsh and fish read to complete commands")
+            .optional()
+            .flag();
+        p.report.table("operations", {{"name", FieldType::text, "operation"},
+                                      {"help", FieldType::text, "what it does"},
+                                      {"inputs", FieldType::any},
+                                      {"outputs", FieldType::any},
+                                      {"options", FieldType::any},
+                                      {"arguments", FieldType::any},
+                                      {"result", FieldType::any}});
+    }
+
+    void run(Context&, Report& report) override {
+        bool any = false;
+        for (const OperationEntry& entry : operations()) {
+            if (!std::string(entry.name).starts_with(name)) continue;
+            any = true;
+            Report::Row row = report.row("operations");
+            JsonValue declaration = Call(entry).declaration(report.allocator());
+            for (auto& member : declaration.GetObject()) {
+                const std::string key = member.name.GetString();
+                if (member.value.IsString()) row(key, std::string(member.value.GetString()));
+                else row(key, std::move(member.value));
+            }
+        }
+        if (!any) static_cast<void>(find_operation(name));
+        if (pages)
+            for (const std::string& word : command_pages()) put(pages, word + ".md", commands_page(word));
+        if (manuals)
+            for (const OperationEntry& entry : operations()) {
+                std::string file = "ostraka-" + std::string(entry.name) + ".1";
+                std::replace(file.begin(), file.end(), ' ', '-');
+                put(manuals, file, manual_page(entry));
+            }
+        if (shells) {
+            put(shells, "ostraka", completion_script(Shell::bash));
+            put(shells, "_ostraka", completion_script(Shell::zsh));
+            put(shells, "ostraka.fish", completion_script(Shell::fish));
+        }
+    }
+
+private:
+    /// Others may keep files of their own in these folders.
+    static void put(const FolderOutput& folder, const std::string& file, const std::string& text) {
+        folder.open(0, false);
+        write_file(folder.in(file), text);
+    }
+
+    std::string name;
+    FolderOutput pages, manuals, shells;
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_operations() { return make<Operations>(); }
+
+}  // namespace ostraka

@@ -1,0 +1,29 @@
+// What the files of operations share.
+#pragma once
+
+#include "ostraka/operations/table.h"
+
+#include "arguments.h"
+
+#include <chrono>
+
+namespace ostraka {
+
+/// Seconds since it was made.
+class Stopwatch {
+public:
+    [[nodiscard]] double seconds() const {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    }
+
+private:
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// How the table (table.cpp) makes an operation; defined in the file of its name.
+template <class Work>
+std::unique_ptr<Operation> make() {
+    return std::make_unique<Work>();
+}
+
+}  // namespace ostraka

@@ -1,0 +1,197 @@
+#include "ostraka/operations/pages.h"
+
+#include "ostraka/core/text.h"
+
+#include <algorithm>
+
+namespace ostraka {
+
+namespace {
+
+std::string first_word_of(const std::string& name) { return name.substr(0, name.find(' ')); }
+
+/// "0.05 to 1", "one of a, b", "a whole number".
+std::string allowed_for_page(const Option& option) {
+    if (const auto* range = std::get_if<Range>(&option.rule))
+        return ostraka::digits(range->min, 6) + " to " + ostraka::digits(range->max, 6);
+    if (const auto* choices = std::get_if<Choices>(&option.rule)) {
+        std::string list;
+        for (const auto& name : choices->names) list += (list.empty() ? "" : ", ") + name;
+        return list;
+    }
+    switch (option.type()) {
+        case OptionType::boolean:
+            return option.initial == "true" ? "on, `--no-" + option.name + "`" : "switch";
+        case OptionType::integer:
+            return "whole number";
+        case OptionType::number:
+            return "number";
+        case OptionType::numbers:
+            return "numbers";
+        case OptionType::integers:
+            return "whole numbers";
+        case OptionType::texts:
+            return "texts";
+        default:
+            return "text";
+    }
+}
+
+std::string initial_for_page(const Option& option) {
+    if (option.type() == OptionType::boolean || option.initial.empty()) return {};
+    const auto value = number_of(option.initial);
+    return value ? digits(*value) : option.initial;
+}
+
+std::string usage_of(const Call& call, const std::vector<std::string>& order) {
+    std::string text = "ostraka " + std::string(call.entry().name);
+    for (const std::string& name : order) {
+        const Slot* slot = call.parameters().slot(name);
+        const bool repeated = slot != nullptr && slot->repeated;
+        std::string upper = name;
+        std::transform(upper.begin(), upper.end(), upper.begin(),
+                       [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+        upper += repeated ? " ..." : "";
+        text += slot != nullptr && !slot->needed && call.parameters().orders.size() == 1 ? " [" + upper + "]" : " " + upper;
+    }
+    for (const Slot* slot : call.parameters().slots())
+        if (slot->needed && !slot->is_positional) text += " --" + slot->name + " FILE";
+    for (const Option& option : call.parameters().options)
+        if (option.needed && !option.is_positional) text += " --" + option.name + " VALUE";
+    return text + " [options]";
+}
+
+bool in_some_order(const Call& call, const std::string& name) {
+    const auto& orders = call.parameters().orders;
+    return std::any_of(orders.begin(), orders.end(),
+                       [&](const auto& order) { return std::find(order.begin(), order.end(), name) != order.end(); });
+}
+
+/// Lines of at most 120 characters.
+std::string wrapped(const std::string& text, const std::string& indent = {}) {
+    std::string result, line;
+    std::size_t at = 0;
+    while (at <= text.size()) {
+        const std::size_t end = std::min(text.find(' ', at), text.size());
+        const std::string word = text.substr(at, end - at);
+        if (!line.empty() && line.size() + 1 + word.size() > 120) result += line + "\n", line = indent + word;
+        else line += (line.empty() ? "" : " ") + word;
+        at = end + 1;
+    }
+    return result + line + "\n";
+}
+
+void add_fields(std::string& page, const std::vector<Field>& fields, const std::string& indent) {
+    static constexpr const char* types[]{"boolean", "whole number", "number", "text", "numbers", "texts", "structure"};
+    for (const Field& field : fields) {
+        if (field.key.empty()) continue;
+        std::string about = types[static_cast<std::size_t>(field.type)];
+        if (!field.unit.empty()) about += ", " + field.unit;
+        if (!field.schema.empty()) about += ", as " + field.schema + ".schema.json has it";
+        page += wrapped(indent + "- `" + field.key + "`: " + about, indent + "  ");
+    }
+}
+
+std::string operation_section(const OperationEntry& entry) {
+    const Call call(entry);
+    std::string page = "## " + std::string(entry.name) + "\n\n";
+    std::string help = entry.help;
+    help[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(help[0])));
+    page += wrapped(help + ".") + "\n```sh\n";
+    for (const auto& order : call.parameters().orders) page += usage_of(call, order) + "\n";
+    page += "```\n\n";
+    for (const Slot* slot : call.parameters().slots()) {
+        const bool named = !in_some_order(call, slot->name);
+        page += wrapped("- `" + std::string(named ? "--" : "") + slot->name + "` (" +
+                            (slot->role == Role::input ? "input" : "output") + ", " + to_string(slot->kind) +
+                            (slot->needed ? "" : ", optional") + (slot->repeated ? ", repeatable" : "") + "): " + slot->help,
+                        "  ");
+    }
+    std::string group = "-";
+    for (const Option& option : call.parameters().options) {
+        if (option.group != group) {
+            group = option.group;
+            page += "\n" + (group.empty() ? std::string("Options:") : group + ":") + "\n\n";
+        }
+        std::string line = "- `" + std::string(option.is_positional ? "" : "--") + option.name + "` (" +
+                           allowed_for_page(option) + (option.unit.empty() ? "" : "; " + option.unit);
+        if (const std::string initial = initial_for_page(option); !initial.empty()) line += "; " + initial;
+        page += wrapped(line + (option.needed ? "; required" : "") + "): " + option.help, "  ");
+    }
+    const ReportLayout& report = call.parameters().report;
+    page += "\nReport (`--json`, member `result`):";
+    if (!report.schema.empty()) page += " as `doc/schema/" + report.schema + ".schema.json` has it.";
+    page += "\n\n";
+    add_fields(page, report.values, "");
+    if (report.checks) page += "- `sound`, `defects`, `findings`: what the check found\n";
+    for (const auto& table : report.tables) {
+        if (table.key.empty()) continue;
+        page += "- `" + table.key + "`: a list of objects" + (table.title.empty() ? "" : ", " + table.title) + "\n";
+        add_fields(page, table.columns, "  ");
+    }
+    return page + "- `notes`: texts\n";
+}
+
+/// Text that troff sets as it stands.
+std::string troff(const std::string& text) {
+    std::string result;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (text[i] == '\\') result += "\\e";
+        else if (text[i] == '-') result += "\\-";
+        else if ((text[i] == '.' || text[i] == '\'') && (i == 0 || text[i - 1] == '\n'))
+            result += "\\&" + std::string(1, text[i]);
+        else result += text[i];
+    }
+    return result;
+}
+
+}  // namespace
+
+std::vector<std::string> command_pages() {
+    std::vector<std::string> words;
+    for (const OperationEntry& entry : operations())
+        if (const std::string word = first_word_of(entry.name); std::find(words.begin(), words.end(), word) == words.end())
+            words.push_back(word);
+    return words;
+}
+
+std::string commands_page(const std::string& first_word) {
+    std::string page = "# ostraka " + first_word + "\n\n";
+    for (const OperationGroup& group : operation_groups())
+        if (group.name == first_word) {
+            std::string help = group.help;
+            help[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(help[0])));
+            page += wrapped(help + ".") + "\n";
+        }
+    page += wrapped(
+        "Made from the table of operations; `--json`, `--show`, `--quiet`, `--threads` and `--help` go with each. Exit codes: 0 "
+        "done, 1 failed, 2 wrong usage, 3 done but the answer is \"no\", 130 cancelled.");
+    for (const OperationEntry& entry : operations())
+        if (first_word_of(entry.name) == first_word) page += "\n" + operation_section(entry);
+    return page;
+}
+
+std::string manual_page(const OperationEntry& entry) {
+    const Call call(entry);
+    std::string name = "ostraka-" + std::string(entry.name);
+    std::replace(name.begin(), name.end(), ' ', '-');
+    std::string page = ".TH " + name + " 1 \"\" \"ostraka " + version() + "\" \"Ostraka\"\n.SH NAME\n" + troff(name) + " \\- " +
+                       troff(entry.help) + "\n.SH SYNOPSIS\n";
+    for (const auto& order : call.parameters().orders) page += ".B " + troff(usage_of(call, order)) + "\n.br\n";
+    page += ".SH FILES AND OBJECTS\n";
+    for (const Slot* slot : call.parameters().slots())
+        page +=
+            ".TP\n.B " + troff((in_some_order(call, slot->name) ? "" : "--") + slot->name) + "\n" +
+            troff(std::string(slot->role == Role::input ? "Input, " : "Output, ") + to_string(slot->kind) + ": " + slot->help) +
+            "\n";
+    page += ".SH OPTIONS\n";
+    for (const Option& option : call.parameters().options) {
+        std::string about = allowed_for_page(option) + (option.unit.empty() ? "" : "; " + option.unit);
+        if (const std::string initial = initial_for_page(option); !initial.empty()) about += "; default " + initial;
+        page += ".TP\n.B " + troff((option.is_positional ? "" : "--") + option.name) + "\n" +
+                troff(option.help + " (" + about + ")") + "\n";
+    }
+    return page + ".SH EXIT STATUS\n0 done, 1 failed, 2 wrong usage, 3 done but the answer is no, 130 cancelled.\n";
+}
+
+}  // namespace ostraka

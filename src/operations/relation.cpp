@@ -1,0 +1,375 @@
+// relation extract, add, remove, list, check, export
+#include "operations.h"
+
+#include "ostraka/relation/geometric.h"
+#include "ostraka/semantic/deform.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace ostraka {
+
+namespace {
+
+/// What all of them read and tell.
+class RelationOperation : public Operation {
+protected:
+    void describe_inputs(Parameters& p) {
+        p.input("mesh", Kind::mesh, mesh, "mesh file");
+        p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)");
+    }
+    void describe_graph(Parameters& p) { p.input("graph", Kind::graph, graph, "graph (.graph.json)"); }
+    void describe_output(Parameters& p) { p.output("output", Kind::graph, output, "graph to write (.graph.json)"); }
+    /// The table of relationships, with what became of each where they were checked.
+    static void describe_relationships(ReportLayout& report, bool checked = false) {
+        std::vector<Field> columns{{"id", FieldType::integer, "id"}};
+        if (checked) columns.push_back({"verdict", FieldType::text, "verdict"});
+        columns.push_back({"type", FieldType::text, "type"});
+        columns.push_back({"origin", FieldType::text, checked ? "" : "origin"});
+        columns.push_back({"annotations", FieldType::numbers, "annotations"});
+        columns.push_back({"parameters", FieldType::any, "measured"});
+        if (checked) columns.push_back({"text", FieldType::text, "remark"});
+        for (const char* key : {"isDirected", "isConstraint"}) columns.push_back({key, FieldType::boolean});
+        columns.push_back({"weight", FieldType::number});
+        columns.push_back({"constraint", FieldType::any});
+        report.table("relationships", std::move(columns));
+    }
+
+    [[nodiscard]] const AnnotationSet& set() const { return annotations.on(mesh->mesh); }
+    [[nodiscard]] RelationGraph read_relations() const {
+        RelationGraph relations;
+        if (graph) relations.relationships = graph.on(set()).relationships;
+        return relations;
+    }
+
+    /// All that a file holds of the relationship, and how people read it.
+    Report::Row tell(Report& report, const Relationship& relationship) const {
+        Report::Row row = report.row("relationships");
+        JsonValue entry = relationship_to_json(relationship, report.allocator());
+        for (auto& member : entry.GetObject()) row(member.name.GetString(), std::move(member.value));
+        row.shown("id", std::to_string(relationship.id)).shown("type", type_of(relationship));
+        row.shown("annotations", members_of(relationship)).shown("parameters", measured(relationship.parameters));
+        return row;
+    }
+    void tell(Report& report, const std::vector<Relationship>& relationships) const {
+        report.empty_table("relationships");
+        for (const Relationship& relationship : relationships) tell(report, relationship).shown("origin", relationship.origin);
+    }
+
+    MeshInput mesh;
+    AnnotationsInput annotations;
+    GraphInput graph;
+    GraphOutput output;
+
+private:
+    [[nodiscard]] std::string members_of(const Relationship& relationship) const {
+        std::string text;
+        for (const int id : relationship.annotations) {
+            const Annotation* annotation = set().find(id);
+            text += (text.empty()            ? ""
+                     : relationship.directed ? " > "
+                                             : ", ") +
+                    std::to_string(id) + (annotation == nullptr ? "" : " " + annotation->tag);
+        }
+        return text;
+    }
+
+    /// The type, of "equal attributes" with the attribute, of constraints with the weight.
+    static std::string type_of(const Relationship& relationship) {
+        std::string text = relationship.type;
+        if (!relationship.parameters.attribute.empty()) text += ": " + relationship.parameters.attribute;
+        if (relationship.is_constraint) text += " (constraint, weight " + number(relationship.weight) + ")";
+        return text;
+    }
+
+    static std::string measured(const RelationParameters& parameters) {
+        std::string text;
+        for (const auto& deviation : parameters.deviations) {
+            text += (text.empty() ? "" : "; ") + deviation.quantity;
+            if (deviation.value) text += " " + number(*deviation.value, 4);
+            if (deviation.tolerance) text += " (at most " + number(*deviation.tolerance, 4) + ")";
+            if (!deviation.unit.empty()) text += " " + deviation.unit;
+        }
+        return text;
+    }
+};
+
+class RelationExtract final : public RelationOperation {
+public:
+    void describe(Parameters& p) override {
+        describe_inputs(p);
+        describe_output(p);
+        p.input("graph", Kind::graph, graph, "graph whose stated relationships are kept").optional().flag();
+        p.options("type", types, "type to look for, once for each; all without it").words();
+        tolerances.describe(p.options);
+        p.report.table("tree", {{"annotation", FieldType::integer},
+                                {"tag", FieldType::text},
+                                {"depth", FieldType::integer},
+                                {"parent", FieldType::integer}});
+        describe_relationships(p.report);
+    }
+
+    void check() const override { static_cast<void>(geometric_types(types)); }
+
+    void run(Context&, Report& report) override {
+        types = geometric_types(types);
+        const RelationGraph old = read_relations();
+        ExtractedRelations found =
+            in_file(annotations.file(), [&] { return extract_relations(mesh->mesh, set(), old, types, tolerances); });
+        for (const int id : found.stated) {
+            const auto& list = found.graph.relationships;
+            const auto known = std::find_if(list.begin(), list.end(), [&](const auto& one) { return one.id == id; });
+            report.note("relationship " + std::to_string(id) + " (" + known->type + ") is stated already");
+        }
+        std::string left_out;
+        for (const std::string& type : found.not_looked_for) left_out += (left_out.empty() ? "" : ", ") + type;
+        if (!left_out.empty())
+            report.note("not looked for, as the annotations do not say what is up: " + left_out +
+                        " ('ostraka annotation edit --set-up x,y,z' says it)");
+        report.empty_table("tree");
+        std::string text = "the whole shape\n";
+        for (const auto& [place, depth] : containment_tree(found.order)) {
+            const Annotation& annotation = set().annotations[place];
+            Report::Row row = report.row("tree");
+            row("annotation", annotation.id)("tag", annotation.tag)("depth", depth);
+            if (const auto parent = found.order.parent[place]) row("parent", set().annotations[*parent].id);
+            text += std::string(2 * depth + 2, ' ') + std::to_string(annotation.id) + " " + printable(annotation.tag) + " (" +
+                    to_string(annotation.type) + ")\n";
+        }
+        report.line(text);
+        tell(report, found.graph.relationships);
+        output.write(std::move(found.graph), set());
+    }
+
+private:
+    std::vector<std::string> types;
+    RelationOptions tolerances;
+};
+
+class RelationAdd final : public RelationOperation {
+public:
+    void describe(Parameters& p) override {
+        describe_inputs(p);
+        describe_output(p);
+        p.input("graph", Kind::graph, graph, "graph it is added to; without it a new one begins").optional().flag();
+        p.options("type", type, "type, e.g. adjacency, \"mirror symmetry\", proportion").required();
+        p.options("annotation", members, "id or tag of a member, once for each; the first is the subject").words().required();
+        p.options("own-type", own_type, "the type is one of your own");
+        p.options("directed", directed, "the first annotation is the subject");
+        p.options("constraint", is_constraint, "the relationship is a constraint on deformations");
+        p.options("parameters", parameters, "JSON object with the parameters of the constraint");
+        p.options("weight", weight, "weight of the constraint", Range{0, 1e300});
+        p.options("tolerance", tolerances,
+                  "QUANTITY=NUMBER that a check shall allow: angle=5 (also tilt; degrees), distance=2 (also height; unit of the "
+                  "mesh's coordinates), distance=1% (of the mesh's diagonal), area=10 (also shape, difference; per cent)")
+            .words();
+        p.options("attribute", attribute, "name of the attribute that is equal, with --type 'equal attributes'");
+        describe_relationships(p.report);
+    }
+
+    void check() const override {
+        if (find_relation_type(type) == nullptr && !own_type)
+            fail_usage("'" + type + "' is not a known type of relationship",
+                       "did you mean '" + nearest_relation_type(type) + "'? --own-type adds a type of your own");
+        if (own_name() == "equal attributes" && attribute.empty())
+            fail_usage("nothing says which attribute is equal", "add --attribute NAME");
+        for (const std::string& text : tolerances) static_cast<void>(tolerance_of(text));
+    }
+
+    void run(Context&, Report& report) override {
+        RelationGraph relations = read_relations();
+        Relationship relationship;
+        const RelationType* known = find_relation_type(type);
+        type = relationship.type = own_name();
+        relationship.directed = directed || (known != nullptr && known->directed);
+        for (const auto& name : members) relationship.annotations.push_back(find_annotation(set(), name, annotations.file()).id);
+        relationship.is_constraint = is_constraint || !parameters.empty() || (known != nullptr && !known->geometric);
+        relationship.weight = weight;
+        relationship.constraint = parameters;
+        relationship.origin = "stated";
+        relationship.parameters.attribute = attribute;
+        for (const std::string& text : tolerances) {
+            const Tolerance tolerance = tolerance_of(text);
+            const double share = tolerance.of_diagonal ? box_diagonal(mesh->mesh) / 100 : 1;
+            relationship.parameters.deviations.push_back({tolerance.quantity,
+                                                          {},
+                                                          tolerance.value * share,
+                                                          tolerance.is_length  ? set().unit
+                                                          : tolerance.is_angle ? "degree"
+                                                                               : "%"});
+        }
+        relationship.id = free_id(relations);
+        check_relationship(relationship, set(), "the relationship to add");
+        if (const Relationship* twin = find_twin(relations, relationship)) {
+            const std::string id = std::to_string(twin->id);
+            if (twin->origin != "extracted")
+                fail_input(graph.file(), "relationship " + id + " says the same",
+                           "remove it first: 'ostraka relation remove ... --id " + id + "'");
+            relationship.id = twin->id;
+            report.note("relationship " + id + " was extracted and is stated now");
+            relations.relationships[static_cast<std::size_t>(twin - relations.relationships.data())] = relationship;
+        } else {
+            relations.relationships.push_back(relationship);
+        }
+        output.write(std::move(relations), set());
+        if (relationship.is_constraint) {
+            try {
+                check_constraint(mesh->mesh, set(), relationship, output.file());
+            } catch (const Error& error) {
+                report.note(std::string("'deform' will refuse this as it is: ") + error.what());
+            }
+        }
+        tell(report, std::vector{relationship});
+    }
+
+private:
+    struct Tolerance {
+        std::string quantity;
+        double value;
+        bool of_diagonal, is_length, is_angle;
+    };
+
+    [[nodiscard]] std::string own_name() const {
+        const RelationType* known = find_relation_type(type);
+        return known == nullptr ? type : known->name;
+    }
+
+    [[nodiscard]] Tolerance tolerance_of(const std::string& text) const {
+        const std::size_t sign = text.find('=');
+        double value = 0;
+        const bool percent = text.ends_with('%');
+        const char* end = text.data() + text.size() - (percent ? 1 : 0);
+        const bool named = sign != std::string::npos && text.data() + sign + 1 < end;
+        const auto [rest, code] = std::from_chars(named ? text.data() + sign + 1 : end, end, value);
+        if (!named || rest != end || code != std::errc() || !std::isfinite(value))
+            fail_usage("'" + printable(text, 60) + "' is not a tolerance", "write QUANTITY=NUMBER, e.g. angle=5 or distance=1%");
+        if (value < 0) fail_usage("the tolerance '" + printable(text, 60) + "' is negative", "use 0 or more");
+        const std::string quantity = text.substr(0, sign);
+        const auto measured = measured_quantities(own_name());
+        if (std::find(measured.begin(), measured.end(), quantity) == measured.end()) {
+            std::string list;
+            for (const auto& name : measured) list += (list.empty() ? "" : ", ") + name;
+            fail_usage("'" + own_name() + "' does not measure '" + quantity + "'",
+                       list.empty() ? "leave the tolerance out" : "it measures " + list);
+        }
+        const bool length = quantity == "distance" || quantity == "height", angle = quantity == "angle" || quantity == "tilt";
+        if (percent && angle) fail_usage("'" + text + "' is not a tolerance", "give an angle in degrees, without '%'");
+        return {quantity, value, percent && length, length, angle};
+    }
+
+    std::string type, parameters, attribute;
+    std::vector<std::string> members, tolerances;
+    double weight = 1;
+    bool directed = false, is_constraint = false, own_type = false;
+};
+
+class RelationRemove final : public RelationOperation {
+public:
+    void describe(Parameters& p) override {
+        describe_inputs(p);
+        describe_graph(p);
+        describe_output(p);
+        p.options("id", ids, "id of a relationship, as 'relation list' shows it; once for each").words().required();
+        describe_relationships(p.report);
+    }
+
+    void run(Context&, Report& report) override {
+        RelationGraph relations = read_relations();
+        std::vector<Relationship> removed;
+        for (const int id : ids) {
+            const auto has_id = [&](const Relationship& relationship) { return relationship.id == id; };
+            const auto place = std::find_if(relations.relationships.begin(), relations.relationships.end(), has_id);
+            if (place != relations.relationships.end()) {
+                removed.push_back(std::move(*place));
+                relations.relationships.erase(place);
+            } else if (std::none_of(removed.begin(), removed.end(), has_id)) {
+                fail_input(graph.file(), "has no relationship " + std::to_string(id), "'ostraka relation list' shows them");
+            }
+        }
+        output.write(std::move(relations), set());
+        tell(report, removed);
+    }
+
+private:
+    std::vector<int> ids;
+};
+
+class RelationList final : public RelationOperation {
+public:
+    void describe(Parameters& p) override {
+        describe_inputs(p);
+        describe_graph(p);
+        describe_relationships(p.report);
+    }
+    void run(Context&, Report& report) override { tell(report, read_relations().relationships); }
+};
+
+class RelationCheckAll final : public RelationOperation {
+public:
+    void describe(Parameters& p) override {
+        describe_inputs(p);
+        describe_graph(p);
+        tolerances.describe(p.options);
+        describe_relationships(p.report, true);
+        for (const char* verdict : {"holds", "fails", "unknown"}) p.report.value(verdict, FieldType::integer);
+    }
+
+    void run(Context&, Report& report) override {
+        const RelationGraph relations = read_relations();
+        const std::vector<RelationCheck> checks =
+            in_file(annotations.file(), [&] { return check_relations(mesh->mesh, set(), relations, tolerances); });
+        std::array<std::size_t, 3> counts{};
+        report.empty_table("relationships");
+        for (std::size_t i = 0; i < checks.size(); ++i) {
+            Relationship relationship = relations.relationships[i];
+            relationship.parameters = checks[i].parameters;
+            ++counts.at(static_cast<std::size_t>(checks[i].verdict));
+            tell(report, relationship)("verdict", to_string(checks[i].verdict))("text", checks[i].text);
+        }
+        for (const Verdict verdict : {Verdict::holds, Verdict::fails, Verdict::unknown})
+            report.value(to_string(verdict), counts.at(static_cast<std::size_t>(verdict)));
+        report.line(std::to_string(counts[0]) + " hold, " + std::to_string(counts[1]) + " fail, " + std::to_string(counts[2]) +
+                    " unknown");
+        if (counts[1] > 0) report.answer_no();
+    }
+
+private:
+    RelationOptions tolerances;
+};
+
+class RelationExport final : public RelationOperation {
+public:
+    void describe(Parameters& p) override {
+        describe_inputs(p);
+        describe_graph(p);
+        p.output("output", Kind::text, dot, "file to write (.dot, .gv)");
+        for (const char* count : {"relationships", "annotations"}) p.report.value(count, FieldType::integer, count);
+    }
+
+    void check() const override {
+        if (const std::string kind = extension(dot.file()); !dot.file().empty() && kind != ".dot" && kind != ".gv")
+            fail_usage("'" + dot.file() + "' is not a Graphviz file", "end its name in .dot or .gv");
+    }
+
+    void run(Context&, Report& report) override {
+        const RelationGraph relations = read_relations();
+        dot.write(graph_to_dot(relations, set()));
+        report.value("relationships", relations.relationships.size());
+        report.value("annotations", set().annotations.size());
+    }
+
+private:
+    FileOutput dot{".dot"};
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_relation_extract() { return make<RelationExtract>(); }
+std::unique_ptr<Operation> make_relation_add() { return make<RelationAdd>(); }
+std::unique_ptr<Operation> make_relation_remove() { return make<RelationRemove>(); }
+std::unique_ptr<Operation> make_relation_list() { return make<RelationList>(); }
+std::unique_ptr<Operation> make_relation_check() { return make<RelationCheckAll>(); }
+std::unique_ptr<Operation> make_relation_export() { return make<RelationExport>(); }
+
+}  // namespace ostraka

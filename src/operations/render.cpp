@@ -1,0 +1,266 @@
+// render: a picture of meshes, their annotations and maps.
+#include "operations.h"
+#include "render_annotations.h"
+
+#include "ostraka/core/parallel.h"
+#include "ostraka/render/render.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace ostraka {
+
+namespace {
+
+class Render final : public Operation {
+public:
+    void describe(Parameters& p) override {
+        p.input("meshes", Kind::mesh, meshes, "one or more meshes").many();
+        p.output("picture", Kind::picture, picture, "picture to write (PNG)");
+        p.order({"meshes", "picture"});
+        p.input("annotations", Kind::annotations, annotations, "annotation file; once a mesh, 'none' for a mesh without")
+            .many_or_none()
+            .optional()
+            .flag();
+        p.input("map", Kind::values, maps,
+                "one number a vertex or face (.npy, or text with a number a line); once a mesh, 'none' for a mesh without")
+            .many_or_none()
+            .optional()
+            .flag();
+        p.options("title", titles, "written under the object; once a mesh, 'none' for a mesh without");
+        p.options("map-on", map_on, "what the map's numbers belong to; auto: as their count says",
+                  Choices{"auto", "vertex", "face"});
+        p.options("map-label", map_label, "written beside the colour bar, with the unit");
+        p.options("map-range", map_range, "SMALLEST,LARGEST value of the colour bar instead of those met");
+        p.options("colour-by", colour_by, "the file's labels or colours; auto: what there is",
+                  Choices{"auto", "labels", "colours", "none"});
+        p.options("unit", unit, "unit of the mesh, for the scale bar");
+        options.describe(p.options);
+        p.report.value("picture", FieldType::text);
+        for (const char* side : {"width", "height"}) p.report.value(side, FieldType::integer, "", "pixels");
+        p.report.table("panes", {{"object", FieldType::integer},
+                                 {"view", FieldType::text},
+                                 {"vertices", FieldType::integer},
+                                 {"faces", FieldType::integer},
+                                 {"pixelsPerUnit", FieldType::number},
+                                 {"scaleBar", FieldType::number},
+                                 {"markers", FieldType::integer},
+                                 {"markersShown", FieldType::integer},
+                                 {"camera", FieldType::any}});
+    }
+
+    void check() const override {
+        if (!picture.file().empty() && extension(picture.file()) != ".png")
+            fail_usage("picture '" + picture.file() + "' does not end in .png", "name the picture last, as PNG");
+        for (const auto& [flag, count] :
+             {std::pair{"annotations", annotations.size()}, std::pair{"map", maps.size()}, std::pair{"title", titles.size()}})
+            if (count != 0 && count != meshes.size())
+                fail_usage("--" + std::string(flag) + " is given " + std::to_string(count) + " times for " +
+                               std::to_string(meshes.size()) + " meshes",
+                           "give it once a mesh, in their order; 'none' for a mesh that has none");
+        const bool is_range =
+            map_range.size() == 2 && std::isfinite(map_range[0]) && std::isfinite(map_range[1]) && map_range[0] < map_range[1];
+        if (!map_range.empty() && !is_range)
+            fail_usage("the map range is not possible", "use SMALLEST,LARGEST such as --map-range 0,2.5");
+        check_render_options(options);
+    }
+
+    void run(Context& context, Report& report) override {
+        RenderOptions how = options;
+        const Stopwatch reading;
+        std::vector<Scene> scenes;
+        for (std::size_t k = 0; k < meshes.size(); ++k) scenes.push_back(read(context, k, how));
+        if (const std::string map = first_map(); !map.empty()) how.scale = common_scale(scenes, map);
+        if (how.fit == "all" && units_differ(scenes)) {
+            report.note("the objects have different units: each is drawn at a scale of its own");
+            how.fit = "each";
+        }
+        report.run("readSeconds", reading.seconds());
+        const Rendering rendering = render(scenes, how);
+        report.run("buildSeconds", rendering.build_seconds);
+        report.run("drawSeconds", rendering.draw_seconds);
+        const Stopwatch writing;
+        write_png(picture.path(), rendering.picture);
+        report.run("writeSeconds", writing.seconds());
+        report.run("threads", threads());
+        report.value("picture", picture.file_name());
+        report.value("width", rendering.picture.width);
+        report.value("height", rendering.picture.height);
+        report.empty_table("panes");
+        for (const Pane& pane : rendering.panes) {
+            const Scene& scene = scenes[pane.scene];
+            Report::Row row = report.row("panes");
+            row("object", pane.scene)("view", pane.view)("vertices", scene.mesh.points.size());
+            row("faces", scene.mesh.triangles.size())("pixelsPerUnit", pane.pixels_per_unit);
+            if (pane.bar_length > 0) row("scaleBar", pane.bar_length);
+            row("markers", scene.markers.size())("markersShown", pane.markers_shown);
+            row("camera", camera_json(pane, rendering.picture, report.allocator()));
+        }
+    }
+
+private:
+    enum class MapOn { automatic, vertex, face };
+    enum class ColourBy { automatic, labels, colours, none };
+
+    /// The k-th object; its annotations say what is up in the picture unless the options do.
+    Scene read(Context& context, std::size_t k, RenderOptions& how) const {
+        Scene scene;
+        MeshExtras extras;
+        std::vector<Index> triangle_polygon;
+        if (annotations.has(k)) {
+            const MeshFile& file = meshes.get(k);
+            scene.mesh = to_soup(file.mesh);
+            extras = file.extras;
+            triangle_polygon = file.triangle_polygon;
+        } else {  // a picture needs no manifold
+            TriangulatedSoup triangles = triangulate(meshes.take_polygons(k));
+            context.notes(meshes.size() > 1 ? meshes.file(k) : std::string(), triangles.notes);
+            scene.mesh = std::move(triangles.soup);
+            extras = std::move(triangles.extras);
+            triangle_polygon = std::move(triangles.triangle_polygon);
+        }
+        if (!titles.empty()) scene.title = titles[k] == "none" ? "" : titles[k];
+        else if (meshes.size() > 1) scene.title = meshes.file_name(k);
+        if (maps.has(k)) colour_by_map(scene, triangle_polygon, k);
+        if (annotations.has(k)) {
+            const Mesh& mesh = meshes.get(k).mesh;
+            const AnnotationSet& set = annotations.on(mesh, k);
+            draw_annotations(scene, mesh, set);
+            if (how.up == "auto" && set.up) {
+                how.up.clear();
+                for (const double x : *set.up) how.up += (how.up.empty() ? "" : ",") + number(x, 17);
+            }
+        } else if (!maps.has(k)) {
+            colour_by_file(scene, extras, meshes.file(k));
+        }
+        if (!unit.empty()) scene.unit = unit;
+        return scene;
+    }
+
+    static void colour_by_labels(Scene& scene, const MeshExtras& extras) {
+        std::vector<std::int32_t> labels = extras.face_labels;
+        if (labels.empty())
+            for (const auto& [a, b, c] : scene.mesh.triangles) {  // the label of most corners, else of the first
+                const auto& of = extras.vertex_labels;
+                labels.push_back(of[b] == of[c] ? of[b] : of[a]);
+            }
+        std::map<std::int32_t, Rgb> colours;
+        for (const auto label : labels) colours[label];
+        std::size_t index = 0;
+        for (auto& [label, colour] : colours) {
+            colour = category_colour(index++);
+            scene.legend.push_back({"label " + std::to_string(label), colour, LegendMark::area});
+        }
+        for (const auto label : labels) scene.face_colours.push_back(colours[label]);
+    }
+
+    /// The colours that the file itself gives, if any are wanted.
+    void colour_by_file(Scene& scene, const MeshExtras& extras, const std::string& file) const {
+        const bool labels = !extras.face_labels.empty() || !extras.vertex_labels.empty();
+        const bool colours = !extras.face_colours.empty() || !extras.vertex_colours.empty();
+        if (colour_by == ColourBy::labels && !labels) fail_input(file, "holds no labels", "leave out --colour-by");
+        if (colour_by == ColourBy::colours && !colours) fail_input(file, "holds no colours", "leave out --colour-by");
+        const auto opaque = [](const Colour& colour) { return Rgb{colour[0], colour[1], colour[2]}; };
+        if (colour_by == ColourBy::labels || (colour_by == ColourBy::automatic && labels)) {
+            colour_by_labels(scene, extras);
+        } else if (colour_by != ColourBy::none && colours) {
+            for (const auto& colour : extras.face_colours) scene.face_colours.push_back(opaque(colour));
+            if (extras.face_colours.empty())
+                for (const auto& colour : extras.vertex_colours) scene.vertex_colours.push_back(opaque(colour));
+        }
+    }
+
+    void colour_by_map(Scene& scene, const std::vector<Index>& polygon, std::size_t k) const {
+        const std::vector<double>& values = maps.get(k);
+        const std::size_t vertices = scene.mesh.points.size(), triangles = scene.mesh.triangles.size();
+        const std::size_t polygons = polygon.empty() ? triangles : polygon.back() + std::size_t{1};
+        if (map_on != MapOn::face && values.size() == vertices) {
+            scene.vertex_values = values;
+        } else if (map_on != MapOn::vertex && values.size() == triangles) {
+            scene.face_values = values;
+        } else if (map_on != MapOn::vertex && values.size() == polygons) {
+            for (const Index p : polygon) scene.face_values.push_back(values[p]);
+        } else {
+            const std::string points = std::to_string(vertices) + " vertices", faces = std::to_string(triangles) + " faces";
+            fail_input(maps.file(k),
+                       "holds " + std::to_string(values.size()) + " values for a mesh of " +
+                           (map_on == MapOn::vertex ? points
+                            : map_on == MapOn::face ? faces
+                                                    : points + " and " + faces),
+                       "give one value an element");
+        }
+    }
+
+    /// Empty where no mesh has one.
+    [[nodiscard]] std::string first_map() const {
+        for (std::size_t k = 0; k < maps.size(); ++k)
+            if (maps.has(k)) return maps.file(k);
+        return {};
+    }
+
+    [[nodiscard]] ColourScale common_scale(const std::vector<Scene>& scenes, const std::string& map) const {
+        std::vector<const std::vector<double>*> lists;
+        for (const Scene& scene : scenes) {
+            lists.push_back(&scene.vertex_values);
+            lists.push_back(&scene.face_values);
+        }
+        ColourScale scale = scale_of(lists, map);
+        if (!map_range.empty()) {
+            scale.minimum = map_range[0];
+            scale.maximum = map_range[1];
+            scale.diverging = scale.minimum < 0 && scale.maximum > 0;
+        }
+        scale.label = map_label;
+        return scale;
+    }
+
+    /// Of the units that are known.
+    static bool units_differ(const std::vector<Scene>& scenes) {
+        std::set<std::string> units;
+        for (const Scene& scene : scenes)
+            if (!scene.unit.empty()) units.insert(scene.unit);
+        return units.size() > 1;
+    }
+
+    /// As recipes take it, so that pixels of this picture can be picked.
+    static JsonValue camera_json(const Pane& pane, const Picture& picture, JsonAllocator& allocator) {
+        const PictureCamera& camera = pane.camera;
+        const auto list = [&](const auto& numbers) {
+            JsonValue array(rapidjson::kArrayType);
+            for (const auto x : numbers) array.PushBack(x, allocator);
+            return array;
+        };
+        const auto triple = [&](const auto& v) { return list(std::array{v.x(), v.y(), v.z()}); };
+        const bool parallel = camera.distance == 0;
+        const double distance = parallel ? std::max(pane.width, pane.height) / camera.scale : camera.distance;
+        JsonValue result(rapidjson::kObjectType);
+        add_member(result, "frame", "mesh", allocator);
+        add_member(result, "eye", triple(camera.centre + distance * camera.toward), allocator);
+        add_member(result, "target", triple(camera.centre), allocator);
+        add_member(result, "up", triple(camera.up), allocator);
+        add_member(result, "projection", parallel ? "orthographic" : "perspective", allocator);
+        add_member(result, "pixelsPerUnit", JsonValue(camera.scale), allocator);
+        add_member(result, "picture", list(std::array{picture.width, picture.height}), allocator);
+        add_member(result, "pane", list(std::array{pane.left, pane.top, pane.width, pane.height}), allocator);
+        return result;
+    }
+
+    MeshInput meshes;
+    FileOutput picture{".png"};
+    AnnotationsInput annotations;
+    ValuesInput maps;
+    std::vector<std::string> titles;
+    std::vector<double> map_range;
+    std::string map_label, unit;
+    MapOn map_on = MapOn::automatic;
+    ColourBy colour_by = ColourBy::automatic;
+    RenderOptions options;
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_render() { return make<Render>(); }
+
+}  // namespace ostraka

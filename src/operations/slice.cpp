@@ -1,0 +1,339 @@
+// slice: an object cut into slices, described and drawn.
+#include "operations.h"
+#include "slice_report.h"
+
+#include "ostraka/core/limits.h"
+#include "ostraka/report/slice_drawing.h"
+#include "ostraka/slicing/silhouette.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ostraka {
+
+namespace {
+
+enum class SliceForm { json, csv, sheet, mesh, profile };
+
+/// What is written: one form by the ending of the name; all of them into a folder, which is a name without one.
+class SliceOutput final : public FolderOutput {
+public:
+    void check() const override {
+        for (std::size_t i = 0; i < sources.size(); ++i)
+            if (fills_folder(i)) check_folder(i);
+            else if (!form_of(sources[i].file))
+                fail_usage("'" + printable(file(i), 60) + "' is none of the files that slices are written to",
+                           "end its name in .json, .csv, .svg, .png or .ply, or give a folder for all of them");
+    }
+
+    [[nodiscard]] bool fills_folder(std::size_t i) const override {
+        return is_folder(sources[i].file) || extension(sources[i].file).empty();
+    }
+
+    /// Makes the folders.
+    [[nodiscard]] std::vector<std::pair<SliceForm, Path>> files(bool with_profile) const {
+        std::vector<std::pair<SliceForm, Path>> list;
+        for (std::size_t i = 0; i < sources.size(); ++i) {
+            if (!fills_folder(i)) {
+                list.emplace_back(*form_of(sources[i].file), sources[i].file);
+                continue;
+            }
+            for (const auto& [form, file_name] : {std::pair{SliceForm::json, "slices.json"},
+                                                  {SliceForm::csv, "slices.csv"},
+                                                  {SliceForm::sheet, "slices.svg"},
+                                                  {SliceForm::mesh, "slices.ply"}})
+                list.emplace_back(form, in(file_name, i));
+            if (with_profile) list.emplace_back(SliceForm::profile, in("profile.svg", i));
+        }
+        return list;
+    }
+
+private:
+    static std::optional<SliceForm> form_of(const Path& file) {
+        const std::string ending = extension(file);
+        if (ending == ".json") return SliceForm::json;
+        if (ending == ".csv") return SliceForm::csv;
+        if (ending == ".svg" || ending == ".png") return SliceForm::sheet;
+        if (ending == ".ply") return SliceForm::mesh;
+        return std::nullopt;
+    }
+};
+
+class SliceObject final : public Operation {
+public:
+    void describe(Parameters& p) override {
+        p.input("mesh", Kind::mesh, mesh, "mesh file");
+        p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json): unit, upward direction, parts")
+            .optional();
+        p.output("output", Kind::folder, output,
+                 "a folder for everything, or .json (all), .csv (descriptors), .svg, .png (drawing), .ply (slices on the mesh); "
+                 "repeatable")
+            .optional()
+            .flag()
+            .many();
+        p.output("profile", Kind::picture, profile, "write a profile drawing (.svg, .png)").optional().flag();
+        p.options("annotation", names, "id or tag of a region: slice that part only; more than one: all together").words();
+        p.options.group("Planes");
+        p.options("direction", direction,
+                  "across what: up, principal, rotation, skeleton, an axis such as y or -z, or three numbers like 0,1,0");
+        p.options("up", up, "x, y, z, -x, -y, -z or three numbers: upward direction; else as the annotations say, else 0,0,1");
+        p.options("count", count, "number of slices, in the middles of as many layers (default 50)", Range{1, 1e6});
+        p.options("spacing", spacing, "distance of the slices, from the lowest place up", Anything{}, "the mesh's unit");
+        p.options("heights", heights, "heights over the lowest place, with commas between them", Anything{}, "the mesh's unit");
+        p.options("range", range, "shares of the height between which to cut, for --count and --spacing", Range{0, 1});
+        p.options("plane", plane, "one slice: a point and the normal, x,y,z,nx,ny,nz");
+        p.options.group("What is told and drawn");
+        p.options("medial-axis", residues, "medial axes of the slices at these residues, like 0.01,0.05,0.15", Range{0.001, 1});
+        p.options("axes", axes, "straightness against the axes of `ostraka axis` as well");
+        p.options("unit", unit, "unit of the mesh; else as the annotations say");
+        p.options("title", title, "title of the drawings; else the mesh file's name");
+        p.options("profile-angle", angle, "direction of the section of the profile; else a typical one", Range{-360, 360},
+                  "degrees");
+        p.options("drawn", drawn, "most slices on the drawing", Range{1, 10000});
+        p.options("colour-by", colour_by, "what colours the .ply: height, or a descriptor as the CSV names them",
+                  Choices(slice_quantities()));
+        p.options.group("The tubular part");
+        tube_options.describe(p.options);
+        declare_slices(p.report);
+    }
+
+    void check() const override {
+        check_planes();
+        if (!annotations && !names.empty())
+            fail_usage("--annotation '" + printable(names[0], 60) + "' names a part of " + printable(mesh.file(), 60) +
+                           ", but no annotation file is given",
+                       "put it behind the mesh: ostraka slice MESH ANNOTATIONS --annotation ...");
+        if (!profile) return;
+        if (const std::string ending = extension(profile.file()); !profile.file().empty() && ending != ".svg" && ending != ".png")
+            fail_usage("'" + profile.file() + "' is no drawing", "end its name in .svg or .png");
+        if (direction == "skeleton") fail_usage("--profile with --direction skeleton", "a profile has a straight axis");
+        if (!plane.empty()) fail_usage("--profile with --plane", "a profile is cut along an axis: --direction, --profile-angle");
+    }
+
+    void run(Context& context, Report& report) override {
+        read_part();
+        const CutObject cut = in_file(mesh.file(), [&] { return cut_it(); });
+        if (!cut.reason.empty()) {
+            report.note(mesh.file() + ": " + cut.reason + " (slice along another --direction)");
+            return report.answer_no();
+        }
+        add_slices(report, {cut, unit_of_lengths, !plane.empty(), compared_axes(mesh->mesh, faces, cut, axes),
+                            thickness_homogeneity(cut.slices),
+                            plane.empty() ? tubular_part(cut.stack(), cut.descriptors, tube_options) : Tube{}});
+        for (const auto& [form, file] : output.files(plane.empty() && direction != "skeleton"))
+            write(form, file, cut, context, report);
+        if (profile && is_drawable(profile.file_name(), cut, report)) draw_profile(profile.path(), true, cut, report);
+        add_notes(report, cut);
+        if (!cut.met()) report.answer_no();
+    }
+
+private:
+    void check_planes() const {
+        const int ways = (count ? 1 : 0) + (spacing ? 1 : 0) + (heights.empty() ? 0 : 1);
+        if (ways > 1) fail_usage("heights are asked for in more than one way", "give one of --count, --spacing and --heights");
+        if (!plane.empty() && (ways > 0 || direction != "up"))
+            fail_usage("--plane is one slice", "leave out --count, --spacing, --heights, --direction");
+        if (direction == "skeleton" && (spacing || !heights.empty()))
+            fail_usage("--spacing and --heights with --direction skeleton", "give --count");
+        if (spacing && !(*spacing > 0 && *spacing <= largest_coordinate))
+            fail_usage("--spacing is " + number(*spacing), "give a length above 0, in the mesh's unit");
+        for (const double height : heights)
+            if (!(std::abs(height) <= largest_coordinate))
+                fail_usage("--heights has " + number(height), "give heights over the lowest place, in the mesh's unit");
+        if (range.size() != 2 || !(range[0] < range[1]))
+            fail_usage("--range is '" + listed(range) + "'", "give two shares of the height, the lower one first, like 0,0.4");
+        if (!plane.empty()) static_cast<void>(frame_of_plane());
+        if (!up.empty()) static_cast<void>(direction_of(up, "--up"));
+        if (direction != "up" && !is_by_axis()) static_cast<void>(asked_direction());
+    }
+
+    static std::string listed(const std::vector<double>& numbers) {
+        std::string text;
+        for (const double x : numbers) text += (text.empty() ? "" : ",") + number(x);
+        return text;
+    }
+
+    [[nodiscard]] bool is_by_axis() const {
+        return direction == "principal" || direction == "rotation" || direction == "skeleton";
+    }
+
+    [[nodiscard]] std::array<double, 3> asked_direction() const {
+        try {
+            return direction_of(direction, "--direction");
+        } catch (const Error& error) {
+            if (direction.find_first_of("0123456789,") != std::string::npos) throw;
+            fail_usage(error.problem(),
+                       "use up, principal, rotation, skeleton, an axis (x, y, z, -x, -y, -z) or three numbers like 0,1,0");
+        }
+    }
+
+    [[nodiscard]] SliceFrame frame_of_plane() const {
+        const std::string what = "--plane is '" + listed(plane) + "'";
+        if (plane.size() != 6) fail_usage(what, "give six numbers: a point and the normal");
+        if (!is_place(plane[0], plane[1], plane[2]))
+            fail_usage(what + ": its point is no place", "give finite coordinates, within those of the mesh");
+        const Vector normal(plane[3], plane[4], plane[5]);
+        if (unit_vector(normal) == CGAL::NULL_VECTOR)
+            fail_usage(what + ": its normal has no direction", "give finite numbers that are not all 0");
+        return slice_frame({plane[0], plane[1], plane[2]}, normal);
+    }
+
+    /// Unit, upward direction and faces: as asked for, else as the annotations say.
+    void read_part() {
+        unit_of_lengths = unit;
+        std::array<double, 3> upward{0, 0, 1};
+        if (annotations) {
+            const AnnotationSet& set = annotations.on(mesh->mesh);
+            if (unit.empty()) unit_of_lengths = set.unit;
+            if (set.up) upward = *set.up, up_known = true;
+            for (const auto& name : names) {
+                const Annotation& annotation = find_annotation(set, name, annotations.file());
+                if (annotation.type != AnnotationType::region)
+                    fail_usage("annotation '" + name + "' is no region", "only regions can be sliced");
+                faces.insert(faces.end(), annotation.faces.begin(), annotation.faces.end());
+            }
+            std::sort(faces.begin(), faces.end());
+            faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+        }
+        if (!up.empty()) upward = direction_of(up, "--up"), up_known = true;
+        upwards = {upward[0], upward[1], upward[2]};
+    }
+
+    [[nodiscard]] CutObject cut_it() const {
+        CutObject cut;
+        if (!plane.empty()) {
+            cut = cut_parallel(mesh->mesh, frame_of_plane(), {0}, faces);
+        } else {
+            CutOptions options;
+            options.up = upwards;
+            options.places = {heights, spacing, count.value_or(50), range[0], range[1]};
+            if (is_by_axis()) {
+                options.direction = direction;
+            } else if (direction != "up") {
+                const auto along = asked_direction();
+                options.up = {along[0], along[1], along[2]};
+            }
+            cut = cut_object(mesh->mesh, faces, options);
+        }
+        if (!residues.empty()) add_medial_axes(cut, residues);
+        return cut;
+    }
+
+    void write(SliceForm form, const Path& file, const CutObject& cut, Context& context, Report& report) const {
+        context.check_output(file);
+        switch (form) {
+            case SliceForm::json:
+                write_json(file, document(context, report));
+                break;
+            case SliceForm::csv:
+                write_file(file, slice_table(cut, unit_of_lengths));
+                break;
+            case SliceForm::mesh: {
+                MeshExtras extras;
+                extras.face_colours = slice_colours(mesh->mesh, cut, colour_by);
+                WriteOptions options;
+                options.comment = context.provenance().to_line();
+                context.notes({}, write_mesh(file, mesh->mesh, extras, options));
+                break;
+            }
+            case SliceForm::sheet:
+                if (is_drawable(file.filename().string(), cut, report)) write_slice_sheet(file, sheet(cut));
+                break;
+            case SliceForm::profile:
+                if (is_drawable(file.filename().string(), cut, report)) draw_profile(file, false, cut, report);
+        }
+    }
+
+    /// The result so far, as a file.
+    static Json document(const Context& context, const Report& report) {
+        Json document(rapidjson::kObjectType);
+        auto& allocator = document.GetAllocator();
+        add_member(document, "format", "ostraka-slices", allocator);
+        add_member(document, "version", JsonValue(1), allocator);
+        for (const auto& member : report.result().GetObject())
+            add_member(document, member.name.GetString(), JsonValue(member.value, allocator), allocator);
+        add_member(document, "provenance", context.provenance().to_json(allocator), allocator);
+        return document;
+    }
+
+    /// Nothing is drawn where nothing was met.
+    static bool is_drawable(const std::string& name, const CutObject& cut, Report& report) {
+        if (!cut.met()) report.note("no plane meets the mesh: " + name + " is not written");
+        return cut.met();
+    }
+
+    [[nodiscard]] std::string name_of_drawing() const { return title.empty() ? mesh.file_name() : title; }
+
+    /// The slices drawn: all, or as many as asked for, spread evenly.
+    [[nodiscard]] SliceSheet sheet(const CutObject& cut) const {
+        const std::size_t n = cut.slices.size(), most = static_cast<std::size_t>(drawn);
+        SliceSheet content;
+        content.title = name_of_drawing() + ": " + std::to_string(n) + (n == 1 ? " slice" : " slices");
+        content.unit = unit_of_lengths;
+        for (std::size_t k = 0; k < std::min(n, most); ++k) {
+            const std::size_t i = n <= most ? k : k * (n - 1) / std::max<std::size_t>(1, most - 1);
+            DrawnSlice entry{&cut.slices[i], &cut.descriptors[i], {}, i + 1};
+            if (!cut.medial.empty() && !cut.medial[i].levels.empty())
+                for (const auto& branch : cut.medial[i].levels[0].branches) entry.lines.push_back(branch.points);
+            content.slices.push_back(entry);
+        }
+        if (n > most) content.title += ", " + std::to_string(most) + " of them drawn";
+        if (cut.parallel && plane.empty()) {
+            SliceFrame view = cut.frames[0];
+            view.v = view.normal;
+            view.normal = CGAL::cross_product(view.u, view.v);
+            content.view = silhouette(mesh->mesh, view, 500, faces);
+        }
+        return content;
+    }
+
+    /// Of what was not turned only where it was asked for.
+    void draw_profile(const Path& file, bool asked, const CutObject& cut, Report& report) const {
+        const double turn = angle ? *angle * M_PI / 180 : std::numeric_limits<double>::quiet_NaN();
+        const SliceFrame axis = direction == "rotation" ? cut.frames[0] : median_frame(cut);
+        const Profile found = find_profile(mesh->mesh, axis, turn);
+        const std::string name = file.filename().string(),
+                          not_turned = "not a turned object about this axis (fewer than half of 24 slices are round): ";
+        if (!found.turned && !asked)
+            return report.note(not_turned + name + " is not written; --profile FILE draws it all the same");
+        if (!found.turned) report.note(not_turned + "a profile drawing says little of it");
+        if (found.hides)
+            report.note(name + " does not show all that stands out from the turned body: some of it lies before or behind it");
+        write_profile_drawing(file, found, name_of_drawing(), unit_of_lengths);
+    }
+
+    void add_notes(Report& report, const CutObject& cut) const {
+        if (!up_known && (direction == "rotation" || direction == "principal"))
+            report.note("which end of the axis is up is not known (0,0,1 taken): if it is upside down, give --up");
+        if (!cut.parallel && is_hollow(mesh->mesh, upwards, faces))
+            report.note(
+                "the object is hollow: its skeleton lies in the wall or wanders through the mouth, so that slices "
+                "across it cut the wall aslant (--direction rotation or up cuts a vessel)");
+        report.notes(slice_remarks(cut, !plane.empty()));
+    }
+
+    MeshInput mesh;
+    AnnotationsInput annotations;
+    SliceOutput output;
+    FileOutput profile{".svg"};
+    std::vector<std::string> names;
+    std::string direction = "up", up, unit, title, colour_by = "height";
+    std::optional<int> count;
+    std::optional<double> spacing, angle;
+    std::vector<double> heights, range{0, 1}, plane, residues;
+    int drawn = 24;
+    bool axes = false;
+    TubeOptions tube_options;
+
+    // Found by `read_part`.
+    std::vector<Index> faces;  ///< of the part; empty: all
+    Vector upwards{0, 0, 1};
+    bool up_known = false;
+    std::string unit_of_lengths;
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_slice() { return make<SliceObject>(); }
+
+}  // namespace ostraka

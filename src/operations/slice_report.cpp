@@ -1,0 +1,348 @@
+#include "slice_report.h"
+
+#include "ostraka/core/csv.h"
+#include "ostraka/render/colour_scale.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+namespace ostraka {
+
+namespace {
+
+constexpr double slice_degree = M_PI / 180;
+
+/// What people see of the descriptors, in this order: the descriptor, its title, digits.
+struct ShownDescriptor {
+    std::string_view name, title;
+    int digits;
+};
+constexpr std::array<ShownDescriptor, 8> shown_descriptors{{{"area", "area", 4},
+                                                            {"perimeter", "perimeter", 4},
+                                                            {"eccentricity", "m/M", 3},
+                                                            {"solidity", "solidity", 3},
+                                                            {"compactness", "compactness", 3},
+                                                            {"roundness_fitted_relative", "off circle %", 3},
+                                                            {"hole_area_ratio", "hole ratio", 3},
+                                                            {"thickness_mean", "thickness", 3}}};
+
+const ShownDescriptor* shown_descriptor(std::string_view name) {
+    const auto found =
+        std::find_if(shown_descriptors.begin(), shown_descriptors.end(), [&](const auto& one) { return one.name == name; });
+    return found == shown_descriptors.end() ? nullptr : &*found;
+}
+
+bool is_slice_count(std::string_view name) { return name == "components" || name == "holes" || name == "euler_number"; }
+
+Field descriptor_field(const NamedDescriptor& entry) {
+    const ShownDescriptor* shown = shown_descriptor(entry.name);
+    const std::string unit = entry.unit;
+    return {"descriptors." + std::string(entry.name), is_slice_count(entry.name) ? FieldType::integer : FieldType::number,
+            std::string(shown == nullptr ? "" : shown->title), unit == "area" ? "length^2" : unit};
+}
+
+std::vector<double> slice_triple(const Vector& v) { return {v.x(), v.y(), v.z()}; }
+std::vector<double> slice_triple(const Point& p) { return {p.x(), p.y(), p.z()}; }
+
+JsonValue slice_list(const std::vector<double>& numbers, JsonAllocator& allocator) {
+    JsonValue list(rapidjson::kArrayType);
+    for (const double x : numbers) list.PushBack(std::isfinite(x) ? JsonValue(x) : JsonValue(), allocator);
+    return list;
+}
+JsonValue slice_points(const std::vector<Eigen::Vector2d>& points, JsonAllocator& allocator) {
+    JsonValue list(rapidjson::kArrayType);
+    for (const auto& p : points) list.PushBack(slice_list({p.x(), p.y()}, allocator), allocator);
+    return list;
+}
+
+JsonValue slice_json(const SliceFrame& frame, JsonAllocator& allocator) {
+    JsonValue object(rapidjson::kObjectType);
+    add_member(object, "origin", slice_list(slice_triple(frame.origin), allocator), allocator);
+    add_member(object, "u", slice_list(slice_triple(frame.u), allocator), allocator);
+    add_member(object, "v", slice_list(slice_triple(frame.v), allocator), allocator);
+    add_member(object, "normal", slice_list(slice_triple(frame.normal), allocator), allocator);
+    return object;
+}
+
+JsonValue slice_json(const Contour& contour, JsonAllocator& allocator) {
+    JsonValue object(rapidjson::kObjectType);
+    add_member(object, "closed", JsonValue(contour.closed), allocator);
+    if (contour.closed) {
+        add_member(object, "hole", JsonValue(contour.hole), allocator);
+        add_member(object, "parent", JsonValue(contour.parent), allocator);
+        add_member(object, "depth", JsonValue(contour.depth), allocator);
+        add_member(object, "area", JsonValue(contour.area), allocator);
+        if (contour.crosses) add_member(object, "crosses", JsonValue(true), allocator);
+        if (contour.turned) add_member(object, "turned", JsonValue(true), allocator);
+    } else {
+        add_member(object, "gap", JsonValue(contour.gap), allocator);
+        add_member(object, "share", JsonValue(contour.length / (contour.length + contour.gap)), allocator);
+    }
+    add_member(object, "length", JsonValue(contour.length), allocator);
+    add_member(object, "points", slice_points(contour.points, allocator), allocator);
+    return object;
+}
+
+JsonValue slice_json(const MedialAxis& medial, JsonAllocator& allocator) {
+    JsonValue levels(rapidjson::kArrayType);
+    for (const auto& level : medial.levels) {
+        JsonValue object(rapidjson::kObjectType), branches(rapidjson::kArrayType);
+        add_member(object, "residue", JsonValue(level.residue), allocator);
+        add_member(object, "length", JsonValue(level.length), allocator);
+        for (const auto& branch : level.branches) {
+            JsonValue entry(rapidjson::kObjectType);
+            add_member(entry, "points", slice_points(branch.points, allocator), allocator);
+            add_member(entry, "radii", slice_list(branch.radii, allocator), allocator);
+            branches.PushBack(entry, allocator);
+        }
+        add_member(object, "branches", std::move(branches), allocator);
+        levels.PushBack(object, allocator);
+    }
+    return levels;
+}
+
+void add_slice_completeness(Report::Row& row, const Slice& slice) {
+    const Completeness& c = slice.completeness;
+    const bool empty = slice.contours.empty();
+    row("completeness.empty", empty)("completeness.complete", !empty && c.complete());
+    row.shown("completeness.share", "empty");
+    if (empty) return;
+    row("completeness.closed_share", c.closed_share)("completeness.share", c.share, number(100 * c.share, 3))(
+        "completeness.angle_degrees", c.angle / slice_degree)("completeness.crossing_contours", c.crossing)(
+        "completeness.turned_contours", c.turned)("completeness.doubtful_share", c.doubtful);
+}
+
+void add_slice_descriptors(Report::Row& row, const SliceDescriptors& descriptors) {
+    for (const auto& [name, unit, value] : list_descriptors(descriptors)) {
+        const std::string key = "descriptors." + std::string(name);
+        const ShownDescriptor* shown = shown_descriptor(name);
+        if (is_slice_count(name) && std::isfinite(value)) row(key, static_cast<int>(value));
+        else row(key, value, shown == nullptr ? "" : number(shown->title.ends_with('%') ? 100 * value : value, shown->digits));
+    }
+}
+
+void add_one_slice(Report& report, const CutObject& cut, std::size_t i) {
+    auto& allocator = report.allocator();
+    const Slice& slice = cut.slices[i];
+    Report::Row row = report.row("slices");
+    row.shown("slice", std::to_string(i + 1)).shown("contours", std::to_string(slice.contours.size()));
+    row("height", slice.height)("frame", slice_json(cut.frames[i], allocator));
+    add_slice_completeness(row, slice);
+    add_slice_descriptors(row, cut.descriptors[i]);
+    if (const auto profile = thickness_profile(slice, 72); !profile.empty())
+        row("thickness_profile", slice_list(profile, allocator));
+    JsonValue contours(rapidjson::kArrayType);
+    for (const auto& contour : slice.contours) contours.PushBack(slice_json(contour, allocator), allocator);
+    row("contours", std::move(contours));
+    if (!cut.medial.empty()) row("medial_axis", slice_json(cut.medial[i], allocator));
+}
+
+void add_compared_axis(Report& report, const ComparedAxis& axis) {
+    auto& allocator = report.allocator();
+    Report::Row row = report.row("axes");
+    row("name", axis.name)("found", axis.reason.empty());
+    if (!axis.reason.empty()) {
+        row("reason", axis.reason).shown("straightness.relative", axis.reason);
+        return;
+    }
+    if (axis.polyline.empty()) {
+        row("point", slice_triple(axis.line.point))("direction", slice_triple(axis.line.direction));
+    } else {
+        JsonValue points(rapidjson::kArrayType);
+        for (const auto& p : axis.polyline) points.PushBack(slice_list(slice_triple(p), allocator), allocator);
+        row("polyline", std::move(points));
+    }
+    const Straightness& s = axis.straightness;
+    row("straightness.mean_distance", s.mean)("straightness.deviation", s.deviation)("straightness.largest_distance", s.most)(
+        "straightness.length", s.length)("straightness.relative", s.relative, number(100 * s.relative, 3));
+}
+
+void add_slice_thickness(Report& report, const SliceFindings& found) {
+    const ThicknessHomogeneity& t = found.thickness;
+    report.value("thickness.slices", t.slices);
+    report.value("thickness.slices_with_parts_beside", t.beside);
+    report.value("thickness.mean", t.mean);
+    report.value("thickness.variation_within", t.within);
+    report.value("thickness.variation_across", t.across);
+    report.value("thickness.variation_overall", t.overall);
+    const auto percent = [](double share) { return std::isfinite(share) ? number(100 * share, 3) : std::string("-"); };
+    if (std::isfinite(t.mean))
+        report.line(
+            "\nwall " + number(t.mean) + (found.unit.empty() ? "" : " " + found.unit) + ": varies by " + percent(t.within) +
+            " % within slices, " +
+            (t.slices < 2 ? "and one slice tells nothing of how it does between them" : percent(t.across) + " % between them") +
+            " (medians; " + std::to_string(t.slices) + " of " + std::to_string(found.cut.slices.size()) +
+            " slices show the wall alone)");
+    else if (t.beside > 0) report.line("\nno slice shows the wall alone: all that do have handles or other parts beside it");
+}
+
+void add_slice_tube(Report& report, const SliceFindings& found) {
+    const Tube& tube = found.tube;
+    report.value("tube.found", tube.found);
+    if (tube.found) {
+        const auto heights = found.cut.sorted_heights();
+        report.value("tube.lowest", heights[tube.first]);
+        report.value("tube.highest", heights[tube.last]);
+        report.line("\ntubular from " + number(heights[tube.first]) + " to " + number(heights[tube.last]) +
+                    (found.unit.empty() ? "" : " " + found.unit) + " (" + std::to_string(tube.last - tube.first + 1) +
+                    " slices)");
+    } else {
+        report.value("tube.reason", tube.reason);
+        report.line("\nno tubular part: " + tube.reason);
+    }
+    JsonValue groups(rapidjson::kArrayType);
+    for (const int group : tube.cluster) groups.PushBack(group, report.allocator());
+    report.value("tube.groups_by_height", std::move(groups));
+}
+
+}  // namespace
+
+void declare_slices(ReportLayout& layout) {
+    layout.value("unit", FieldType::text).value("planes", FieldType::text).value("reversed", FieldType::boolean);
+    layout.value("heights_of_the_mesh", FieldType::numbers, "", "length");
+    std::vector<Field> columns{{"", FieldType::integer, "slice"},
+                               {"height", FieldType::number, "height", "length"},
+                               {"", FieldType::integer, "contours"},
+                               {"frame", FieldType::any},
+                               {"completeness.empty", FieldType::boolean},
+                               {"completeness.complete", FieldType::boolean},
+                               {"completeness.closed_share", FieldType::number},
+                               {"completeness.angle_degrees", FieldType::number, "", "degrees"},
+                               {"completeness.crossing_contours", FieldType::integer},
+                               {"completeness.turned_contours", FieldType::integer},
+                               {"completeness.doubtful_share", FieldType::number}};
+    const auto descriptors = list_descriptors({});
+    for (const ShownDescriptor& shown : shown_descriptors)
+        columns.push_back(descriptor_field(
+            *std::find_if(descriptors.begin(), descriptors.end(), [&](const auto& entry) { return entry.name == shown.name; })));
+    for (const auto& entry : descriptors)
+        if (shown_descriptor(entry.name) == nullptr) columns.push_back(descriptor_field(entry));
+    columns.push_back({"completeness.share", FieldType::number, "complete %"});
+    for (const char* structure : {"thickness_profile", "contours", "medial_axis"}) columns.push_back({structure, FieldType::any});
+    layout.table("slices", std::move(columns));
+    layout.table("axes", {{"name", FieldType::text, "axis"},
+                          {"found", FieldType::boolean},
+                          {"reason", FieldType::text},
+                          {"point", FieldType::numbers, "", "length"},
+                          {"direction", FieldType::numbers},
+                          {"polyline", FieldType::any},
+                          {"straightness.mean_distance", FieldType::number, "mean distance", "length"},
+                          {"straightness.deviation", FieldType::number, "", "length"},
+                          {"straightness.largest_distance", FieldType::number, "largest", "length"},
+                          {"straightness.length", FieldType::number, "length", "length"},
+                          {"straightness.relative", FieldType::number, "mean / length %"}});
+    layout.value("thickness.slices", FieldType::integer).value("thickness.slices_with_parts_beside", FieldType::integer);
+    layout.value("thickness.mean", FieldType::number, "", "length");
+    for (const char* part : {"within", "across", "overall"})
+        layout.value("thickness.variation_" + std::string(part), FieldType::number);
+    layout.value("tube.found", FieldType::boolean).value("tube.reason", FieldType::text);
+    layout.value("tube.lowest", FieldType::number, "", "length").value("tube.highest", FieldType::number, "", "length");
+    layout.structure("tube.groups_by_height");
+}
+
+void add_slices(Report& report, const SliceFindings& found) {
+    const CutObject& cut = found.cut;
+    report.set_unit(found.unit);
+    if (!found.unit.empty()) report.value("unit", found.unit);
+    report.value("planes", cut.parallel ? "parallel" : "across a curve");
+    report.value("reversed", cut.reversed);
+    if (cut.parallel && !found.one_plane) report.value("heights_of_the_mesh", std::vector{cut.lowest, cut.highest});
+    for (std::size_t i = 0; i < cut.slices.size(); ++i) add_one_slice(report, cut, i);
+    if (!cut.parallel) report.line("height: length along the curve");
+    report.line(
+        "m/M: sides of the smallest rectangle around the whole slice, loose pieces too (`eccentricity` in files; 1 for a "
+        "circle); off circle: mean distance from the best circle, of its radius");
+    if (!found.axes.empty()) report.line("");
+    else report.empty_table("axes", false);
+    for (const ComparedAxis& axis : found.axes) add_compared_axis(report, axis);
+    add_slice_thickness(report, found);
+    if (!found.one_plane) add_slice_tube(report, found);
+}
+
+std::string slice_table(const CutObject& cut, const std::string& unit) {
+    std::vector<std::string> header{"slice",           "unit",          cut.parallel ? "height" : "along_the_curve",
+                                    "contours",        "open_contours", "closed_share",
+                                    "share",           "angle_degrees", "crossing_contours",
+                                    "turned_contours", "doubtful_share"};
+    for (const auto& entry : list_descriptors({})) header.emplace_back(entry.name);
+    std::string text = csv_row(header);
+    const auto cell = [](double value) {
+        char buffer[32];
+        std::snprintf(buffer, sizeof buffer, "%.12g", value);
+        return std::isfinite(value) ? std::string(buffer) : std::string();
+    };
+    for (std::size_t i = 0; i < cut.slices.size(); ++i) {
+        const Slice& slice = cut.slices[i];
+        const auto open = std::count_if(slice.contours.begin(), slice.contours.end(), [](const Contour& c) { return !c.closed; });
+        const auto known = [&](double value) { return slice.contours.empty() ? std::string() : cell(value); };
+        std::vector<std::string> row{std::to_string(i + 1),
+                                     unit,
+                                     cell(slice.height),
+                                     std::to_string(slice.contours.size()),
+                                     std::to_string(open),
+                                     known(slice.completeness.closed_share),
+                                     known(slice.completeness.share),
+                                     known(slice.completeness.angle / slice_degree),
+                                     known(slice.completeness.crossing),
+                                     known(slice.completeness.turned),
+                                     known(slice.completeness.doubtful)};
+        for (const auto& entry : list_descriptors(cut.descriptors[i])) row.push_back(cell(entry.value));
+        text += csv_row(row);
+    }
+    return text;
+}
+
+std::vector<std::string> slice_quantities() {
+    std::vector<std::string> names{"height"};
+    for (const auto& entry : list_descriptors({})) names.emplace_back(entry.name);
+    return names;
+}
+
+std::vector<Colour> slice_colours(const Mesh& mesh, const CutObject& cut, const std::string& quantity) {
+    std::vector<double> values;
+    for (std::size_t i = 0; i < cut.slices.size(); ++i) {
+        values.push_back(cut.slices[i].height);
+        for (const auto& entry : list_descriptors(cut.descriptors[i]))
+            if (quantity == entry.name) values.back() = entry.value;
+    }
+    const Colour grey{190, 190, 190, 255};
+    std::vector<Colour> colours(mesh.number_of_faces(), grey);
+    if (std::none_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); })) return colours;
+    const ColourScale scale = scale_of({&values}, "slices");
+    const auto colour = [&](double value) {
+        if (!std::isfinite(value)) return grey;
+        const Rgb c = colour_of(scale, value);
+        return Colour{c.red, c.green, c.blue, 255};
+    };
+    if (cut.parallel && cut.slices.size() > 1) {
+        std::vector<std::size_t> order(cut.slices.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        std::sort(order.begin(), order.end(),
+                  [&](std::size_t a, std::size_t b) { return cut.slices[a].height < cut.slices[b].height; });
+        const auto height = [&](std::size_t k) { return cut.slices[order[k]].height; };
+        const std::size_t last = order.size() - 1;
+        for (const Face f : mesh.faces()) {
+            const double h = cut.frames[0].height(centroid(mesh, f));
+            if (h < height(0) - (height(1) - height(0)) / 2 || h > height(last) + (height(last) - height(last - 1)) / 2) continue;
+            std::size_t k = 0, above = last;
+            while (above - k > 1) {
+                const std::size_t half = (k + above) / 2;
+                (height(half) <= h ? k : above) = half;
+            }
+            if (height(above) - h < h - height(k)) k = above;
+            colours[f] = colour(values[order[k]]);
+        }
+    }
+    for (std::size_t i = 0; i < cut.slices.size(); ++i)
+        for (const auto& contour : cut.slices[i].contours)
+            for (const Index f : contour.faces) {
+                const Colour c = colour(values[i]);
+                const auto dark = [](std::uint8_t part) { return static_cast<std::uint8_t>(part * 3 / 5); };
+                colours[f] = {dark(c[0]), dark(c[1]), dark(c[2]), 255};
+            }
+    return colours;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,91 @@
+#include "study.h"
+
+#include <set>
+
+namespace ostraka {
+
+void StudyFiles::describe(Parameters& p, bool labels, const std::string& collections) {
+    p.input("collection", Kind::collection, collection, collections);
+    p.output("output", Kind::folder, output,
+             "folder for tables, plots and the report; what is done is kept there and not done again")
+        .flag();
+    p.options("plots", plots_, "format of the plots", Choices{"svg", "png"}).unrecorded();
+    declare_failures(p.report);
+    if (!labels) return;
+    p.input("truth", Kind::table, truth_, "known answers: CSV with the columns name and label").optional().flag();
+    p.options("truth-column", truth_column_, "the column of the answers, if not 'label'");
+    for (const char* count : {"labelled", "objects", "kinds"}) p.report.value(std::string("truth.") + count, FieldType::integer);
+}
+
+void StudyFiles::check() const {
+    const Path &from = collection.sources.front().file, &to = output.sources.front().file;
+    if (!from.empty() && !to.empty() && same_place(to, is_folder(from) ? from : from.parent_path()))
+        fail_usage("--output is the folder of the collection", "name another one, so that results are not taken for objects");
+    if (!truth_ && !truth_column_.empty()) fail_usage("--truth-column without --truth", "name the table as well");
+}
+
+Collection StudyFiles::read(Context& context) const {
+    Collection result;
+    context.record([&] {
+        result = read_collection(collection.path());
+        if (truth_) set_labels(result, read_labels(truth_.path(), truth_column_), truth_.file());
+    });
+    output.open();
+    for (const auto& object : result.objects) context.record_input(object.name, object.checksum);
+    context.notes("", result.notes);
+    return result;
+}
+
+void declare_failures(ReportLayout& layout) { layout.table("failed", {{"name", FieldType::text}, {"problem", FieldType::text}}); }
+
+std::size_t report_failures(Report& report, const Collection& collection, const std::vector<ObjectResult>& results) {
+    std::size_t count = 0;
+    report.empty_table("failed");
+    const auto add = [&](const std::string& name, const std::string& problem) {
+        report.note("left out: " + (problem.starts_with(name + ": ") ? "" : name + ": ") + problem);
+        report.row("failed")("name", name)("problem", problem);
+        ++count;
+    };
+    for (const auto& [name, problem] : collection.left_out) add(name, problem);
+    for (std::size_t i = 0; i < results.size(); ++i)
+        if (!results[i].problem.empty()) add(collection.objects[i].name, results[i].problem);
+    return count;
+}
+
+KnownAnswers::KnownAnswers(const std::vector<std::string>& labels) : objects(labels.size()) {
+    std::set<std::string> different;
+    for (const auto& label : labels) {
+        if (label.empty()) continue;
+        ++labelled;
+        different.insert(label);
+    }
+    kinds = different.size();
+}
+
+void KnownAnswers::tell(Report& report) const {
+    if (labelled == 0) return;
+    std::string text = "answers are known of " + std::to_string(labelled) + " of " + std::to_string(objects) + " objects";
+    if (!scorable()) text += labelled < 2 ? ": too few to score by" : ", all of one kind: nothing to score by";
+    report.line(text);
+}
+
+void KnownAnswers::add_to(Report& report) const {
+    if (labelled == 0) return;
+    for (const auto& [name, count] : {std::pair{"labelled", labelled}, {"objects", objects}, {"kinds", kinds}})
+        report.value(std::string("truth.") + name, count);
+}
+
+void write_study_report(const Path& file, const std::string& kind, const JsonValue& result, const Provenance& provenance) {
+    Json document(rapidjson::kObjectType);
+    auto& allocator = document.GetAllocator();
+    add_member(document, "format", "ostraka-" + kind, allocator);
+    add_member(document, "version", JsonValue(1), allocator);
+    for (const auto& member : result.GetObject())
+        add_member(document, std::string_view(member.name.GetString(), member.name.GetStringLength()),
+                   JsonValue(member.value, allocator), allocator);
+    add_member(document, "provenance", provenance.to_json(allocator), allocator);
+    validate(document, kind, file.string());
+    write_json(file, document);
+}
+
+}  // namespace ostraka

@@ -1,0 +1,57 @@
+// What every study has: a collection, the folder it writes to, and answers that are known.
+#pragma once
+
+#include "operations.h"
+
+#include "ostraka/collection/objects.h"
+
+namespace ostraka {
+
+class StudyFiles {
+public:
+    /// The slots and --plots; with `labels` also --truth, --truth-column and the members result.truth.
+    void describe(Parameters& p, bool labels,
+                  const std::string& collections = "folder of meshes, or a list of objects (.study.json)");
+    /// Throws Error (usage) where the output folder is the collection's own.
+    void check() const;
+    /// Reads the collection and its labels, notes what they say, records both in the provenance, opens the folder. Throws as
+    /// `read_collection`, `read_labels` and `set_labels` do.
+    Collection read(Context& context) const;
+
+    /// Where results of single objects are kept from run to run; `kind` is a folder in the output folder.
+    [[nodiscard]] ResultStore store(const std::string& kind = "objects") const { return ResultStore(output.path() / kind); }
+    [[nodiscard]] Path in(const std::string& name) const { return output.in(name); }
+    /// A plot in the output folder, with the ending that was asked for.
+    [[nodiscard]] Path plot(const std::string& name) const { return in(name + (plots_ == PlotFormat::png ? ".png" : ".svg")); }
+
+    FileInput collection;
+    FolderOutput output;
+
+private:
+    enum class PlotFormat { svg, png };
+    FileInput truth_;
+    std::string truth_column_;
+    PlotFormat plots_ = PlotFormat::svg;
+};
+
+/// The table result.failed: the objects that failed or were left out, also as notes. Returns how many.
+void declare_failures(ReportLayout& layout);
+std::size_t report_failures(Report& report, const Collection& collection, const std::vector<ObjectResult>& results);
+
+/// How many of the objects that were studied have a known answer.
+struct KnownAnswers {
+    std::size_t labelled = 0, objects = 0, kinds = 0;
+
+    explicit KnownAnswers(const std::vector<std::string>& labels);
+    /// Scores against the truth mean nothing for fewer than two objects, or objects of one kind.
+    [[nodiscard]] bool scorable() const { return labelled >= 2 && kinds >= 2; }
+    /// A line, "answers are known of 4 of 9 objects"; none where no answer is known.
+    void tell(Report& report) const;
+    /// The member "truth" of a report; none where no answer is known.
+    void add_to(Report& report) const;
+};
+
+/// {"format": "ostraka-KIND", "version", members of `result`, "provenance"}, checked against the schema KIND.
+void write_study_report(const Path& file, const std::string& kind, const JsonValue& result, const Provenance& provenance);
+
+}  // namespace ostraka

@@ -1,0 +1,113 @@
+// study landmarks: shapes of landmarks laid over each other, their mean and how they vary.
+#include "study.h"
+
+#include "ostraka/collection/landmark_shapes.h"
+#include "ostraka/exchange/landmarks.h"
+#include "ostraka/report/plot.h"
+#include "ostraka/report/table.h"
+#include "ostraka/stats/embedding.h"
+#include "ostraka/stats/summary.h"
+
+#include <cmath>
+
+namespace ostraka {
+
+namespace {
+
+class StudyLandmarks final : public Operation {
+public:
+    void describe(Parameters& p) override {
+        files.describe(p, true);
+        p.options("components", components, "principal components to write", Range{1, 1000});
+        options.describe(p.options);
+        for (const char* count : {"objects", "landmarks", "iterations"}) p.report.value(count, FieldType::integer);
+        for (const char* size : {"meanCentroidSize", "meanNorm", "sumOfSquares"}) p.report.value(size, FieldType::number);
+        p.report.value("converged", FieldType::boolean).value("components", FieldType::numbers);
+    }
+
+    void check() const override { files.check(); }
+
+    void run(Context& context, Report& report) override {
+        const Collection collection = files.read(context);
+        const std::vector<ObjectResult> read = read_object_landmarks(collection, files.store("landmarks"));
+        report_failures(report, collection, read);
+        const LandmarkShapes shapes = common_landmarks(collection, read, options.scaling, files.collection.file());
+        report.notes(shapes.notes);
+        const GeneralisedProcrustes shape = generalised_procrustes(shapes.configurations, options);
+        if (!shape.converged) report.note("the mean had not settled after " + std::to_string(shape.iterations) + " iterations");
+        const PrincipalComponents principal = principal_components(shape_rows(shape.aligned), components);
+
+        LandmarkSet mean;
+        mean.unit = options.scaling ? "" : shapes.unit;
+        for (std::size_t k = 0; k < shapes.names.size(); ++k) {
+            const Eigen::RowVector3d at = shape.mean.row(static_cast<Eigen::Index>(k));
+            mean.landmarks.push_back({shapes.names[k], {at.x(), at.y(), at.z()}, std::nullopt});
+        }
+        std::vector<std::string> unused;
+        write_file(files.in("mean.mrk.json"), landmarks_to_text(mean, LandmarkFormat::mrk, "", context.provenance(), unused));
+        write(shapes, shape, principal);
+
+        const Summary sizes = summarise(shape.centroid_sizes, "centroid sizes");
+        report.value("objects", shapes.objects.size());
+        KnownAnswers(shapes.labels).add_to(report);
+        report.value("landmarks", shapes.names.size());
+        report.value("meanCentroidSize", sizes.mean);
+        report.value("meanNorm", shape.mean.norm());
+        report.value("sumOfSquares", shape.sum_of_squares);
+        report.value("iterations", shape.iterations);
+        report.value("converged", shape.converged);
+        std::vector<double> shares;
+        for (const double variance : principal.variances)
+            shares.push_back(principal.total_variance > 0 ? variance / principal.total_variance : 0);
+        report.value("components", shares);
+        TextTable table({"landmarks", "of", "mean centroid size", "size of the mean", "sum of squares"});
+        table.add({std::to_string(shapes.names.size()), std::to_string(shapes.objects.size()) + " objects",
+                   significant(sizes.mean, 10) + (shapes.unit.empty() ? "" : " " + shapes.unit),
+                   significant(shape.mean.norm(), 10), significant(shape.sum_of_squares, 10)});
+        report.table(table);
+    }
+
+private:
+    /// The table of objects and the plot of the first two components.
+    void write(const LandmarkShapes& shapes, const GeneralisedProcrustes& shape, const PrincipalComponents& principal) const {
+        const Eigen::MatrixXd& scores = principal.scores;
+        const Eigen::Index count = scores.cols();
+        std::vector<std::string> head{"object", "centroid size", "distance from the mean"};
+        for (Eigen::Index c = 0; c < count; ++c) head.push_back("component " + std::to_string(c + 1));
+        TextTable table(head);
+        std::map<std::string, PlotSeries> classes;
+        for (std::size_t i = 0; i < shapes.objects.size(); ++i) {
+            const auto row = static_cast<Eigen::Index>(i);
+            std::vector<TableCell> cells{shapes.objects[i], number_cell(shape.centroid_sizes[i], 12),
+                                         number_cell(std::sqrt(shape.maps[i].sum_of_squares), 10)};
+            for (Eigen::Index c = 0; c < count; ++c) cells.push_back(number_cell(scores(row, c), 10));
+            table.add(cells);
+            PlotSeries& series = classes[shapes.labels[i]];
+            series.points.push_back({scores(row, 0), count > 1 ? scores(row, 1) : 0});
+            series.labels.push_back(shapes.objects[i]);
+        }
+        table.write(files.output.path(), "objects", "Landmarks: sizes, distances from the mean shape, principal components");
+        const auto share = [&](Eigen::Index c) {
+            return c < count && principal.total_variance > 0 ? ", " + percent(principal.variances[c] / principal.total_variance)
+                                                             : "";
+        };
+        Plot plot{"Shapes of landmarks", {"first component" + share(0)}, {"second component" + share(1)}, {}};
+        for (auto& [label, series] : classes) {
+            series.name = label;
+            series.joined = false;
+            plot.series.push_back(series);
+        }
+        plot.equal = true;
+        write_plot(files.plot("components"), plot);
+    }
+
+    StudyFiles files;
+    int components = 5;
+    ProcrustesOptions options;
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_study_landmarks() { return make<StudyLandmarks>(); }
+
+}  // namespace ostraka

@@ -1,0 +1,221 @@
+// study make: collections whose answers are known.
+#include "operations.h"
+
+#include "ostraka/collection/objects.h"
+#include "ostraka/collection/statuette_annotations.h"
+#include "ostraka/core/csv.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/core/text.h"
+#include "ostraka/shapes/head_casts.h"
+#include "ostraka/shapes/statuettes.h"
+
+namespace ostraka {
+
+namespace {
+
+/// The folder that all of them fill.
+class StudyMake : public Operation {
+protected:
+    void describe_folder(Parameters& p, const std::string& help) { p.output("folder", Kind::collection, folder, help); }
+
+    /// Makes the folder, which holds no objects yet, and each of them, several at a time.
+    template <class MakeOne>
+    void make_each(const std::string& phase, std::size_t count, const MakeOne& make_one) const {
+        check_new_collection(folder.path());
+        folder.open(0, false);
+        Progress progress(phase, count);
+        parallel_for(
+            count,
+            [&](std::size_t i) {
+                make_one(i);
+                progress.advance();
+            },
+            1);
+    }
+
+    void write(const std::string& name, const Mesh& mesh, const MeshExtras& extras, const Provenance& provenance) const {
+        WriteOptions writing;
+        writing.comment = provenance.to_line();
+        write_mesh(folder.in(name + ".ply"), mesh, extras, writing);
+    }
+
+    FolderOutput folder;
+};
+
+/// Those that make statuettes.
+class StudyMakeStatuettes : public StudyMake {
+protected:
+    /// "statuette-07" of more than nine.
+    static std::string name_of(std::size_t i, std::size_t count) {
+        const std::string number = std::to_string(i + 1);
+        return "statuette-" + std::string(std::to_string(count).size() - number.size(), '0') + number;
+    }
+    /// Writes mesh and annotations, whose provenance is what the one statuette was made of.
+    void make_one(const std::string& name, const StatuetteParameters& parameters, const std::string& command, bool coloured,
+                  const std::function<void(const Statuette&)>& look = {}) const {
+        const Statuette statuette = generate_statuette(parameters);
+        const Provenance provenance{command, list_options(parameters), {}};
+        MeshExtras extras;
+        extras.face_labels = statuette.face_labels;
+        if (coloured)
+            for (const std::int32_t label : statuette.face_labels) {
+                const auto& [red, green, blue] = statuette.part_colours[static_cast<std::size_t>(label)];
+                extras.face_colours.push_back({red, green, blue, 255});
+            }
+        write(name, statuette.mesh, extras, provenance);
+        write_annotations(folder.in(name + ".ant.json"), annotate_statuette(statuette), statuette.mesh, name + ".ply",
+                          provenance);
+        if (look) look(statuette);
+    }
+};
+
+/// The measures that `study proportions` takes on these statuettes. The two arms of each are equally long.
+constexpr const char* statuette_measures = R"({
+  "format": "ostraka-measures",
+  "version": 1,
+  "measures": [
+    {"name": "total height", "tool": "bounding", "annotation": "votive statuette", "direction": "up"},
+    {"name": "base diameter", "tool": "ruler", "annotation": "base", "from": "base right", "to": "base left"},
+    {"name": "right arm", "tool": "tape", "annotation": "right arm", "geodesic": "exact", "from": "arm joint right",
+     "via": ["arm outside 1 right", "arm outside 2 right", "arm outside 3 right", "arm outside 4 right", "arm outside 5 right"], "to": "hand end right"},
+    {"name": "left arm", "tool": "tape", "annotation": "left arm", "geodesic": "exact", "from": "arm joint left",
+     "via": ["arm outside 1 left", "arm outside 2 left", "arm outside 3 left", "arm outside 4 left", "arm outside 5 left"], "to": "hand end left"},
+    {"name": "head height", "tool": "ruler", "annotation": "head", "from": "head joint", "to": "top of the head"}
+  ]
+}
+)";
+
+class StudyMakeProportions final : public StudyMakeStatuettes {
+public:
+    void describe(Parameters& p) override {
+        describe_folder(p, "folder to write meshes, annotations, measures and truth.csv to");
+        options.describe(p.options);
+        p.report.value("folder", FieldType::text).value("objects", FieldType::integer).value("fixed", FieldType::text);
+    }
+
+    void run(Context& context, Report& report) override {
+        const std::vector<StatuetteParameters> list = draw_population(options);
+        const std::string command = context.provenance().command;
+        make_each("statuettes", list.size(), [&](std::size_t i) { make_one(name_of(i, list.size()), list[i], command, false); });
+        std::string truth =
+            csv_row({"name", "total height [mm]", "base diameter [mm]", "right arm [mm]", "left arm [mm]", "head height [mm]"});
+        for (std::size_t i = 0; i < list.size(); ++i) {
+            const std::string arm = digits(list[i].arm_length);
+            truth += csv_row({name_of(i, list.size()), digits(list[i].height), digits(list[i].base_diameter), arm, arm,
+                              digits(list[i].head_height)});
+        }
+        write_file(folder.in("truth.csv"), truth);
+        write_file(folder.in("statuettes.measures.json"), statuette_measures);
+
+        std::string fixed;
+        for (const std::string size : ProportionedOptions::size_names)
+            if (options.is_fixed(size)) fixed += (fixed.empty() ? "" : ", ") + size;
+        report.value("folder", folder.path().string());
+        report.value("objects", list.size());
+        report.value("fixed", fixed);
+        report.line(std::to_string(list.size()) + " statuettes with truth.csv and statuettes.measures.json in " +
+                    printable(folder.path().string()) + "; in fixed proportion: right arm and left arm" +
+                    (fixed.empty() ? "" : "; " + fixed));
+    }
+
+private:
+    ProportionedOptions options;
+};
+
+class StudyMakeTechnique final : public StudyMakeStatuettes {
+public:
+    void describe(Parameters& p) override {
+        describe_folder(p, "folder to write meshes, annotations and truth.csv to");
+        options.describe(p.options);
+        p.report.value("folder", FieldType::text);
+        for (const char* count : {"objects", "wheel", "hand"}) p.report.value(count, FieldType::integer);
+    }
+
+    void run(Context& context, Report& report) override {
+        const std::vector<StatuetteParameters> list = draw_population(options);
+        const std::string command = context.provenance().command;
+        std::vector<std::vector<std::string>> rows(list.size());
+        make_each("statuettes", list.size(), [&](std::size_t i) {
+            const std::string name = name_of(i, list.size());
+            rows[i] = {name, list[i].technique};
+            for (const auto& [key, value] : list_options(list[i]))
+                if (key != "technique") rows[i].push_back(value);
+            make_one(name, list[i], command, true, [&](const Statuette& made) {
+                rows[i].push_back(std::to_string(made.mesh.number_of_vertices()));
+                rows[i].emplace_back(CGAL::is_closed(made.mesh) ? "true" : "false");
+            });
+        });
+        std::vector<std::string> header{"name", "label"};
+        for (const auto& [key, value] : list_options(list.front()))
+            if (key != "technique") header.push_back(key);
+        header.insert(header.end(), {"mesh-vertices", "closed"});
+        std::string truth = csv_row(header);
+        for (const auto& row : rows) truth += csv_row(row);
+        write_file(folder.in("truth.csv"), truth);
+
+        const auto wheel = static_cast<std::size_t>(
+            std::count_if(list.begin(), list.end(), [](const auto& one) { return one.technique == "wheel"; }));
+        report.value("folder", folder.path().string());
+        report.value("objects", list.size());
+        report.value("wheel", wheel);
+        report.value("hand", list.size() - wheel);
+        report.line(std::to_string(list.size()) + " statuettes of level " + std::to_string(options.level) + ", " +
+                    std::to_string(wheel) + " wheel-made and " + std::to_string(list.size() - wheel) +
+                    " hand-made, and truth.csv in " + printable(folder.path().string()));
+    }
+
+private:
+    PopulationOptions options;
+};
+
+class StudyMakeMoulds final : public StudyMake {
+public:
+    void describe(Parameters& p) override {
+        describe_folder(p, "folder to write to: a PLY mesh with labelled faces each, and truth.csv");
+        population.describe(p.options);
+        cast.describe(p.options);
+        p.report.value("objects", FieldType::integer).value("parts", FieldType::texts);
+        p.report.table("", {{"", FieldType::integer, "label"}, {"", FieldType::text, "part"}});
+    }
+
+    void run(Context& context, Report& report) override {
+        const std::vector<PlannedHead> plan = plan_heads(population, cast);
+        const Provenance provenance = context.provenance();
+        std::vector<HeadCast> casts(plan.size());
+        make_each("heads", plan.size(), [&](std::size_t i) {
+            casts[i] = cast_head(plan[i].shape, plan[i].cast);
+            MeshExtras extras;
+            extras.face_labels = std::move(casts[i].face_labels);
+            write(plan[i].name, casts[i].mesh, extras, provenance);
+            casts[i].mesh = {};
+        });
+        std::string truth = csv_row({"name", "label", "hair", "beard", "missing piece", "wear", "shrinkage", "seed"});
+        const auto yes = [](bool value) { return value ? "yes" : "no"; };
+        for (std::size_t i = 0; i < plan.size(); ++i) {
+            const char* hair = plan[i].shape.hat != HeadShape::Hat::none ? "hat" : plan[i].shape.long_hair ? "long" : "short";
+            truth += csv_row({plan[i].name, plan[i].mould, hair, yes(casts[i].beard), yes(casts[i].chunk),
+                              number(casts[i].wear, 4), number(casts[i].shrinkage, 4), std::to_string(plan[i].cast.seed)});
+        }
+        write_file(folder.in("truth.csv"), truth);
+
+        const std::vector<std::string> parts = head_part_names();
+        report.value("objects", plan.size());
+        report.value("parts", parts);
+        report.line(std::to_string(plan.size()) + " heads in " + printable(folder.path().string()) +
+                    ", their moulds in truth.csv");
+        for (std::size_t part = 0; part < parts.size(); ++part)
+            report.row("").shown("label", std::to_string(part)).shown("part", parts[part]);
+    }
+
+private:
+    MouldPopulationOptions population;
+    CastOptions cast;
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_study_make_proportions() { return make<StudyMakeProportions>(); }
+std::unique_ptr<Operation> make_study_make_moulds() { return make<StudyMakeMoulds>(); }
+std::unique_ptr<Operation> make_study_make_technique() { return make<StudyMakeTechnique>(); }
+
+}  // namespace ostraka

@@ -1,0 +1,297 @@
+// study moulds: which heads come from one mould.
+#include "study.h"
+
+#include "ostraka/collection/mould_study.h"
+#include "ostraka/core/npy.h"
+#include "ostraka/report/dendrogram.h"
+#include "ostraka/report/heat_map.h"
+#include "ostraka/report/plot.h"
+#include "ostraka/report/table.h"
+
+#include <algorithm>
+
+namespace ostraka {
+
+namespace {
+
+class StudyMoulds final : public Operation {
+public:
+    void describe(Parameters& p) override {
+        files.describe(p, true);
+        p.options("similarity", similarity, "what the groups are found by", Choices(mould_similarities()));
+        p.options("leave-out", leave_out, "labels of faces that are left out, such as beards").words();
+        p.options("choices", choices, "write a table of the groups by every similarity, method and epsilon as well");
+        compare.describe(p.options);
+        group.describe(p.options);
+        stability.describe(p.options);
+        for (const char* word : {"similarity", "method", "epsilonRule"}) p.report.value(word, FieldType::text);
+        for (const char* figure : {"epsilon", "featureSize", "silhouette", "adjustedRandIndex"})
+            p.report.value(figure, FieldType::number);
+        p.report.value("clear", FieldType::boolean);
+        p.report.table("groups", {{"group", FieldType::integer},
+                                  {"heads", FieldType::texts},
+                                  {"stability", FieldType::number},
+                                  {"recovered", FieldType::number},
+                                  {"dissolved", FieldType::number}});
+        p.report.table("heads", {{"name", FieldType::text},
+                                 {"group", FieldType::integer},
+                                 {"silhouette", FieldType::number},
+                                 {"secondGroup", FieldType::integer},
+                                 {"relativeSize", FieldType::number},
+                                 {"label", FieldType::text}});
+    }
+
+    void check() const override { files.check(); }
+
+    void run(Context& context, Report& report) override {
+        const Collection collection = files.read(context);
+        const PreparedCollection prepared = prepare_collection(collection, compare, leave_out, files.store("features"));
+        const std::size_t failed = report_failures(report, collection, prepared.results);
+        if (prepared.heads.size() < 2)
+            fail_input(files.collection.file(), std::to_string(prepared.heads.size()) + " of its objects can be compared",
+                       "a study of moulds needs at least two");
+        const MouldStudy study = study_moulds(
+            compare_heads(prepared.names, prepared.heads, prepared.options, files.store("pairs"), prepared.checksums), similarity,
+            group, stability);
+        std::vector<std::string> answers;
+        for (const std::size_t i : prepared.objects) answers.push_back(collection.objects[i].label);
+        const KnownAnswers known(answers);
+
+        write_matrix("matches", study.matrices.names, study.matrices.matches);
+        write_matrix("consistent", study.matrices.names, study.matrices.consistent);
+        write_matrix("registration", study.matrices.names, study.matrices.registration);
+        write_matrix("distances", study.matrices.names, study.distances);
+        const TextTable groups = group_table(study);
+        groups.write(files.output.path(), "groups", "Groups of heads by " + similarity);
+        head_table(study, answers, known).write(files.output.path(), "heads", "Heads and their groups");
+        draw(study, known.labelled > 0 ? answers : std::vector<std::string>{});
+        if (choices)
+            choice_table(study, answers, known).write(files.output.path(), "choices", "Groups by every similarity and epsilon");
+
+        report.value("similarity", similarity);
+        report.value("method", group.method);
+        report.value("epsilonRule", group.epsilon);
+        report.value("epsilon", study.groups.epsilon);
+        report.value("featureSize", prepared.options.features.size);
+        report.value("silhouette", study.groups.silhouette);
+        report.value("clear", study.groups.clear);
+        known.add_to(report);
+        const double agreement = known.scorable() ? agreement_with_answers(study.groups.labels, answers) : 0;
+        if (known.scorable()) report.value("adjustedRandIndex", agreement);
+        const std::string single = tell_groups(report, study, answers);
+        write_report(report, context.provenance());
+
+        report.table(groups);
+        const int count = study.group_count();
+        report.line(std::to_string(count) + (count == 1 ? " group of " : " groups of ") + std::to_string(answers.size()) +
+                    " heads at epsilon " + number(study.groups.epsilon, 3) + ", mean silhouette " +
+                    number(study.groups.silhouette, 3) +
+                    (known.scorable() ? ", adjusted Rand index " + number(agreement, 4) : ""));
+        known.tell(report);
+        if (!single.empty()) report.line("belongs to no group: " + single);
+        if (!study.groups.clear) {
+            const Eigen::MatrixXd distances = mould_distances(study.matrices, "consistent");
+            const auto n = static_cast<double>(distances.rows());
+            report.line(
+                "the groups do not stand out: one mould, or each head its own; the mean distance by consistent matches is " +
+                number(distances.sum() / (n * (n - 1)), 3) + " (near 1: each its own; small: one mould)");
+            report.answer_no();
+        }
+        if (failed > 0) report.line(std::to_string(failed) + " objects were left out");
+    }
+
+private:
+    /// Returns the heads that are alone in their group.
+    [[nodiscard]] std::string tell_groups(Report& report, const MouldStudy& study,
+                                          const std::vector<std::string>& answers) const {
+        std::string single;
+        std::size_t at = 0;
+        for (const MouldGroupSummary& each : summarise_groups(study)) {
+            const ClusterStability& resampled = study.stability[at++];
+            Report::Row row = report.row("groups");
+            row("group", at)("heads", each.members);
+            if (each.members.size() == 1) single += (single.empty() ? "" : ", ") + each.members.front();
+            else if (resampled.resamples > 0)
+                row("stability", resampled.jaccard)("recovered", resampled.recovered)("dissolved", resampled.dissolved);
+        }
+        for (std::size_t i = 0; i < answers.size(); ++i) {
+            Report::Row row = report.row("heads");
+            row("name", study.matrices.names[i])("group", study.groups.labels[i] + 1)("silhouette",
+                                                                                      study.groups.head_silhouettes[i]);
+            if (const int second = study.second_group(i).first; second >= 0) row("secondGroup", second + 1);
+            if (compare.consistent.shrinkage > 0) row("relativeSize", study.sizes[i]);
+            if (!answers[i].empty()) row("label", answers[i]);
+        }
+        return single;
+    }
+
+    void write_report(const Report& report, const Provenance& provenance) const {
+        Json document(rapidjson::kObjectType);
+        auto& allocator = document.GetAllocator();
+        add_member(document, "format", "ostraka-mould-study", allocator);
+        add_member(document, "version", JsonValue(1), allocator);
+        add_member(document, "provenance", provenance.to_json(allocator), allocator);
+        JsonValue result(report.result(), allocator), failed(result["failed"], allocator);
+        result.EraseMember("failed");
+        add_member(result, "failed", std::move(failed), allocator);  // the last one in the file
+        add_member(document, "result", std::move(result), allocator);
+        validate(document, "mould-study", "moulds.json");
+        write_json(files.in("moulds.json"), document);
+    }
+
+    void write_matrix(const std::string& name, const std::vector<std::string>& names, const Eigen::MatrixXd& m) const {
+        const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows = m;
+        write_npy(files.in(name + ".npy"), std::span<const double>(rows.data(), static_cast<std::size_t>(rows.size())),
+                  {static_cast<std::size_t>(m.rows()), static_cast<std::size_t>(m.cols())});
+        std::vector<std::string> columns{"name"};
+        columns.insert(columns.end(), names.begin(), names.end());
+        TextTable table(columns);
+        for (Eigen::Index i = 0; i < m.rows(); ++i) {
+            std::vector<TableCell> cells{names[static_cast<std::size_t>(i)]};
+            for (Eigen::Index j = 0; j < m.cols(); ++j) cells.push_back(number_cell(m(i, j), 8));
+            table.add(cells);
+        }
+        write_file(files.in(name + ".csv"), table.csv());
+    }
+
+    /// One row a group.
+    static TextTable group_table(const MouldStudy& study) {
+        TextTable table({"group", "heads", "distance within", "nearest group", "distance to it", "silhouette", "stability",
+                         "dissolved", "members"});
+        std::size_t group = 0;
+        for (const MouldGroupSummary& each : summarise_groups(study)) {
+            const ClusterStability& stability = study.stability[group++];
+            const bool resampled = stability.resamples > 0 && each.members.size() > 1;
+            const auto if_resampled = [&](double value) { return resampled ? std::optional(value) : std::nullopt; };
+            std::string members;
+            for (const std::string& name : each.members) members += (members.empty() ? "" : " ") + name;
+            table.add({std::to_string(group), std::to_string(each.members.size()), number_cell(each.within, 3),
+                       number_cell(each.nearest ? std::optional<double>(*each.nearest + 1) : std::nullopt, 6),
+                       number_cell(each.to_nearest, 3), number_cell(each.silhouette, 3),
+                       number_cell(if_resampled(stability.jaccard), 3), percent_cell(if_resampled(stability.dissolved), 0),
+                       members});
+        }
+        return table;
+    }
+
+    /// One row a head.
+    [[nodiscard]] TextTable head_table(const MouldStudy& study, const std::vector<std::string>& answers,
+                                       const KnownAnswers& known) const {
+        const bool sizes = compare.consistent.shrinkage > 0;
+        std::vector<std::string> columns{"head", "group", "silhouette", "second group", "distance to own", "distance to second"};
+        if (sizes) columns.emplace_back("relative size");
+        if (known.labelled > 0) columns.emplace_back("truth");
+        TextTable table(columns);
+        for (std::size_t i = 0; i < answers.size(); ++i) {
+            const auto [second, distance] = study.second_group(i);
+            std::vector<TableCell> cells{study.matrices.names[i], std::to_string(study.groups.labels[i] + 1),
+                                         number_cell(study.groups.head_silhouettes[i], 3)};
+            cells.push_back(number_cell(second < 0 ? std::nullopt : std::optional<double>(second + 1), 6));
+            cells.push_back(number_cell(study.mean_distance(i, study.groups.labels[i]), 3));
+            cells.push_back(number_cell(second < 0 ? std::nullopt : std::optional(distance), 3));
+            if (sizes) cells.push_back(number_cell(study.sizes[i], 4));
+            if (known.labelled > 0) cells.emplace_back(answers[i]);
+            table.add(cells);
+        }
+        return table;
+    }
+
+    /// Every similarity, method and epsilon.
+    [[nodiscard]] TextTable choice_table(const MouldStudy& study, const std::vector<std::string>& answers,
+                                         const KnownAnswers& known) const {
+        std::vector<std::string> columns{"similarity", "method", "epsilon", "value", "groups", "silhouette"};
+        if (known.scorable()) columns.emplace_back("adjusted Rand index");
+        TextTable table(columns);
+        for (const auto& each : mould_similarities()) {
+            const Eigen::MatrixXd distances = mould_distances(study.matrices, each);
+            for (const char* method : {"linkage", "dbscan", "embedding"}) {
+                for (const char* epsilon : {"0.1", "knn", "volume", "knee", "silhouette", "nested"}) {
+                    GroupOptions options = group;
+                    options.method = method;
+                    options.epsilon = epsilon;
+                    if (options.epsilon == "volume" && options.method != "embedding") continue;
+                    const MouldGroups found = group_heads(distances, options);
+                    const int count = *std::max_element(found.labels.begin(), found.labels.end()) + 1;
+                    std::vector<TableCell> cells{each,
+                                                 method,
+                                                 epsilon,
+                                                 number_cell(found.epsilon, 3),
+                                                 std::to_string(count),
+                                                 number_cell(found.silhouette, 3)};
+                    if (known.scorable()) cells.push_back(fixed_cell(agreement_with_answers(found.labels, answers), 3));
+                    table.add(cells);
+                }
+            }
+        }
+        return table;
+    }
+
+    void draw(const MouldStudy& study, const std::vector<std::string>& truth) const {
+        const auto& names = study.matrices.names;
+        const std::vector<int> order = leaf_order(study.groups.tree);
+        HeatMap map;
+        map.title = "Distances by " + similarity + ", heads in the order of the tree";
+        map.label = "distance";
+        map.minimum = 0, map.maximum = 1;
+        const auto n = static_cast<Eigen::Index>(order.size());
+        map.values.resize(n, n);
+        for (Eigen::Index i = 0; i < n; ++i) {
+            const auto head = static_cast<std::size_t>(order[static_cast<std::size_t>(i)]);
+            map.rows.push_back(names[head]);
+            map.groups.push_back(study.groups.labels[head]);
+            for (Eigen::Index j = 0; j < n; ++j)
+                map.values(i, j) = study.distances(order[static_cast<std::size_t>(i)], order[static_cast<std::size_t>(j)]);
+        }
+        map.columns = map.rows;
+        write_plot(files.plot("distances"), map);
+
+        Dendrogram tree;
+        tree.title = group.method == "linkage" ? "Average linkage of the distances" : "Single linkage, which DBSCAN goes by";
+        tree.tree = study.groups.tree;
+        tree.names = names;
+        tree.groups = study.groups.labels;
+        if (group.method != "embedding") {  // whose epsilon is no distance of this tree
+            tree.cut = study.groups.epsilon;
+            tree.cut_label = "epsilon " + significant(study.groups.epsilon, 3);
+        }
+        tree.classes = truth;
+        write_plot(files.plot("dendrogram"), tree);
+
+        const auto& places = study.groups.coordinates;
+        for (int second = 1; second < std::min<int>(static_cast<int>(places.cols()), 3); ++second) {
+            Plot plot;
+            plot.title = "Spectral embedding of the distances";
+            plot.equal = true;
+            plot.width = plot.height = 640;
+            plot.x.label = "eigenvector " + std::to_string(second == 1 ? 1 : 2);
+            plot.y.label = "eigenvector " + std::to_string(second + 1);
+            for (int each = 0; each < study.group_count(); ++each) {
+                PlotSeries series;
+                series.joined = false;
+                series.name = "group " + std::to_string(each + 1);
+                for (std::size_t i = 0; i < names.size(); ++i) {
+                    if (study.groups.labels[i] != each) continue;
+                    const auto row = static_cast<Eigen::Index>(i);
+                    series.points.push_back({places(row, second == 1 ? 0 : 1), places(row, second)});
+                    series.labels.push_back(names[i]);
+                }
+                plot.series.push_back(std::move(series));
+            }
+            write_plot(files.plot("embedding-" + std::string(second == 1 ? "1-2" : "2-3")), plot);
+        }
+    }
+
+    StudyFiles files;
+    std::string similarity = "combined";
+    std::vector<int> leave_out;
+    bool choices = false;
+    CompareOptions compare;
+    GroupOptions group;
+    StabilityOptions stability;
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_study_moulds() { return make<StudyMoulds>(); }
+
+}  // namespace ostraka

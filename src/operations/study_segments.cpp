@@ -1,0 +1,148 @@
+// study segments
+#include "operations.h"
+
+#include "ostraka/annotation/label_file.h"
+#include "ostraka/measure/examine.h"
+#include "ostraka/report/plot.h"
+#include "ostraka/select/slice_segments.h"
+
+#include <algorithm>
+
+namespace ostraka {
+
+namespace {
+
+class StudySegments final : public Operation {
+public:
+    void describe(Parameters& p) override {
+        p.input("mesh", Kind::mesh, mesh, "mesh file");
+        p.output("output", Kind::annotations, output, "annotations to write (.ant.json)");
+        p.output("curve", Kind::picture, curve, "plot of the criterion over the number of clusters (.svg, .png)")
+            .optional()
+            .flag();
+        p.input("compare", Kind::annotations, compare,
+                "annotations with the known parts; else the mesh file's labels, if it has any")
+            .optional()
+            .flag();
+        p.options("up", up,
+                  "x, y, z, -x, -y, -z or three numbers: upward direction; else as the annotations of --compare say, else 0,0,1");
+        p.options("unit", unit, "unit of the mesh; else as the annotations of --compare say");
+        options.describe(p.options);
+        p.report.value("unit", FieldType::text).value("clusters", FieldType::integer);
+        p.report.value("proposed", FieldType::integer).value("criterion", FieldType::text);
+        p.report.table("curve", {{"clusters", FieldType::integer, "clusters"},
+                                 {"cost", FieldType::number, "cost"},
+                                 {"silhouette", FieldType::number, "silhouette"},
+                                 {"gap", FieldType::number, "gap"},
+                                 {"gapError", FieldType::number, "gap error"}});
+        p.report.table("segments", {{"tag", FieldType::text, "segment"},
+                                    {"cluster", FieldType::integer, "cluster"},
+                                    {"low", FieldType::number, "from", "length"},
+                                    {"high", FieldType::number, "to", "length"},
+                                    {"slices", FieldType::integer, "slices"},
+                                    {"faces", FieldType::integer},
+                                    {"area", FieldType::number, "area", "length^2"}});
+        p.report.value("adjustedRandIndex", FieldType::number);
+    }
+
+    void check() const override {
+        if (!up.empty()) direction_of(up, "--up");
+    }
+
+    void run(Context&, Report& report) override {
+        const Mesh& surface = mesh->mesh;
+        const AnnotationSet* parts = compare ? &compare.on(surface) : nullptr;
+        std::optional<std::array<double, 3>> way = parts != nullptr ? parts->up : std::nullopt;
+        if (!up.empty()) way = direction_of(up, "--up");
+        if (!way) report.note("no upward direction is known, z is taken; else give --up");
+        const Vector upward = way ? Vector((*way)[0], (*way)[1], (*way)[2]) : Vector(0, 0, 1);
+        const SliceSegments segments = in_file(mesh.file(), [&] { return segment_by_slices(surface, upward, options); });
+        AnnotationSet set = annotate_segments(surface, segments);
+        set.up = {upward.x(), upward.y(), upward.z()};
+        set.unit = unit.empty() && parts != nullptr ? parts->unit : unit;
+        const auto agreement =
+            segment_agreement(segments, parts != nullptr ? labels_of(surface, *parts) : mesh->extras.face_labels);
+
+        report.set_unit(set.unit);
+        if (!set.unit.empty()) report.value("unit", set.unit);
+        report.value("clusters", segments.clusters);
+        report.value("proposed", segments.count.proposed);
+        report.value("criterion", options.count.criterion);
+        report.empty_table("curve");
+        for (const ClusterCount::Row& row : segments.count.rows)
+            report.row("curve")("clusters", row.clusters)("cost", row.cost)("silhouette", row.silhouette)("gap", row.gap)(
+                "gapError", row.gap_error);
+        report.line(std::to_string(segments.count.proposed) + " clusters proposed by " + options.count.criterion + ", " +
+                    std::to_string(segments.clusters) + " used\n");
+        for (std::size_t i = 0; i < segments.segments.size(); ++i) {
+            const SliceSegment& each = segments.segments[i];
+            const Annotation* region = set.find(static_cast<int>(i));
+            const AnnotationSummary summary = region != nullptr ? summarise(surface, *region) : AnnotationSummary{};
+            report.row("segments")("tag", "segment " + std::to_string(i + 1))("cluster", each.cluster)("low", each.low)(
+                "high", each.high)("slices", each.slices)("faces", summary.elements)("area", summary.area);
+        }
+        tell_clusters(report, segments);
+        if (agreement) {
+            report.value("adjustedRandIndex", *agreement);
+            report.line("adjusted Rand index against the known parts, over the faces: " + number(*agreement, 3));
+        }
+        if (curve && segments.count.rows.size() > 2) draw(segments);
+        else if (curve) report.note("no curve is drawn of fewer than three numbers of clusters (--most-clusters)");
+        output.write(std::move(set), surface, mesh.file());
+    }
+
+private:
+    /// Clusters without a segment, and those with several.
+    void tell_clusters(Report& report, const SliceSegments& segments) const {
+        std::string gone, again;
+        std::size_t count = 0;
+        for (int cluster = 0; cluster < segments.clusters; ++cluster) {
+            std::vector<std::string> own;
+            for (std::size_t i = 0; i < segments.segments.size(); ++i)
+                if (segments.segments[i].cluster == cluster) own.push_back(std::to_string(i + 1));
+            if (own.empty()) {
+                const auto slices = std::count(segments.raw.begin(), segments.raw.end(), cluster);
+                gone += (count++ == 0 ? "" : ", ") + std::to_string(cluster) + " (" + std::to_string(slices) +
+                        (slices == 1 ? " slice)" : " slices)");
+            }
+            if (own.size() > 1) again += again.empty() ? "" : "; ";
+            for (std::size_t k = 0; k < own.size() && own.size() > 1; ++k)
+                again += (k == 0 ? "" : k + 1 < own.size() ? ", " : " and ") + own[k];
+        }
+        if (count > 0)
+            report.line(std::to_string(count) + " of the " + std::to_string(segments.clusters) + " clusters " +
+                        (count == 1 ? "has" : "have") + " no segment: " + gone + " in runs of fewer than " +
+                        std::to_string(options.least_run) + ", which joined their neighbours (--least-run)");
+        if (!again.empty()) report.line("one cluster, and so one colour: segments " + again);
+    }
+
+    void draw(const SliceSegments& segments) const {
+        Plot plot;
+        const bool gap = options.count.criterion == "gap";
+        plot.title = "Number of clusters: " + std::to_string(segments.count.proposed) + " proposed";
+        plot.x = {"clusters"};
+        plot.y = {gap ? "gap statistic" : "mean silhouette"};
+        PlotSeries series;
+        for (const ClusterCount::Row& row : segments.count.rows) {
+            if (!gap && row.clusters < 2) continue;
+            series.points.push_back({static_cast<double>(row.clusters), gap ? row.gap : row.silhouette});
+            if (gap) series.intervals.emplace_back(std::array<double, 2>{row.gap - row.gap_error, row.gap + row.gap_error});
+        }
+        plot.series.push_back(std::move(series));
+        plot.lines.push_back({static_cast<double>(segments.count.proposed), true, ""});
+        write_plot(curve.path(), plot);
+    }
+
+    MeshInput mesh;
+    AnnotationsInput compare;
+    AnnotationsOutput output;
+    FileOutput curve{".svg"};
+    std::string up, unit;
+    SliceSegmentOptions options;
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_study_segments() { return make<StudySegments>(); }
+
+}  // namespace ostraka

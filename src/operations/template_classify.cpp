@@ -1,0 +1,139 @@
+// template classify: which class objects belong to.
+#include "operations.h"
+
+#include "ostraka/family/member_file.h"
+
+#include <algorithm>
+
+namespace ostraka {
+
+namespace {
+
+class TemplateClassify final : public Operation {
+public:
+    void describe(Parameters& p) override {
+        p.input("files", Kind::shape_class, files,
+                "classes (.class.json), then a mesh file for each object (of landmarks for classes of landmarks)")
+            .many();
+        p.output("report", Kind::report, answer, "write the whole answer as JSON (doc/schema/classification.schema.json)")
+            .optional()
+            .flag();
+        options.describe(p.options);
+        p.report.schema = "classification";
+        p.report.table("", {{"", FieldType::text, "object"},
+                            {"", FieldType::text, "class"},
+                            {"", FieldType::text, "verdict"},
+                            {"", FieldType::text, "score"},
+                            {"", FieldType::text, "against"}});
+    }
+
+    void check() const override {
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < files.size(); ++i) count += is_class(i);
+        if (count == 0) fail_usage("there is no class", "give one or more .class.json files, then objects");
+        if (count == files.size()) fail_usage("there is no object", "give mesh files after the classes");
+    }
+
+    void run(Context& context, Report& report) override {
+        read_classes();
+        std::vector<Classification> answers;
+        Progress progress("asking classes", files.size());
+        for (std::size_t i = 0; i < files.size(); ++i, progress.advance())
+            if (!is_class(i))
+                answers.push_back(decide(object_name(files.file(i)),
+                                         known.front()->landmarks ? ask_landmarks(context, i) : ask_meshes(i), options));
+        tell(report, answers);
+        if (!std::all_of(answers.begin(), answers.end(), [](const auto& a) { return a.verdict == Membership::member; }))
+            report.answer_no();
+    }
+
+private:
+    [[nodiscard]] bool is_class(std::size_t i) const { return files.file(i).ends_with(".class.json"); }
+
+    void read_classes() {
+        std::vector<std::string> class_files;
+        for (std::size_t i = 0; i < files.size(); ++i) {
+            if (!is_class(i)) continue;
+            known.push_back(&files.load<KnownClass>(read_known_class, i));
+            classes.push_back(known.back()->learnt);
+            class_files.push_back(files.file(i));
+            if (known.front()->landmarks.has_value() != known.back()->landmarks.has_value())
+                fail_input(files.file(i), "is a class of meshes, or of landmarks, and the first is not",
+                           "ask them one after the other");
+        }
+        // Those of one name are told apart by their files.
+        for (std::size_t i = 0; i < classes.size(); ++i)
+            if (std::count_if(known.begin(), known.end(), [&](const auto* k) { return k->learnt.name == classes[i].name; }) > 1)
+                classes[i].name += " (" + class_files[i] + ")";
+        moderate_thresholds(classes);
+    }
+
+    [[nodiscard]] std::vector<ClassAnswer> ask_landmarks(Context& context, std::size_t i) const {
+        std::vector<ClassAnswer> list;
+        const Path file = files.path(i);
+        context.record([&] {
+            for (std::size_t k = 0; k < classes.size(); ++k)
+                list.push_back(compare_with(classes[k], read_landmark_member(file, *known[k]->landmarks), options));
+        });
+        return list;
+    }
+
+    [[nodiscard]] std::vector<ClassAnswer> ask_meshes(std::size_t i) const {
+        const WholeObject& object = files.load<WholeObject>(read_member, i);
+        return in_file(files.file(i), [&] {
+            const WholeShape whole = measure_whole_shape(object.mesh);
+            std::vector<ClassAnswer> list;
+            for (std::size_t k = 0; k < classes.size(); ++k) {
+                LearnOptions how;
+                how.fit = options.fit;
+                how.correspondence = options.correspondence;
+                how.modes.sizes = classes[k].sizes;
+                list.push_back(compare_with(classes[k], learn_member(known[k]->known(), object, how, &whole), options));
+            }
+            return list;
+        });
+    }
+
+    void tell(Report& report, const std::vector<Classification>& answers) const {
+        Json document(rapidjson::kObjectType);
+        auto& allocator = document.GetAllocator();
+        JsonValue objects(rapidjson::kArrayType);
+        for (const Classification& one : answers) objects.PushBack(classification_to_json(one, allocator), allocator);
+        add_member(document, "format", "ostraka-classification", allocator);
+        add_member(document, "version", JsonValue(1), allocator);
+        add_member(document, "objects", std::move(objects), allocator);
+        report.values(document);
+        if (answer) answer.write(std::move(document));
+        for (const Classification& object : answers)
+            for (const ClassAnswer& one : object.answers)
+                report.row("")
+                    .shown("object", object.object)
+                    .shown("class", one.name)
+                    .shown("verdict", to_string(one.verdict))
+                    .shown("score", one.fit.problem.empty() ? number(one.score, 4) : "-")
+                    .shown("against", std::to_string(one.against.size()));
+        for (const Classification& object : answers) {
+            report.line("\n" + printable(object.object) + " " + printable(object.text));
+            for (const ClassAnswer& one : object.answers) {
+                constexpr std::size_t most = 8;
+                const auto reasons = one.reasons();
+                if (!one.undecided.empty()) report.line("  " + printable(one.name) + ": " + printable(one.undecided));
+                for (std::size_t i = 0; i < reasons.size() && i < most; ++i)
+                    report.line("  against " + printable(one.name) + ": " + printable(reasons[i]));
+                if (reasons.size() > most) report.line("  and " + std::to_string(reasons.size() - most) + " more");
+            }
+        }
+    }
+
+    FileInput files;
+    JsonOutput answer;
+    ClassifyOptions options;
+    std::vector<const KnownClass*> known;
+    std::vector<ShapeClass> classes;  ///< those known, with thresholds moderated by each other
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_template_classify() { return make<TemplateClassify>(); }
+
+}  // namespace ostraka

@@ -1,0 +1,186 @@
+// template learn: a class of objects from members of it.
+#include "operations.h"
+
+#include "ostraka/family/member_file.h"
+#include "ostraka/geom/with_points.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ostraka {
+
+namespace {
+
+class TemplateLearn final : public Operation {
+public:
+    void describe(Parameters& p) override {
+        p.input("template", Kind::template_package, known,
+                "the template (.template.json), or the first member of a class of landmarks (.mrk.json, .fcsv, .tps, .pp), which "
+                "says which landmarks there are, and how the mean is turned");
+        p.input("members", Kind::mesh, members,
+                "a mesh file for each member; NAME.ant.json beside it are its annotations; or files of the same landmarks")
+            .many()
+            .optional();
+        p.output("output", Kind::folder, output, "folder for the class and a copy of the template; made if it is missing").flag();
+        p.options("name", name, "of the class; else as the template says");
+        p.options("given", given, "the same as --correspondence given");
+        options.describe(p.options);
+        p.report.value("class", FieldType::text).value("members", FieldType::integer).value("archetype", FieldType::text);
+        p.report.value("meanSize", FieldType::number, "", "length").value("diversity", FieldType::number);
+        p.report.value("varianceShares", FieldType::numbers);
+        const auto people = [](const std::vector<const char*>& titles) {
+            std::vector<Field> fields;
+            for (const char* title : titles) fields.push_back({"", FieldType::number, title});
+            return fields;
+        };
+        p.report.table("", people({"member", "laid on by", "scale", "centroid size", "from the mean %", "archetype"}), "members");
+        p.report.table("", people({"quantity", "n", "min", "median", "max", "mean", "sd", "from", "to", "unit"}), "ranges");
+        p.report.table("", people({"mode", "deviation", "% of variance", "together"}), "modes");
+    }
+
+    void check() const override {
+        if (!of_landmarks() && !members) fail_usage("the class is empty: there is no member", "give TEMPLATE MEMBER ...");
+        std::vector<std::string> names;
+        if (of_landmarks()) names.push_back(known.file());
+        for (std::size_t i = 0; i < members.size(); ++i) names.push_back(members.file(i));
+        check_object_names(names);
+        if (!name.empty()) check_class_name(name);
+    }
+
+    void run(Context& context, Report& report) override {
+        if (given) options.correspondence = "given";
+        const ShapeClass learnt = of_landmarks() ? learn_landmarks(context) : learn_meshes(context);
+        report.notes(learnt.notes);
+        tell(report, learnt);
+    }
+
+private:
+    [[nodiscard]] bool of_landmarks() const { return is_landmark_file(known.file()); }
+
+    ShapeClass learn_meshes(Context& context) {
+        const Template& package = *known;
+        check_usable(package, known.file());
+        if (name.empty()) name = package.file.object_class;
+        if (name.empty()) {
+            name = known.file_name();
+            const std::string ending = ".template.json";
+            if (name.size() > ending.size() && name.ends_with(ending)) name.resize(name.size() - ending.size());
+        }
+        std::replace(name.begin(), name.end(), ' ', '-');
+        check_class_name(name);
+        std::vector<LearntMember> fitted;
+        {
+            Progress progress("laying the template onto members", members.size());
+            for (std::size_t i = 0; i < members.size(); ++i, progress.advance()) {
+                const WholeObject& member = members.load<WholeObject>(read_member, i);
+                fitted.push_back(
+                    in_file(members.file(i), [&] { return learn_member(class_template(package), member, options); }));
+            }
+        }
+        ShapeClass result = learn_class(class_template(package), fitted, options);
+        const bool in_place = open_for(result);
+        if (!in_place) {
+            for (const TemplatePart& part : package.file.parts) check_copy(part.file);
+            static_cast<void>(copy_template(package.file, output.open(), result.template_file, context.provenance()));
+        }
+        WriteOptions how;
+        how.comment = context.provenance().to_line();
+        write_mesh(output.in(name + ".mean.ply"), with_points(package.mesh->mesh, points_of(result.modes.mean)), {}, how);
+        write_class(output.open(), result, context.provenance());
+        return result;
+    }
+
+    /// All files are members.
+    ShapeClass learn_landmarks(Context& context) {
+        if (name.empty()) name = "landmarks";
+        std::vector<Path> files{known.file()};
+        for (std::size_t i = 0; i < members.size(); ++i) files.push_back(members.path(i));
+        LandmarkTemplate first;
+        std::vector<LearntMember> fitted;
+        context.record([&] {
+            first = read_landmark_template(files[0]);
+            for (const Path& file : files) fitted.push_back(read_landmark_member(file, first));
+        });
+        for (const LearntMember& member : fitted) context.notes(member.name, member.fit.notes);
+        ShapeClass result = learn_class(first.known(), fitted, options);
+        if (!open_for(result)) write_file(output.in(result.template_file), read_file(files[0]));
+        write_landmark_mean(output.in(name + ".mean.mrk.json"), first, result.modes.mean, context.provenance());
+        write_class(output.open(), result, context.provenance());
+        return result;
+    }
+
+    /// Names the class, makes the folder, and checks that no input stands where a file will be written. Whether the template
+    /// stands there itself.
+    bool open_for(ShapeClass& learnt) const {
+        learnt.name = name;
+        learnt.template_file = known.file_name();
+        output.open(0, false);  // one of several classes there
+        for (const char* ending : {".class.json", ".mean.npy", ".modes.npy"}) static_cast<void>(output.in(name + ending));
+        return same_place(output.open() / learnt.template_file, known.file());
+    }
+    void check_copy(const Path& part) const {
+        const Path name_there = part.filename();
+        if (!same_place(output.open() / name_there, part)) static_cast<void>(output.in(name_there.string()));
+    }
+
+    static void tell(Report& report, const ShapeClass& learnt) {
+        const ShapeModes& modes = learnt.modes;
+        std::vector<double> shares;
+        for (const double variance : modes.variances) shares.push_back(modes.total > 0 ? variance / modes.total : 0);
+        report.value("class", learnt.name);
+        report.value("members", learnt.members.size());
+        report.value("archetype", learnt.members[modes.archetype].name);
+        report.value("meanSize", modes.mean_size);
+        report.value("diversity", learnt.diversity);
+        report.value("varianceShares", shares);
+        for (std::size_t i = 0; i < learnt.members.size(); ++i)
+            report.row("members")
+                .shown("member", learnt.members[i].name)
+                .shown("laid on by", learnt.members[i].placed_by)
+                .shown("scale", number(learnt.members[i].scale, 4))
+                .shown("centroid size", number(modes.centroid_sizes[i], 5))
+                .shown("from the mean %", number(100 * modes.distances[i], 3))
+                .shown("archetype", i == modes.archetype ? "archetype" : "");
+        report.line("");
+        for (const LearntRange& range : learnt.ranges) {
+            if (range.count == 0) continue;
+            const auto text = [](const std::optional<double>& x, int digits = 4) { return x ? number(*x, digits) : "-"; };
+            report.row("ranges")
+                .shown("quantity", range.quantity.text())
+                .shown("n", std::to_string(range.count))
+                .shown("min", text(range.min))
+                .shown("median", text(range.median))
+                .shown("max", text(range.max))
+                .shown("mean", text(range.mean))
+                .shown("sd", text(range.deviation, 3))
+                .shown("from", text(range.low))
+                .shown("to", text(range.high))
+                .shown("unit", range.quantity.unit);
+        }
+        if (!modes.variances.empty()) report.line("");
+        double sum = 0;
+        for (std::size_t k = 0; k < modes.variances.size() && k < 10; ++k) {
+            sum += modes.variances[k];
+            report.row("modes")
+                .shown("mode", std::to_string(k + 1))
+                .shown("deviation", number(std::sqrt(modes.variances[k]), 4))
+                .shown("% of variance", number(100 * modes.variances[k] / modes.total, 3))
+                .shown("together", number(100 * sum / modes.total, 3));
+        }
+        report.line(std::to_string(learnt.members.size()) + " members of '" + printable(learnt.name) + "', archetype " +
+                    printable(learnt.members[modes.archetype].name));
+    }
+
+    TemplateInput known;
+    FileInput members;
+    FolderOutput output;
+    std::string name;
+    bool given = false;
+    LearnOptions options;
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_template_learn() { return make<TemplateLearn>(); }
+
+}  // namespace ostraka

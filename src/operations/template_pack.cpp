@@ -1,0 +1,131 @@
+// template pack, check, show
+#include "operations.h"
+
+#include "ostraka/bundle/template.h"
+
+#include <map>
+
+namespace ostraka {
+
+namespace {
+
+/// What a template holds and what is wrong with it; `contents`: for people as well.
+void declare_template(ReportLayout& layout, bool contents) {
+    const auto title = [&](const char* text) { return contents ? text : ""; };
+    layout.value("class", FieldType::text).value("unit", FieldType::text);
+    layout.table("parts", {{"role", FieldType::text, title("part")},
+                           {"file", FieldType::text, title("file")},
+                           {"bytes", FieldType::integer, title("bytes")},
+                           {"text", FieldType::text, title("what")}});
+    layout.checks = true;
+}
+
+void add_template(Report& report, const Template& known, bool contents) {
+    const std::string &object_class = known.file.object_class, &unit = known.file.unit;
+    report.value("class", object_class);
+    report.value("unit", unit);
+    if (contents && (!object_class.empty() || !unit.empty()))
+        report.line(printable(object_class + (unit.empty() ? "" : ", in " + unit)));
+    report.empty_table("parts");
+    for (const TemplateEntry& entry : known.entries)
+        report.row("parts")("role", entry.role)("file", entry.name)("bytes", entry.bytes)("text", entry.text);
+    if (contents) report.line("");
+    report.findings(known.findings, "part");
+}
+
+class TemplatePack final : public Operation {
+public:
+    void describe(Parameters& p) override {
+        p.output("output", Kind::template_package, output, "template to write (.template.json)");
+        const auto part = [&](const char* role, Kind kind, const char* help) -> Slot& {
+            return p.input(role, kind, parts[role], help).optional().flag();
+        };
+        part("mesh", Kind::mesh, "mesh").needed = true;
+        part("annotations", Kind::annotations, "its annotations (.ant.json)");
+        part("graph", Kind::graph, "relationships among them (.graph.json)");
+        part("cage", Kind::cage, "closed meshes around it, coarse to fine").words();
+        part("coordinates", Kind::coordinates, "coordinates of the mesh in the cages (.npy)").words();
+        part("vocabulary", Kind::vocabulary, "the words used (.vocabulary.json, .ttl, .rdf)");
+        part("rules", Kind::rules, "rules of the class (.rules.json)");
+        part("ranges", Kind::text, "ranges of the class's measures (JSON)");
+        part("landmarks", Kind::landmarks, "landmarks (.ant.json)");
+        p.options("class", object_class, "class of the object; else as the annotations say");
+        p.options("unit", unit, "unit of the coordinates, any text such as mm; else as the annotations say");
+        p.options("up", up, "upward direction: x, y, z, -x, -y, -z or three numbers; else as the annotations say");
+        p.options("copy", copy, "copy the parts into the template's folder");
+        options.describe(p.options);
+        declare_template(p.report, true);
+    }
+
+    void check() const override {
+        if (!up.empty()) static_cast<void>(direction_of(up, "--up"));
+        if (copy && output.file().empty())
+            fail_usage("there is no folder to copy the parts to", "give the template's file, or leave --copy out");
+    }
+
+    void run(Context& context, Report& report) override {
+        const Path place(output.file()), folder = place.has_parent_path() ? place.parent_path() : Path(".");
+        TemplateFile file;
+        file.object_class = object_class;
+        file.unit = unit;
+        if (!up.empty()) file.up = direction_of(up, "--up");
+        std::vector<Path> inputs, outputs{place};
+        std::map<Path, Path> copies;  // and what they are of
+        for (const std::string& role : template_roles())
+            for (std::size_t i = 0; i < parts[role].size(); ++i) {
+                const Path part = inputs.emplace_back(parts[role].path(i));
+                const Path here = copy ? folder / part.filename() : part;
+                if (!same_place(here, part) && copies.emplace(here, part).first->second != part)
+                    fail_usage("two parts are called '" + part.filename().string() + "'", "rename one of the files");
+                file.parts.push_back({role, part_name(folder, here), part, sha256_of_file(part)});
+            }
+        for (const auto& [here, part] : copies) outputs.push_back(here);
+        check_outputs(inputs, outputs);
+        // The file as it will be read: names that lead out of the folder are refused here.
+        if (!place.empty()) static_cast<void>(template_from_json(template_to_json(file, {}), folder, place.string(), options));
+        Template known;
+        context.record([&] { known = load_template(file, options); });
+        // What is not said of the object is as the annotations say.
+        if (known.annotations) {
+            if (file.object_class.empty()) file.object_class = known.annotations->object_class;
+            if (file.unit.empty()) file.unit = known.annotations->unit;
+            if (!file.up) file.up = known.annotations->up;
+            known.file = file;
+        }
+        add_template(report, known, true);
+        if (!known.sound()) return report.note("nothing is written: mend the defects first");
+        for (const auto& [here, part] : copies) write_file(here, read_file(part));
+        output.write(std::move(known));
+    }
+
+private:
+    TemplateOutput output;
+    std::map<std::string, FileInput> parts;  ///< by role
+    std::string object_class, unit, up;
+    bool copy = false;
+    TemplateOptions options;
+};
+
+class TemplateShow final : public Operation {
+public:
+    explicit TemplateShow(bool shows_contents) : contents(shows_contents) {}
+
+    void describe(Parameters& p) override {
+        p.input("template", Kind::template_package, input, "template (.template.json)");
+        declare_template(p.report, contents);
+    }
+
+    void run(Context&, Report& report) override { add_template(report, *input, contents); }
+
+private:
+    bool contents;
+    TemplateInput input;
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_template_pack() { return make<TemplatePack>(); }
+std::unique_ptr<Operation> make_template_check() { return std::make_unique<TemplateShow>(false); }
+std::unique_ptr<Operation> make_template_show() { return std::make_unique<TemplateShow>(true); }
+
+}  // namespace ostraka

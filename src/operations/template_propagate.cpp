@@ -1,0 +1,114 @@
+// template propagate: a template's annotations on members of its class.
+#include "operations.h"
+
+#include "ostraka/family/member_file.h"
+#include "ostraka/family/propagate.h"
+#include "ostraka/geom/with_points.h"
+
+namespace ostraka {
+
+namespace {
+
+class TemplatePropagate final : public Operation {
+public:
+    void describe(Parameters& p) override {
+        p.input("template", Kind::template_package, known, "template (.template.json)");
+        p.input("members", Kind::mesh, members, "a mesh file for each member; NAME.ant.json beside it are its annotations")
+            .many();
+        p.output("output", Kind::folder, output,
+                 "folder for NAME.ant.json, NAME.fitted.ply and NAME.fitted.ant.json; made if it is missing")
+            .flag();
+        p.options("given", given, "the same as --correspondence given");
+        p.options(
+            "correspondence", options.correspondence,
+            "members whose triangles are the template's are taken as they are, the template is fitted to others (auto); all "
+            "have to be in correspondence (given); it is fitted to all (fitted)",
+            Choices{"auto", "given", "fitted"});
+        options.fit.describe(p.options);
+        p.report.table("members", {{"name", FieldType::text, "member"},
+                                   {"placedBy", FieldType::text, "laid on by"},
+                                   {"distance", FieldType::number, "distance %"},
+                                   {"distanceBack", FieldType::number},
+                                   {"unmatched", FieldType::number, "unmatched %"},
+                                   {"unexplained", FieldType::number, "unexplained %"},
+                                   {"stretch", FieldType::number},
+                                   {"bend", FieldType::number},
+                                   {"annotations", FieldType::integer, "annotations"},
+                                   {"lost", FieldType::integer, "lost"},
+                                   {"notes", FieldType::texts, "notes"},
+                                   {"liesOn", FieldType::boolean},
+                                   {"problem", FieldType::text},
+                                   {"", FieldType::text, "remarks"}});
+    }
+
+    void check() const override {
+        std::vector<std::string> names;
+        for (std::size_t i = 0; i < members.size(); ++i) names.push_back(members.file(i));
+        check_object_names(names);
+    }
+
+    void run(Context& context, Report& report) override {
+        if (given) options.correspondence = "given";
+        if (is_landmark_file(known.file()))
+            fail_input(known.file(), "is a file of landmarks, and a template with a mesh is needed",
+                       "classes of landmarks can be learnt and asked, no more");
+        check_usable(*known, known.file());
+        if (!known->annotations || known->annotations->annotations.empty())
+            fail_input(known.file(), "has no annotations", "pack them: there is nothing to propagate");
+        std::vector<const WholeObject*> objects;
+        for (std::size_t i = 0; i < members.size(); ++i) objects.push_back(&members.load<WholeObject>(read_member, i));
+        output.open(0, false);  // other members may have theirs there
+        for (const WholeObject* member : objects)
+            for (const char* ending : {".ant.json", ".fitted.ply", ".fitted.ant.json"})
+                static_cast<void>(output.in(member->name + ending));
+        Progress progress("propagating annotations", objects.size());
+        for (std::size_t i = 0; i < objects.size(); ++i, progress.advance()) {
+            const Propagated result =
+                in_file(members.file(i), [&] { return propagate(class_template(*known), *objects[i], options); });
+            if (result.fit.problem.empty()) write(context, members.file_name(i), *objects[i], result);
+            tell(report, objects[i]->name, result);
+        }
+    }
+
+private:
+    void write(Context& context, const std::string& file, const WholeObject& member, const Propagated& result) const {
+        const Provenance provenance = context.provenance();
+        const std::string fitted_name = member.name + ".fitted.ply";
+        const Mesh fitted = with_points(known->mesh->mesh, result.fit.points);
+        WriteOptions how;
+        how.comment = provenance.to_line();
+        write_mesh(output.in(fitted_name), fitted, {}, how);
+        write_annotations(output.in(member.name + ".fitted.ant.json"), result.on_template, fitted, fitted_name, provenance);
+        write_annotations(output.in(member.name + ".ant.json"), *result.on_member, member.mesh, file, provenance);
+    }
+
+    static void tell(Report& report, const std::string& name, const Propagated& result) {
+        const bool fitted = result.fit.problem.empty();
+        Report::Row row = report.row("members");
+        row("name", name)("lost", result.lost)("notes", result.notes, std::to_string(result.notes.size()));
+        row.shown("placedBy", "left out").shown("annotations", "-").shown("remarks", result.lies_on ? "" : "does not lie on it");
+        if (fitted)
+            row("placedBy", result.fit.placed_by)("annotations", result.on_member->annotations.size())("liesOn", result.lies_on);
+        else row("problem", result.fit.problem).shown("remarks", result.fit.problem);
+        if (result.fit.residuals) {
+            const FitResiduals& r = *result.fit.residuals;
+            const auto percent = [](double share) { return number(100 * share, 3); };
+            row("distance", r.distance, percent(r.distance))("distanceBack", r.back)("stretch", r.stretch)("bend", r.bend);
+            row("unmatched", r.unmatched, percent(r.unmatched))("unexplained", r.unexplained, percent(r.unexplained));
+        }
+        for (const std::string& note : result.notes) report.note(name + ": " + note);
+        if (!result.complete()) report.answer_no();
+    }
+
+    TemplateInput known;
+    FileInput members;
+    FolderOutput output;
+    bool given = false;
+    PropagateOptions options;
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_template_propagate() { return make<TemplatePropagate>(); }
+
+}  // namespace ostraka

@@ -1,0 +1,124 @@
+// template turn: a whole vessel from its sherds.
+#include "operations.h"
+
+#include "ostraka/fitting/turned.h"
+
+#include <sstream>
+
+namespace ostraka {
+
+namespace {
+
+class TemplateTurn final : public Operation {
+public:
+    void describe(Parameters& p) override {
+        p.input("sherds", Kind::mesh, files, "closed meshes of sherds, all where they lay in the vessel").many();
+        p.output("output", Kind::folder, output, "folder to write the template to").flag();
+        p.options("unit", unit, "unit of the coordinates, any text such as mm");
+        options.describe(p.options);
+        p.report.schema = "turned";
+        p.report.table("sherds", {{"name", FieldType::text, "sherd"},
+                                  {"axis", FieldType::boolean},
+                                  {"lean", FieldType::number, "own axis leans, degrees"},
+                                  {"aside", FieldType::number, "aside"},
+                                  {"lowest", FieldType::number, "from height"},
+                                  {"highest", FieldType::number, "to"},
+                                  {"residual", FieldType::number, "off the template"}});
+        p.report.value("format", FieldType::text).value("version", FieldType::integer);
+        p.report.value("through", FieldType::numbers).value("direction", FieldType::numbers);
+        p.report.value("height", FieldType::number, "", "length").value("largestDiameter", FieldType::number, "", "length");
+        p.report.value("base", FieldType::boolean).value("rim", FieldType::boolean).value("vertices", FieldType::integer);
+    }
+
+    void run(Context& context, Report& report) override {
+        std::vector<const Fragment*> sherds;
+        for (std::size_t k = 0; k < files.size(); ++k) sherds.push_back(&files.load<Fragment>(read_sherd, k));
+        output.open();
+        TurnedTemplate turned = turn_template(sherds, options);
+        turned.annotations.unit = unit;
+        write(context, turned);
+        tell(report, turned);
+    }
+
+private:
+    /// With the facets that the annotations beside it say.
+    static Fragment read_sherd(const Path& file) {
+        Fragment sherd;
+        sherd.name = file.stem().string();
+        sherd.mesh = read_mesh(file).mesh;
+        const Path beside = file.parent_path() / (sherd.name + ".ant.json");
+        if (!file_exists(beside)) return sherd;
+        const AnnotationSet set = read_annotations(beside, sherd.mesh);
+        sherd.facets = in_file(beside.string(), [&] { return facets_of(sherd.mesh, set); });
+        return sherd;
+    }
+
+    void write(Context& context, const TurnedTemplate& turned) const {
+        const Provenance provenance = context.provenance();
+        TemplateFile file;
+        file.object_class = turned.annotations.object_class;
+        file.unit = unit;
+        file.up = turned.annotations.up;
+        WriteOptions how;
+        how.comment = provenance.to_line();
+        // Written in memory first: the template names the checksums of its parts.
+        const auto part = [&](const std::string& role, const std::string& name, const std::function<void(const Path&)>& writer) {
+            const Path draft = context.memory(name);
+            {
+                OutputTransaction own;
+                writer(draft);
+                own.commit();
+            }
+            const std::string bytes = read_file(draft);
+            const Path place = output.in(name);
+            write_file(place, bytes);
+            file.parts.push_back({role, name, place, sha256(bytes)});
+        };
+        part("mesh", "turned.ply", [&](const Path& path) { write_mesh(path, turned.mesh, {}, how); });
+        part("annotations", "turned.ant.json",
+             [&](const Path& path) { write_annotations(path, turned.annotations, turned.mesh, "turned.ply", provenance); });
+        std::ostringstream csv;
+        csv.precision(10);
+        csv << "radius,height\n";
+        for (const auto& p : turned.profile) csv << p.x() << ',' << p.y() << '\n';
+        write_file(output.in("profile.csv"), csv.str());
+        write_json(output.in("turned.template.json"), template_to_json(file, provenance));
+    }
+
+    static void tell(Report& report, const TurnedTemplate& turned) {
+        const auto triple = [](const auto& v) { return std::vector<double>{v.x(), v.y(), v.z()}; };
+        double height = 0, widest = 0;
+        for (const auto& p : turned.profile) height = std::max(height, p.y()), widest = std::max(widest, p.x());
+        report.value("format", "ostraka-turned");
+        report.value("version", 1);
+        report.value("through", triple(turned.axis.point));
+        report.value("direction", triple(turned.axis.direction));
+        report.value("height", height);
+        report.value("largestDiameter", 2 * widest);
+        report.value("base", turned.base);
+        report.value("rim", turned.rim);
+        report.value("vertices", turned.mesh.number_of_vertices());
+        for (const SherdOnProfile& one : turned.sherds) {
+            const bool found = one.axis.found;
+            report.row("sherds")("name", one.name)("axis", found)("lean", one.lean,
+                                                                  found ? number(one.lean, 3) : one.axis.reason)(
+                "aside", one.aside, found ? number(one.aside, 3) : "-")("lowest", one.lowest, number(one.lowest, 4))(
+                "highest", one.highest, number(one.highest, 4))("residual", one.residual, number(one.residual, 3));
+        }
+        report.line("height " + number(height, 5) + ", largest diameter " + number(2 * widest, 5) + "; " +
+                    (turned.base ? "with a base" : "no base") + ", " + (turned.rim ? "with a rim" : "no rim") + "; " +
+                    std::to_string(turned.mesh.number_of_vertices()) + " vertices");
+        report.notes(turned.notes);
+    }
+
+    FileInput files;
+    FolderOutput output;
+    std::string unit;
+    TurnOptions options;
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_template_turn() { return make<TemplateTurn>(); }
+
+}  // namespace ostraka

@@ -1,0 +1,17 @@
+#include "ostraka/relation/rules.h"
+
+#include "ostraka/relation/topology.h"
+
+namespace ostraka {
+
+std::vector<BrokenRule> broken_rules(const Mesh& mesh, const AnnotationSet& set, const ClassRules& rules,
+                                     const Vocabulary* vocabulary, const RelationGraph* graph, const std::string& where) {
+    std::vector<Relationship> relationships;
+    if (graph != nullptr) relationships = graph->relationships;
+    else if (rules.about_relations()) relationships = relationships_of(topology(mesh, set), set, 0);
+    std::vector<RelationFact> facts;
+    for (const Relationship& one : relationships) facts.push_back({one.type, one.directed, one.annotations});
+    return check_class_rules(set, rules, vocabulary, facts, where);
+}
+
+}  // namespace ostraka

@@ -1,0 +1,101 @@
+#include "ostraka/slicing/cut_object.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/slicing/curve_slices.h"
+
+#include <algorithm>
+
+namespace ostraka {
+
+std::vector<Point> CutObject::centres() const {
+    std::vector<Point> list;
+    for (std::size_t i = 0; i < slices.size(); ++i)
+        if (descriptors[i].barycentre.allFinite())
+            list.push_back(frames[i].point(descriptors[i].barycentre, parallel ? slices[i].height : 0));
+    return list;
+}
+
+bool CutObject::met() const {
+    return std::any_of(slices.begin(), slices.end(), [](const Slice& slice) { return !slice.contours.empty(); });
+}
+
+std::vector<double> CutObject::sorted_heights() const {
+    std::vector<double> heights;
+    for (const Slice& slice : slices) heights.push_back(slice.height);
+    std::sort(heights.begin(), heights.end());
+    return heights;
+}
+
+std::vector<double> SlicePlaces::in(double height) const {
+    if (!heights.empty()) return heights;
+    return spacing ? slice_heights_spaced(from * height, to * height, *spacing)
+                   : slice_heights(from * height, to * height, count);
+}
+
+void require_surface(const Mesh& mesh, const std::vector<Index>& faces) {
+    const auto has_area = [&](Index f) { return face_area(mesh, Face(f)) > 0; };
+    const std::size_t count = faces.empty() ? mesh.number_of_faces() : faces.size();
+    for (Index i = 0; i < count; ++i)
+        if (has_area(faces.empty() ? i : faces[i])) return;
+    fail_input("mesh", "nothing to slice: all its " + std::to_string(count) + " triangles are lines or points",
+               "use a mesh with a surface");
+}
+
+CutObject cut_parallel(const Mesh& mesh, const SliceFrame& frame, const std::vector<double>& heights,
+                       const std::vector<Index>& faces) {
+    require_surface(mesh, faces);
+    CutObject cut;
+    std::tie(cut.lowest, cut.highest) = height_range(mesh, frame, faces);
+    SliceStack stack = slice_mesh(mesh, frame, heights, faces);
+    cut.frames.assign(heights.size(), frame);
+    cut.slices = std::move(stack.slices);
+    cut.reversed = stack.reversed;
+    cut.descriptors = describe_slices(cut.slices);
+    return cut;
+}
+
+CutObject cut_across(const Mesh& mesh, const std::vector<Point>& curve, int count, const std::vector<Index>& faces) {
+    require_surface(mesh, faces);
+    CurveSlices found = slice_along(mesh, curve, count, faces);
+    CutObject cut;
+    cut.parallel = false;
+    cut.frames = std::move(found.frames);
+    cut.slices = std::move(found.slices);
+    cut.reversed = found.reversed;
+    cut.highest = found.length;
+    cut.curve = curve;
+    cut.descriptors = describe_slices(cut.slices);
+    return cut;
+}
+
+void add_medial_axes(CutObject& cut, std::vector<double> residues) {
+    std::sort(residues.begin(), residues.end());
+    cut.medial.resize(cut.slices.size());
+    parallel_for(
+        cut.slices.size(), [&](std::size_t i) { cut.medial[i] = medial_axis(cut.slices[i], residues); }, 1);
+}
+
+bool is_hollow(const Mesh& mesh, const Vector& up, const std::vector<Index>& faces) {
+    const SliceFrame frame = slice_frame(Point(0, 0, 0), up);
+    const auto ends = height_range(mesh, frame, faces);
+    const auto level = describe_slices(slice_mesh(mesh, frame, slice_heights(ends.first, ends.second, 24), faces).slices);
+    return 4 * std::count_if(level.begin(), level.end(), [](const auto& d) { return d.hole_area_ratio > 0.5; }) >= 24;
+}
+
+SliceFrame median_frame(const CutObject& cut) {
+    SliceFrame frame = cut.frames.at(0);
+    std::vector<double> x, y;
+    for (const auto& d : cut.descriptors)
+        if (d.outline_barycentre.allFinite()) x.push_back(d.outline_barycentre.x()), y.push_back(d.outline_barycentre.y());
+    if (x.empty()) return frame;
+    const auto middle = [](std::vector<double>& values) {
+        std::nth_element(values.begin(), values.begin() + static_cast<long>(values.size() / 2), values.end());
+        return values[values.size() / 2];
+    };
+    const double middle_x = middle(x), middle_y = middle(y);
+    frame.origin = frame.point({middle_x, middle_y}, 0);
+    return frame;
+}
+
+}  // namespace ostraka

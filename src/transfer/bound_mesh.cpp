@@ -1,0 +1,182 @@
+#include "ostraka/transfer/bound_mesh.h"
+
+#include "ostraka/measure/measure.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ostraka {
+
+namespace {
+
+constexpr const char *face_colour = "f:file-colour", *face_label = "f:file-label", *vertex_colour = "v:file-colour",
+                     *vertex_label = "v:file-label", *vertex_texture = "v:file-texture";
+
+template <class Key, class Value>
+void to_map(Mesh& mesh, const char* name, const std::vector<Value>& values) {
+    if (values.empty()) return;
+    auto map = mesh.add_property_map<Key, Value>(name, Value{}).first;
+    for (std::size_t i = 0; i < values.size(); ++i) map[Key(static_cast<Index>(i))] = values[i];
+}
+
+template <class Key, class Value>
+void from_map(Mesh& mesh, const char* name, std::size_t count, std::vector<Value>& values) {
+    auto [map, found] = mesh.property_map<Key, Value>(name);
+    if (!found) return;
+    values.clear();
+    values.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) values.push_back(map[Key(static_cast<Index>(i))]);
+    mesh.remove_property_map(map);
+}
+
+/// Unites the sets of poly-lines on edges, and of points on vertices, that merge.
+class AnnotationMerger final : public CollapseVisitor {
+public:
+    AnnotationMerger(const Mesh& mesh, AnnotationTable& table)
+        : table_(table),
+          vertices_(mesh.property_map<Vertex, std::uint32_t>(vertex_annotations).first),
+          edges_(mesh.property_map<Edge, std::uint32_t>(edge_annotations).first) {}
+    void merge_vertices(Mesh&, Vertex kept, Vertex removed) override {
+        vertices_[kept] = unite(vertices_[kept], vertices_[removed]);
+    }
+    void merge_edges(Mesh&, Edge kept, Edge removed) override { edges_[kept] = unite(edges_[kept], edges_[removed]); }
+
+private:
+    std::uint32_t unite(std::uint32_t a, std::uint32_t b) {
+        if (a == b || b == 0) return a;
+        if (a == 0) return b;
+        std::vector<int> ids;
+        std::set_union(table_.ids(a).begin(), table_.ids(a).end(), table_.ids(b).begin(), table_.ids(b).end(),
+                       std::back_inserter(ids));
+        return table_.intern(ids);
+    }
+    AnnotationTable& table_;
+    Mesh::Property_map<Vertex, std::uint32_t> vertices_;
+    Mesh::Property_map<Edge, std::uint32_t> edges_;
+};
+
+BoundMesh::Totals totals_of(const Mesh& mesh) { return {mesh.number_of_vertices(), mesh.number_of_faces(), surface_area(mesh)}; }
+
+}  // namespace
+
+BoundMesh::BoundMesh(MeshFile file, std::optional<AnnotationSet> annotated)
+    : mesh(std::move(file.mesh)), extras(std::move(file.extras)), annotations(std::move(annotated)) {
+    if (!extras.corner_texture.empty()) notes.emplace_back("texture coordinates per corner are not carried and are left out");
+    extras.corner_texture.clear();
+    before = after = totals_of(mesh);
+    if (!annotations) return;
+    for (const Annotation& annotation : annotations->annotations) {
+        const Size size = size_of(annotation);
+        changes.push_back({annotation.id, annotation.tag, annotation.type, size, size, false, {}});
+    }
+}
+
+SimplifyResult BoundMesh::simplify(const SimplifyOptions& options) {
+    AnnotationTable table = attach();
+    std::optional<AnnotationMerger> merger;
+    if (annotations) merger.emplace(mesh, table);
+    const MarkedParts parts = marked(table, options.outlines == "protect");
+    SimplifyResult result = ostraka::simplify(mesh, options, parts, merger ? &*merger : nullptr);
+    detach(table, result.vertex_map);
+    return result;
+}
+
+RefineResult BoundMesh::refine(const RefineOptions& options) {
+    const AnnotationTable table = attach();
+    RefineResult result = ostraka::refine(mesh, options);
+    const auto from_parents = [&]<class Value>(const char* name, const std::vector<Value>&, const auto& between) {
+        auto [map, found] = mesh.property_map<Vertex, Value>(name);
+        if (!found) return;
+        for (std::size_t i = 0; i < result.parents.size(); ++i) {
+            const auto [a, b] = result.parents[i];
+            map[Vertex(static_cast<Index>(result.old_vertices + i))] = between(map[Vertex(a)], map[Vertex(b)]);
+        }
+    };
+    from_parents(vertex_colour, extras.vertex_colours, [](Colour a, const Colour& b) {
+        for (std::size_t k = 0; k < 4; ++k) a[k] = static_cast<std::uint8_t>((int(a[k]) + int(b[k]) + 1) / 2);
+        return a;
+    });
+    from_parents(vertex_label, extras.vertex_labels, [](std::int32_t a, std::int32_t) { return a; });
+    from_parents(vertex_texture, extras.vertex_texture, [](std::array<float, 2> a, const std::array<float, 2>& b) {
+        for (std::size_t k = 0; k < 2; ++k) a[k] = (a[k] + b[k]) / 2;
+        return a;
+    });
+    std::vector<Index> kept(result.old_vertices);
+    for (Index v = 0; v < kept.size(); ++v) kept[v] = v;
+    detach(table, kept);
+    return result;
+}
+
+AnnotationTable BoundMesh::attach() {
+    AnnotationTable table;
+    if (annotations) table = attach_annotations(mesh, *annotations);
+    to_map<Face>(mesh, face_colour, extras.face_colours);
+    to_map<Face>(mesh, face_label, extras.face_labels);
+    to_map<Vertex>(mesh, vertex_colour, extras.vertex_colours);
+    to_map<Vertex>(mesh, vertex_label, extras.vertex_labels);
+    to_map<Vertex>(mesh, vertex_texture, extras.vertex_texture);
+    return table;
+}
+
+void BoundMesh::detach(const AnnotationTable& table, const std::vector<Index>& vertex_map) {
+    after = totals_of(mesh);
+    from_map<Face>(mesh, face_colour, mesh.number_of_faces(), extras.face_colours);
+    from_map<Face>(mesh, face_label, mesh.number_of_faces(), extras.face_labels);
+    from_map<Vertex>(mesh, vertex_colour, mesh.number_of_vertices(), extras.vertex_colours);
+    from_map<Vertex>(mesh, vertex_label, mesh.number_of_vertices(), extras.vertex_labels);
+    from_map<Vertex>(mesh, vertex_texture, mesh.number_of_vertices(), extras.vertex_texture);
+    if (!annotations) return;
+    annotations = collect_annotations(mesh, table, AnnotationSet(*annotations), vertex_map);
+    detach_annotations(mesh);
+    for (auto& note : refresh_measures(mesh, *annotations).notes) notes.push_back(std::move(note));
+    for (Change& change : changes) {
+        const Annotation* now = annotations->find(change.id);
+        change.after = now == nullptr ? Size() : size_of(*now);
+        change.degenerate = now != nullptr && now->type != change.type;
+        change.note = now == nullptr ? "lost" : now->note;
+    }
+}
+
+MarkedParts BoundMesh::marked(const AnnotationTable& table, bool pins) const {
+    MarkedParts parts;
+    if (!annotations) return parts;
+    const auto regions = mesh.property_map<Face, std::uint32_t>(face_annotations).first;
+    const auto lines = mesh.property_map<Edge, std::uint32_t>(edge_annotations).first;
+    const auto points = mesh.property_map<Vertex, std::uint32_t>(vertex_annotations).first;
+    // On the border, the outlines of regions count, but not that of the whole object.
+    std::vector<bool> has_outline(table.size(), false);
+    for (std::uint32_t set = 0; set < table.size(); ++set)
+        for (const int id : table.ids(set)) has_outline[set] = has_outline[set] || !annotations->find(id)->all;
+    parts.edges.assign(mesh.number_of_edges(), false);
+    parts.vertices.assign(mesh.number_of_vertices(), false);
+    for (const Edge e : mesh.edges()) {
+        const Face f = mesh.face(mesh.halfedge(e, 0)), g = mesh.face(mesh.halfedge(e, 1));
+        const bool outline = f.is_valid() && g.is_valid() ? regions[f] != regions[g] : has_outline[regions[f.is_valid() ? f : g]];
+        parts.edges[e] = outline || lines[e] != 0;
+    }
+    for (const Vertex v : mesh.vertices()) parts.vertices[v] = points[v] != 0;
+    if (!pins) return parts;
+    for (const Annotation& annotation : annotations->annotations)
+        for (const Attribute& attribute : annotation.attributes)
+            for (const Index v : pins_of(attribute.measure)) parts.vertices.at(v) = true;
+    return parts;
+}
+
+BoundMesh::Size BoundMesh::size_of(const Annotation& annotation) const {
+    Size size;
+    if (annotation.type == AnnotationType::region) {
+        const RegionMeasures region = measure_region(mesh, annotation.faces);
+        size = {annotation.faces.size(), region.area, region.perimeter};
+    } else if (annotation.type == AnnotationType::line) {
+        for (const auto& line : annotation.polylines)
+            for (std::size_t i = 1; i < line.size(); ++i) {
+                ++size.elements;
+                size.length += std::sqrt(CGAL::squared_distance(mesh.point(Vertex(line[i - 1])), mesh.point(Vertex(line[i]))));
+            }
+    } else {
+        size.elements = annotation.points.size();
+    }
+    return size;
+}
+
+}  // namespace ostraka

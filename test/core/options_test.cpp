@@ -1,0 +1,105 @@
+// One list of options: checks, texts, settings.
+#include "ostraka/core/options.h"
+
+#include <gtest/gtest.h>
+
+using namespace ostraka;
+
+namespace {
+
+enum class Colour { red, green };
+
+struct Sample {
+    bool on = true;
+    int count = 3;
+    std::uint64_t seed = 1;
+    double share = 0.5;
+    std::string name;
+    std::string kind = "a";
+    std::vector<std::string> tags;
+    std::vector<double> heights;
+    std::optional<double> limit;
+    Colour colour = Colour::red;
+
+    void describe(OptionList& visit) {
+        visit("on", on, "a switch");
+        visit("count", count, "how many", Range{1, 10});
+        visit("seed", seed, "of chance", Range{0, 1e15});
+        visit("share", share, "of the whole", Range{0, 1}, "share of the diagonal");
+        visit("name", name, "any text");
+        visit("kind", kind, "which", Choices{"a", "b"});
+        visit("tags", tags, "several");
+        visit("heights", heights, "numbers", Range{0, 100});
+        visit("limit", limit, "if there is one", Range{-1, 1});
+        visit("colour", colour, "an enumeration", Choices{"red", "green"});
+    }
+};
+
+std::string refused(Sample& sample, const std::string& name, const std::vector<std::string>& words) {
+    OptionList list;
+    sample.describe(list);
+    try {
+        list.find(name)->set(words);
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::usage);
+        return error.what();
+    }
+    return {};
+}
+
+}  // namespace
+
+TEST(Options, AreSetAndChecked) {
+    Sample sample;
+    EXPECT_EQ(refused(sample, "count", {"7"}), "");
+    EXPECT_EQ(sample.count, 7);
+    EXPECT_EQ(refused(sample, "heights", {"1,2.5", "3"}), "");
+    EXPECT_EQ(sample.heights, (std::vector<double>{1, 2.5, 3}));
+    EXPECT_EQ(refused(sample, "tags", {"x", "y,z"}), "");
+    EXPECT_EQ(sample.tags, (std::vector<std::string>{"x", "y,z"}));
+    EXPECT_EQ(refused(sample, "limit", {"-0.5"}), "");
+    EXPECT_EQ(sample.limit, -0.5);
+    EXPECT_EQ(refused(sample, "colour", {"green"}), "");
+    EXPECT_EQ(sample.colour, Colour::green);
+    EXPECT_EQ(refused(sample, "on", {"false"}), "");
+    EXPECT_FALSE(sample.on);
+    for (const auto& [name, word] : {std::pair<std::string, std::string>{"count", "11"},
+                                     {"count", "0"},
+                                     {"count", "2.5"},
+                                     {"count", ""},
+                                     {"count", "x"},
+                                     {"share", "1.5"},
+                                     {"share", "nan"},
+                                     {"kind", "c"},
+                                     {"heights", "1,101"},
+                                     {"heights", "1,,2"},
+                                     {"limit", "2"},
+                                     {"colour", "blue"},
+                                     {"on", "maybe"},
+                                     {"seed", "-1"}})
+        EXPECT_NE(refused(sample, name, {word}).find("option " + name), std::string::npos) << name << " " << word;
+    EXPECT_NE(refused(sample, "count", {"1", "2"}), "");
+}
+
+TEST(Options, StructsAreCheckedAndListed) {
+    Sample sample;
+    EXPECT_NO_THROW(check_options(sample, "here"));
+    const auto list = list_options(sample);
+    ASSERT_EQ(list.size(), 10U);
+    EXPECT_EQ(list[0], (std::pair<std::string, std::string>{"on", "true"}));
+    EXPECT_EQ(list[3].second, "0.5");
+    EXPECT_EQ(list[4].second, "");
+    EXPECT_EQ(list[9].second, "red");
+    sample.share = 2;
+    EXPECT_THROW(check_options(sample, "here"), Error);
+    sample.share = 0.5;
+    sample.kind = "z";
+    EXPECT_THROW(check_options(sample, "here"), Error);
+}
+
+TEST(Options, AreDeclaredOnce) {
+    OptionList list;
+    int one = 0;
+    list("one", one, "a number");
+    EXPECT_THROW(list("one", one, "a number"), std::logic_error);
+}
