@@ -2,8 +2,8 @@
 # is reading the same headers and making the same templates again for each file. Files that take long on their own, and those with
 # flags of their own, stay alone.
 set(OSTRAKA_UNITY_BATCH 8 CACHE STRING "Files a batch")
-set(OSTRAKA_UNITY_ALONE src/axis/skeleton.cpp src/shapes/shatter.cpp src/io/wrap.cpp src/fitting/point_cloud.cpp src/remesh/remesh.cpp
-  src/core/dense.cpp src/fitting/point_surface.cpp src/exchange/feature_writer.cpp)
+set(OSTRAKA_UNITY_ALONE src/axis/skeleton.cpp src/synthetic/shatter.cpp src/io/wrap.cpp src/point_cloud/point_cloud.cpp src/remesh/remesh.cpp
+  src/core/dense.cpp src/point_cloud/point_surface.cpp src/interchange/feature_writer.cpp)
 
 function(ostraka_unity target)
   get_target_property(sources ${target} SOURCES)

@@ -1,10 +1,10 @@
 // A template of 25,000 vertices fitted to fragments: placement, refinement, fit, completion, by phase.
 #include "benchmarks.h"
 #include "ostraka/core/parallel.h"
-#include "ostraka/fitting/reconstruct.h"
 #include "ostraka/geom/eigen.h"
-#include "ostraka/shapes/fragments.h"
-#include "ostraka/shapes/statuettes.h"
+#include "ostraka/reconstruction/reconstruct.h"
+#include "ostraka/synthetic/fragments.h"
+#include "ostraka/synthetic/statuettes.h"
 
 #include <algorithm>
 #include <array>

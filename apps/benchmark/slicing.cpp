@@ -2,8 +2,8 @@
 #include "benchmarks.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/remesh/refine.h"
-#include "ostraka/shapes/make_mesh.h"
 #include "ostraka/slicing/slice_descriptors.h"
+#include "ostraka/synthetic/make_mesh.h"
 
 #include <string>
 

@@ -4,8 +4,8 @@
 #include "ostraka/cage/cage.h"
 #include "ostraka/coords/coordinates.h"
 #include "ostraka/geom/eigen.h"
-#include "ostraka/shapes/make_mesh.h"
 #include "ostraka/solver/solve.h"
+#include "ostraka/synthetic/make_mesh.h"
 
 #include <malloc.h>
 

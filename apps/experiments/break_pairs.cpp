@@ -5,9 +5,9 @@
 
 #include "ostraka/core/file.h"
 #include "ostraka/core/json.h"
-#include "ostraka/fitting/break_pair.h"
-#include "ostraka/fitting/fragment_file.h"
+#include "ostraka/fracture/break_pair.h"
 #include "ostraka/geom/eigen.h"
+#include "ostraka/reconstruction/fragment_file.h"
 
 #include <CGAL/Orthogonal_k_neighbor_search.h>
 #include <CGAL/Search_traits_3.h>

@@ -4,9 +4,9 @@
 #include "report.h"
 
 #include "ostraka/core/file.h"
-#include "ostraka/fitting/reconstruct.h"
 #include "ostraka/geom/eigen.h"
-#include "ostraka/shapes/shatter.h"
+#include "ostraka/reconstruction/reconstruct.h"
+#include "ostraka/synthetic/shatter.h"
 
 #include <cmath>
 #include <iostream>

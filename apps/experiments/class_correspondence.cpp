@@ -3,11 +3,11 @@
 #include "report.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/family/shape_class.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/submesh.h"
 #include "ostraka/geom/with_points.h"
 #include "ostraka/io/mesh_file.h"
+#include "ostraka/shape_classes/shape_class.h"
 #include "ostraka/stats/random.h"
 
 #include <algorithm>

@@ -6,10 +6,10 @@
 #include "ostraka/annotation/remap.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/progress.h"
-#include "ostraka/family/classify.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/remesh/simplify.h"
+#include "ostraka/shape_classes/classify.h"
 #include "ostraka/stats/scores.h"
 
 #include <algorithm>

@@ -1,13 +1,13 @@
 // Fragments broken off deformed copies of a template, fitted: what is found again of pose, of the observed part and of the rest.
-#include "ostraka/shapes/fragments.h"
+#include "ostraka/synthetic/fragments.h"
 #include "ostraka/collection/statuette_annotations.h"
-#include "ostraka/family/shape_class.h"
-#include "ostraka/fitting/reconstruct.h"
-#include "ostraka/fitting/template_cage.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/measure/measure.h"
+#include "ostraka/reconstruction/reconstruct.h"
+#include "ostraka/reconstruction/template_cage.h"
 #include "ostraka/report/table.h"
+#include "ostraka/shape_classes/shape_class.h"
 #include "ostraka/stats/random.h"
 #include "ostraka/stats/scores.h"
 

@@ -11,9 +11,9 @@
 #include "ostraka/remesh/remesh.h"
 #include "ostraka/report/plot.h"
 #include "ostraka/report/table.h"
-#include "ostraka/shapes/head_casts.h"
 #include "ostraka/stats/random.h"
 #include "ostraka/stats/scores.h"
+#include "ostraka/synthetic/head_casts.h"
 
 #include <algorithm>
 #include <functional>

@@ -8,9 +8,9 @@
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/registration/part_alignment.h"
 #include "ostraka/registration/pose_search.h"
-#include "ostraka/shapes/fragments.h"
-#include "ostraka/shapes/make_mesh.h"
 #include "ostraka/stats/random.h"
+#include "ostraka/synthetic/fragments.h"
+#include "ostraka/synthetic/make_mesh.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,7 @@
 #include "ostraka/geom/eigen.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/select/recipe.h"
-#include "ostraka/shapes/make_mesh.h"
+#include "ostraka/synthetic/make_mesh.h"
 
 #include <Eigen/SVD>
 

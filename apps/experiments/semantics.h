@@ -4,7 +4,7 @@
 #include "ostraka/report/plot.h"
 #include "ostraka/report/table.h"
 #include "ostraka/semantic/deform.h"
-#include "ostraka/shapes/made_object.h"
+#include "ostraka/synthetic/made_object.h"
 
 #include <functional>
 #include <string>

@@ -4,13 +4,13 @@
 #include "report.h"
 
 #include "ostraka/core/file.h"
-#include "ostraka/fitting/assembly.h"
-#include "ostraka/fitting/fragment_file.h"
-#include "ostraka/fitting/reconstruct.h"
-#include "ostraka/fitting/turned.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/io/diagnose.h"
 #include "ostraka/io/mesh_file.h"
+#include "ostraka/reconstruction/assembly.h"
+#include "ostraka/reconstruction/fragment_file.h"
+#include "ostraka/reconstruction/reconstruct.h"
+#include "ostraka/revolution/surface_of_revolution.h"
 #include "ostraka/stats/random.h"
 
 #include <CGAL/boost/graph/helpers.h>

@@ -12,7 +12,7 @@
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/remesh/refine.h"
 #include "ostraka/remesh/simplify.h"
-#include "ostraka/shapes/make_mesh.h"
+#include "ostraka/synthetic/make_mesh.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -6,7 +6,7 @@
 #include "ostraka/core/parallel.h"
 #include "ostraka/report/plot.h"
 #include "ostraka/report/table.h"
-#include "ostraka/shapes/statuettes.h"
+#include "ostraka/synthetic/statuettes.h"
 
 #include <iostream>
 #include <map>

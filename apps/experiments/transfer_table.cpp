@@ -6,7 +6,7 @@
 #include "ostraka/remesh/refine.h"
 #include "ostraka/remesh/remesh.h"
 #include "ostraka/remesh/simplify.h"
-#include "ostraka/shapes/make_mesh.h"
+#include "ostraka/synthetic/make_mesh.h"
 #include "ostraka/transfer/transfer.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "ostraka/collection/landmark_shapes.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/exchange/landmarks.h"
+#include "ostraka/interchange/landmarks.h"
 
 #include <algorithm>
 #include <array>

@@ -3,7 +3,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/limits.h"
 #include "ostraka/core/text.h"
-#include "ostraka/exchange/landmarks.h"
+#include "ostraka/interchange/landmarks.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/measure/descriptors.h"
 #include "ostraka/measure/measure.h"

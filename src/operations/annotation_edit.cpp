@@ -2,7 +2,7 @@
 #include "differences.h"
 #include "operations.h"
 
-#include "ostraka/exchange/edit.h"
+#include "ostraka/interchange/edit.h"
 
 #include <algorithm>
 #include <charconv>

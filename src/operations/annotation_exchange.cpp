@@ -1,7 +1,7 @@
 // annotation export, import
 #include "operations.h"
 
-#include "ostraka/exchange/exchange.h"
+#include "ostraka/interchange/exchange.h"
 
 namespace ostraka {
 

@@ -1,7 +1,7 @@
 // annotation facets: outer, inner and fracture surface of a fragment.
 #include "operations.h"
 
-#include "ostraka/fitting/fragment_file.h"
+#include "ostraka/reconstruction/fragment_file.h"
 
 namespace ostraka {
 

@@ -1,7 +1,7 @@
 // Differences of two sets of annotations in reports.
 #pragma once
 
-#include "ostraka/exchange/difference.h"
+#include "ostraka/interchange/difference.h"
 #include "ostraka/operation/report.h"
 
 namespace ostraka {

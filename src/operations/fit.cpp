@@ -1,12 +1,12 @@
 // fit: from fragments to the whole object.
 #include "operations.h"
 
-#include "ostraka/family/fragment_thresholds.h"
-#include "ostraka/family/member_file.h"
-#include "ostraka/fitting/assembly.h"
-#include "ostraka/fitting/fragment_file.h"
-#include "ostraka/fitting/pose_searches.h"
 #include "ostraka/measure/measure.h"
+#include "ostraka/reconstruction/assembly.h"
+#include "ostraka/reconstruction/fragment_file.h"
+#include "ostraka/reconstruction/pose_searches.h"
+#include "ostraka/shape_classes/fragment_thresholds.h"
+#include "ostraka/shape_classes/member_file.h"
 
 #include <algorithm>
 #include <set>

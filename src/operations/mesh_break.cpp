@@ -2,9 +2,9 @@
 #include "operations.h"
 
 #include "ostraka/annotation/remap.h"
-#include "ostraka/fitting/pose_json.h"
 #include "ostraka/geom/eigen.h"
-#include "ostraka/shapes/fragments.h"
+#include "ostraka/registration/pose_json.h"
+#include "ostraka/synthetic/fragments.h"
 
 #include <cmath>
 

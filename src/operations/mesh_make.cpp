@@ -2,7 +2,7 @@
 #include "operations.h"
 
 #include "ostraka/annotation/label_file.h"
-#include "ostraka/shapes/make_mesh.h"
+#include "ostraka/synthetic/make_mesh.h"
 
 namespace ostraka {
 

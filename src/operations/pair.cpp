@@ -1,8 +1,8 @@
 // pair: two fragments laid together by the break they share.
 #include "operations.h"
 
-#include "ostraka/fitting/break_pair.h"
-#include "ostraka/fitting/fragment_file.h"
+#include "ostraka/fracture/break_pair.h"
+#include "ostraka/reconstruction/fragment_file.h"
 
 namespace ostraka {
 

@@ -2,7 +2,7 @@
 #include "study.h"
 
 #include "ostraka/collection/landmark_shapes.h"
-#include "ostraka/exchange/landmarks.h"
+#include "ostraka/interchange/landmarks.h"
 #include "ostraka/report/plot.h"
 #include "ostraka/report/table.h"
 #include "ostraka/stats/embedding.h"

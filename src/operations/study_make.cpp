@@ -6,8 +6,8 @@
 #include "ostraka/core/csv.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
-#include "ostraka/shapes/head_casts.h"
-#include "ostraka/shapes/statuettes.h"
+#include "ostraka/synthetic/head_casts.h"
+#include "ostraka/synthetic/statuettes.h"
 
 namespace ostraka {
 

@@ -1,7 +1,7 @@
 // template classify: which class objects belong to.
 #include "operations.h"
 
-#include "ostraka/family/member_file.h"
+#include "ostraka/shape_classes/member_file.h"
 
 #include <algorithm>
 

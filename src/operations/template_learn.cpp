@@ -1,8 +1,8 @@
 // template learn: a class of objects from members of it.
 #include "operations.h"
 
-#include "ostraka/family/member_file.h"
 #include "ostraka/geom/with_points.h"
+#include "ostraka/shape_classes/member_file.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // template pack, check, show
 #include "operations.h"
 
-#include "ostraka/bundle/template.h"
+#include "ostraka/template_package/template.h"
 
 #include <map>
 

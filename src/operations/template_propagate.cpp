@@ -1,9 +1,9 @@
 // template propagate: a template's annotations on members of its class.
 #include "operations.h"
 
-#include "ostraka/family/member_file.h"
-#include "ostraka/family/propagate.h"
 #include "ostraka/geom/with_points.h"
+#include "ostraka/shape_classes/member_file.h"
+#include "ostraka/shape_classes/propagate.h"
 
 namespace ostraka {
 

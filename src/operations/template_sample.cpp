@@ -1,10 +1,10 @@
 // template sample: new members of a class.
 #include "operations.h"
 
-#include "ostraka/family/member_file.h"
-#include "ostraka/family/sample.h"
 #include "ostraka/geom/with_points.h"
 #include "ostraka/measure/measure.h"
+#include "ostraka/shape_classes/member_file.h"
+#include "ostraka/shape_classes/sample.h"
 
 namespace ostraka {
 

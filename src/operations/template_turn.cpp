@@ -1,7 +1,7 @@
 // template turn: a whole vessel from its sherds.
 #include "operations.h"
 
-#include "ostraka/fitting/turned.h"
+#include "ostraka/revolution/surface_of_revolution.h"
 
 #include <sstream>
 

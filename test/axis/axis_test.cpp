@@ -5,8 +5,8 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/io/mesh_file.h"
-#include "ostraka/shapes/made_object.h"
-#include "ostraka/shapes/make_mesh.h"
+#include "ostraka/synthetic/made_object.h"
+#include "ostraka/synthetic/make_mesh.h"
 
 #include <gtest/gtest.h>
 

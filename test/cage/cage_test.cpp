@@ -4,7 +4,7 @@
 #include "annotation/example_meshes.h"
 #include "ostraka/core/error.h"
 #include "ostraka/io/mesh_file.h"
-#include "ostraka/shapes/make_mesh.h"
+#include "ostraka/synthetic/make_mesh.h"
 
 #include <gtest/gtest.h>
 

@@ -7,8 +7,8 @@
 #include "ostraka/core/npy.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/io/mesh_file.h"
-#include "ostraka/shapes/head_casts.h"
 #include "ostraka/stats/scores.h"
+#include "ostraka/synthetic/head_casts.h"
 
 namespace ostraka {
 namespace {

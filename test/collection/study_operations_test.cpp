@@ -6,7 +6,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/operations/table.h"
-#include "ostraka/shapes/statuettes.h"
+#include "ostraka/synthetic/statuettes.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include "ostraka/core/csv.h"
 #include "ostraka/core/json.h"
 #include "ostraka/io/mesh_file.h"
-#include "ostraka/shapes/statuettes.h"
+#include "ostraka/synthetic/statuettes.h"
 #include "scratch.h"
 
 #include <gtest/gtest.h>

@@ -2,8 +2,8 @@
 #include "ostraka/collection/technique_study.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
-#include "ostraka/shapes/statuettes.h"
 #include "ostraka/stats/random.h"
+#include "ostraka/synthetic/statuettes.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 #include <ostraka/annotation/label_file.h>
 #include <ostraka/core/error.h>
 #include <ostraka/measure/examine.h>
-#include <ostraka/shapes/make_mesh.h>
+#include <ostraka/synthetic/make_mesh.h>
 #include <ostraka/transfer/transfer.h>
 
 #include <algorithm>

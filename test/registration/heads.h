@@ -5,7 +5,7 @@
 
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/rigid_fit.h"
-#include "ostraka/shapes/head_casts.h"
+#include "ostraka/synthetic/head_casts.h"
 
 namespace ostraka::test {
 

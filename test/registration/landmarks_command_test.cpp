@@ -2,7 +2,7 @@
 #include "scratch.h"
 
 #include "ostraka/core/json.h"
-#include "ostraka/exchange/landmarks.h"
+#include "ostraka/interchange/landmarks.h"
 #include "ostraka/registration/procrustes.h"
 #include "ostraka/stats/random.h"
 

@@ -5,7 +5,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/geom/eigen.h"
-#include "ostraka/shapes/fragments.h"
+#include "ostraka/synthetic/fragments.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include "ostraka/core/parallel.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/registration/pair_votes.h"
-#include "ostraka/shapes/fragments.h"
+#include "ostraka/synthetic/fragments.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
-#include "ostraka/exchange/landmarks.h"
+#include "ostraka/interchange/landmarks.h"
 #include "ostraka/stats/embedding.h"
 #include "ostraka/stats/random.h"
 

@@ -4,8 +4,8 @@
 #include "meshes.h"
 #include "ostraka/core/error.h"
 #include "ostraka/select/recipe.h"
-#include "ostraka/shapes/made_object.h"
-#include "ostraka/shapes/make_mesh.h"
+#include "ostraka/synthetic/made_object.h"
+#include "ostraka/synthetic/make_mesh.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/file.h"
 #include "ostraka/io/mesh_file.h"
-#include "ostraka/shapes/make_mesh.h"
+#include "ostraka/synthetic/make_mesh.h"
 
 #include <algorithm>
 #include <numbers>

@@ -3,7 +3,7 @@
 #include "annotation/example_meshes.h"
 #include "ostraka/geom/geodesic.h"
 #include "ostraka/select/scalars.h"
-#include "ostraka/shapes/make_mesh.h"
+#include "ostraka/synthetic/make_mesh.h"
 #include "select/follow.h"
 #include "select/real_mesh.h"
 

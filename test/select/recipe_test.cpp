@@ -6,7 +6,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/measure/examine.h"
 #include "ostraka/select/selections.h"
-#include "ostraka/shapes/make_mesh.h"
+#include "ostraka/synthetic/make_mesh.h"
 #include "select/real_mesh.h"
 
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 
 #include "annotation/example_meshes.h"
 #include "ostraka/render/render.h"
-#include "ostraka/shapes/make_mesh.h"
+#include "ostraka/synthetic/make_mesh.h"
 #include "select/follow.h"
 #include "select/real_mesh.h"
 

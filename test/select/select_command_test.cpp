@@ -6,7 +6,7 @@
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/operations/table.h"
 #include "ostraka/select/recipe.h"
-#include "ostraka/shapes/make_mesh.h"
+#include "ostraka/synthetic/make_mesh.h"
 #include "scratch.h"
 
 using namespace ostraka;

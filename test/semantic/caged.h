@@ -6,7 +6,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/select/recipe.h"
 #include "ostraka/semantic/deform.h"
-#include "ostraka/shapes/make_mesh.h"
+#include "ostraka/synthetic/make_mesh.h"
 
 namespace ostraka::test {
 

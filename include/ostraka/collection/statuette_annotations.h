@@ -3,7 +3,7 @@
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
-#include "ostraka/shapes/statuettes.h"
+#include "ostraka/synthetic/statuettes.h"
 
 namespace ostraka {
 

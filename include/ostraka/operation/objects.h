@@ -2,10 +2,10 @@
 #pragma once
 
 #include "ostraka/annotation/annotation_file.h"
-#include "ostraka/bundle/template.h"
 #include "ostraka/coords/coordinate_file.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/relation/graph.h"
+#include "ostraka/template_package/template.h"
 
 #include <functional>
 #include <map>

@@ -1,0 +1,66 @@
+// Whether an object belongs to a class, and what speaks against it.
+#pragma once
+
+#include "ostraka/core/options.h"
+#include "ostraka/shape_classes/shape_class.h"
+
+namespace ostraka {
+
+struct ClassifyOptions {
+    MemberFitOptions fit;
+    std::string correspondence = "auto";
+    bool attributes = false;
+    double close = 0.05;
+
+    void describe(OptionList& visit);
+};
+
+/// One quantity of the object against what was learnt of it.
+struct QuantityCheck {
+    ClassQuantity quantity;  ///< with the object's value
+    std::optional<double> low, high;
+    double off = 0;       ///< how far the value is out of what is accepted, in its unit; 0 inside
+    double excess = 0;    ///< the same as a share of the accepted range's width (of a residual: of its threshold)
+    bool decides = true;  ///< it may speak against the object
+    std::string most;     ///< of parts together: which part is farthest off, and by how much, in words
+};
+
+enum class Membership { member, other, undecided };
+std::string to_string(Membership membership);
+
+/// What one class says.
+struct ClassAnswer {
+    std::string name;
+    Membership verdict = Membership::undecided;
+    std::string undecided;  ///< why
+    MemberFit fit;
+    std::vector<QuantityCheck> checks;
+    std::vector<std::size_t>
+        against;  ///< checks that decide and fail: proportions, constraints and relations first, then by excess
+    /// Ten times the distances of the fit both ways, what is unmatched and unexplained, stretch and bend, and twice the absolute
+    /// logarithms of the whole surface's numbers over the members' means. Less is better; it needs no thresholds.
+    double score = 0;
+    ShapeCoordinates coordinates;  ///< of the fitted template
+    [[nodiscard]] std::vector<std::string> reasons() const;
+};
+
+/// Lays the class's template onto the object and compares.
+ClassAnswer ask_class(const ShapeClass& learnt, const ClassTemplate& known, const WholeObject& object,
+                      const ClassifyOptions& options = {});
+/// The same for what was fitted and measured already.
+ClassAnswer compare_with(const ShapeClass& learnt, const LearntMember& object, const ClassifyOptions& options = {});
+
+struct Classification {
+    std::string object;
+    std::vector<ClassAnswer> answers;  ///< of each class, in the order given
+    int best = -1;                     ///< the class it belongs to
+    int nearest = -1;                  ///< the class with the best score, whether it belongs to it or not
+    Membership verdict = Membership::undecided;
+    std::string text;  ///< the answer in words
+};
+
+/// Of the classes the object belongs to the one with the best score. "other" (none) where every class that can tell says no;
+/// undecided where no class can tell, or two that it belongs to are `close`.
+Classification decide(std::string object, std::vector<ClassAnswer> answers, const ClassifyOptions& options = {});
+
+}  // namespace ostraka

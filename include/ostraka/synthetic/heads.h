@@ -1,0 +1,70 @@
+// Heads of terracotta figurines whose moulds are known: archetypes, and casts of them as they come to us.
+#pragma once
+
+#include "ostraka/core/options.h"
+#include "ostraka/synthetic/made_object.h"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace ostraka {
+
+/// The labels of a head's parts.
+enum class HeadPart { face, nose, eyes, mouth, chin, hair, ears, hat, beard, back, neck, stump };
+std::vector<std::string> head_part_names();
+
+/// Proportions of a head 44 mm high, x forward, y to its left, z up, in mm.
+struct HeadShape {
+    enum class Hat { none, pointed, truncated, turban } hat = Hat::none;
+    bool long_hair = false;
+    double skull_width = 13, skull_depth = 15, skull_height = 16;
+    double jaw_width = 10.2, face_length = 15.5, face_depth = 10.5;
+    double chin_width = 4.4, chin_forward = 0, chin_height = 5;
+    double cheek_height = 16.5, cheek_apart = 6, cheek_size = 3.6;
+    double eye_apart = 5.1, eye_height = 23.5, eye_width = 3.1, eye_opening = 1.7, eye_tilt = 4, lid = 0.85;
+    double brow_height = 27.5, brow_arch = 1.6, brow_width = 0.95;
+    double nose_length = 9.5, nose_forward = 3.4, nose_width = 2.1;
+    double mouth_height = 11.2, mouth_width = 4.2, lip = 0.95, smile = 0.7;
+    double hair_line = 36, hair_thickness = 2.2, curl = 0.3;
+    int curls = 11;
+    int lock_ridges = 12;  ///< of long hair
+    double lock_width = 3.3, lock_forward = 0;
+    double ear_height = 21.5, ear_size = 3.6;
+    /// What the archetype has by accident: shifts of the features to one side (mm) and low bumps.
+    double nose_skew = 0, mouth_skew = 0, eye_skew = 0;
+    struct Bump {
+        double y, z, radius, height;
+    };
+    std::vector<Bump> bumps;
+};
+
+struct ArchetypeOptions {
+    bool long_hair = false;
+    bool hand_made = false;  ///< freely formed, with a hat: proportions vary by 1.6 times as much
+    double difference = 1;   ///< how far archetypes lie apart: 1 = proportions vary by about 8 % (standard deviation)
+    std::uint64_t seed = 1;
+
+    void describe(OptionList& visit);
+};
+/// Draws an archetype.
+HeadShape head_archetype(const ArchetypeOptions& options);
+
+/// What is formed by hand on one cast: the back of the head, a beard, dents.
+struct HandWork {
+    double back_depth = 0, back_width = 0;  ///< mm added to the skull behind the mould's reach
+    bool beard = false;
+    double beard_width = 6, beard_length = 7, beard_forward = 2, beard_skew = 0;
+    struct Dent {
+        double y, z, radius, depth;
+    };
+    std::vector<Dent> dents;            ///< on the front
+    double cut_back = 0;                ///< x of the plane, mm, behind which all is `back`; negative is behind the ears
+    double cut_tilt = 0, cut_turn = 0;  ///< slopes of that plane
+};
+
+/// The solid: parts as head_part_names(). The front is the archetype's, the rest as the hand work says.
+std::unique_ptr<const MadeObject> head_object(const HeadShape& shape, const HandWork& work = {});
+
+}  // namespace ostraka

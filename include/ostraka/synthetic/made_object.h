@@ -1,0 +1,92 @@
+// Objects made of blended implicit solids, whose semantic parts are known at every point of the surface.
+#pragma once
+
+#include "ostraka/core/mesh.h"
+#include "ostraka/synthetic/solid.h"
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace ostraka {
+
+/// A solid of an object, blended into those before it.
+struct Member {
+    SolidPointer solid;
+    double blend = 0;     ///< width of the smooth union (or of the smooth cut), mm; 0 gives a crease
+    bool carves = false;  ///< cut away instead of added; the walls it leaves belong to the nearest other member
+    struct Stretch {
+        double until;  ///< parameter of the solid up to which the part reaches
+        int part;
+    };
+    std::vector<Stretch> stretches;  ///< in increasing order; the last reaches to the end
+};
+
+/// A flower in low relief: where the distance from `axis` through `centre` is below the petal curve
+/// radius (1 + petal_depth cos(petals angle)), the surface is raised by up to `height`.
+struct Relief {
+    Eigen::Vector3d centre, axis;
+    double radius, height, petal_depth;
+    int petals, part;
+};
+
+/// Part `from` becomes part `to` where `side` is negative.
+struct Cut {
+    int from, to;
+    std::function<double(const Eigen::Vector3d&)> side;
+};
+
+class MadeObject {
+public:
+    std::string name, object_class, description;
+    std::string unit = "mm";
+    std::vector<std::string> parts;  ///< the index is the label; each part is one connected patch
+    std::vector<std::array<std::uint8_t, 3>> part_colours;
+    int genus = 0;
+    std::size_t minimum_vertices = 300;  ///< fewer cannot hold the shape
+    double thinnest =
+        std::numeric_limits<double>::infinity();     ///< thinnest wall or gap, mm: a coarser lattice would tear or bridge it
+    std::optional<double> exact_area, exact_volume;  ///< where a formula is known
+    std::vector<Member> members;
+    std::vector<Relief> reliefs;
+    std::vector<Cut> cuts;
+
+    /// Implicit function, negative inside, and its gradient. Away from the surface the value is a lower bound of the
+    /// distance up to `slack`; close to it, the function is continuously differentiable.
+    [[nodiscard]] Sample sample(const Eigen::Vector3d& p) const;
+    [[nodiscard]] double value(const Point& p) const { return sample({p.x(), p.y(), p.z()}).value; }
+    [[nodiscard]] Vector gradient(const Point& p) const;
+
+    /// Largest amount by which reliefs move the surface.
+    [[nodiscard]] double slack() const;
+
+    /// Label of the part at a point of the surface (or close to it): the member with the smallest value there, its
+    /// stretch, then reliefs and cuts. The boundaries are piecewise smooth curves.
+    [[nodiscard]] int part(const Eigen::Vector3d& p) const;
+    [[nodiscard]] int part(const Point& p) const { return part(Eigen::Vector3d(p.x(), p.y(), p.z())); }
+
+    /// The surface point reached by following the gradient from `p`, which must be near the surface.
+    [[nodiscard]] Eigen::Vector3d project(const Eigen::Vector3d& p) const;
+    [[nodiscard]] Point project(const Point& p) const;
+
+    /// Box that holds the surface.
+    [[nodiscard]] const Eigen::AlignedBox3d& box() const { return box_; }
+
+    /// To be called once when all members stand: keeps their boxes.
+    void finish();
+
+private:
+    [[nodiscard]] Sample member_sample(std::size_t member, const Eigen::Vector3d& p) const;
+    std::vector<Eigen::AlignedBox3d> boxes_;
+    Eigen::AlignedBox3d box_;
+    double reach_ = 0;
+};
+
+/// Names in alphabetical order.
+std::vector<std::string> made_object_names();
+/// Throws Error (usage) for an unknown name, with the nearest known one.
+const MadeObject& made_object(const std::string& name);
+
+}  // namespace ostraka

@@ -1,0 +1,51 @@
+#include "ostraka/fracture/fragment.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/geom/eigen.h"
+
+#include <algorithm>
+#include <cctype>
+
+namespace ostraka {
+
+std::string to_string(Facet facet) {
+    switch (facet) {
+        case Facet::inner:
+            return "inner";
+        case Facet::fracture:
+            return "fracture";
+        default:
+            return "outer";
+    }
+}
+
+std::vector<Facet> facets_of(const Mesh& mesh, const AnnotationSet& set, Facet other) {
+    std::vector<Facet> facets(mesh.number_of_faces(), other);
+    std::vector<int> owner(facets.size(), -1);
+    for (const Annotation& annotation : set.annotations) {
+        if (annotation.type != AnnotationType::region) continue;
+        std::string tag = annotation.tag;
+        std::transform(tag.begin(), tag.end(), tag.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+        for (const Facet facet : {Facet::outer, Facet::inner, Facet::fracture}) {
+            if (tag != to_string(facet)) continue;
+            for (const Index face : annotation.faces) {
+                if (owner[face] >= 0 && facets[face] != facet)
+                    fail_input("annotation " + std::to_string(annotation.id),
+                               "says of face " + std::to_string(face) + " that it is " + to_string(facet) + ", and annotation " +
+                                   std::to_string(owner[face]) + " that it is " + to_string(facets[face]),
+                               "take the face out of one of them");
+                facets[face] = facet;
+                owner[face] = annotation.id;
+            }
+        }
+    }
+    return facets;
+}
+
+Mesh moved(const Mesh& mesh, const Motion& motion) {
+    Mesh result = mesh;
+    for (const Vertex v : result.vertices()) result.point(v) = point_of(motion(eigen(mesh.point(v))));
+    return result;
+}
+
+}  // namespace ostraka

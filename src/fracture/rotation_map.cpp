@@ -1,0 +1,58 @@
+#include "rotation_map.h"
+
+#include "ostraka/core/angles.h"
+#include "ostraka/geom/eigen.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ostraka {
+
+using Eigen::Vector3d;
+
+int ProfileCells::row(const Vector3d& p, const Vector3d& normal, double reach) {
+    const auto hit = whole_.closest_compatible(point_of(p), vector_of(normal), 0.5, reach);
+    if (!hit) return -1;
+    const double radius = std::hypot(hit->point.x(), hit->point.y());
+    const std::pair cell(std::lround(radius / width_), std::lround(hit->point.z() / width_));
+    return known_.try_emplace(cell, static_cast<int>(known_.size())).first->second;
+}
+
+TurnMap::TurnMap(ProfileCells& cells, const SurfaceSamples& surface, const std::vector<Vector3d>& fracture, int steps,
+                 double margin, double reach)
+    : steps_(steps), area_(surface.area) {
+    if (surface.places.empty()) return;
+    each_ = surface.area / static_cast<double>(surface.places.size());
+    std::vector<Point> breaks;
+    for (const Vector3d& p : fracture) breaks.push_back(point_of(p));
+    const PointTree tree(breaks);
+    const double step = 2 * pi / steps;
+    for (std::size_t i = 0; i < surface.places.size(); ++i) {
+        const Vector3d& p = surface.places[i];
+        const int row = cells.row(p, surface.normals[i], reach);
+        if (row < 0) continue;
+        const int column = static_cast<int>(std::lround(std::atan2(p.y(), p.x()) / step) + steps) % steps;
+        if (breaks.empty() || tree.nearest(point_of(p), margin).index == no_index) deep_.push_back({row, column});
+        if (covered_.size() <= static_cast<std::size_t>(row)) covered_.resize(static_cast<std::size_t>(row) + 1);
+        auto& line = covered_[static_cast<std::size_t>(row)];
+        if (line.empty()) line.assign(static_cast<std::size_t>(steps), false);
+        const double radius = std::max(std::hypot(p.x(), p.y()), 0.5 * cells.width());
+        const int half = std::min(static_cast<int>(std::lround(0.5 * cells.width() / radius / step)), steps / 2);
+        for (int k = -half; k <= half; ++k) line[static_cast<std::size_t>((column + k + steps) % steps)] = true;
+    }
+}
+
+std::vector<double> TurnMap::shared(const TurnMap& other) const {
+    std::vector<double> area(static_cast<std::size_t>(steps_), 0);
+    for (const Place& place : deep_) {
+        const auto row = static_cast<std::size_t>(place.row);
+        if (row >= other.covered_.size() || other.covered_[row].empty()) continue;
+        const std::vector<bool>& line = other.covered_[row];
+        // The other turned by t covers the column c where it covered c - t before.
+        for (int t = 0; t < steps_; ++t)
+            if (line[static_cast<std::size_t>((place.column - t + steps_) % steps_)]) area[static_cast<std::size_t>(t)] += each_;
+    }
+    return area;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,309 @@
+#include "ostraka/fracture/rotational_matching.h"
+#include "ostraka/core/angles.h"
+
+#include "rotational_assembly.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/core/text.h"
+#include "ostraka/geom/eigen.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace ostraka {
+
+using Eigen::Vector3d;
+
+namespace {
+
+class TurnDecider {
+public:
+    TurnDecider(const Mesh& whole, const Vector3d& point, const Vector3d& direction, const std::vector<TurnableSherd>& sherds,
+                const BreakTurnOptions& options)
+        : given_(sherds), options_(options) {
+        upright_.turn = Eigen::Quaterniond::FromTwoVectors(direction, Vector3d::UnitZ()).toRotationMatrix();
+        upright_.shift = -(upright_.turn * point);
+        whole_ = moved(whole, upright_);
+    }
+
+    BreakTurns run() {
+        prepare();
+        meet_all();
+        std::vector<bool> fixed;
+        for (const TurnableSherd& one : given_) fixed.push_back(one.fixed);
+        std::size_t root = 0;
+        for (std::size_t k = 0; k < given_.size(); ++k)
+            if (sherds_[k].map->area() > sherds_[root].map->area()) root = k;
+        assembly_ = assemble_turns(*pairs_, fixed, root, options_.beam);
+        for (std::size_t k = 0; k < given_.size(); ++k) now_.push_back(turned_by(assembly_.turns[k]));
+        join(fixed);
+        put_aside(fixed);
+        refine(fixed);
+        measure();
+        for (std::size_t k = 0; k < given_.size(); ++k)
+            result_.poses.push_back(upright_.inverse().after(now_[k].after(upright_.after(given_[k].pose))));
+        return std::move(result_);
+    }
+
+private:
+    void prepare() {
+        const std::size_t n = given_.size();
+        result_.notes.resize(n);
+        sherds_.resize(n);
+        std::vector<double> walls;
+        for (std::size_t k = 0; k < n; ++k) {
+            const Fragment& fragment = *given_[k].fragment;
+            const Motion pose = upright_.after(given_[k].pose);
+            TurningSherd& one = sherds_[k];
+            one.mesh = moved(fragment.mesh, pose);
+            try {
+                const double radius = 0.04 * fragment_size(fragment.mesh);
+                one.side = BreakSide(fragment, radius, options_.frames, options_.samples).moved(pose);
+                walls.push_back(2 * one.side.fracture.area / one.side.rim_length);
+            } catch (const Error& error) {  // without a break it meets nothing, but it covers something
+                if (error.kind() != ErrorKind::input) throw;
+                result_.notes[k] = "has no break that could meet another one";
+                one.side = BreakSide();
+            }
+        }
+        if (walls.empty()) return;
+        std::nth_element(walls.begin(), walls.begin() + static_cast<std::ptrdiff_t>(walls.size() / 2), walls.end());
+        wall_ = result_.wall = walls[walls.size() / 2];
+    }
+
+    void meet_all() {
+        const std::size_t n = given_.size();
+        double widest = 0;
+        for (const TurningSherd& one : sherds_)
+            for (const Vertex v : one.mesh.vertices())
+                widest = std::max(widest, std::hypot(one.mesh.point(v).x(), one.mesh.point(v).y()));
+        if (!(wall_ > 0)) wall_ = 0.1 * widest;
+        steps_ = static_cast<int>(std::clamp(2 * pi * widest / (0.15 * wall_), 180.0, 3600.0));
+        const SurfaceSearch surface(whole_);
+        const double width = 0.5 * wall_;
+        ProfileCells cells(surface, width);
+        for (std::size_t k = 0; k < n; ++k) {
+            TurningSherd& one = sherds_[k];
+            std::vector<bool> intact(one.mesh.number_of_faces(), true);
+            std::vector<Vector> normals;
+            double area = 0;
+            for (const Face f : one.mesh.faces()) {
+                const Vector3d normal = eigen(area_vector(one.mesh, f));
+                normals.push_back(vector_of(normal.norm() > 0 ? normal.normalized() : normal));
+                const auto& facets = given_[k].fragment->facets;
+                intact[f] = (facets.empty() || facets[f] != Facet::fracture) && normal.norm() > 0;
+                if (intact[f]) area += face_area(one.mesh, f);
+            }
+            const double count = std::clamp(area / (0.25 * width * width), 200.0, 20000.0);
+            const SurfaceSamples surface_samples = sample_faces(one.mesh, normals, intact, static_cast<int>(count));
+            double squares = 0;
+            for (const Vector3d& p : surface_samples.places) squares += p.head<2>().squaredNorm();
+            one.radius = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, surface_samples.places.size())));
+            one.map = std::make_unique<TurnMap>(cells, surface_samples, one.side.fracture.places, steps_, 2 * width, 0.5 * wall_);
+        }
+        std::vector<TurnPair> pairs(n * n);
+        for (std::size_t i = 0; i < n; ++i)
+            for (std::size_t j = i + 1; j < n; ++j) pairs[i * n + j] = meet(sherds_[i], sherds_[j], steps_, wall_, options_);
+        pairs_ = std::make_unique<TurnPairs>(n, std::move(pairs));
+    }
+
+    /// The joints of the assembly; those of the tree of best ones carry it.
+    void join(const std::vector<bool>& fixed) {
+        const std::size_t n = given_.size();
+        std::vector<std::pair<double, BreakJoint>> list;
+        for (std::size_t i = 0; i < n; ++i)
+            for (std::size_t j = i + 1; j < n; ++j) {
+                if (!assembly_.joined[i] || !assembly_.joined[j]) continue;
+                const double turn = assembly_.turns[j] - assembly_.turns[i];
+                const TurnPair& pair = pairs_->of(i, j);
+                const MeetingTurn* meeting = pair.meeting(turn);
+                if (meeting == nullptr || !(pair.value(turn) > 0)) continue;
+                BreakJoint joint;
+                joint.first = static_cast<int>(i), joint.second = static_cast<int>(j);
+                list.emplace_back(pair.value(turn), joint);
+            }
+        std::stable_sort(list.begin(), list.end(), [](const auto& x, const auto& y) { return x.first > y.first; });
+        std::vector<int> tree(n);
+        std::iota(tree.begin(), tree.end(), 0);
+        const auto merge = [](std::vector<int>& groups, int to, int from) {
+            for (int& one : groups)
+                if (one == from) one = to;
+        };
+        int anchor = -1;
+        for (std::size_t k = 0; k < n; ++k)
+            if (fixed[k]) {
+                if (anchor >= 0) merge(tree, tree[static_cast<std::size_t>(anchor)], tree[k]);
+                else anchor = static_cast<int>(k);
+            }
+        result_.group = tree;
+        for (auto& [value, joint] : list) {
+            const int a = tree[static_cast<std::size_t>(joint.first)], b = tree[static_cast<std::size_t>(joint.second)];
+            joint.carries = a != b;
+            if (joint.carries) merge(tree, a, b);
+            result_.joints.push_back(joint);
+        }
+        std::stable_sort(result_.joints.begin(), result_.joints.end(),
+                         [](const BreakJoint& x, const BreakJoint& y) { return x.carries > y.carries; });
+        for (BreakJoint& joint : result_.joints)
+            if (joint.carries) decide(joint, fixed);
+        for (const BreakJoint& joint : result_.joints)
+            if (joint.decided) {
+                const int a = result_.group[static_cast<std::size_t>(joint.first)],
+                          b = result_.group[static_cast<std::size_t>(joint.second)];
+                merge(result_.group, std::min(a, b), std::max(a, b));
+            }
+    }
+
+    /// All that hangs on the second sherd, turned against all else.
+    void decide(BreakJoint& joint, const std::vector<bool>& fixed) {
+        std::vector<bool> side(given_.size(), false);
+        side[static_cast<std::size_t>(joint.second)] = true;
+        for (bool grown = true; grown;) {
+            grown = false;
+            const bool anchored = [&] {
+                for (std::size_t k = 0; k < side.size(); ++k)
+                    if (side[k] && fixed[k]) return true;
+                return false;
+            }();
+            for (std::size_t k = 0; k < side.size(); ++k)
+                if (anchored && fixed[k] && !side[k]) side[k] = grown = true;
+            for (const BreakJoint& other : result_.joints) {
+                if (!other.carries || &other == &joint) continue;
+                const auto a = static_cast<std::size_t>(other.first), b = static_cast<std::size_t>(other.second);
+                if (side[a] != side[b]) side[a] = side[b] = grown = true;
+            }
+        }
+        const TurnLead lead = lead_of(*pairs_, assembly_.turns, assembly_.joined, side, steps_);
+        double fracture[2] = {0, 0};
+        for (std::size_t k = 0; k < side.size(); ++k)
+            if (assembly_.joined[k]) fracture[side[k] ? 1 : 0] += sherds_[k].side.fracture.area;
+        const double least = std::min(fracture[0], fracture[1]);
+        joint.lead = lead.here > 0 ? std::clamp(1 - lead.elsewhere / lead.here, 0.0, 1.0) : 0;
+        joint.share = least > 0 ? std::clamp(lead.here / least, 0.0, 2.0) : 0;
+        joint.confidence = std::min(1.0, 2 * joint.share) * std::min(1.0, 3 * joint.lead);
+        joint.decided = joint.confidence >= options_.least_confidence;
+    }
+
+    /// Groups that hang on nothing decided stay where they meet the others if they share nothing with them there; else sherds of
+    /// their own go where they share least.
+    void put_aside(const std::vector<bool>& fixed) {
+        const std::size_t n = given_.size();
+        std::vector<std::size_t> size(n, 0);
+        for (const int g : result_.group) ++size[static_cast<std::size_t>(g)];
+        const auto largest = static_cast<int>(std::max_element(size.begin(), size.end()) - size.begin());
+        for (std::size_t k = 0; k < n; ++k) {
+            if (fixed[k] || n == 1) continue;
+            if (size[static_cast<std::size_t>(result_.group[k])] > 1) {
+                if (result_.group[k] != largest && result_.notes[k].empty())
+                    result_.notes[k] = "no decided joint holds it and those with it to the largest group";
+                continue;
+            }
+            std::string& note = result_.notes[k];
+            if (note.empty()) note = "no turn about the axis is decided by its break";
+            std::vector<bool> others(n, true);
+            others[k] = false;
+            double here = 0, least = 0;
+            for (std::size_t q = 0; q < n; ++q)
+                if (q != k) here += pairs_->of(q, k).shared_at(TurnPairs::between(q, k, assembly_.turns[q], assembly_.turns[k]));
+            const double turn = free_turn(*pairs_, assembly_.turns, others, k, least);
+            const double little = 0.02 * sherds_[k].map->area();
+            if (here > little && least < here) {
+                assembly_.turns[k] = turn;
+                assembly_.joined[k] = false;
+                now_[k] = turned_by(turn);
+                here = least;
+            }
+            note += here > little ? "; wherever it stands it lies where others do" : "; it stands where it overlaps nothing";
+        }
+        std::erase_if(result_.joints, [&](const BreakJoint& one) {
+            return !assembly_.joined[static_cast<std::size_t>(one.first)] ||
+                   !assembly_.joined[static_cast<std::size_t>(one.second)];
+        });
+    }
+
+    /// One sherd after the other comes to all that it is joined to, held to the template.
+    void refine(const std::vector<bool>& fixed) {
+        const std::size_t n = given_.size();
+        std::size_t still = 0;
+        for (std::size_t k = 0; k < n; ++k)
+            if (sherds_[k].map->area() > sherds_[still].map->area()) still = k;
+        constexpr int sweeps = 4;
+        for (int sweep = 0; sweep < sweeps; ++sweep)
+            for (std::size_t k = 0; k < n; ++k) {
+                if (fixed[k] || k == still || sherds_[k].side.frames.empty()) continue;
+                BreakSide around;
+                for (const BreakJoint& joint : result_.joints) {
+                    const auto a = static_cast<std::size_t>(joint.first), b = static_cast<std::size_t>(joint.second);
+                    if (a != k && b != k) continue;
+                    const std::size_t q = a == k ? b : a;
+                    if (result_.group[q] != result_.group[k]) continue;
+                    const BreakSide side = sherds_[q].side.moved(now_[q]);
+                    around.frames.insert(around.frames.end(), side.frames.begin(), side.frames.end());
+                    auto& to = around.fracture;
+                    to.places.insert(to.places.end(), side.fracture.places.begin(), side.fracture.places.end());
+                    to.normals.insert(to.normals.end(), side.fracture.normals.begin(), side.fracture.normals.end());
+                }
+                if (around.frames.empty()) continue;
+                const BreakAligner aligner(Mesh(), around, sherds_[k].side, wall_, 0.5 * wall_, 1);
+                // From the turn alone: what breaks say is not added up over the sweeps.
+                const double turn = turn_of(now_[k]);
+                now_[k] = aligner.align(turned_by(turn), static_cast<std::size_t>(options_.samples), 16, options_.hold);
+            }
+    }
+
+    void measure() {
+        const std::size_t n = given_.size();
+        for (BreakJoint& joint : result_.joints) {
+            const auto a = static_cast<std::size_t>(joint.first), b = static_cast<std::size_t>(joint.second);
+            const BreakAligner aligner(sherds_[a].mesh, sherds_[a].side, sherds_[b].side, wall_, 0.5 * wall_, 1);
+            const PairCandidate fit =
+                aligner.judge(now_[a].inverse().after(now_[b]), static_cast<std::size_t>(options_.samples), 0.6);
+            joint.turn = 180 / pi * wrapped(turn_of(now_[b]) - turn_of(now_[a]));
+            joint.contact = fit.contact, joint.rim = fit.rim, joint.residual = fit.residual, joint.score = fit.score;
+        }
+        for (std::size_t k = 0; k < n; ++k) {
+            double shared = 0;
+            for (std::size_t q = 0; q < n; ++q)
+                if (q != k) shared += pairs_->of(q, k).shared_at(TurnPairs::between(q, k, turn_of(now_[q]), turn_of(now_[k])));
+            const double area = sherds_[k].map->area();
+            result_.overlap.push_back(area > 0 ? std::min(1.0, shared / area) : 0);
+        }
+    }
+
+    const std::vector<TurnableSherd>& given_;
+    const BreakTurnOptions& options_;
+    Motion upright_;  ///< the axis becomes the vertical one through the origin
+    Mesh whole_;
+    double wall_ = 0;
+    int steps_ = 0;
+    std::vector<TurningSherd> sherds_;
+    std::unique_ptr<TurnPairs> pairs_;
+    TurnAssembly assembly_;
+    std::vector<Motion> now_;  ///< of each sherd, from where it was given, in the upright frame
+    BreakTurns result_;
+};
+
+}  // namespace
+
+BreakTurns turn_by_breaks(const Mesh& whole, const Vector3d& point, const Vector3d& direction,
+                          const std::vector<TurnableSherd>& sherds, const BreakTurnOptions& options) {
+    check_options(options, "turns by breaks");
+    if (sherds.empty()) fail_usage("there is no sherd", "give one or more");
+    if (!(direction.norm() > 0)) fail_usage("the axis has no direction", "give a vector that is not zero");
+    return TurnDecider(whole, point, direction.normalized(), sherds, options).run();
+}
+
+void BreakTurnOptions::describe(OptionList& visit) {
+    visit("turns", turns, "turns about a vessel's axis that are open are decided by the breaks: auto; or never",
+          Choices{"auto", "never"});
+    visit("turn-frames", frames, "places along the rim of each fracture", Range{4, 5000});
+    visit("turn-samples", samples, "points on each fracture", Range{50, 1e6});
+    visit("turn-candidates", candidates, "turns of two sherds that are refined: the best of all tried", Range{1, 1000});
+    visit("turn-beam", beam, "assemblies of all sherds that are followed at once", Range{1, 100000});
+    visit("turn-hold", hold, "weight of a sherd's place on the template against the breaks", Range{0, 1000});
+    visit("least-joint", least_confidence, "confidence of a joint; below it is not decided", Range{0, 1});
+}
+
+}  // namespace ostraka

@@ -1,0 +1,133 @@
+#include "rotational_pairs.h"
+
+#include "ostraka/core/angles.h"
+#include "ostraka/core/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ostraka {
+
+using Eigen::Vector3d;
+
+namespace {
+
+std::size_t step_of(double turn, std::size_t steps) {
+    const auto n = static_cast<long>(steps);
+    const long k = std::lround(turn / (2 * pi) * static_cast<double>(n));
+    return static_cast<std::size_t>(((k % n) + n) % n);
+}
+
+/// Area of the second sherd's fracture that comes close to the first's, facing it, at each step.
+std::vector<double> contacts(const TurningSherd& a, const TurningSherd& b, int steps, double reach) {
+    std::vector<double> area(static_cast<std::size_t>(steps), 0);
+    const SampleGrid grid(a.side.fracture.places, reach);
+    const std::size_t size = b.side.fracture.places.size(), count = std::min<std::size_t>(size, 500);
+    const double each = b.side.fracture.area / static_cast<double>(count);
+    parallel_for(
+        area.size(),
+        [&](std::size_t t) {
+            const Motion turn = turned_by(2 * pi * static_cast<double>(t) / steps);
+            for (std::size_t i = 0; i < count; ++i) {
+                const std::size_t k = (2 * i + 1) * size / (2 * count);
+                const Vector3d p = turn(b.side.fracture.places[k]);
+                const Index near = grid.near(p);
+                if (near == no_index) continue;
+                const double share = (p - a.side.fracture.places[near]).squaredNorm() / (reach * reach),
+                             facing = -a.side.fracture.normals[near].dot(turn.turn * b.side.fracture.normals[k]);
+                if (share < 1 && facing > 0.3) area[t] += each * (1 - share) * facing;
+            }
+        },
+        8);
+    return area;
+}
+
+}  // namespace
+
+double wrapped(double angle) { return std::remainder(angle, 2 * pi); }
+
+Motion turned_by(double angle) {
+    Motion motion;
+    motion.turn = Eigen::AngleAxisd(angle, Vector3d::UnitZ()).toRotationMatrix();
+    return motion;
+}
+
+double turn_of(const Motion& motion) {
+    return std::atan2(motion.turn(1, 0) - motion.turn(0, 1), motion.turn(0, 0) + motion.turn(1, 1));
+}
+
+double TurnPair::shared_at(double turn) const { return shared.empty() ? 0 : shared[step_of(turn, shared.size())]; }
+
+double TurnPair::met(double turn) const {
+    double best = 0;
+    for (const MeetingTurn& one : meetings) {
+        const double off = wrapped(turn - one.turn) / reach;
+        if (off * off < 1) best = std::max(best, one.value * (1 - off * off));
+    }
+    return best;
+}
+
+const MeetingTurn* TurnPair::meeting(double turn) const {
+    const MeetingTurn* best = nullptr;
+    double most = 0;
+    for (const MeetingTurn& one : meetings) {
+        const double off = wrapped(turn - one.turn) / reach, value = one.value * (1 - off * off);
+        if (value > most) best = &one, most = value;
+    }
+    return best;
+}
+
+TurnPair meet(const TurningSherd& a, const TurningSherd& b, int steps, double wall, const BreakTurnOptions& options) {
+    TurnPair pair;
+    const auto n = static_cast<std::size_t>(steps);
+    pair.shared.assign(n, 0);
+    const auto ab = a.map->shared(*b.map), ba = b.map->shared(*a.map);
+    for (std::size_t t = 0; t < n; ++t) pair.shared[t] = std::max(ab[t], ba[(n - t) % n]);
+    // A joint is where it is to the width of the wall.
+    pair.reach = std::min(1.0, wall / std::max(std::min(a.radius, b.radius), wall));
+    if (a.side.frames.empty() || b.side.frames.empty()) return pair;
+    const std::vector<double> close = contacts(a, b, steps, wall);
+    std::vector<double> score(n);
+    for (std::size_t t = 0; t < n; ++t) score[t] = close[t] - pair.shared[t];
+    std::vector<std::size_t> tops;
+    const auto window = std::max<std::size_t>(1, static_cast<std::size_t>(0.5 * pair.reach / (2 * pi) * static_cast<double>(n)));
+    for (std::size_t t = 0; t < n; ++t) {
+        bool top = score[t] > 0;
+        for (std::size_t k = 1; top && k <= window; ++k)
+            top = score[t] > score[(t + n - k) % n] && score[t] >= score[(t + k) % n];
+        if (top) tops.push_back(t);
+    }
+    std::stable_sort(tops.begin(), tops.end(), [&](std::size_t x, std::size_t y) { return score[x] > score[y]; });
+    if (tops.size() > static_cast<std::size_t>(options.candidates)) tops.resize(static_cast<std::size_t>(options.candidates));
+    if (tops.empty()) return pair;
+
+    const BreakAligner aligner(a.mesh, a.side, b.side, wall, 0.5 * wall, 1);
+    const double area = std::min(a.side.fracture.area, b.side.fracture.area);
+    std::vector<MeetingTurn> found(tops.size());
+    parallel_for(
+        tops.size(),
+        [&](std::size_t i) {
+            const Motion start = turned_by(2 * pi * static_cast<double>(tops[i]) / steps);
+            const auto samples = static_cast<std::size_t>(options.samples);
+            MeetingTurn& one = found[i];
+            one.fit = aligner.judge(aligner.align(start, std::min<std::size_t>(samples, 600), 16, options.hold), samples, 0.6);
+            one.turn = turn_of(one.fit.pose);
+            one.value = one.fit.score * area;
+            // Off the template it is no place of this vessel.
+            const Motion off = one.fit.pose.after(turned_by(-one.turn));
+            double squares = 0;
+            for (const Vector3d& p : b.side.intact.places) squares += (off(p) - p).squaredNorm();
+            if (!(squares < wall * wall * static_cast<double>(b.side.intact.places.size()))) one.value = 0;
+        },
+        1);
+    std::stable_sort(found.begin(), found.end(), [](const MeetingTurn& x, const MeetingTurn& y) { return x.value > y.value; });
+    for (MeetingTurn& one : found) {
+        if (!(one.value > 0)) break;
+        if (std::none_of(pair.meetings.begin(), pair.meetings.end(),
+                         [&](const MeetingTurn& k) { return std::abs(wrapped(k.turn - one.turn)) < 0.5 * pair.reach; }))
+            pair.meetings.push_back(std::move(one));
+    }
+    return pair;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,281 @@
+#include "ostraka/interchange/attribute_table.h"
+
+#include "text.h"
+
+#include "ostraka/core/error.h"
+
+#include <map>
+#include <set>
+
+namespace ostraka {
+
+namespace {
+
+using std::to_string;
+
+const std::vector<std::string>& column_names() {
+    static const std::vector<std::string> names{
+        "annotation", "tag",    "type",      "colour",    "attribute", "name",  "kind",     "value",   "unit",        "note",
+        "tool",       "points", "direction", "locations", "file",      "stale", "geodesic", "repeats", "uncertainty", "origin"};
+    return names;
+}
+
+template <class Numbers>
+std::string joined(const Numbers& numbers) {
+    std::string text;
+    for (const auto number : numbers) {
+        text += text.empty() ? "" : " ";
+        if constexpr (std::is_floating_point_v<std::decay_t<decltype(number)>>) text += digits(number);
+        else text += to_string(number);
+    }
+    return text;
+}
+
+/// Face and two of the three weights would do, but all three read back to the bit.
+std::string joined(const std::vector<Location>& locations) {
+    std::string text;
+    for (const Location& location : locations)
+        text += (text.empty() ? "" : " ") + to_string(location.face) + " " + joined(location.barycentric);
+    return text;
+}
+
+std::string joined(const std::vector<std::vector<Index>>& pickings) {
+    std::string text;
+    for (const auto& pins : pickings) text += (text.empty() ? "" : " | ") + joined(pins);
+    return text;
+}
+
+class TableReader {
+public:
+    TableReader(const std::string& bytes, const std::string& where)
+        : where_(where), rows_(csv_rows(bytes, csv_separator(bytes), where)) {
+        if (rows_.empty()) fail_at(1, "the file is empty", "give a table that 'annotation export' wrote");
+        const auto& header = rows_.front().cells;
+        for (std::size_t i = 0; i < header.size(); ++i)
+            if (!columns_.emplace(exchange::lower(trimmed(header[i])), i).second)
+                fail_at(rows_.front().line, "the column '" + exchange::one_line(header[i]) + "' stands twice", "remove one");
+        for (const char* needed : {"annotation", "attribute", "name", "kind"})
+            if (!columns_.contains(needed))
+                fail_at(rows_.front().line, std::string("there is no column '") + needed + "'",
+                        "keep the header that 'annotation export' wrote");
+    }
+
+    std::size_t apply(AnnotationSet& set) {
+        std::map<int, Annotation> fresh;
+        for (std::size_t i = 1; i < rows_.size(); ++i) {
+            row_ = &rows_[i];
+            const int id = whole("annotation");
+            const Annotation* known = set.find(id);
+            if (known == nullptr)
+                fail("annotation", "there is no annotation " + to_string(id), "give the annotations the table was made of");
+            const auto [entry, first] = fresh.try_emplace(id, *known);
+            Annotation& annotation = entry->second;
+            if (first) annotation.attributes.clear();
+            head(annotation, first);
+            if (!cell("attribute").empty()) annotation.attributes.push_back(attribute());
+        }
+        std::size_t count = 0;
+        for (Annotation& annotation : set.annotations) {
+            const auto found = fresh.find(annotation.id);
+            if (found == fresh.end()) continue;
+            std::set<int> ids;
+            for (const Attribute& attribute : found->second.attributes)
+                if (!ids.insert(attribute.id).second)
+                    fail_input(
+                        where_,
+                        "annotation " + to_string(annotation.id) + " has the attribute " + to_string(attribute.id) + " twice",
+                        "give each attribute of an annotation its own id");
+            annotation = std::move(found->second);
+            ++count;
+        }
+        return count;
+    }
+
+private:
+    [[noreturn]] void fail_at(std::size_t line, const std::string& what, const std::string& remedy) const {
+        fail_input(where_ + ", line " + to_string(line), what, remedy);
+    }
+    [[noreturn]] void fail(const std::string& column, const std::string& what, const std::string& remedy) const {
+        fail_at(row_->line, "column '" + column + "': " + what, remedy);
+    }
+
+    [[nodiscard]] bool has(const std::string& column) const { return columns_.contains(column); }
+    [[nodiscard]] std::string cell(const std::string& column) const {
+        const auto found = columns_.find(column);
+        if (found == columns_.end() || found->second >= row_->cells.size()) return {};
+        return exchange::as_utf8(unguarded(row_->cells[found->second]));
+    }
+    [[nodiscard]] int whole(const std::string& column) const {
+        const auto value = whole_of(cell(column));
+        if (!value)
+            fail(column, "'" + exchange::one_line(cell(column)).substr(0, 40) + "' is not a whole number", "mend the cell");
+        return *value;
+    }
+    [[nodiscard]] std::vector<double> numbers(const std::string& column) const { return numbers(column, cell(column)); }
+    [[nodiscard]] std::vector<double> numbers(const std::string& column, const std::string& text) const {
+        std::vector<double> list;
+        for (std::size_t from = 0; from < text.size();) {
+            const std::size_t begin = text.find_first_not_of(" \t\r\n", from);
+            if (begin == std::string::npos) break;
+            from = std::min(text.find_first_of(" \t\r\n", begin), text.size());
+            const auto value = number_of(std::string_view(text).substr(begin, from - begin));
+            if (!value)
+                fail(column,
+                     "'" + exchange::one_line(text.substr(begin, std::min<std::size_t>(from - begin, 40))) + "' is not a number",
+                     "give numbers with a decimal point, separated by blanks");
+            list.push_back(*value);
+        }
+        return list;
+    }
+    [[nodiscard]] Index index(const std::string& column, double value) const {
+        if (!(value >= 0 && value < no_index) || value != static_cast<double>(static_cast<Index>(value)))
+            fail(column, digits(value) + " is not an index", "give indices of the mesh, from 0");
+        return static_cast<Index>(value);
+    }
+
+    /// Pins picked again: indices separated by blanks, pickings by '|'.
+    [[nodiscard]] std::vector<std::vector<Index>> pickings() const {
+        std::vector<std::vector<Index>> list;
+        const std::string text = cell("repeats");
+        for (std::size_t from = 0; from < text.size();) {
+            const std::size_t end = std::min(text.find('|', from), text.size());
+            std::vector<Index>& pins = list.emplace_back();
+            for (const double value : numbers("repeats", text.substr(from, end - from))) pins.push_back(index("repeats", value));
+            from = end + 1;
+        }
+        return list;
+    }
+
+    /// Tag, type and colour, which stand on each row of an annotation; they must agree.
+    void head(Annotation& annotation, bool first) const {
+        if (has("type") && !cell("type").empty() && cell("type") != to_string(annotation.type))
+            fail("type", "annotation " + to_string(annotation.id) + " is a " + to_string(annotation.type),
+                 "a table cannot change what is selected");
+        std::string tag = has("tag") ? cell("tag") : annotation.tag;
+        std::array<int, 3> colour = annotation.colour;
+        if (has("colour") && !cell("colour").empty()) {
+            const auto parts = numbers("colour");
+            bool good = parts.size() == 3;
+            for (std::size_t k = 0; good && k < 3; ++k) {
+                good = parts[k] >= 0 && parts[k] <= 255 && parts[k] == static_cast<int>(parts[k]);
+                if (good) colour[k] = static_cast<int>(parts[k]);
+            }
+            if (!good) fail("colour", "is not three whole numbers from 0 to 255", "give red, green and blue, e.g. 200 30 60");
+        }
+        if (!first && (tag != annotation.tag || colour != annotation.colour))
+            fail(tag != annotation.tag ? "tag" : "colour",
+                 "annotation " + to_string(annotation.id) + " has another one on an earlier row",
+                 "give the same on all its rows");
+        annotation.tag = std::move(tag);
+        annotation.colour = colour;
+    }
+
+    [[nodiscard]] Attribute attribute() const {
+        Attribute attribute;
+        attribute.id = whole("attribute");
+        attribute.name = cell("name");
+        const std::string kind = cell("kind"), stale = cell("stale");
+        if (!stale.empty() && exchange::lower(stale) != "true" && exchange::lower(stale) != "false")
+            fail("stale", "is neither true nor false", "mend the cell");
+        const bool is_stale = exchange::lower(stale) == "true";
+        if (kind == "semantic") {
+            attribute.note = cell("note");
+            attribute.origin = cell("origin");
+        } else if (kind == "measure") {
+            attribute.type = AttributeType::measure;
+            attribute.measure = measure();
+            attribute.measure.stale = is_stale;
+        } else if (kind == "descriptor" || kind == "list") {
+            attribute.type = AttributeType::descriptor;
+            attribute.descriptor = {numbers("value"), kind == "list", cell("file"), cell("unit"), is_stale};
+            if (kind == "descriptor" && attribute.descriptor.values.size() > 1)
+                fail("value", "more than one number", "write 'list' as the kind");
+        } else {
+            fail("kind", "'" + exchange::one_line(kind).substr(0, 40) + "' is not known",
+                 "use semantic, measure, descriptor or list");
+        }
+        return attribute;
+    }
+
+    [[nodiscard]] Measure measure() const {
+        Measure measure;
+        measure.tool = cell("tool");
+        for (const double value : numbers("points")) measure.points.push_back(index("points", value));
+        const auto direction = numbers("direction");
+        if (!direction.empty() && direction.size() != 3) fail("direction", "is not three numbers", "give x, y and z");
+        if (!direction.empty()) measure.direction = {direction[0], direction[1], direction[2]};
+        const auto locations = numbers("locations");
+        if (locations.size() % 4 != 0) fail("locations", "is not a face and three weights a point", "mend the cell");
+        for (std::size_t i = 0; i < locations.size(); i += 4)
+            measure.locations.push_back(
+                {index("locations", locations[i]), {locations[i + 1], locations[i + 2], locations[i + 3]}});
+        const auto value = numbers("value");
+        if (value.size() > 1) fail("value", "more than one number", "a measure has one value");
+        if (!value.empty()) measure.value = value.front();
+        measure.unit = cell("unit");
+        measure.exact = cell("geodesic") == "exact";
+        if (!measure.exact && !cell("geodesic").empty())
+            fail("geodesic", "is not 'exact'", "leave it empty for a way along edges");
+        measure.repeats = pickings();
+        const auto uncertainty = numbers("uncertainty");
+        if (uncertainty.size() > 1) fail("uncertainty", "more than one number", "a measure has one");
+        if (!uncertainty.empty()) measure.uncertainty = uncertainty.front();
+        return measure;
+    }
+
+    std::string where_;
+    std::vector<CsvRow> rows_;
+    std::map<std::string, std::size_t> columns_;
+    const CsvRow* row_ = nullptr;
+};
+
+}  // namespace
+
+std::string attribute_table(const AnnotationSet& set) {
+    std::string text = csv_row(column_names());
+    for (const Annotation& annotation : set.annotations) {
+        const std::vector<std::string> head{to_string(annotation.id), annotation.tag, to_string(annotation.type),
+                                            joined(annotation.colour)};
+        const auto add = [&](const std::vector<std::string>& rest) {
+            std::vector<std::string> cells = head;
+            cells.insert(cells.end(), rest.begin(), rest.end());
+            cells.resize(column_names().size());
+            text += csv_row(cells);
+        };
+        if (annotation.attributes.empty()) add({});
+        for (const Attribute& attribute : annotation.attributes) {
+            const std::string id = to_string(attribute.id);
+            const Measure& m = attribute.measure;
+            const Descriptor& d = attribute.descriptor;
+            switch (attribute.type) {
+                case AttributeType::semantic:
+                    add({id, attribute.name, "semantic", "", "", attribute.note, "", "", "", "", "", "", "", "", "",
+                         attribute.origin});
+                    break;
+                case AttributeType::measure:
+                    add({id, attribute.name, "measure", m.value ? digits(*m.value) : "", m.unit, "", m.tool, joined(m.points),
+                         m.direction ? joined(*m.direction) : "", joined(m.locations), "", m.stale ? "true" : "",
+                         m.exact ? "exact" : "", joined(m.repeats), m.uncertainty ? digits(*m.uncertainty) : ""});
+                    break;
+                case AttributeType::descriptor:
+                    add({id, attribute.name, d.is_list ? "list" : "descriptor", joined(d.values), d.unit, "", "", "", "", "",
+                         d.file, d.stale ? "true" : ""});
+                    break;
+            }
+        }
+    }
+    return text;
+}
+
+bool is_attribute_table(const std::string& bytes) {
+    std::string_view first = std::string_view(bytes).substr(0, bytes.find('\n'));
+    if (first.starts_with("\xEF\xBB\xBF")) first.remove_prefix(3);
+    return first.find("annotation") != std::string_view::npos && first.find("attribute") != std::string_view::npos &&
+           first.find("kind") != std::string_view::npos;
+}
+
+std::size_t apply_attribute_table(const std::string& bytes, AnnotationSet& set, const std::string& where) {
+    return TableReader(bytes, where).apply(set);
+}
+
+}  // namespace ostraka

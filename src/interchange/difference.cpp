@@ -1,0 +1,123 @@
+#include "ostraka/interchange/difference.h"
+
+#include "fields.h"
+
+#include <algorithm>
+#include <map>
+
+namespace ostraka {
+
+namespace {
+
+using namespace exchange;
+using Kind = Difference::Kind;
+
+/// The elements of a selection as sortable numbers: vertices, edges (both ends, lower first) or faces.
+std::vector<std::uint64_t> elements(const Annotation& annotation) {
+    std::vector<std::uint64_t> list(annotation.points.begin(), annotation.points.end());
+    list.insert(list.end(), annotation.faces.begin(), annotation.faces.end());
+    for (const auto& polyline : annotation.polylines)
+        for (std::size_t i = 0; i + 1 < polyline.size(); ++i) {
+            const auto [low, high] = std::minmax(polyline[i], polyline[i + 1]);
+            list.push_back(static_cast<std::uint64_t>(low) << 32 | high);
+        }
+    std::sort(list.begin(), list.end());
+    return list;
+}
+
+std::size_t count_only_in(const std::vector<std::uint64_t>& a, const std::vector<std::uint64_t>& b) {
+    std::vector<std::uint64_t> rest;
+    std::set_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(rest));
+    return rest.size();
+}
+
+/// The ids of `list` that `other` has as well, in the order of `list`.
+std::vector<int> common(const std::vector<int>& list, std::vector<int> other) {
+    std::sort(other.begin(), other.end());
+    std::vector<int> result;
+    for (const int id : list)
+        if (std::binary_search(other.begin(), other.end(), id)) result.push_back(id);
+    return result;
+}
+
+class Comparison {
+public:
+    std::vector<Difference> list;
+
+    void compare(const AnnotationSet& a, const AnnotationSet& b) {
+        if (a.object_class != b.object_class) change("class", words(a.object_class), words(b.object_class));
+        if (a.unit != b.unit) change("unit", words(a.unit), words(b.unit));
+        if (a.up != b.up) change("up", words(a.up), words(b.up));
+        order(ids_of(a.annotations), ids_of(b.annotations));
+        std::map<int, std::pair<const Annotation*, const Annotation*>> pairs;
+        for (const Annotation& annotation : a.annotations) pairs[annotation.id].first = &annotation;
+        for (const Annotation& annotation : b.annotations) pairs[annotation.id].second = &annotation;
+        for (const auto& [id, pair] : pairs) {
+            const auto& [before, after] = pair;
+            id_ = id;
+            tag_ = after != nullptr ? after->tag : before->tag;
+            if (before == nullptr) add(Kind::added, "", "", words(*after));
+            else if (after == nullptr) add(Kind::removed, "", words(*before), "");
+            else compare(*before, *after);
+        }
+    }
+
+private:
+    void add(Kind kind, const std::string& field, const std::string& before, const std::string& after) {
+        list.push_back({kind, id_, tag_, field, before, after, 0, 0});
+    }
+    void change(const std::string& field, const std::string& before, const std::string& after) {
+        add(Kind::changed, field, before, after);
+    }
+
+    void order(const std::vector<int>& a, const std::vector<int>& b) {
+        const std::vector<int> before = common(a, b), after = common(b, a);
+        if (before != after) change("order", words(before), words(after));
+    }
+
+    void compare(const Annotation& a, const Annotation& b) {
+        if (a.tag != b.tag) change("tag", words(a.tag), words(b.tag));
+        if (a.colour != b.colour) change("colour", words(a.colour), words(b.colour));
+        if (a.type != b.type) change("type", to_string(a.type), to_string(b.type));
+        if (!same_geometry(a, b)) {
+            change("geometry", geometry_words(a), geometry_words(b));
+            const auto before = elements(a), after = elements(b);
+            list.back().only_before = a.type == b.type ? count_only_in(before, after) : before.size();
+            list.back().only_after = a.type == b.type ? count_only_in(after, before) : after.size();
+        }
+        if (a.note != b.note) change("note", words(a.note), words(b.note));
+        order_of_attributes(a, b);
+        std::map<int, std::pair<const Attribute*, const Attribute*>> pairs;
+        for (const Attribute& attribute : a.attributes) pairs[attribute.id].first = &attribute;
+        for (const Attribute& attribute : b.attributes) pairs[attribute.id].second = &attribute;
+        for (const auto& [id, pair] : pairs) {
+            const auto& [before, after] = pair;
+            if (before != nullptr && after != nullptr && same(*before, *after)) continue;
+            change("attribute " + std::to_string(id), before == nullptr ? "" : words(*before),
+                   after == nullptr ? "" : words(*after));
+        }
+    }
+
+    void order_of_attributes(const Annotation& a, const Annotation& b) { order(ids_of(a.attributes), ids_of(b.attributes)); }
+
+    std::optional<int> id_;
+    std::string tag_;
+};
+
+}  // namespace
+
+std::vector<Difference> differences(const AnnotationSet& a, const AnnotationSet& b) {
+    Comparison comparison;
+    comparison.compare(a, b);
+    return std::move(comparison.list);
+}
+
+void MergeOptions::describe(OptionList& visit) {
+    visit("prefer", prefer, "whose change counts where both changed one thing in two ways", Choices{"none", "ours", "theirs"});
+    visit("merge-faces", merge_faces, "where both changed a region, take the changes of both face by face instead of a conflict",
+          Anything{});
+    visit("renumber", renumber, "where both added an annotation under one id, give theirs a new one instead of a conflict",
+          Anything{});
+}
+
+}  // namespace ostraka

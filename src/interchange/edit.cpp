@@ -1,0 +1,305 @@
+#include "ostraka/interchange/edit.h"
+
+#include "fields.h"
+#include "text.h"
+
+#include "ostraka/annotation/annotation_file.h"
+#include "ostraka/core/error.h"
+#include "ostraka/core/ids.h"
+#include "ostraka/measure/measure.h"
+
+#include <algorithm>
+#include <set>
+
+namespace ostraka {
+
+namespace {
+
+using namespace exchange;
+using std::to_string;
+
+std::string words(const EntryName& name) { return name.id ? to_string(*name.id) : "'" + exchange::words(name.text) + "'"; }
+
+EntryName name_of(const JsonValue& value) {
+    EntryName name;
+    if (value.IsInt()) name.id = value.GetInt();
+    else name.text.assign(value.GetString(), value.GetStringLength());
+    return name;
+}
+
+/// The faces of a region in sets that hang together over edges, in the order of their smallest face.
+std::vector<std::vector<Index>> patches(const Mesh& mesh, const std::vector<Index>& faces) {
+    const std::vector<bool> selected = face_flags(mesh, faces);
+    std::vector<bool> seen(selected.size(), false);
+    std::vector<std::vector<Index>> result;
+    for (const Index start : faces) {
+        if (seen[start]) continue;
+        std::vector<Index> patch{start};
+        seen[start] = true;
+        for (std::size_t i = 0; i < patch.size(); ++i)
+            for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(Face(patch[i])))) {
+                const Face next = mesh.face(mesh.opposite(h));
+                if (next == Mesh::null_face() || !selected[next] || seen[next]) continue;
+                seen[next] = true;
+                patch.push_back(next);
+            }
+        std::sort(patch.begin(), patch.end());
+        result.push_back(std::move(patch));
+    }
+    return result;
+}
+
+int free_attribute_id(const Annotation& annotation) {
+    std::set<int> used;
+    for (const Attribute& attribute : annotation.attributes) used.insert(attribute.id);
+    int id = 0;
+    while (used.contains(id)) ++id;
+    return id;
+}
+
+/// A unit made of one of length ("mm^2", "1/mm") in terms of another.
+std::string unit_after(const std::string& unit, const std::string& old, const std::string& fresh) {
+    if (old.empty() || fresh.empty()) return unit == old ? fresh : unit;
+    for (const std::string before : {"", "1/"})
+        if (unit == before + old || unit.starts_with(before + old + '^'))
+            return before + fresh + unit.substr((before + old).size());
+    return unit;
+}
+
+class Editor {
+public:
+    Editor(const Mesh& mesh, AnnotationSet& set, const std::string& where) : mesh_(mesh), set_(set), where_(where) {}
+
+    std::vector<std::string> run(const std::vector<AnnotationEdit>& edits) {
+        for (std::size_t i = 0; i < edits.size(); ++i) {
+            here_ = where_ + ", edit " + to_string(i + 1);
+            step(edits[i]);
+        }
+        check_annotations(set_, mesh_, where_);
+        return std::move(notes_);
+    }
+
+private:
+    void step(const AnnotationEdit& edit) {
+        std::size_t at = find(edit.annotation);
+        for (const EntryName& other : edit.merge) {
+            merge(at, find(other));
+            at = find({merged_id_, {}});
+        }
+        if (edit.duplicate) {
+            Annotation copy = set_.annotations[at];
+            copy.id = free_id(set_);
+            set_.annotations.insert(set_.annotations.begin() + static_cast<std::ptrdiff_t>(++at), std::move(copy));
+        }
+        Annotation& annotation = set_.annotations[at];
+        if (edit.tag) annotation.tag = *edit.tag;
+        if (edit.note) annotation.note = *edit.note;
+        if (edit.colour) annotation.colour = *edit.colour;
+        if (edit.id && *edit.id != annotation.id) {
+            if (set_.find(*edit.id) != nullptr)
+                fail_input(here_, "the id " + to_string(*edit.id) + " is taken",
+                           "choose another; free is " + to_string(free_id(set_)));
+            if (!edit.duplicate)
+                notes_.push_back("annotation " + to_string(annotation.id) + " is " + to_string(*edit.id) +
+                                 " now: relations that name it by its old id must follow");
+            annotation.id = *edit.id;
+        }
+        for (const EntryName& name : edit.remove_attributes) remove_attribute(annotation, name);
+        for (const Attribute& attribute : edit.attributes) put(annotation, attribute);
+        for (const auto& [name, text] : edit.texts) put(annotation, name, text);
+        if (edit.split) split(at);
+        if (edit.remove) set_.annotations.erase(set_.annotations.begin() + static_cast<std::ptrdiff_t>(at));
+    }
+
+    std::size_t find(const EntryName& name) const {
+        std::vector<std::size_t> found;
+        for (std::size_t i = 0; i < set_.annotations.size(); ++i)
+            if (name.id ? set_.annotations[i].id == *name.id : set_.annotations[i].tag == name.text) found.push_back(i);
+        if (found.empty()) fail_input(here_, "there is no annotation " + words(name), "'annotation list' shows ids and tags");
+        if (found.size() > 1)
+            fail_input(here_, counted_annotations(found.size()) + " have the tag " + words(name), "name the one meant by its id");
+        return found.front();
+    }
+    static std::string counted_annotations(std::size_t count) { return to_string(count) + " annotations"; }
+
+    void remove_attribute(Annotation& annotation, const EntryName& name) const {
+        const auto matches = [&](const Attribute& a) { return name.id ? a.id == *name.id : a.name == name.text; };
+        const auto count = std::count_if(annotation.attributes.begin(), annotation.attributes.end(), matches);
+        const std::string whose = "annotation " + to_string(annotation.id);
+        if (count == 0) fail_input(here_, whose + " has no attribute " + words(name), "'annotation list' shows its attributes");
+        if (count > 1) fail_input(here_, whose + " has several attributes " + words(name), "name the one meant by its id");
+        annotation.attributes.erase(std::find_if(annotation.attributes.begin(), annotation.attributes.end(), matches));
+    }
+
+    static void put(Annotation& annotation, const Attribute& attribute) {
+        const auto same_id = std::find_if(annotation.attributes.begin(), annotation.attributes.end(),
+                                          [&](const Attribute& a) { return a.id == attribute.id; });
+        if (same_id == annotation.attributes.end()) annotation.attributes.push_back(attribute);
+        else *same_id = attribute;
+    }
+
+    static void put(Annotation& annotation, const std::string& name, const std::string& text) {
+        const auto same_name = std::find_if(annotation.attributes.begin(), annotation.attributes.end(), [&](const Attribute& a) {
+            return a.name == name && a.type == AttributeType::semantic;
+        });
+        Attribute attribute;
+        attribute.id = same_name == annotation.attributes.end() ? free_attribute_id(annotation) : same_name->id;
+        attribute.name = name;
+        attribute.note = text;
+        put(annotation, attribute);
+    }
+
+    /// What was measured on the selection.
+    void refresh(Annotation& annotation) {
+        AnnotationSet alone;
+        alone.unit = set_.unit;
+        alone.annotations.push_back(std::move(annotation));
+        const RefreshResult result = refresh_measures(mesh_, alone);
+        notes_.insert(notes_.end(), result.notes.begin(), result.notes.end());
+        annotation = std::move(alone.annotations.front());
+    }
+
+    void merge(std::size_t at, std::size_t from) {
+        if (at == from) fail_input(here_, "an annotation cannot become part of itself", "name another");
+        Annotation& annotation = set_.annotations[at];
+        const Annotation& other = set_.annotations[from];
+        if (annotation.type != other.type)
+            fail_input(here_, "a " + to_string(other.type) + " cannot become part of a " + to_string(annotation.type),
+                       "merge annotations of one type");
+        std::set<Index> known(annotation.points.begin(), annotation.points.end());
+        std::copy_if(other.points.begin(), other.points.end(), std::back_inserter(annotation.points),
+                     [&](Index point) { return known.insert(point).second; });
+        annotation.polylines.insert(annotation.polylines.end(), other.polylines.begin(), other.polylines.end());
+        std::vector<Index> faces;
+        std::set_union(annotation.faces.begin(), annotation.faces.end(), other.faces.begin(), other.faces.end(),
+                       std::back_inserter(faces));
+        annotation.faces = std::move(faces);
+        annotation.all = annotation.all || other.all;
+        for (Attribute attribute : other.attributes) {
+            const auto twin = std::find_if(annotation.attributes.begin(), annotation.attributes.end(), [&](const Attribute& a) {
+                return a.name == attribute.name && a.type == attribute.type;
+            });
+            if (twin == annotation.attributes.end()) {
+                attribute.id = free_attribute_id(annotation);
+                annotation.attributes.push_back(std::move(attribute));
+                continue;
+            }
+            attribute.id = twin->id;
+            if (!same(attribute, *twin) && attribute.type != AttributeType::descriptor)
+                notes_.push_back("annotation " + to_string(annotation.id) + " keeps its own '" + exchange::words(attribute.name) +
+                                 "', that of " + to_string(other.id) + " is lost");
+        }
+        refresh(annotation);
+        merged_id_ = annotation.id;
+        set_.annotations.erase(set_.annotations.begin() + static_cast<std::ptrdiff_t>(from));
+    }
+
+    void split(std::size_t at) {
+        const Annotation whole = set_.annotations[at];
+        std::vector<Annotation> parts;
+        const auto add = [&]() -> Annotation& {
+            Annotation part = whole;
+            part.points.clear();
+            part.polylines.clear();
+            part.faces.clear();
+            part.all = false;
+            return parts.emplace_back(std::move(part));
+        };
+        for (const Index point : whole.points) add().points = {point};
+        for (const auto& polyline : whole.polylines) add().polylines = {polyline};
+        for (auto& patch : patches(mesh_, whole.faces)) add().faces = std::move(patch);
+        if (parts.size() < 2) {
+            notes_.push_back("annotation " + to_string(whole.id) + " '" + exchange::words(whole.tag) + "' is one piece already");
+            return;
+        }
+        for (Annotation& part : parts)
+            std::erase_if(part.attributes, [](const Attribute& a) { return a.type == AttributeType::measure; });
+        std::vector<std::vector<Index>> touched;
+        for (const Annotation& part : parts) touched.push_back(touched_vertices(mesh_, part));
+        for (const Attribute& attribute : whole.attributes) {
+            if (attribute.type != AttributeType::measure) continue;
+            std::size_t home = 0;
+            for (std::size_t i = parts.size(); i-- > 0;)
+                for (const Index pin : attribute.measure.points)
+                    if (std::binary_search(touched[i].begin(), touched[i].end(), pin)) home = i;
+            parts[home].attributes.push_back(attribute);
+        }
+        set_.annotations[at] = parts.front();
+        refresh(set_.annotations[at]);
+        FreeIds ids(set_.annotations);
+        for (std::size_t i = 1; i < parts.size(); ++i) {
+            parts[i].id = ids.next();
+            refresh(parts[i]);
+        }
+        set_.annotations.insert(set_.annotations.begin() + static_cast<std::ptrdiff_t>(at) + 1,
+                                std::make_move_iterator(parts.begin() + 1), std::make_move_iterator(parts.end()));
+    }
+
+    const Mesh& mesh_;
+    AnnotationSet& set_;
+    const std::string& where_;
+    std::string here_;
+    int merged_id_ = 0;
+    std::vector<std::string> notes_;
+};
+
+}  // namespace
+
+std::vector<AnnotationEdit> edits_from_json(const JsonValue& document, const std::string& where) {
+    validate(document, "annotation-edits", where);
+    std::vector<AnnotationEdit> edits;
+    const JsonValue& list = document["edits"];
+    for (rapidjson::SizeType i = 0; i < list.Size(); ++i) {
+        const JsonValue& entry = list[i];
+        AnnotationEdit& edit = edits.emplace_back();
+        edit.annotation = name_of(entry["annotation"]);
+        if (find_member(entry, "tag") != nullptr) edit.tag = text_member(entry, "tag");
+        if (find_member(entry, "note") != nullptr) edit.note = text_member(entry, "note");
+        if (const JsonValue* id = find_member(entry, "id")) edit.id = id->GetInt();
+        if (const JsonValue* colour = find_member(entry, "colour"))
+            edit.colour = {(*colour)[0].GetInt(), (*colour)[1].GetInt(), (*colour)[2].GetInt()};
+        if (const JsonValue* attributes = find_member(entry, "attributes"))
+            edit.attributes = attributes_from_json(*attributes, where, "/edits/" + to_string(i) + "/attributes");
+        if (const JsonValue* texts = find_member(entry, "texts"))
+            for (const auto& text : texts->GetObject())
+                edit.texts.emplace_back(std::string(text.name.GetString(), text.name.GetStringLength()),
+                                        std::string(text.value.GetString(), text.value.GetStringLength()));
+        const auto names = [&](const char* member, std::vector<EntryName>& into) {
+            if (const JsonValue* value = find_member(entry, member))
+                for (const auto& name : value->GetArray()) into.push_back(name_of(name));
+        };
+        names("merge", edit.merge);
+        names("removeAttributes", edit.remove_attributes);
+        const auto flag = [&](const char* member) {
+            const JsonValue* value = find_member(entry, member);
+            return value != nullptr && value->GetBool();
+        };
+        edit.duplicate = flag("duplicate");
+        edit.split = flag("split");
+        edit.remove = flag("remove");
+    }
+    return edits;
+}
+
+std::vector<AnnotationEdit> read_edits(const Path& file) { return edits_from_json(read_json(file), file.string()); }
+
+std::vector<std::string> edit_annotations(const Mesh& mesh, AnnotationSet& set, const std::vector<AnnotationEdit>& edits,
+                                          const std::string& where) {
+    return Editor(mesh, set, where).run(edits);
+}
+
+void rename_unit(const Mesh& mesh, AnnotationSet& set, const std::string& fresh) {
+    const std::string old = set.unit;
+    set.unit = fresh;
+    for (Annotation& annotation : set.annotations)
+        for (Attribute& attribute : annotation.attributes) {
+            if (attribute.type == AttributeType::measure) attribute.measure.unit = unit_after(attribute.measure.unit, old, fresh);
+            if (attribute.type != AttributeType::descriptor) continue;
+            std::string& unit = attribute.descriptor.unit;
+            const bool computed = (old.empty() ? unit.empty() : unit == descriptor_unit(attribute.name, old)) &&
+                                  evaluate(mesh, annotation, attribute.name);
+            unit = computed ? descriptor_unit(attribute.name, fresh) : old.empty() ? unit : unit_after(unit, old, fresh);
+        }
+}
+
+}  // namespace ostraka

@@ -1,0 +1,277 @@
+// GLB with EXT_mesh_features and EXT_structural_metadata -> annotations on a mesh.
+#include "ostraka/interchange/feature_glb.h"
+
+#include "feature_file.h"
+#include "landmark_formats.h"
+#include "placing.h"
+#include "text.h"
+
+#include "ostraka/annotation/annotation_file.h"
+#include "ostraka/annotation/label_file.h"
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/measure/measure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+namespace ostraka {
+
+namespace {
+
+using namespace exchange;
+
+class FeatureReader {
+public:
+    FeatureReader(const std::string& bytes, const Mesh& mesh, const std::string& where, const PlaceOptions& options)
+        : file_(bytes, where), where_(where), mesh_(mesh), options_(options), notes_(file_.notes) {
+        native_.SetObject();
+    }
+
+    PlacedAnnotations read() {
+        const JsonValue* ours = file_.extras();
+        const JsonValue* made_of = ours == nullptr ? nullptr : find_member(*ours, "mesh");
+        same_mesh_ = made_of != nullptr && file_.triangles() == mesh_.number_of_faces() &&
+                     text_member(*made_of, "sha256") == mesh_checksum(mesh_);
+        JsonValue list(rapidjson::kArrayType);
+        for (const auto& [id, feature] : file_.features) {
+            JsonValue entry = annotation(id, feature);
+            if (entry.IsObject()) list.PushBack(entry, a());
+        }
+        return placed_annotations(native_, std::move(list), ours, mesh_, where_, same_mesh_, std::move(notes_),
+                                  std::move(placements_));
+    }
+
+private:
+    JsonAllocator& a() { return native_.GetAllocator(); }
+
+    Placer& placer() {
+        if (!placer_) placer_ = std::make_unique<Placer>(mesh_);
+        return *placer_;
+    }
+
+    /// The file's triangle nearest to each face's centroid; no_index where it is too far.
+    const std::vector<Index>& nearest_triangles() {
+        if (!nearest_.empty()) return nearest_;
+        TriangleSoup soup;  // each triangle by itself, as split vertices need not make a manifold
+        for (const Primitive& primitive : file_.primitives) {
+            if (primitive.mode != glb::triangles_mode) continue;
+            for (std::size_t c = 0; c < primitive.corners.size(); c += 3) {
+                const auto first = static_cast<Index>(soup.points.size());
+                for (std::size_t k = 0; k < 3; ++k) soup.points.push_back(primitive.position(primitive.corners[c + k]));
+                soup.triangles.push_back({first, first + 1, first + 2});
+            }
+        }
+        const Mesh surface = build_mesh(soup);
+        const SurfaceSearch search(surface);
+        const double limit = options_.tolerance * box_diagonal(mesh_);
+        nearest_.assign(mesh_.number_of_faces(), no_index);
+        std::vector<double> distance(nearest_.size());
+        parallel_for(nearest_.size(), [&](std::size_t f) {
+            const SurfaceHit hit = search.closest(centroid(mesh_, Face(static_cast<Index>(f))));
+            distance[f] = hit.distance;
+            if (hit.distance <= limit) nearest_[f] = hit.face;
+        });
+        const auto far = static_cast<std::size_t>(std::count(nearest_.begin(), nearest_.end(), no_index));
+        if (2 * far > nearest_.size())
+            fail_input(where_, "most of the mesh lies farther than " + digits(limit) + " from the surface of the file",
+                       "give the mesh that the file shows, in the same unit and position, or raise --tolerance");
+        if (far > 0)
+            notes_.push_back(counted(far, "face") + " of the mesh farther than " + digits(limit) + " from the file's surface");
+        to_surface_ = *std::max_element(distance.begin(), distance.end());
+        return nearest_;
+    }
+
+    /// The vertex of the mesh for a vertex of a primitive; no_index if it is too far and such are left out.
+    Index vertex_of(const Primitive& primitive, std::size_t vertex, PlacedAnnotation& placement) {
+        ++placement.points;
+        if (same_mesh_ && !primitive.origins.empty()) {
+            const double origin = primitive.origins[vertex];
+            if (!(origin >= 0 && origin < static_cast<double>(mesh_.number_of_vertices())))
+                file_.file.fail("/meshes/0/primitives", "a value of _VERTEX is no vertex of the mesh");
+            return static_cast<Index>(origin);
+        }
+        const auto position = primitive.position(vertex);
+        const Placed placed = placer().place(Point(position[0], position[1], position[2]));
+        const double limit = options_.tolerance * placer().diagonal();
+        placement.to_surface = std::max(placement.to_surface, placed.to_surface);
+        placement.to_vertex = std::max(placement.to_vertex, placed.to_vertex);
+        if (placed.to_surface <= limit) return placed.vertex;
+        if (!options_.skip_far)
+            fail_input(where_,
+                       "a point of '" + one_line(placement.tag).substr(0, 40) + "' lies " + digits(placed.to_surface) +
+                           " from the surface, farther than " + digits(limit),
+                       "give the mesh that the file shows, raise --tolerance, or leave such out with --skip-far");
+        return no_index;
+    }
+
+    JsonValue json_of(const std::vector<Index>& indices) {
+        JsonValue list(rapidjson::kArrayType);
+        for (const Index index : indices) list.PushBack(index, a());
+        return list;
+    }
+
+    JsonValue annotation(std::size_t row, const Feature& feature) {
+        JsonValue result(rapidjson::kObjectType);
+        PlacedAnnotation placement;
+        placement.tag = row < file_.tags.size() ? file_.tags[row] : "feature " + std::to_string(row);
+        placement.id = file_.ours ? file_.ids[row] : static_cast<int>(std::min<std::size_t>(row, 2147483647));
+        placement.how = same_mesh_ ? "indices" : "places";
+        if (!used_.insert(placement.id).second)
+            fail_input(where_, "two features have the id " + std::to_string(placement.id), "mend the table");
+        add_member(result, "id", JsonValue(placement.id), a());
+        add_member(result, "tag", placement.tag, a());
+        const std::array<int, 3> colour =
+            file_.ours ? std::array<int, 3>{file_.colours[3 * row], file_.colours[3 * row + 1], file_.colours[3 * row + 2]}
+                       : distinct_colour(row);
+        JsonValue parts(rapidjson::kArrayType);
+        for (const int part : colour) parts.PushBack(part, a());
+        add_member(result, "colour", std::move(parts), a());
+        if (!select(row, feature, result, placement)) {
+            notes_.push_back("'" + one_line(placement.tag) + "' could not be placed on this mesh and was left out");
+            return {};
+        }
+        if (row < file_.remarks.size() && !file_.remarks[row].empty()) add_member(result, "note", file_.remarks[row], a());
+        JsonValue attributes(rapidjson::kArrayType);
+        if (row < file_.attributes.size()) {
+            const Json list = parse_json(file_.attributes[row], where_ + ", attributes of feature " + std::to_string(row));
+            attributes.CopyFrom(list, a());
+            if (!same_mesh_) without_pins(attributes);
+        }
+        add_member(result, "attributes", std::move(attributes), a());
+        placements_.push_back(placement);
+        return result;
+    }
+
+    bool select(std::size_t row, const Feature& feature, JsonValue& result, PlacedAnnotation& placement) {
+        if (file_.ours && file_.kinds[row] == 3) {
+            add_member(result, "type", "region", a());
+            add_member(result, "all", JsonValue(true), a());
+        } else if (feature.faces) {
+            std::vector<Index> faces;
+            if (same_mesh_) {
+                faces = *feature.faces;
+                std::sort(faces.begin(), faces.end());
+                faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+            } else {
+                const std::vector<Index>& nearest = nearest_triangles();
+                std::vector<bool> mine(file_.triangles(), false);
+                for (const Index t : *feature.faces) mine[t] = true;
+                for (std::size_t f = 0; f < nearest.size(); ++f)
+                    if (nearest[f] != no_index && mine[nearest[f]]) faces.push_back(static_cast<Index>(f));
+                placement.to_surface = to_surface_;
+            }
+            if (faces.empty()) return false;
+            add_member(result, "type", "region", a());
+            add_member(result, "faces", json_of(faces), a());
+        } else if (!feature.polylines.empty()) {
+            JsonValue list(rapidjson::kArrayType);
+            for (const auto& polyline : feature.polylines) {
+                std::vector<Index> vertices;
+                for (const std::size_t corner : polyline) {
+                    const Index vertex = vertex_of(file_.primitives[feature.line_primitive], corner, placement);
+                    if (vertex != no_index) vertices.push_back(vertex);
+                }
+                if (!same_mesh_ && !vertices.empty()) {
+                    const bool closed = vertices.size() > 3 && vertices.front() == vertices.back();
+                    vertices = placer().chain(vertices, closed, where_ + ", '" + one_line(placement.tag) + "'");
+                }
+                if (vertices.size() > 1) list.PushBack(json_of(vertices), a());
+            }
+            if (list.Empty()) return false;
+            add_member(result, "type", "line", a());
+            add_member(result, "polylines", std::move(list), a());
+        } else {
+            std::vector<Index> vertices;
+            for (const std::size_t corner : feature.points) {
+                const Index vertex = vertex_of(file_.primitives[feature.point_primitive], corner, placement);
+                if (vertex != no_index) vertices.push_back(vertex);
+            }
+            if (vertices.empty()) return false;
+            add_member(result, "type", "point", a());
+            add_member(result, "points", json_of(vertices), a());
+        }
+        return true;
+    }
+
+    /// Vertices of the file's mesh on this one; nothing if one of them is not in the file.
+    std::optional<std::vector<Index>> found_again(const JsonValue* points) {
+        if (points == nullptr || !points->IsArray()) return {};
+        std::vector<Index> vertices;
+        for (const auto& point : points->GetArray()) {
+            const auto found = point.IsUint() ? positions().find(point.GetUint()) : positions_.end();
+            if (found == positions_.end()) return {};
+            vertices.push_back(placer().place(found->second).vertex);
+        }
+        return vertices;
+    }
+
+    /// Pins are vertices of the file's mesh: found again by _VERTEX, otherwise the measure becomes a number.
+    void without_pins(JsonValue& attributes) {
+        if (!attributes.IsArray()) return;
+        for (auto& attribute : attributes.GetArray()) {
+            if (!attribute.IsObject() || text_member(attribute, "type") != "measure" || !attribute.HasMember("measure") ||
+                !attribute["measure"].IsObject())
+                continue;
+            JsonValue& measure = attribute["measure"];
+            if (const auto vertices = found_again(find_member(measure, "points"))) {
+                JsonValue again(rapidjson::kArrayType);
+                if (const JsonValue* repeats = find_member(measure, "repeats"); repeats != nullptr && repeats->IsArray())
+                    for (const auto& picked : repeats->GetArray())
+                        if (const auto places = found_again(&picked)) again.PushBack(json_of(*places), a());
+                measure.RemoveMember("repeats");
+                if (!again.Empty()) add_member(measure, "repeats", std::move(again), a());
+                measure.RemoveMember("points");
+                measure.RemoveMember("locations");
+                measure.RemoveMember("stale");
+                add_member(measure, "points", json_of(*vertices), a());
+                add_member(measure, "stale", JsonValue(true), a());
+                continue;
+            }
+            JsonValue number(rapidjson::kObjectType);
+            for (const char* name : {"id", "name"})
+                if (const JsonValue* value = find_member(attribute, name)) add_member(number, name, JsonValue(*value, a()), a());
+            add_member(number, "type", "descriptor", a());
+            for (const char* name : {"value", "unit"})
+                if (const JsonValue* value = find_member(measure, name)) add_member(number, name, JsonValue(*value, a()), a());
+            add_member(number, "stale", JsonValue(true), a());
+            attribute = std::move(number);
+        }
+    }
+
+    const std::map<Index, Point>& positions() {
+        if (positions_.empty())
+            for (const Primitive& primitive : file_.primitives)
+                for (std::size_t i = 0; i < primitive.origins.size(); ++i) {
+                    const auto p = primitive.position(i);
+                    if (primitive.origins[i] >= 0 && primitive.origins[i] < 16777217.0)
+                        positions_.try_emplace(static_cast<Index>(primitive.origins[i]), p[0], p[1], p[2]);
+                }
+        return positions_;
+    }
+
+    FeatureFile file_;
+    const std::string& where_;
+    const Mesh& mesh_;
+    const PlaceOptions& options_;
+    Json native_;
+    bool same_mesh_ = false;
+    std::vector<std::string> notes_;
+    std::vector<Index> nearest_;
+    double to_surface_ = 0;
+    std::map<Index, Point> positions_;
+    std::set<int> used_;
+    std::unique_ptr<Placer> placer_;
+    std::vector<PlacedAnnotation> placements_;
+};
+
+}  // namespace
+
+PlacedAnnotations read_feature_glb(const std::string& bytes, const Mesh& mesh, const std::string& where,
+                                   const PlaceOptions& options) {
+    check_options(options, "feature GLB");
+    return FeatureReader(bytes, mesh, where, options).read();
+}
+
+}  // namespace ostraka

@@ -1,0 +1,441 @@
+// Annotations -> GLB with EXT_mesh_features and EXT_structural_metadata.
+#include "ostraka/interchange/feature_glb.h"
+
+#include "glb.h"
+#include "landmark_formats.h"
+#include "text.h"
+
+#include "ostraka/annotation/annotation_file.h"
+#include "ostraka/core/error.h"
+#include "ostraka/core/limits.h"
+#include "ostraka/geom/eigen.h"
+#include "ostraka/vocabulary/text_match.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace ostraka {
+
+namespace {
+
+using namespace exchange;
+using Eigen::Vector3d;
+using glb::append;
+
+constexpr std::size_t exact_in_float = std::size_t{1} << 24;
+
+/// Colours of vertices are linear in glTF (section 3.7.2.1), ours are sRGB (IEC 61966-2-1).
+std::uint16_t linear_channel(int value) {
+    const double s = value / 255.0;
+    return static_cast<std::uint16_t>(std::lround(65535 * (s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4))));
+}
+
+/// What a primitive's vertices are: places of the mesh with the feature of each set.
+struct Corners {
+    std::vector<Index> vertices;
+    std::vector<std::array<int, 3>> colours;
+    std::vector<std::vector<Index>> features;  ///< one list a set
+    std::vector<std::uint32_t> indices;
+};
+
+class Writer {
+public:
+    Writer(const Mesh& mesh, const AnnotationSet& set, const std::string& mesh_file, const Provenance& provenance,
+           std::vector<std::string>& notes)
+        : mesh_(mesh),
+          set_(set),
+          where_(mesh_file.empty() ? "GLB" : mesh_file),
+          native_(annotations_to_json(set, mesh, mesh_file, provenance)),
+          notes_(notes) {}
+
+    std::string write() {
+        if (mesh_.number_of_faces() == 0)
+            throw Error(ErrorKind::failure, where_, "glTF does not hold a mesh without triangles", "export another format");
+        if (set_.annotations.size() >= exact_in_float)
+            throw Error(ErrorKind::failure, where_, "more annotations than feature ids can tell apart", "export fewer");
+        JsonValue primitives(rapidjson::kArrayType);
+        primitives.PushBack(primitive(surface(), glb::triangles_mode), a());
+        const Corners drawn = lines(), marked = points();
+        if (!drawn.vertices.empty()) primitives.PushBack(primitive(drawn, glb::lines_mode), a());
+        if (!marked.vertices.empty()) primitives.PushBack(primitive(marked, glb::points_mode), a());
+        if (!set_.annotations.empty()) add_table();
+
+        JsonValue mesh(rapidjson::kObjectType), node(rapidjson::kObjectType), scene(rapidjson::kObjectType),
+            surface_material(rapidjson::kObjectType), material(rapidjson::kObjectType), extras(rapidjson::kObjectType);
+        add_member(mesh, "primitives", std::move(primitives), a());
+        for (const char* name : {"mesh", "class", "unit", "up", "provenance"})
+            if (const JsonValue* value = find_member(native_, name)) add_member(extras, name, JsonValue(*value, a()), a());
+        JsonValue ours(rapidjson::kObjectType);
+        add_member(ours, "ostraka", std::move(extras), a());
+        add_member(mesh, "extras", std::move(ours), a());
+        add_member(node, "mesh", JsonValue(0), a());
+        JsonValue nodes = in_list(std::move(node));
+        const bool turned = add_display_node(nodes);
+        add_member(scene, "nodes", in_list(JsonValue(turned ? 1 : 0)), a());
+        add_member(surface_material, "metallicFactor", JsonValue(0), a());
+        add_member(surface_material, "roughnessFactor", JsonValue(1), a());
+        add_member(material, "pbrMetallicRoughness", std::move(surface_material), a());
+        add_member(material, "doubleSided", JsonValue(true), a());
+        Json& root = builder_.document();
+        add_member(root, "scene", JsonValue(0), a());
+        add_member(root, "scenes", in_list(std::move(scene)), a());
+        add_member(root, "nodes", std::move(nodes), a());
+        add_member(root, "meshes", in_list(std::move(mesh)), a());
+        add_member(root, "materials", in_list(std::move(material)), a());
+        JsonValue used(rapidjson::kArrayType);
+        if (!set_.annotations.empty()) {
+            used.PushBack("EXT_mesh_features", a());
+            used.PushBack("EXT_structural_metadata", a());
+            add_member(root, "extensionsUsed", std::move(used), a());
+        }
+        const auto empty = std::count_if(set_.annotations.begin(), set_.annotations.end(), [](const Annotation& annotation) {
+            return annotation.points.empty() && annotation.polylines.empty() && annotation.faces.empty();
+        });
+        if (empty > 0)
+            notes_.push_back(counted(static_cast<std::size_t>(empty), "annotation") +
+                             " without elements: in the table, but nowhere on the mesh");
+        if (rounded_) notes_.emplace_back("GLB holds coordinates in single precision; they were rounded");
+        return builder_.finish(where_);
+    }
+
+private:
+    JsonAllocator& a() { return builder_.allocator(); }
+    JsonValue in_list(JsonValue value) {
+        JsonValue list(rapidjson::kArrayType);
+        list.PushBack(value, a());
+        return list;
+    }
+    [[nodiscard]] Index none() const { return static_cast<Index>(set_.annotations.size()); }
+
+    /// Smallest regions first, each in the first set in which it meets no other.
+    std::vector<std::vector<Index>> layers() {
+        std::vector<std::pair<double, Index>> regions;
+        for (Index i = 0; i < none(); ++i) {
+            const Annotation& annotation = set_.annotations[i];
+            if (annotation.type != AnnotationType::region || annotation.faces.empty()) continue;
+            double area = 0;
+            for (const Index face : annotation.faces) area += face_area(mesh_, Face(face));
+            regions.emplace_back(area, i);
+        }
+        std::sort(regions.begin(), regions.end());
+        std::vector<std::vector<Index>> result;
+        for (const auto& [area, i] : regions) {
+            const auto& faces = set_.annotations[i].faces;
+            auto layer = std::find_if(result.begin(), result.end(), [&](const std::vector<Index>& taken) {
+                return std::none_of(faces.begin(), faces.end(), [&](Index face) { return taken[face] != none(); });
+            });
+            if (layer == result.end()) layer = result.insert(result.end(), std::vector<Index>(mesh_.number_of_faces(), none()));
+            for (const Index face : faces) (*layer)[face] = i;
+        }
+        if (result.size() > 4)
+            notes_.push_back("regions lie on each other " + std::to_string(result.size()) +
+                             " deep; viewers may read the first feature id sets only");
+        return result;
+    }
+
+    Corners surface() {
+        const std::vector<std::vector<Index>> sets = layers();
+        Corners corners_;
+        corners_.features.resize(sets.size());
+        // Faces with the same features share a vertex, others have copies of it.
+        std::map<std::vector<Index>, Index> kinds;
+        std::vector<std::vector<std::pair<Index, std::uint32_t>>> copies(mesh_.number_of_vertices());
+        std::vector<Index> kind(sets.size());
+        for (const Face face : mesh_.faces()) {
+            for (std::size_t s = 0; s < sets.size(); ++s) kind[s] = sets[s][face];
+            const Index number = kinds.emplace(kind, static_cast<Index>(kinds.size())).first->second;
+            for (const Vertex v : corners(mesh_, face)) {
+                auto& known = copies[v];
+                auto copy = std::find_if(known.begin(), known.end(), [&](const auto& entry) { return entry.first == number; });
+                if (copy == known.end()) {
+                    copy = known.insert(known.end(), {number, static_cast<std::uint32_t>(corners_.vertices.size())});
+                    corners_.vertices.push_back(v);
+                    std::array<int, 3> colour{200, 200, 200};
+                    for (std::size_t s = sets.size(); s-- > 0;) {
+                        corners_.features[s].push_back(kind[s]);
+                        if (kind[s] != none() && !set_.annotations[kind[s]].all) colour = set_.annotations[kind[s]].colour;
+                    }
+                    corners_.colours.push_back(colour);
+                }
+                corners_.indices.push_back(copy->second);
+            }
+        }
+        return corners_;
+    }
+
+    Corners lines() {
+        Corners result;
+        result.features.resize(1);
+        for (Index i = 0; i < none(); ++i)
+            for (const auto& polyline : set_.annotations[i].polylines)
+                for (std::size_t k = 0; k < polyline.size(); ++k) {
+                    if (k > 0)
+                        for (const std::size_t back : {1U, 0U})
+                            result.indices.push_back(static_cast<std::uint32_t>(result.vertices.size() - back));
+                    add(result, polyline[k], i);
+                }
+        return result;
+    }
+
+    /// glTF's y points up and its unit is the metre: a node that shows the mesh so, above one that has its own coordinates.
+    bool add_display_node(JsonValue& nodes) {
+        const auto metres = converted(1, set_.unit, "m");
+        Vector3d up = Vector3d::UnitY();
+        if (set_.up) up = eigen(unit_vector({(*set_.up)[0], (*set_.up)[1], (*set_.up)[2]}));
+        const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(up, Vector3d::UnitY());
+        const bool turns = (up - Vector3d::UnitY()).norm() > 1e-12, scales = metres && *metres != 1;
+        if (!turns && !scales) return false;
+        JsonValue shown(rapidjson::kObjectType), extras(rapidjson::kObjectType);
+        add_member(shown, "name", "as glTF wants it: y up, in metres", a());
+        add_member(shown, "children", in_list(JsonValue(0)), a());
+        const auto numbers = [&](std::initializer_list<double> values) {
+            JsonValue list(rapidjson::kArrayType);
+            for (const double value : values) list.PushBack(value, a());
+            return list;
+        };
+        if (turns) add_member(shown, "rotation", numbers({turn.x(), turn.y(), turn.z(), turn.w()}), a());
+        if (scales) add_member(shown, "scale", numbers({*metres, *metres, *metres}), a());
+        add_member(extras, glb::display_only, JsonValue(true), a());
+        add_member(shown, "extras", std::move(extras), a());
+        nodes.PushBack(shown, a());
+        return true;
+    }
+
+    Corners points() {
+        Corners result;
+        result.features.resize(1);
+        for (Index i = 0; i < none(); ++i)
+            for (const Index point : set_.annotations[i].points) add(result, point, i);
+        return result;
+    }
+
+    void add(Corners& to, Index vertex, Index feature) {
+        to.vertices.push_back(vertex);
+        to.colours.push_back(set_.annotations[feature].colour);
+        to.features.front().push_back(feature);
+    }
+
+    JsonValue primitive(const Corners& corners_, int mode) {
+        const std::size_t count = corners_.vertices.size();
+        JsonValue attributes(rapidjson::kObjectType), result(rapidjson::kObjectType);
+        std::string positions, colours, origins;
+        std::array<float, 3> low, high;
+        low.fill(std::numeric_limits<float>::max());
+        high.fill(std::numeric_limits<float>::lowest());
+        for (std::size_t i = 0; i < count; ++i) {
+            const Point& p = mesh_.point(Vertex(corners_.vertices[i]));
+            for (int k = 0; k < 3; ++k) {
+                if (std::fabs(p[k]) > static_cast<double>(std::numeric_limits<float>::max()))
+                    throw Error(ErrorKind::failure, where_, "a coordinate does not fit the single precision of glTF",
+                                "rescale the mesh");
+                const auto narrow = static_cast<float>(p[k]);
+                rounded_ = rounded_ || static_cast<double>(narrow) != p[k];
+                low[static_cast<std::size_t>(k)] = std::min(low[static_cast<std::size_t>(k)], narrow);
+                high[static_cast<std::size_t>(k)] = std::max(high[static_cast<std::size_t>(k)], narrow);
+                append(positions, narrow);
+            }
+            for (const int part : corners_.colours[i]) append(colours, linear_channel(part));
+            append(colours, std::uint16_t{65535});
+            append(origins, static_cast<float>(corners_.vertices[i]));
+        }
+        JsonValue min(rapidjson::kArrayType), max(rapidjson::kArrayType);
+        for (const float x : low) min.PushBack(static_cast<double>(x), a());
+        for (const float x : high) max.PushBack(static_cast<double>(x), a());
+        const auto attribute = [&](const std::string& name, int accessor) {
+            add_member(attributes, name, JsonValue(accessor), a());
+        };
+        attribute("POSITION", builder_.add_accessor(positions, glb::array_buffer, 0, glb::single, count, "VEC3", &min, &max));
+        const int colour = builder_.add_accessor(colours, glb::array_buffer, 0, glb::short_word, count, "VEC4");
+        builder_.mark_normalised(colour);
+        attribute("COLOR_0", colour);
+        if (mesh_.number_of_vertices() <= exact_in_float)
+            attribute("_VERTEX", builder_.add_accessor(origins, glb::array_buffer, 0, glb::single, count, "SCALAR"));
+        JsonValue ids(rapidjson::kArrayType);
+        for (std::size_t s = 0; s < corners_.features.size(); ++s) {
+            std::string bytes;
+            const bool narrow = none() <= std::numeric_limits<std::uint16_t>::max();
+            std::vector<Index> distinct = corners_.features[s];
+            for (const Index feature : corners_.features[s]) {
+                if (narrow) append(bytes, static_cast<std::uint16_t>(feature)), append(bytes, std::uint16_t{0});
+                else append(bytes, static_cast<float>(feature));
+            }
+            std::sort(distinct.begin(), distinct.end());
+            distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
+            std::erase(distinct, none());
+            if (distinct.empty()) continue;
+            attribute(
+                "_FEATURE_ID_" + std::to_string(s),
+                builder_.add_accessor(bytes, glb::array_buffer, 4, narrow ? glb::short_word : glb::single, count, "SCALAR"));
+            JsonValue id(rapidjson::kObjectType);
+            add_member(id, "featureCount", JsonValue(static_cast<std::uint64_t>(distinct.size())), a());
+            add_member(id, "nullFeatureId", JsonValue(none()), a());
+            add_member(id, "label", "annotations_" + std::to_string(s), a());
+            add_member(id, "attribute", JsonValue(static_cast<std::uint64_t>(s)), a());
+            add_member(id, "propertyTable", JsonValue(0), a());
+            ids.PushBack(id, a());
+        }
+        add_member(result, "attributes", std::move(attributes), a());
+        if (!corners_.indices.empty()) {
+            std::string bytes;
+            for (const std::uint32_t index : corners_.indices) append(bytes, index);
+            add_member(result, "indices",
+                       JsonValue(builder_.add_accessor(bytes, glb::element_array_buffer, 0, glb::word, corners_.indices.size(),
+                                                       "SCALAR")),
+                       a());
+        }
+        add_member(result, "mode", JsonValue(mode), a());
+        add_member(result, "material", JsonValue(0), a());
+        if (!ids.Empty()) {
+            JsonValue extensions(rapidjson::kObjectType), features(rapidjson::kObjectType);
+            add_member(features, "featureIds", std::move(ids), a());
+            add_member(extensions, "EXT_mesh_features", std::move(features), a());
+            add_member(result, "extensions", std::move(extensions), a());
+        }
+        return result;
+    }
+
+    // The property table: a column a property.
+    void column(const std::string& id, JsonValue described, JsonValue stored) {
+        add_member(properties_, id, std::move(described), a());
+        add_member(columns_, id, std::move(stored), a());
+    }
+    JsonValue described(const char* type, const char* component, const std::string& name, bool required) {
+        JsonValue property(rapidjson::kObjectType);
+        if (!name.empty()) add_member(property, "name", name, a());
+        add_member(property, "type", type, a());
+        if (component != nullptr) add_member(property, "componentType", component, a());
+        if (required) add_member(property, "required", JsonValue(true), a());
+        return property;
+    }
+    JsonValue stored(const std::string& bytes) {
+        JsonValue values(rapidjson::kObjectType);
+        add_member(values, "values", JsonValue(builder_.add_view(bytes)), a());
+        return values;
+    }
+    JsonValue stored(const std::vector<std::string>& texts) {
+        std::string bytes, offsets;
+        append(offsets, std::uint32_t{0});
+        for (const std::string& text : texts) {
+            bytes += as_utf8(text);
+            if (bytes.size() > std::numeric_limits<std::uint32_t>::max())
+                throw Error(ErrorKind::failure, where_, "its texts exceed four gigabytes", "shorten them");
+            append(offsets, static_cast<std::uint32_t>(bytes.size()));
+        }
+        JsonValue values = stored(bytes);
+        add_member(values, "stringOffsets", JsonValue(builder_.add_view(offsets)), a());
+        add_member(values, "stringOffsetType", "UINT32", a());
+        return values;
+    }
+
+    void add_table() {
+        std::string ids, colours, kinds;
+        std::vector<std::string> tags, notes, attributes;
+        const JsonValue& list = native_["annotations"];
+        for (rapidjson::SizeType i = 0; i < list.Size(); ++i) {
+            const Annotation& annotation = set_.annotations[i];
+            append(ids, static_cast<std::int32_t>(annotation.id));
+            for (const int part : annotation.colour) append(colours, static_cast<std::uint8_t>(part));
+            append(kinds, static_cast<std::uint8_t>(annotation.all ? 3 : static_cast<int>(annotation.type)));
+            tags.push_back(annotation.tag);
+            notes.push_back(annotation.note);
+            attributes.emplace_back(trimmed(to_text(list[i]["attributes"])));
+        }
+        column("id", described("SCALAR", "INT32", "", true), stored(ids));
+        column("tag", described("STRING", nullptr, "", true), stored(tags));
+        JsonValue kind = described("ENUM", nullptr, "", true);
+        add_member(kind, "enumType", "annotationKind", a());
+        column("kind", std::move(kind), stored(kinds));
+        column("colour", described("VEC3", "UINT8", "", true), stored(colours));
+        column("note", described("STRING", nullptr, "", true), stored(notes));
+        column("attributes", described("STRING", nullptr, "all attributes as JSON", true), stored(attributes));
+        add_attribute_columns();
+
+        JsonValue kind_names(rapidjson::kArrayType), kind_type(rapidjson::kObjectType), enums(rapidjson::kObjectType);
+        int value = 0;
+        for (const char* name : {"point", "line", "region", "whole"}) {
+            JsonValue entry(rapidjson::kObjectType);
+            add_member(entry, "name", name, a());
+            add_member(entry, "value", JsonValue(value++), a());
+            kind_names.PushBack(entry, a());
+        }
+        add_member(kind_type, "valueType", "UINT8", a());
+        add_member(kind_type, "values", std::move(kind_names), a());
+        add_member(enums, "annotationKind", std::move(kind_type), a());
+        JsonValue type(rapidjson::kObjectType), classes(rapidjson::kObjectType), schema(rapidjson::kObjectType),
+            table(rapidjson::kObjectType), metadata(rapidjson::kObjectType), extensions(rapidjson::kObjectType);
+        add_member(type, "name", "Annotation", a());
+        add_member(type, "properties", std::move(properties_), a());
+        add_member(classes, "annotation", std::move(type), a());
+        add_member(schema, "id", "ostraka_annotations", a());
+        add_member(schema, "version", "1.0.0", a());
+        add_member(schema, "classes", std::move(classes), a());
+        add_member(schema, "enums", std::move(enums), a());
+        add_member(table, "name", "annotations", a());
+        add_member(table, "class", "annotation", a());
+        add_member(table, "count", JsonValue(none()), a());
+        add_member(table, "properties", std::move(columns_), a());
+        add_member(metadata, "schema", std::move(schema), a());
+        add_member(metadata, "propertyTables", in_list(std::move(table)), a());
+        add_member(extensions, "EXT_structural_metadata", std::move(metadata), a());
+        add_member(builder_.document(), "extensions", std::move(extensions), a());
+    }
+
+    /// For viewers: a column for each name under which annotations have a number or a text.
+    void add_attribute_columns() {
+        constexpr double missing = std::numeric_limits<double>::lowest();
+        std::map<std::string, std::vector<double>> numbers;
+        std::map<std::string, std::vector<std::string>> texts;
+        for (Index i = 0; i < none(); ++i)
+            for (const Attribute& attribute : set_.annotations[i].attributes) {
+                if (attribute.type == AttributeType::semantic) {
+                    auto& values = texts[attribute.name];
+                    values.resize(none());
+                    values[i] += (values[i].empty() ? "" : "; ") + attribute.note;
+                    continue;
+                }
+                const bool measured = attribute.type == AttributeType::measure;
+                const auto& list = attribute.descriptor.values;
+                if (measured ? !attribute.measure.value.has_value() : list.size() != 1) continue;
+                const std::string& unit = measured ? attribute.measure.unit : attribute.descriptor.unit;
+                auto& values = numbers[unit.empty() ? attribute.name : attribute.name + " (" + unit + ")"];
+                values.resize(none(), missing);
+                values[i] = measured ? *attribute.measure.value : list.front();
+            }
+        std::size_t number = 0;
+        for (const auto& [name, values] : numbers) {
+            std::string bytes;
+            for (const double value : values) append(bytes, value);
+            JsonValue property = described("SCALAR", "FLOAT64", name, false);
+            add_member(property, "noData", JsonValue(missing), a());
+            column("number_" + std::to_string(number++), std::move(property), stored(bytes));
+        }
+        number = 0;
+        for (const auto& [name, values] : texts) {
+            JsonValue property = described("STRING", nullptr, name, false);
+            add_member(property, "noData", "", a());
+            column("text_" + std::to_string(number++), std::move(property), stored(values));
+        }
+    }
+
+    const Mesh& mesh_;
+    const AnnotationSet& set_;
+    std::string where_;
+    Json native_;
+    std::vector<std::string>& notes_;
+    glb::Builder builder_;
+    JsonValue properties_{rapidjson::kObjectType}, columns_{rapidjson::kObjectType};
+    bool rounded_ = false;
+};
+
+}  // namespace
+
+std::string feature_glb(const Mesh& mesh, const AnnotationSet& set, const std::string& mesh_file, const Provenance& provenance,
+                        std::vector<std::string>& notes) {
+    return Writer(mesh, set, mesh_file, provenance, notes).write();
+}
+
+}  // namespace ostraka

@@ -1,0 +1,32 @@
+// The readers and writers behind landmarks_from_text and landmarks_to_text, one pair a format.
+#pragma once
+
+#include "ostraka/interchange/landmarks.h"
+
+namespace ostraka::exchange {
+
+using Notes = std::vector<std::string>;
+
+LandmarkSet read_landmark_table(const std::string& bytes, const std::string& where, const LandmarkFileOptions& options);
+LandmarkSet read_tps(const std::string& bytes, const std::string& where, const LandmarkFileOptions& options);
+LandmarkSet read_fcsv(const std::string& bytes, const std::string& where, const LandmarkFileOptions& options);
+LandmarkSet read_picked_points(const std::string& bytes, const std::string& where);
+LandmarkSet read_markups(const std::string& bytes, const std::string& where, const LandmarkFileOptions& options);
+
+std::string write_landmark_table(const LandmarkSet& set);
+std::string write_tps(const LandmarkSet& set, const std::string& mesh_file);
+std::string write_fcsv(const LandmarkSet& set, const LandmarkFileOptions& options, Notes& notes);
+std::string write_picked_points(const LandmarkSet& set, const std::string& mesh_file, Notes& notes);
+std::string write_markups(const LandmarkSet& set, const LandmarkFileOptions& options, const Provenance& provenance);
+
+/// Turns a position of a file in `file_space` (empty: that of the mesh) into the mesh's: x and y change their sign between LPS
+/// and RAS.
+std::array<double, 3> in_mesh_space(std::array<double, 3> position, const std::string& file_space, const std::string& mesh_space);
+
+/// Throws Error (input) naming `at` if the place is beyond what can be computed with, as a mesh's would be.
+void check_place(const std::array<double, 3>& position, const std::string& at);
+
+/// "1 landmark", "2 landmarks".
+std::string counted(std::size_t count, const std::string& noun);
+
+}  // namespace ostraka::exchange

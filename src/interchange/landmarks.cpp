@@ -1,0 +1,270 @@
+#include "ostraka/interchange/landmarks.h"
+
+#include "landmark_formats.h"
+#include "placing.h"
+#include "text.h"
+
+#include "ostraka/annotation/label_file.h"
+#include "ostraka/core/error.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace ostraka {
+
+namespace {
+
+using exchange::counted;
+using exchange::Placed;
+using exchange::Placer;
+using std::to_string;
+
+std::array<double, 3> position_of(const Mesh& mesh, Index vertex) {
+    const Point& p = mesh.point(Vertex(vertex));
+    return {p.x(), p.y(), p.z()};
+}
+
+constexpr const char* points_only = " left out: the format holds points only";
+
+Point point_of(const std::array<double, 3>& p) { return {p[0], p[1], p[2]}; }
+
+/// Everything of the file with where it came to lie.
+struct Entry {
+    std::string name;
+    std::string kind;  ///< in messages
+    const std::array<double, 3>* position = nullptr;
+    Placed placed;
+};
+
+/// Would the file fit if its x and y had the other sign?
+bool fits_turned(const Placer& placer, const std::vector<Entry>& entries) {
+    double here = 0, turned = 0;
+    const std::size_t step = 1 + entries.size() / 200;
+    for (std::size_t i = 0; i < entries.size(); i += step) {
+        const auto& p = *entries[i].position;
+        here += entries[i].placed.to_surface;
+        turned += placer.place(Point(-p[0], -p[1], p[2])).to_surface;
+    }
+    return turned < here / 4;
+}
+
+[[noreturn]] void refuse(const Placer& placer, const std::vector<Entry>& entries, const std::vector<Entry>& far, double limit,
+                         const std::string& where) {
+    const auto worst = std::max_element(far.begin(), far.end(),
+                                        [](const Entry& a, const Entry& b) { return a.placed.to_surface < b.placed.to_surface; });
+    const std::string remedy =
+        fits_turned(placer, entries)
+            ? "with x and y of the other sign they would fit: one is in LPS, the other in RAS coordinates; try the other "
+              "--mesh-space"
+            : "check that mesh and file have one unit and one position, raise --tolerance, or leave them out with --skip-far";
+    fail_input(where,
+               counted(far.size(), "place") + " of " + to_string(entries.size()) + " farther than " + digits(limit) +
+                   " from the surface, the farthest " + worst->kind + " '" + exchange::one_line(worst->name).substr(0, 40) +
+                   "' at " + digits(worst->placed.to_surface),
+               remedy);
+}
+
+class Assembler {
+public:
+    Assembler(const Mesh& mesh, const std::string& where) : placer_(mesh), where_(where) {}
+
+    PlacedAnnotations assemble(const LandmarkSet& input, const PlaceOptions& options) {
+        for (const Landmark& landmark : input.landmarks) exchange::check_place(landmark.position, where_);
+        for (const LandmarkCurve& curve : input.curves)
+            for (const auto& position : curve.points) exchange::check_place(position, where_);
+        std::vector<Entry> entries;
+        for (const Landmark& landmark : input.landmarks)
+            entries.push_back({landmark.name, "landmark", &landmark.position, placer_.place(point_of(landmark.position))});
+        for (const LandmarkCurve& curve : input.curves)
+            for (const auto& position : curve.points)
+                entries.push_back({curve.name, "point of curve", &position, placer_.place(point_of(position))});
+        const double limit = options.tolerance * placer_.diagonal();
+        std::vector<Entry> far;
+        std::copy_if(entries.begin(), entries.end(), std::back_inserter(far),
+                     [&](const Entry& entry) { return entry.placed.to_surface > limit; });
+        if (!far.empty() && !options.skip_far) refuse(placer_, entries, far, limit, where_);
+
+        result_.set.unit = input.unit;
+        result_.set.notes = input.notes;
+        for (const Landmark& landmark : input.landmarks)
+            if (landmark.group) used_.insert(*landmark.group);
+        for (const LandmarkCurve& curve : input.curves)
+            if (curve.group) used_.insert(*curve.group);
+        for (std::size_t i = 0; i < input.landmarks.size(); ++i)
+            if (entries[i].placed.to_surface <= limit) add_point(input.landmarks[i], entries[i].placed);
+        std::size_t at = input.landmarks.size();
+        for (const LandmarkCurve& curve : input.curves) {
+            std::vector<Placed> places;
+            for (std::size_t k = 0; k < curve.points.size(); ++k, ++at)
+                if (entries[at].placed.to_surface <= limit) places.push_back(entries[at].placed);
+            add_curve(curve, places);
+        }
+        if (!far.empty())
+            result_.set.notes.push_back(counted(far.size(), "place") + " farther than " + digits(limit) +
+                                        " from the surface left out, as asked: " + names_of(far));
+        return std::move(result_);
+    }
+
+private:
+    static std::string names_of(const std::vector<Entry>& entries) {
+        std::string text;
+        for (std::size_t i = 0; i < std::min<std::size_t>(entries.size(), 5); ++i)
+            text += (i > 0 ? ", '" : "'") + exchange::one_line(entries[i].name).substr(0, 40) + "'";
+        return text + (entries.size() > 5 ? " ..." : "");
+    }
+
+    int fresh_id() {
+        while (used_.contains(next_)) ++next_;
+        used_.insert(next_);
+        return next_;
+    }
+
+    void begin(std::optional<int> group, const std::string& name, AnnotationType type) {
+        Annotation annotation;
+        annotation.id = group && !made_.contains(*group) ? *group : fresh_id();
+        annotation.tag = name;
+        annotation.type = type;
+        annotation.colour = distinct_colour(result_.set.annotations.size());
+        made_.emplace(annotation.id, result_.set.annotations.size());
+        result_.placements.push_back({annotation.id, name, 0, 0, 0, "places"});
+        result_.set.annotations.push_back(std::move(annotation));
+    }
+
+    void count(std::size_t at, const Placed& placed) {
+        PlacedAnnotation& placement = result_.placements[at];
+        ++placement.points;
+        placement.to_surface = std::max(placement.to_surface, placed.to_surface);
+        placement.to_vertex = std::max(placement.to_vertex, placed.to_vertex);
+    }
+
+    void add_point(const Landmark& landmark, const Placed& placed) {
+        const auto known = landmark.group ? made_.find(*landmark.group) : made_.end();
+        std::size_t at = result_.set.annotations.size();
+        if (known != made_.end()) at = known->second;
+        else begin(landmark.group, landmark.name, AnnotationType::point);
+        result_.set.annotations[at].points.push_back(placed.vertex);
+        count(at, placed);
+    }
+
+    void add_curve(const LandmarkCurve& curve, const std::vector<Placed>& places) {
+        std::vector<Index> picks;
+        for (const Placed& placed : places) picks.push_back(placed.vertex);
+        std::vector<Index> chain =
+            placer_.chain(picks, curve.closed && picks.size() > 2, where_ + ", curve '" + curve.name + "'");
+        if (chain.size() < 2) {
+            result_.set.notes.push_back("curve '" + exchange::one_line(curve.name).substr(0, 40) +
+                                        "' shrank to a point on this mesh and was left out");
+            return;
+        }
+        const auto known = curve.group ? made_.find(*curve.group) : made_.end();
+        const bool joined = known != made_.end() && result_.set.annotations[known->second].type == AnnotationType::line;
+        const std::size_t at = joined ? known->second : result_.set.annotations.size();
+        if (!joined) begin(curve.group, curve.name, AnnotationType::line);
+        result_.set.annotations[at].polylines.push_back(std::move(chain));
+        for (const Placed& placed : places) count(at, placed);
+    }
+
+    Placer placer_;
+    const std::string& where_;
+    PlacedAnnotations result_;
+    std::map<int, std::size_t> made_;  ///< ids to places in the set
+    std::set<int> used_;               ///< ids not to be given to others
+    int next_ = 0;
+};
+
+}  // namespace
+
+LandmarkSet landmarks_from_text(const std::string& bytes, LandmarkFormat format, const std::string& where,
+                                const LandmarkFileOptions& options) {
+    check_options(options, "landmarks");
+    switch (format) {
+        case LandmarkFormat::tps:
+            return exchange::read_tps(bytes, where, options);
+        case LandmarkFormat::pp:
+            return exchange::read_picked_points(bytes, where);
+        case LandmarkFormat::mrk:
+            return exchange::read_markups(bytes, where, options);
+        case LandmarkFormat::fcsv:
+            return exchange::read_fcsv(bytes, where, options);
+        case LandmarkFormat::csv:
+            break;
+    }
+    return exchange::read_landmark_table(bytes, where, options);
+}
+
+LandmarkSet read_landmarks(const Path& file, LandmarkFormat format, const LandmarkFileOptions& options) {
+    return landmarks_from_text(read_file(file), format, file.string(), options);
+}
+
+std::string landmarks_to_text(const LandmarkSet& set, LandmarkFormat format, const std::string& mesh_file,
+                              const Provenance& provenance, std::vector<std::string>& notes, const LandmarkFileOptions& options) {
+    check_options(options, "landmarks");
+    if (format != LandmarkFormat::mrk && !set.curves.empty())
+        notes.push_back(counted(set.curves.size(), "poly-line") + points_only);
+    switch (format) {
+        case LandmarkFormat::tps:
+            return exchange::write_tps(set, mesh_file);
+        case LandmarkFormat::pp:
+            return exchange::write_picked_points(set, mesh_file, notes);
+        case LandmarkFormat::mrk:
+            return exchange::write_markups(set, options, provenance);
+        case LandmarkFormat::fcsv:
+            return exchange::write_fcsv(set, options, notes);
+        case LandmarkFormat::csv:
+            break;
+    }
+    return exchange::write_landmark_table(set);
+}
+
+LandmarkSet landmarks_of(const Mesh& mesh, const AnnotationSet& set, LandmarkFormat format) {
+    LandmarkSet result;
+    result.unit = set.unit;
+    std::size_t regions = 0, polylines = 0, attributes = 0;
+    for (const Annotation& annotation : set.annotations) {
+        if (annotation.type == AnnotationType::region) {
+            ++regions;
+            continue;
+        }
+        if (annotation.type == AnnotationType::line && format != LandmarkFormat::mrk) {
+            polylines += annotation.polylines.size();
+            continue;
+        }
+        attributes += annotation.attributes.size();
+        for (std::size_t i = 0; i < annotation.points.size(); ++i)
+            result.landmarks.push_back({annotation.points.size() == 1 ? annotation.tag : annotation.tag + " " + to_string(i + 1),
+                                        position_of(mesh, annotation.points[i]), annotation.id});
+        for (const auto& polyline : annotation.polylines) {
+            LandmarkCurve curve{annotation.tag, polyline.size() > 3 && polyline.front() == polyline.back(), {}, annotation.id};
+            for (std::size_t k = 0; k < polyline.size() - (curve.closed ? 1 : 0); ++k)
+                curve.points.push_back(position_of(mesh, polyline[k]));
+            result.curves.push_back(std::move(curve));
+        }
+    }
+    if (regions > 0) result.notes.push_back(counted(regions, "region") + " left out: landmark files hold no regions");
+    if (polylines > 0) result.notes.push_back(counted(polylines, "poly-line") + points_only);
+    if (attributes > 0) result.notes.push_back(counted(attributes, "attribute") + " left out: landmark files hold none");
+    return result;
+}
+
+PlacedAnnotations place_landmarks(const Mesh& mesh, const LandmarkSet& landmarks, const std::string& where,
+                                  const PlaceOptions& options) {
+    check_options(options, "place landmarks");
+    return Assembler(mesh, where).assemble(landmarks, options);
+}
+
+void LandmarkFileOptions::describe(OptionList& visit) {
+    visit("mesh-space", mesh_space,
+          "space of the mesh's coordinates, for files that state theirs: LPS (x to the left, y to the back; what 3D Slicer "
+          "writes since 4.11) or RAS (x to the right, y to the front; older ones)",
+          Choices{"LPS", "RAS"});
+    visit("specimen", specimen, "which specimen of a TPS file is meant: its ID, or its number from 1", Anything{});
+}
+
+void PlaceOptions::describe(OptionList& visit) {
+    visit("tolerance", tolerance, "farthest that a place of the file may lie from the surface, as a share of the box diagonal",
+          Range{0, 1});
+    visit("skip-far", skip_far, "leave out what lies farther, with a note, instead of refusing the file", Anything{});
+}
+
+}  // namespace ostraka

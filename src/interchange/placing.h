@@ -1,0 +1,66 @@
+// Places given by coordinates, found again on a mesh.
+#pragma once
+
+#include "ostraka/core/mesh.h"
+#include "ostraka/geom/shortest_path.h"
+#include "ostraka/geom/surface_search.h"
+#include "ostraka/interchange/landmarks.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace ostraka::exchange {
+
+/// The nearest vertex that has a face, by a balanced tree of the vertices; ties go to the lower index.
+class VertexSearch {
+public:
+    explicit VertexSearch(const Mesh& mesh);
+    [[nodiscard]] Index nearest(const Point& query) const;
+
+private:
+    void search(std::size_t begin, std::size_t end, int axis, const Point& query, double& best, Index& found) const;
+    const Mesh& mesh_;
+    std::vector<Index> order_;  ///< each half-open range is split at its middle along x, y, z in turn
+};
+
+struct Placed {
+    Index vertex = no_index;
+    double to_vertex = 0;
+    double to_surface = 0;
+};
+
+class Placer {
+public:
+    explicit Placer(const Mesh& mesh);
+
+    [[nodiscard]] const Mesh& mesh() const { return mesh_; }
+    [[nodiscard]] double diagonal() const { return surface_.diagonal(); }
+    [[nodiscard]] Placed place(const Point& point) const;
+    /// The nearest point of the surface.
+    [[nodiscard]] SurfaceHit nearest(const Point& point) const { return surface_.closest(point); }
+
+    /// The vertices along the mesh from pick to pick, successive ones joined by edges; repeated picks count once and steps back
+    /// and forth are dropped. Closed: the first stands at the end again. One vertex if all picks are the same. Throws Error
+    /// (input), starting with `where`, if two picks are not connected.
+    std::vector<Index> chain(const std::vector<Index>& picks, bool closed, const std::string& where);
+
+    /// The faces to the left of closed chains, by winding number; of several answers the one nearest to `area`. Empty flags where
+    /// the chains bound nothing.
+    [[nodiscard]] std::vector<bool> fill(const std::vector<std::vector<Index>>& chains, double area) const;
+    [[nodiscard]] std::vector<bool> component(Index face) const;
+
+private:
+    const Mesh& mesh_;
+    SurfaceSearch surface_;
+    VertexSearch vertices_;
+    std::unique_ptr<PathSearch> paths_;
+};
+
+/// The set of `native`, an annotation file without its list and head, and of `list`, its annotations. `about` may carry the
+/// class, the unit and the way up. Measures are taken anew where the mesh is not the one they were taken on.
+PlacedAnnotations placed_annotations(Json& native, JsonValue list, const JsonValue* about, const Mesh& mesh,
+                                     const std::string& where, bool same_mesh, std::vector<std::string> notes,
+                                     std::vector<PlacedAnnotation> placements);
+
+}  // namespace ostraka::exchange

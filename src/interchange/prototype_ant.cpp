@@ -1,0 +1,104 @@
+// The prototype's .ant, written.
+#include "ostraka/interchange/prototype_files.h"
+
+#include "landmark_formats.h"
+#include "text.h"
+
+#include "ostraka/annotation/annotation_file.h"
+#include "ostraka/core/error.h"
+#include "ostraka/core/ids.h"
+#include "ostraka/measure/measure.h"
+
+namespace ostraka {
+
+namespace {
+
+using namespace exchange;
+
+std::string in_words(const Descriptor& descriptor) {
+    std::string text;
+    for (const double value : descriptor.values) text += (text.empty() ? "" : " ") + digits(value);
+    if (!descriptor.file.empty()) text += descriptor.file;
+    return descriptor.unit.empty() ? text : text + " " + descriptor.unit;
+}
+
+}  // namespace
+
+std::string prototype_annotations(const Mesh& mesh, const AnnotationSet& set, std::vector<std::string>& notes) {
+    const Json native = annotations_to_json(set, mesh, "", {});
+    Json document(rapidjson::kObjectType);
+    auto& a = document.GetAllocator();
+    JsonValue list(rapidjson::kArrayType);
+    std::size_t descriptors = 0, unbounded = 0, renamed = 0, remarks = 0, untaken = 0;
+    FreeIds ids(set.annotations);
+    for (std::size_t i = 0; i < set.annotations.size(); ++i) {
+        const Annotation& annotation = set.annotations[i];
+        const JsonValue& source = native["annotations"][static_cast<rapidjson::SizeType>(i)];
+        JsonValue entry(rapidjson::kObjectType);
+        renamed += annotation.id < 0 ? 1 : 0;
+        remarks += annotation.note.empty() ? 0 : 1;
+        add_member(entry, "id", JsonValue(annotation.id < 0 ? ids.next() : annotation.id), a);
+        add_member(entry, "tag", annotation.tag, a);
+        add_member(entry, "color", JsonValue(source["colour"], a), a);
+        const bool point = annotation.type == AnnotationType::point, line = annotation.type == AnnotationType::line;
+        add_member(entry, "type", point ? "Point" : line ? "Line" : "Area", a);
+        if (point || line) {
+            const char* member = point ? "points" : "polylines";
+            add_member(entry, member, JsonValue(source[member], a), a);
+        } else {
+            // The prototype's outlines end where they begin.
+            JsonValue boundaries(source["boundaries"], a);
+            for (auto& boundary : boundaries.GetArray()) boundary.PushBack(JsonValue(boundary[0], a), a);
+            add_member(entry, "boundaries", std::move(boundaries), a);
+            unbounded +=
+                find_member(source, "seeds") != nullptr || find_member(source, "faces") != nullptr || annotation.all ? 1 : 0;
+            // Additions that the prototype skips and our reader takes.
+            for (const char* member : {"seeds", "faces", "all"})
+                if (const JsonValue* value = find_member(source, member)) add_member(entry, member, JsonValue(*value, a), a);
+        }
+        JsonValue attributes(rapidjson::kArrayType);
+        for (const Attribute& attribute : annotation.attributes) {
+            JsonValue flat(rapidjson::kObjectType);
+            add_member(flat, "id", JsonValue(attribute.id), a);
+            add_member(flat, "name", attribute.name, a);
+            if (attribute.type == AttributeType::measure) {
+                const Measure& measure = attribute.measure;
+                add_member(flat, "type", "Geometric", a);
+                double value = measure.value.value_or(0);
+                try {
+                    if (!measure.value) value = evaluate(mesh, annotation, measure);
+                } catch (const Error&) {
+                    ++untaken;
+                }
+                add_member(flat, "value", JsonValue(value), a);
+                JsonValue points(rapidjson::kArrayType);
+                for (const Index index : measure.points) points.PushBack(index, a);
+                add_member(flat, "points", std::move(points), a);
+                add_member(flat, "tool", measure.tool, a);
+                if (measure.direction) add_member(flat, "direction", triple_json(*measure.direction, a), a);
+            } else {
+                const bool semantic = attribute.type == AttributeType::semantic;
+                descriptors += semantic ? 0 : 1;
+                add_member(flat, "type", "Semantic", a);
+                add_member(flat, "value", semantic ? attribute.note : in_words(attribute.descriptor), a);
+            }
+            attributes.PushBack(flat, a);
+        }
+        add_member(entry, "attributes", std::move(attributes), a);
+        list.PushBack(entry, a);
+    }
+    add_member(document, "annotations", std::move(list), a);
+    const auto say = [&](std::size_t count, const char* noun, const char* what) {
+        if (count > 0) notes.push_back(counted(count, noun) + what);
+    };
+    say(descriptors, "descriptor", " written as text: the prototype knows measures and texts only");
+    say(unbounded, "region", " without an outline that tells it: the prototype will not see it whole");
+    say(renamed, "id", " below zero replaced: the prototype knows none");
+    say(remarks, "note", " left out");
+    say(untaken, "measure", " without a value that could be taken written as 0");
+    if (!set.unit.empty() || !set.object_class.empty() || set.up)
+        notes.emplace_back("class, unit and upward direction left out: the format has no place for them");
+    return json_text(document);
+}
+
+}  // namespace ostraka

@@ -1,0 +1,219 @@
+// The prototype's .fct: facets of a fragment by their borders and inner vertices.
+#include "ostraka/interchange/prototype_files.h"
+
+#include "landmark_formats.h"
+#include "text.h"
+
+#include "ostraka/annotation/label_file.h"
+#include "ostraka/annotation/outline.h"
+#include "ostraka/core/error.h"
+
+#include <algorithm>
+
+namespace ostraka {
+
+namespace {
+
+using namespace exchange;
+
+bool is_facet_type(const std::string& text) { return text == "external" || text == "internal" || text == "fracture"; }
+
+std::string facet_type(const Annotation& annotation) {
+    for (const Attribute& attribute : annotation.attributes)
+        if (attribute.type == AttributeType::semantic && (attribute.name == "facet" || attribute.name == "type") &&
+            is_facet_type(attribute.note))
+            return attribute.note;
+    return "external";
+}
+
+std::string joined(const std::vector<Index>& indices) {
+    std::string text;
+    for (const Index index : indices) text += (text.empty() ? "" : " ") + std::to_string(index);
+    return text;
+}
+
+class FctReader {
+public:
+    FctReader(const std::string& bytes, const Mesh& mesh, const std::string& where) : bytes_(bytes), mesh_(mesh), where_(where) {}
+
+    AnnotationSet read() {
+        (void)field("Filename:");
+        const auto count = whole_of(field("Number of Facets:"));
+        if (!count || *count < 0) fail("the number of facets is not a number", "mend the header");
+        AnnotationSet set;
+        for (int i = 0; i < *count; ++i) set.annotations.push_back(facet(i));
+        if (next()) set.notes.push_back("line " + std::to_string(number_) + ": text behind the last facet is not read");
+        return set;
+    }
+
+private:
+    [[noreturn]] void fail(const std::string& what, const std::string& remedy) const {
+        fail_input(where_ + ", line " + std::to_string(std::max<std::size_t>(number_, 1)), what, remedy);
+    }
+
+    /// The next line into `line_`; false at the end.
+    bool next_line() {
+        if (position_ >= bytes_.size()) return false;
+        const std::size_t end = std::min(bytes_.find('\n', position_), bytes_.size());
+        line_ = trimmed(std::string_view(bytes_).substr(position_, end - position_));
+        position_ = end + 1;
+        ++number_;
+        return true;
+    }
+    /// The next line that is not blank.
+    bool next() {
+        while (next_line())
+            if (!line_.empty()) return true;
+        return false;
+    }
+    std::string_view field(std::string_view name) {
+        if (!next() || !line_.starts_with(name))
+            fail("'" + std::string(name) + "' is expected here", "give a complete .fct file of the prototype");
+        return trimmed(line_.substr(name.size()));
+    }
+
+    std::vector<Index> indices() const {
+        std::vector<Index> list;
+        for (std::size_t from = 0; from < line_.size();) {
+            const std::size_t begin = line_.find_first_not_of(" \t,;[]", from);
+            if (begin == std::string_view::npos) break;
+            from = std::min(line_.find_first_of(" \t,;[]", begin), line_.size());
+            const std::string_view word = line_.substr(begin, from - begin);
+            const auto value = whole_of(word);
+            if (!value) fail("'" + one_line(word.substr(0, 40)) + "' is not a vertex", "give vertex indices");
+            if (*value < 0 || static_cast<std::size_t>(*value) >= mesh_.number_of_vertices())
+                fail("vertex " + std::to_string(*value) + " of a mesh with " + std::to_string(mesh_.number_of_vertices()) +
+                         " vertices",
+                     "give the mesh that the facets were made for");
+            list.push_back(static_cast<Index>(*value));
+        }
+        return list;
+    }
+
+    Annotation facet(int id) {
+        Annotation annotation;
+        annotation.id = id;
+        annotation.colour = distinct_colour(static_cast<std::size_t>(id));
+        annotation.tag = as_utf8(field("Facet ID:"));
+        Attribute type;
+        type.name = "facet";
+        type.note = field("Type:");
+        if (!is_facet_type(type.note)) fail("the type is not known", "use external, internal or fracture");
+        annotation.attributes.push_back(type);
+        (void)field("Border:");
+        std::vector<Outline> borders;
+        bool has_vertices = false;
+        while (next()) {
+            if (line_.starts_with("Vertices:")) {
+                has_vertices = true;
+                break;
+            }
+            Outline border = indices();
+            while (border.size() > 1 && border.front() == border.back()) border.pop_back();
+            for (std::size_t k = 0; k < border.size(); ++k) {
+                const Index a = border[k], b = border[(k + 1) % border.size()];
+                if (border.size() < 3 || !find_halfedge(mesh_, Vertex(a), Vertex(b)).is_valid())
+                    fail("the border is no closed way along edges of the mesh: " + std::to_string(a) + " to " + std::to_string(b),
+                         "give the mesh that the facets were made for");
+            }
+            if (!border.empty()) borders.push_back(std::move(border));
+        }
+        if (!has_vertices) fail("'Vertices:' is expected here", "the file may be cut off");
+        std::vector<Index> inner;
+        if (next_line()) inner = indices();
+        annotation.faces = flagged(side(borders, inner));
+        if (annotation.faces.empty())
+            fail("the facet '" + one_line(annotation.tag).substr(0, 40) + "' holds no face", "mend its border");
+        return annotation;
+    }
+
+    /// The side of the borders that holds the inner vertices, and the components without a border that inner vertices lie on.
+    [[nodiscard]] std::vector<bool> side(std::vector<Outline> borders, const std::vector<Index>& inner) const {
+        const auto held = [&](const std::vector<bool>& selected) {
+            std::size_t count = 0;
+            for (const Index vertex : inner) {
+                const Halfedge h = mesh_.halfedge(Vertex(vertex));
+                bool within = h.is_valid();
+                if (within)
+                    for (const Face face : mesh_.faces_around_target(h))
+                        within = within && (face == Mesh::null_face() || selected[face]);
+                count += within ? 1 : 0;
+            }
+            return count;
+        };
+        std::vector<bool> selected = fill_outlines(mesh_, borders).selected;
+        for (Outline& border : borders) std::reverse(border.begin(), border.end());
+        std::vector<bool> other = fill_outlines(mesh_, borders).selected;
+        if (held(other) > held(selected)) selected = std::move(other);
+
+        std::vector<bool> seen(selected.size(), false);
+        for (const Index vertex : inner) {
+            const Halfedge h = mesh_.halfedge(Vertex(vertex));
+            if (!h.is_valid()) continue;
+            const Face start = mesh_.is_border(h) ? mesh_.face(mesh_.opposite(h)) : mesh_.face(h);
+            if (selected[start] || seen[start]) continue;
+            std::vector<Face> part{start};
+            seen[start] = true;
+            bool untouched = true;
+            for (std::size_t i = 0; i < part.size(); ++i)
+                for (const Halfedge edge : mesh_.halfedges_around_face(mesh_.halfedge(part[i]))) {
+                    const Face next = mesh_.face(mesh_.opposite(edge));
+                    if (next == Mesh::null_face() || seen[next]) continue;
+                    untouched = untouched && !selected[next];
+                    seen[next] = true;
+                    part.push_back(next);
+                }
+            if (!untouched) continue;
+            for (const Face face : part) selected[face] = true;
+        }
+        return selected;
+    }
+
+    const std::string& bytes_;
+    const Mesh& mesh_;
+    const std::string& where_;
+    std::size_t position_ = 0, number_ = 0;
+    std::string_view line_;
+};
+
+}  // namespace
+
+bool has_facet(const Annotation& annotation) {
+    return annotation.type == AnnotationType::region && !annotation.all && !annotation.faces.empty();
+}
+
+std::string prototype_facets(const Mesh& mesh, const AnnotationSet& set, const std::string& mesh_file,
+                             std::vector<std::string>& notes) {
+    std::string body;
+    std::size_t count = 0, others = 0, attributes = 0, changed = 0;
+    for (const Annotation& annotation : set.annotations) {
+        if (!has_facet(annotation)) {
+            ++others;
+            continue;
+        }
+        ++count;
+        attributes += annotation.attributes.size();
+        changed += has_control(annotation.tag) ? 1 : 0;
+        body += "Facet ID: " + one_line(annotation.tag) + "\nType: " + facet_type(annotation) + "\nBorder:\n";
+        std::vector<bool> on_border(mesh.number_of_vertices(), false);
+        for (Outline outline : extract_outlines(mesh, annotation.faces)) {
+            for (const Index vertex : outline) on_border[vertex] = true;
+            outline.push_back(outline.front());
+            body += joined(outline) + "\n";
+        }
+        std::vector<Index> inner = touched_vertices(mesh, annotation);
+        std::erase_if(inner, [&](Index vertex) { return on_border[vertex]; });
+        body += "Vertices:\n" + joined(inner) + "\n\n";
+    }
+    if (others > 0) notes.push_back(counted(others, "annotation") + " left out: the format holds regions with a border only");
+    if (attributes > 0) notes.push_back(counted(attributes, "attribute") + " left out, but for the facet's type");
+    if (changed > 0) notes.push_back(counted(changed, "tag") + " held line breaks or control characters, which became blanks");
+    return "Filename: " + one_line(Path(mesh_file).filename().string()) + "\nNumber of Facets: " + std::to_string(count) +
+           "\n\n" + body;
+}
+
+AnnotationSet read_prototype_facets(const std::string& bytes, const Mesh& mesh, const std::string& where) {
+    return FctReader(bytes, mesh, where).read();
+}
+
+}  // namespace ostraka

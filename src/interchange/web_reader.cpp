@@ -1,0 +1,367 @@
+// W3C Web Annotation JSON-LD -> annotations.
+#include "ostraka/interchange/web_annotation.h"
+
+#include "landmark_formats.h"
+#include "place_region.h"
+#include "placing.h"
+#include "text.h"
+#include "web_terms.h"
+
+#include "ostraka/annotation/annotation_file.h"
+#include "ostraka/core/error.h"
+#include "ostraka/measure/measure.h"
+
+#include <algorithm>
+#include <memory>
+#include <set>
+
+namespace ostraka {
+
+namespace {
+
+using namespace exchange;
+
+/// Is `text` one of the strings that a JSON-LD member holds, alone or in a list?
+bool holds(const JsonValue* value, std::string_view text) {
+    if (value == nullptr) return false;
+    if (value->IsString()) return text == std::string_view(value->GetString(), value->GetStringLength());
+    if (!value->IsArray()) return false;
+    return std::any_of(value->Begin(), value->End(), [&](const JsonValue& entry) { return holds(&entry, text); });
+}
+
+/// An object of the model, in a list or alone.
+std::vector<const JsonValue*> listed(const JsonValue* value) {
+    std::vector<const JsonValue*> list;
+    if (value == nullptr) return list;
+    if (!value->IsArray()) list.push_back(value);
+    else
+        for (const auto& entry : value->GetArray()) list.push_back(&entry);
+    return list;
+}
+
+bool is_selector(const JsonValue& value, const std::string& name) {
+    const JsonValue* type = find_member(value, "type");
+    return holds(type, name) || holds(type, web::terms + name.substr(name.find(':') + 1));
+}
+
+class WebReader {
+public:
+    WebReader(const Mesh& mesh, const std::string& where, const PlaceOptions& options)
+        : mesh_(mesh), where_(where), options_(options), checksum_(mesh_checksum(mesh)) {
+        native_.SetObject();
+    }
+
+    PlacedAnnotations read(const JsonValue& document) {
+        JsonValue list(rapidjson::kArrayType);
+        for (const auto& [item, pointer] : items_of(document)) {
+            if (!holds(find_member(*item, "type"), "Annotation")) {
+                note(pointer, "is no Annotation, left out");
+                continue;
+            }
+            validate(*item, "web-annotation", where_ + ", in " + (pointer.empty() ? "the root" : pointer));
+            JsonValue annotation = annotation_of(*item, pointer);
+            if (annotation.IsObject()) list.PushBack(annotation, a());
+        }
+        if (list.Empty() && left_out_ > 0)
+            fail_input(where_, "none of its annotations could be placed on this mesh",
+                       "see the notes, or give the mesh it is about");
+        return placed_annotations(native_, std::move(list), find_member(document, "about"), mesh_, where_, !by_place_,
+                                  std::move(notes_), std::move(placements_));
+    }
+
+private:
+    JsonAllocator& a() { return native_.GetAllocator(); }
+    void note(const std::string& at, const std::string& text) {
+        notes_.push_back("at " + (at.empty() ? "the root" : at) + ": " + text);
+    }
+
+    std::vector<std::pair<const JsonValue*, std::string>> items_of(const JsonValue& document) {
+        std::vector<std::pair<const JsonValue*, std::string>> items;
+        const auto add_list = [&](const JsonValue& list, const std::string& pointer) {
+            if (!list.IsArray()) fail_input(where_, "at " + pointer + ": is not a list", "mend or regenerate the file");
+            for (rapidjson::SizeType i = 0; i < list.Size(); ++i) items.emplace_back(&list[i], pointer + "/" + std::to_string(i));
+        };
+        const JsonValue* type = find_member(document, "type");
+        if (document.IsArray()) {
+            add_list(document, "");
+        } else if (holds(type, "AnnotationCollection")) {
+            const JsonValue* page = find_member(document, "first");
+            const JsonValue* list = page == nullptr ? nullptr : find_member(*page, "items");
+            if (list == nullptr)
+                fail_input(where_, "at /first: the collection's page stands elsewhere",
+                           "give the page, or a collection that holds it");
+            add_list(*list, "/first/items");
+            if (find_member(*page, "next") != nullptr) note("/first/next", "further pages are not fetched");
+        } else if (holds(type, "AnnotationPage")) {
+            const JsonValue* list = find_member(document, "items");
+            if (list == nullptr) fail_input(where_, "at /items: the page has no items", "give a page with its annotations");
+            add_list(*list, "/items");
+            if (find_member(document, "next") != nullptr) note("/next", "further pages are not fetched");
+        } else if (holds(type, "Annotation")) {
+            items.emplace_back(&document, "");
+        } else {
+            fail_input(where_, "holds no Annotation, AnnotationPage or AnnotationCollection", "give a file of the W3C model");
+        }
+        return items;
+    }
+
+    /// What is said: our own data if the annotation has them, otherwise its texts.
+    Json data_of(const JsonValue& item, const std::string& pointer) {
+        Json data(rapidjson::kObjectType);
+        std::vector<std::string> tags, descriptions;
+        const JsonValue* body_value = find_member(item, "bodyValue");
+        if (body_value != nullptr) descriptions.emplace_back(body_value->GetString(), body_value->GetStringLength());
+        for (const JsonValue* body : listed(find_member(item, "body"))) {
+            if (!body->IsObject()) continue;
+            const std::string value = text_member(*body, "value");
+            if (holds(find_member(*body, "format"), "application/json")) {
+                Json parsed = parse_json(value, where_ + ", in " + pointer + "/body");
+                if (parsed.IsObject() && find_member(parsed, "id") != nullptr && find_member(parsed, "tag") != nullptr)
+                    return parsed;
+            }
+            const JsonValue* purpose = find_member(*body, "purpose");
+            (holds(purpose, "tagging") || holds(purpose, "classifying") ? tags : descriptions).push_back(value);
+        }
+        auto& allocator = data.GetAllocator();
+        if (tags.empty() && !descriptions.empty()) {
+            tags.push_back(descriptions.front());
+            descriptions.erase(descriptions.begin());
+        }
+        if (tags.empty()) note(pointer, "an annotation without a text");
+        add_member(data, "tag", tags.empty() ? "" : tags.front(), allocator);
+        JsonValue attributes(rapidjson::kArrayType);
+        const auto add = [&](const char* name, const std::string& text) {
+            JsonValue attribute(rapidjson::kObjectType);
+            add_member(attribute, "id", JsonValue(attributes.Size()), allocator);
+            add_member(attribute, "name", name, allocator);
+            add_member(attribute, "type", "semantic", allocator);
+            add_member(attribute, "note", text, allocator);
+            attributes.PushBack(attribute, allocator);
+        };
+        for (std::size_t i = 1; i < tags.size(); ++i) add("tag", tags[i]);
+        for (const std::string& text : descriptions) add("description", text);
+        add_member(data, "attributes", std::move(attributes), allocator);
+        return data;
+    }
+
+    /// Null where it cannot be placed.
+    JsonValue annotation_of(const JsonValue& item, const std::string& pointer) {
+        const auto targets = listed(find_member(item, "target"));
+        if (targets.size() > 1) note(pointer, "has " + counted(targets.size(), "target") + "; the first is taken");
+        const JsonValue* by_index = nullptr;
+        const JsonValue* by_place = nullptr;
+        const JsonValue* source = find_member(*targets.front(), "source");
+        const auto selectors = listed(find_member(*targets.front(), "selector"));
+        for (const JsonValue* selector : selectors) {
+            if (by_index == nullptr && is_selector(*selector, web::index_selector)) by_index = find_member(*selector, "indices");
+            if (by_place == nullptr && is_selector(*selector, web::place_selector)) by_place = find_member(*selector, "places");
+        }
+        Json data = data_of(item, pointer);
+        const std::string tag = text_member(data, "tag");
+        JsonValue result(rapidjson::kObjectType);
+        const int id = id_of(data, tag);
+        add_member(result, "id", JsonValue(id), a());
+        for (const char* name : {"tag", "colour", "note"})
+            if (const JsonValue* value = find_member(data, name)) add_member(result, name, JsonValue(*value, a()), a());
+        JsonValue attributes(rapidjson::kArrayType);
+        if (const JsonValue* value = find_member(data, "attributes")) attributes.CopyFrom(*value, a());
+        PlacedAnnotation placement{id, tag, 0, 0, 0, "indices"};
+
+        const bool same_mesh = source != nullptr && text_member(*source, "sha256") == checksum_;
+        if (by_index != nullptr && same_mesh) {
+            for (const auto& member : by_index->GetObject())
+                add_member(result, std::string_view(member.name.GetString(), member.name.GetStringLength()),
+                           JsonValue(member.value, a()), a());
+            const std::string type = text_member(data, "type");
+            add_member(result, "type", type, a());
+        } else if (by_place != nullptr) {
+            by_place_ = true;
+            if (!place(*by_place, result, attributes, placement, pointer)) {
+                ++left_out_;
+                return {};
+            }
+        } else if (selectors.empty()) {
+            add_member(result, "type", "region", a());
+            add_member(result, "all", JsonValue(true), a());
+            placement.how = "whole";
+        } else {
+            note(pointer, by_index != nullptr ? "made for another mesh and without coordinates, left out"
+                                              : "selects in a way that is not known here, left out");
+            ++left_out_;
+            return {};
+        }
+        add_member(result, "attributes", std::move(attributes), a());
+        placements_.push_back(placement);
+        return result;
+    }
+
+    int id_of(const JsonValue& data, const std::string& tag) {
+        const JsonValue* stated = find_member(data, "id");
+        int id = stated != nullptr && stated->IsInt() ? stated->GetInt() : 0;
+        if (stated != nullptr && stated->IsInt() && ids_.insert(id).second) return id;
+        for (id = 0; !ids_.insert(id).second;) ++id;
+        if (stated != nullptr) notes_.push_back("'" + tag + "' got the id " + std::to_string(id) + ", as its own is taken");
+        return id;
+    }
+
+    Placer& placer() {
+        if (!placer_) placer_ = std::make_unique<Placer>(mesh_);
+        return *placer_;
+    }
+
+    /// Nothing where a point is too far and such may be left out.
+    std::optional<std::vector<Placed>> placed(const JsonValue& list, PlacedAnnotation& placement, const std::string& pointer) {
+        std::vector<Placed> result;
+        const double limit = options_.tolerance * placer().diagonal();
+        for (const auto& entry : list.GetArray()) {
+            const auto position = triple(&entry);
+            if (!position) fail_input(where_, "in " + pointer + ": a place that is not finite", "mend or regenerate the file");
+            check_place(*position, where_ + ", in " + pointer);
+            const Placed p = placer().place(Point((*position)[0], (*position)[1], (*position)[2]));
+            if (p.to_surface > limit) {
+                const std::string what =
+                    "a point lies " + digits(p.to_surface) + " from the surface, farther than " + digits(limit);
+                if (!options_.skip_far)
+                    fail_input(
+                        where_, "in " + pointer + ": " + what,
+                        "give the mesh the file is about in the same unit and position, raise --tolerance, or leave such out "
+                        "with --skip-far");
+                note(pointer, what + "; left out, as asked");
+                return {};
+            }
+            ++placement.points;
+            placement.to_surface = std::max(placement.to_surface, p.to_surface);
+            placement.to_vertex = std::max(placement.to_vertex, p.to_vertex);
+            result.push_back(p);
+        }
+        return result;
+    }
+
+    static std::vector<Index> vertices(const std::vector<Placed>& places) {
+        std::vector<Index> list;
+        for (const Placed& p : places) list.push_back(p.vertex);
+        return list;
+    }
+
+    JsonValue json_of(const std::vector<Index>& indices) {
+        JsonValue list(rapidjson::kArrayType);
+        for (const Index index : indices) list.PushBack(index, a());
+        return list;
+    }
+
+    bool place(const JsonValue& places, JsonValue& result, JsonValue& attributes, PlacedAnnotation& placement,
+               const std::string& pointer) {
+        placement.how = "places";
+        if (const JsonValue* points = find_member(places, "points")) {
+            const auto found = placed(*points, placement, pointer);
+            if (!found) return false;
+            add_member(result, "type", "point", a());
+            add_member(result, "points", json_of(vertices(*found)), a());
+        } else if (const JsonValue* polylines = find_member(places, "polylines")) {
+            JsonValue list(rapidjson::kArrayType);
+            for (const auto& polyline : polylines->GetArray()) {
+                const auto found = placed(polyline["points"], placement, pointer);
+                if (!found) return false;
+                const std::vector<Index> chain =
+                    placer().chain(vertices(*found), polyline["closed"].GetBool(), where_ + ", in " + pointer);
+                if (chain.size() > 1) list.PushBack(json_of(chain), a());
+                else note(pointer, "a poly-line shrank to a point on this mesh and was left out");
+            }
+            if (list.Empty()) return false;
+            add_member(result, "type", "line", a());
+            add_member(result, "polylines", std::move(list), a());
+        } else if (const JsonValue* all = find_member(places, "all"); all != nullptr && all->GetBool()) {
+            add_member(result, "type", "region", a());
+            add_member(result, "all", JsonValue(true), a());
+        } else if (const JsonValue* parts = find_member(places, "parts")) {
+            std::vector<RegionPart> wanted;
+            for (const auto& part : parts->GetArray()) {
+                RegionPart& next = wanted.emplace_back();
+                next.area = part["area"].GetDouble();
+                const auto inside = triple(&part["inside"]);
+                if (!inside) fail_input(where_, "in " + pointer + ": a place that is not finite", "mend or regenerate the file");
+                check_place(*inside, where_ + ", in " + pointer);
+                next.inside = Point((*inside)[0], (*inside)[1], (*inside)[2]);
+                for (const auto& outline : part["outlines"].GetArray()) {
+                    const auto found = placed(outline, placement, pointer);
+                    if (!found) return false;
+                    next.outlines.push_back(vertices(*found));
+                }
+            }
+            std::vector<std::string> remarks;
+            const std::vector<Index> faces = region_of(placer(), wanted, where_ + ", in " + pointer, remarks);
+            for (const auto& remark : remarks) note(pointer, remark);
+            if (faces.empty()) return false;
+            add_member(result, "type", "region", a());
+            add_member(result, "faces", json_of(faces), a());
+        } else {
+            note(pointer, "a selector without places, left out");
+            return false;
+        }
+        if (const JsonValue* pins = find_member(places, "pins"))
+            place_pins(*pins, find_member(places, "repeats"), attributes, pointer);
+        return true;
+    }
+
+    /// Pins go to the nearest places of the surface; what they measured is stale until it is taken anew.
+    void place_pins(const JsonValue& pins, const JsonValue* repeats, JsonValue& attributes, const std::string& pointer) {
+        if (!attributes.IsArray()) return;
+        for (auto& attribute : attributes.GetArray()) {
+            if (!attribute.IsObject() || text_member(attribute, "type") != "measure") continue;
+            const JsonValue* id = find_member(attribute, "id");
+            const JsonValue* list = id != nullptr && id->IsInt() ? find_member(pins, std::to_string(id->GetInt())) : nullptr;
+            if (list == nullptr || !attribute.HasMember("measure") || !attribute["measure"].IsObject()) continue;
+            PlacedAnnotation pinned;  // pins may lie within faces: how far vertices are says nothing
+            const auto found = placed(*list, pinned, pointer);
+            JsonValue& measure = attribute["measure"];
+            if (!found) continue;
+            measure.RemoveMember("points");
+            measure.RemoveMember("locations");
+            measure.RemoveMember("stale");
+            add_member(measure, "points", json_of(vertices(*found)), a());
+            JsonValue locations(rapidjson::kArrayType);
+            bool inside = false;
+            for (rapidjson::SizeType i = 0; i < list->Size(); ++i) {
+                const auto p = triple(&(*list)[i]);
+                const SurfaceHit hit = placer().nearest(Point((*p)[0], (*p)[1], (*p)[2]));
+                JsonValue location(rapidjson::kObjectType);
+                add_member(location, "face", JsonValue(hit.face), a());
+                add_member(location, "barycentric", triple_json(hit.barycentric, a()), a());
+                locations.PushBack(location, a());
+                inside = inside || (*found)[i].to_vertex > 1e-9 * placer().diagonal();
+            }
+            if (inside) add_member(measure, "locations", std::move(locations), a());
+            add_member(measure, "stale", JsonValue(true), a());
+            measure.RemoveMember("repeats");
+            const JsonValue* pickings = repeats == nullptr ? nullptr : find_member(*repeats, std::to_string(id->GetInt()));
+            if (pickings == nullptr) continue;
+            JsonValue again(rapidjson::kArrayType);
+            for (const auto& picked : pickings->GetArray())
+                if (const auto places = placed(picked, pinned, pointer)) again.PushBack(json_of(vertices(*places)), a());
+            if (!again.Empty()) add_member(measure, "repeats", std::move(again), a());
+        }
+    }
+
+    const Mesh& mesh_;
+    const std::string& where_;
+    const PlaceOptions& options_;
+    std::string checksum_;
+    std::unique_ptr<Placer> placer_;
+    Json native_;
+    std::vector<std::string> notes_;
+    std::vector<PlacedAnnotation> placements_;
+    std::set<int> ids_;
+    std::size_t left_out_ = 0;
+    bool by_place_ = false;
+};
+
+}  // namespace
+
+PlacedAnnotations read_web_annotations(const std::string& bytes, const Mesh& mesh, const std::string& where,
+                                       const PlaceOptions& options) {
+    check_options(options, "web annotations");
+    const Json document = parse_json(bytes, where);
+    return WebReader(mesh, where, options).read(document);
+}
+
+}  // namespace ostraka

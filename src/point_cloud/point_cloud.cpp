@@ -1,0 +1,65 @@
+#include "ostraka/point_cloud/point_cloud.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/geom/point_tree.h"
+
+#include <CGAL/jet_estimate_normals.h>
+#include <CGAL/mst_orient_normals.h>
+#include <CGAL/property_map.h>
+
+#include <algorithm>
+#include <tuple>
+
+namespace ostraka {
+
+double point_spacing(const std::vector<Point>& points) {
+    constexpr std::size_t sixth = 6;
+    if (points.size() <= sixth) fail_input("points", "there are only " + std::to_string(points.size()), "give more");
+    const PointTree tree(points);
+    std::vector<double> distance(points.size());
+    parallel_for(points.size(), [&](std::size_t i) { distance[i] = tree.neighbour_distance(points[i], sixth + 1); });
+    double sum = 0;
+    for (const double d : distance) sum += d;
+    return sum / static_cast<double>(points.size());
+}
+
+std::vector<Vector> estimate_normals(const std::vector<Point>& points, const CloudOptions& options) {
+    check_options(options, "points");
+    const auto wanted = static_cast<unsigned>(options.neighbours);
+    if (points.size() <= wanted)
+        fail_input(
+            "points",
+            "there are " + std::to_string(points.size()) + ", too few for normals from " + std::to_string(wanted) + " neighbours",
+            "give more, or fewer neighbours");
+    // About their middle, at the size of one: what follows squares and multiplies places.
+    CGAL::Bbox_3 box;
+    for (const Point& p : points) box += p.bbox();
+    const Point middle((box.xmin() + box.xmax()) / 2, (box.ymin() + box.ymax()) / 2, (box.zmin() + box.zmax()) / 2);
+    const double size = std::max({box.x_span(), box.y_span(), box.z_span()});
+    if (!(size > 0)) fail_input("points", "are all at one place", "export them again");
+    using Oriented = std::tuple<Point, Vector, std::size_t>;
+    std::vector<Oriented> cloud;
+    cloud.reserve(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i)
+        cloud.emplace_back(CGAL::ORIGIN + (points[i] - middle) / size, CGAL::NULL_VECTOR, i);
+    const auto named = CGAL::parameters::point_map(CGAL::Nth_of_tuple_property_map<0, Oriented>())
+                           .normal_map(CGAL::Nth_of_tuple_property_map<1, Oriented>());
+    CGAL::jet_estimate_normals<CGAL::Sequential_tag>(cloud, wanted, named);
+    // Puts those it can orient in front.
+    CGAL::mst_orient_normals(cloud, wanted, named);
+    std::vector<Vector> normals(points.size());
+    double flux = 0;
+    for (const auto& [place, normal, number] : cloud) normals[number] = normal;
+    for (std::size_t i = 0; i < points.size(); ++i) flux += normals[i] * (points[i] - middle) / size;
+    if (flux < 0)
+        for (Vector& n : normals) n = -n;
+    return normals;
+}
+
+void CloudOptions::describe(OptionList& visit) {
+    visit("cloud-neighbours", neighbours, "points without faces: neighbours that a normal comes from", Range{6, 1000});
+    visit("cloud-edge", longest, "longest edge of the surface, as a multiple of the points' spacing; 0: any", Range{0, 1e6});
+    visit("cloud-holes", close_holes, "widest hole of the surface that is closed, as a share of the diagonal", Range{0, 1});
+}
+
+}  // namespace ostraka

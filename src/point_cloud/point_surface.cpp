@@ -1,0 +1,95 @@
+// A surface through points.
+#include "ostraka/core/error.h"
+#include "ostraka/io/repair.h"
+#include "ostraka/point_cloud/point_cloud.h"
+
+#include <CGAL/Advancing_front_surface_reconstruction.h>
+
+#include <algorithm>
+
+namespace ostraka {
+
+namespace {
+
+/// Edges that are far longer than the points' spacing are given the worst priority: the front never crosses them.
+struct EdgeLimit {
+    double longest;
+    template <class Reconstruction, class Cell>
+    double operator()(const Reconstruction& reconstruction, Cell& cell, const int& index) const {
+        if (longest > 0) {
+            const auto& triangulation = reconstruction.triangulation_3();
+            for (int i = 1; i <= 3; ++i) {
+                const auto &p = triangulation.point(cell, (index + i) % 4),
+                           &q = triangulation.point(cell, (index + i % 3 + 1) % 4);
+                if (CGAL::squared_distance(p, q) > longest * longest) return std::numeric_limits<double>::infinity();
+            }
+        }
+        return reconstruction.smallest_radius_delaunay_sphere(cell, index);
+    }
+};
+
+bool on_a_line(const std::vector<Point>& points) {
+    const auto far = std::max_element(points.begin(), points.end(), [&](const Point& p, const Point& q) {
+        return CGAL::squared_distance(points.front(), p) < CGAL::squared_distance(points.front(), q);
+    });
+    constexpr double none = 1e-20;  // squared, of points the size of one
+    const Vector along = *far - points.front();
+    return std::all_of(points.begin(), points.end(),
+                       [&](const Point& p) { return CGAL::cross_product(p - points.front(), along).squared_length() <= none; });
+}
+
+}  // namespace
+
+CloudSurface reconstruct_surface(const PointCloud& cloud, const CloudOptions& options) {
+    check_options(options, "points");
+    const std::vector<Vector> estimated =
+        cloud.normals.size() == cloud.points.size() ? std::vector<Vector>() : estimate_normals(cloud.points, options);
+    const std::vector<Vector>& normals = estimated.empty() ? cloud.normals : estimated;
+    // About their middle, at the size of one.
+    CGAL::Bbox_3 box;
+    for (const Point& p : cloud.points) box += p.bbox();
+    const Point middle((box.xmin() + box.xmax()) / 2, (box.ymin() + box.ymax()) / 2, (box.zmin() + box.zmax()) / 2);
+    const double size = std::max({box.x_span(), box.y_span(), box.z_span()});
+    std::vector<Point> points;
+    for (const Point& p : cloud.points) points.push_back(CGAL::ORIGIN + (p - middle) / size);
+    std::vector<std::array<std::size_t, 3>> facets;
+    if (!on_a_line(points))
+        CGAL::advancing_front_surface_reconstruction(points.begin(), points.end(), std::back_inserter(facets),
+                                                     EdgeLimit{options.longest * point_spacing(points)});
+    if (facets.empty()) fail_input("points", "have no surface through them", "look at them: are they on a line or at one place?");
+    CloudSurface result;
+    std::vector<Index> number(cloud.points.size(), no_index);
+    for (const auto& facet : facets)
+        for (const std::size_t i : facet) number[i] = 0;
+    TriangleSoup soup;
+    for (std::size_t i = 0; i < number.size(); ++i) {
+        if (number[i] == no_index) continue;
+        number[i] = static_cast<Index>(soup.points.size());
+        result.sources.push_back(static_cast<Index>(i));
+        soup.points.push_back({cloud.points[i].x(), cloud.points[i].y(), cloud.points[i].z()});
+    }
+    double agree = 0;
+    for (const auto& facet : facets) {
+        soup.triangles.push_back({number[facet[0]], number[facet[1]], number[facet[2]]});
+        const Vector area =
+            CGAL::cross_product(cloud.points[facet[1]] - cloud.points[facet[0]], cloud.points[facet[2]] - cloud.points[facet[0]]);
+        agree += area * (normals[facet[0]] + normals[facet[1]] + normals[facet[2]]);
+    }
+    if (agree < 0)
+        for (auto& triangle : soup.triangles) std::swap(triangle[1], triangle[2]);
+    if (const std::size_t lost = cloud.points.size() - soup.points.size(); lost > 0)
+        result.notes.push_back(std::to_string(lost) + " points are on no face");
+    RepairOptions mend;
+    mend.fill_holes_size = options.close_holes;
+    RepairResult repaired = repair(soup, {}, mend);
+    result.mesh = std::move(repaired.mesh);
+    std::vector<Index> sources;
+    for (const Index source : repaired.vertex_source) sources.push_back(source == no_index ? no_index : result.sources[source]);
+    result.sources = std::move(sources);
+    result.border_loops = repaired.after.border_loops.size();
+    if (result.border_loops > 0)
+        result.notes.push_back("the surface has " + std::to_string(result.border_loops) + " borders where there are no points");
+    return result;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,166 @@
+#include "ostraka/reconstruction/annotation_matches.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/geom/eigen.h"
+#include "ostraka/relation/topology.h"
+
+#include <boost/graph/adjacency_list.hpp>
+#include <boost/graph/maximum_weighted_matching.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace ostraka {
+
+using Eigen::Vector3d;
+
+namespace {
+
+/// What is compared of an annotation.
+struct Portrait {
+    const Annotation* annotation;
+    std::set<std::string> containers;  ///< tags
+    Vector3d centre = Vector3d::Zero();
+    double size = 0;    ///< diagonal of its box
+    double extent = 0;  ///< area of a region, length of a line
+};
+
+std::vector<Portrait> portraits(const Mesh& mesh, const AnnotationSet& set, const Motion& pose) {
+    const ContainmentOrder order = topology(mesh, set).order;
+    std::vector<Portrait> list;
+    for (std::size_t i = 0; i < set.annotations.size(); ++i) {
+        const Annotation& annotation = set.annotations[i];
+        Portrait portrait{&annotation, {}};
+        for (const std::size_t c : order.containers[i])
+            if (!set.annotations[c].all) portrait.containers.insert(set.annotations[c].tag);
+        Eigen::AlignedBox3d box;
+        double weight = 0;
+        const auto add = [&](const Vector3d& place, double w) {
+            portrait.centre += w * place;
+            weight += w;
+        };
+        if (annotation.type == AnnotationType::region) {
+            for (const Index face : annotation.faces) {
+                const double area = face_area(mesh, Face(face)) * pose.scale * pose.scale;
+                portrait.extent += area;
+                add(pose(eigen(centroid(mesh, Face(face)))), area);
+            }
+        }
+        for (const auto& line : annotation.polylines)
+            for (std::size_t k = 1; k < line.size(); ++k) {
+                const Vector3d a = pose(eigen(mesh.point(Vertex(line[k - 1])))), b = pose(eigen(mesh.point(Vertex(line[k]))));
+                portrait.extent += (b - a).norm();
+                add((a + b) / 2, (b - a).norm());
+            }
+        for (const Index v : touched_vertices(mesh, annotation)) {
+            const Vector3d place = pose(eigen(mesh.point(Vertex(v))));
+            box.extend(place);
+            if (annotation.type == AnnotationType::point) add(place, 1);
+        }
+        if (weight > 0) portrait.centre /= weight;
+        portrait.size = box.isEmpty() ? 0 : box.diagonal().norm();
+        list.push_back(std::move(portrait));
+    }
+    return list;
+}
+
+/// Share of what both say that agrees; 1 where they say nothing in common.
+double agreement(const Annotation& a, const Annotation& b) {
+    double sum = 0;
+    int count = 0;
+    for (const Attribute& ours : a.attributes)
+        for (const Attribute& theirs : b.attributes) {
+            if (ours.name != theirs.name || ours.type != theirs.type) continue;
+            if (ours.type == AttributeType::semantic) sum += ours.note == theirs.note ? 1 : 0;
+            else if (ours.type == AttributeType::measure && ours.measure.value && theirs.measure.value &&
+                     *ours.measure.value > 0 && *theirs.measure.value > 0)
+                sum +=
+                    std::min(*ours.measure.value, *theirs.measure.value) / std::max(*ours.measure.value, *theirs.measure.value);
+            else continue;
+            ++count;
+        }
+    return count > 0 ? sum / count : 1;
+}
+
+AnnotationMatch compare(const Portrait& theirs, const Portrait& ours, double diagonal) {
+    AnnotationMatch match{theirs.annotation->id, ours.annotation->id};
+    match.attributes = agreement(*ours.annotation, *theirs.annotation);
+    if (!theirs.containers.empty()) {
+        std::size_t common = 0;
+        for (const std::string& tag : theirs.containers) common += ours.containers.count(tag);
+        match.containers = static_cast<double>(common) / static_cast<double>(theirs.containers.size());
+    }
+    const double size = std::max(ours.size, 0.05 * diagonal), off = (ours.centre - theirs.centre).norm() / size;
+    match.place = std::exp(-off * off);
+    if (theirs.extent > ours.extent) match.extent = theirs.extent > 0 ? ours.extent / theirs.extent : 1;
+    match.score = (match.attributes + match.containers + match.place + match.extent) / 4;
+    return match;
+}
+
+}  // namespace
+
+std::vector<AnnotationMatch> match_annotations(const Mesh& scaled, const AnnotationSet& of_template, const Mesh& fragment,
+                                               const AnnotationSet& of_fragment, const Motion& pose,
+                                               const std::vector<StatedMatch>& stated, const AnnotationMatchOptions& options) {
+    check_options(options, "annotation matches");
+    const std::vector<Portrait> ours = portraits(scaled, of_template, {}), theirs = portraits(fragment, of_fragment, pose);
+    const double diagonal = box_diagonal(scaled);
+    const auto place_of = [](const std::vector<Portrait>& list, int id, const char* whose) {
+        for (std::size_t i = 0; i < list.size(); ++i)
+            if (list[i].annotation->id == id) return i;
+        fail_input("stated matches", "name annotation " + std::to_string(id) + ", which the " + whose + " does not have",
+                   "look at its ids with 'annotation list'");
+    };
+    std::vector<AnnotationMatch> result;
+    std::vector<bool> taken(ours.size(), false), settled(theirs.size(), false);
+    for (const StatedMatch& one : stated) {
+        const std::size_t b = place_of(theirs, one.of_fragment, "fragment");
+        if (settled[b])
+            fail_input("stated matches", "name annotation " + std::to_string(one.of_fragment) + " of the fragment twice",
+                       "keep one of them");
+        settled[b] = true;
+        if (!one.of_template) continue;
+        const std::size_t a = place_of(ours, *one.of_template, "template");
+        if (ours[a].annotation->type != theirs[b].annotation->type)
+            fail_input("stated matches",
+                       "match a " + to_string(theirs[b].annotation->type) + " (annotation " + std::to_string(one.of_fragment) +
+                           " of the fragment) with a " + to_string(ours[a].annotation->type) + " (annotation " +
+                           std::to_string(*one.of_template) + " of the template)",
+                       "match annotations of one type");
+        taken[a] = true;
+        result.push_back(compare(theirs[b], ours[a], diagonal));
+        result.back().stated = true;
+    }
+
+    // The best assignment among those of one type and tag.
+    using Graph = boost::adjacency_list<boost::vecS, boost::vecS, boost::undirectedS, boost::no_property,
+                                        boost::property<boost::edge_weight_t, double>>;
+    const std::size_t n = theirs.size();
+    Graph graph(n + ours.size());
+    std::map<std::pair<std::size_t, std::size_t>, AnnotationMatch> candidates;
+    for (std::size_t b = 0; b < n; ++b)
+        for (std::size_t a = 0; a < ours.size(); ++a) {
+            const Annotation &x = *theirs[b].annotation, &y = *ours[a].annotation;
+            if (settled[b] || taken[a] || x.type != y.type || x.all || y.all || x.tag.empty() || x.tag != y.tag) continue;
+            const AnnotationMatch match = compare(theirs[b], ours[a], diagonal);
+            if (match.score < options.least_score) continue;
+            candidates.emplace(std::pair(b, a), match);
+            boost::add_edge(b, n + a, match.score, graph);
+        }
+    if (!candidates.empty()) {
+        std::vector<boost::graph_traits<Graph>::vertex_descriptor> mate(n + ours.size());
+        boost::maximum_weighted_matching(graph, mate.data());
+        for (const auto& [pair, match] : candidates)
+            if (mate[pair.first] == n + pair.second) result.push_back(match);
+    }
+    std::sort(result.begin(), result.end(), [](const auto& a, const auto& b) { return a.of_fragment < b.of_fragment; });
+    return result;
+}
+
+void AnnotationMatchOptions::describe(OptionList& visit) {
+    visit("least-score", least_score, "annotations that agree less are not matched", Range{0, 1});
+}
+
+}  // namespace ostraka

@@ -1,0 +1,507 @@
+#include "ostraka/reconstruction/fit.h"
+#include "ostraka/core/angles.h"
+#include "ostraka/core/dense.h"
+
+#include "level_system.h"
+#include "match_search.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/geom/eigen.h"
+#include "ostraka/geom/surface_search.h"
+#include "ostraka/reconstruction/template_cage.h"
+#include "ostraka/remesh/simplify.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace ostraka {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+namespace {
+
+class Stopwatch {
+public:
+    explicit Stopwatch(double& sum) : sum_(sum), begin_(std::chrono::steady_clock::now()) {}
+    ~Stopwatch() { sum_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
+    Stopwatch(const Stopwatch&) = delete;
+    Stopwatch& operator=(const Stopwatch&) = delete;
+
+private:
+    double& sum_;
+    std::chrono::steady_clock::time_point begin_;
+};
+
+/// The levels of a fit over one mesh of the template.
+class Fitter {
+public:
+    /// Lengths are in the template's unit. All outlive it.
+    Fitter(LevelSystem& system, const MatchSearch& search, MatchSearch::Labels labels, std::vector<Guide> guides, double diagonal,
+           const NonRigidOptions& options)
+        : system_(system),
+          mesh_(system.mesh),
+          search_(search),
+          labels_(std::move(labels)),
+          guides_(system.mesh.number_of_vertices()),
+          diagonal_(diagonal),
+          options_(options),
+          rest_(system.rest),
+          now_(system.rest),
+          rings_(system.rings) {
+        for (Guide& guide : guides) guides_[guide.vertex].push_back(guide);
+    }
+
+    /// Solves for the points of a cage instead; `weights` outlive it, a row for each vertex.
+    void go_through(const CageWeights& weights, const Points& cage) {
+        weights_ = &weights;
+        cage_rest_ = cage_ = cage;
+    }
+    [[nodiscard]] const Points& cage() const { return cage_; }
+
+    void start_at(Points points) { now_ = std::move(points); }
+    [[nodiscard]] const Points& rest() const { return rest_; }
+    [[nodiscard]] const Points& now() const { return now_; }
+
+    /// Smoothing length of a level.
+    static double smoothing(const NonRigidOptions& options, int level, double diagonal) {
+        return between(options, level, options.start, options.end) * diagonal;
+    }
+
+    void run(int first, int end, NonRigidFit& fit) {
+        if (first == end) return;
+        if (weights_ == nullptr) {
+            const Stopwatch watch(fit.seconds_solving);
+            solver_ = &system_.renewed_solver();
+        }
+        for (int level = first; level < end; ++level) {
+            NonRigidFit::Level record;
+            record.vertices = mesh_.number_of_vertices();
+            record.smoothing = smoothing(options_, level, diagonal_);
+            const double reach =
+                between(options_, level, std::max(options_.reach, 1e-9), std::max(options_.last_reach, 1e-9)) * diagonal_;
+            for (; record.steps < options_.steps; ++record.steps) {
+                match(reach, fit);
+                const Stopwatch watch(fit.seconds_solving);
+                const Points before = now_;
+                if (record.steps == 0) start_ = level == 0 ? rest_ : now_;
+                solve(record.smoothing, level == 0 ? options_.stay * diagonal_ : options_.fade * record.smoothing,
+                      record.steps == 0);
+                const double change = (now_ - before).colwise().norm().maxCoeff();
+                if (change < 0.05 * record.smoothing) {
+                    ++record.steps;
+                    break;
+                }
+            }
+            double squares = 0;
+            for (std::size_t i = 0; i < matches_.size(); ++i) {
+                if (matches_[i].fragment < 0) continue;
+                ++record.matched;
+                squares += (now_.col(static_cast<Eigen::Index>(i)) - matches_[i].place).squaredNorm();
+            }
+            record.residual = record.matched > 0 ? std::sqrt(squares / static_cast<double>(record.matched)) : 0;
+            fit.levels.push_back(record);
+        }
+    }
+
+    const std::vector<VertexMatch>& match(double reach, NonRigidFit& fit) {
+        const Stopwatch watch(fit.seconds_matching);
+        matches_ = search_.matches(now_, mesh_, labels_, reach, std::cos(options_.angle * pi / 180));
+        if (options_.counterparts == "surface") return matches_;
+        VertexAssignmentOptions options = options_.vertices;
+        options.counterpart = options_.counterparts;
+        options.reach = reach;
+        options.angle = options_.angle;
+        search_.assign(now_, mesh_, labels_, options, matches_);
+        return matches_;
+    }
+
+    /// Point-to-plane steps over the points of the cage (Chen and Medioni 1992), each as short as it can be where vertices are
+    /// matched: so the surface is met as nearly as the cage can, which levels with a smoothing do not. Vertices that are not
+    /// matched are held where the levels left them.
+    /// At most 4000 vertices are looked at, evenly over their list.
+    void polish(double reach, double smoothing, NonRigidFit& fit) {
+        constexpr int most_steps = 12;
+        constexpr double hold = 0.1, shorten = 1e-6, settled = 1e-10;  // weights against matches; share of the diagonal
+        constexpr Eigen::Index rows_at_once = 512;
+        const Points left = now_;
+        const Eigen::Index count = cage_.cols(), stride = std::max<Eigen::Index>(1, now_.cols() / 4000),
+                           n = (now_.cols() + stride - 1) / stride;
+        for (int step = 0; step < most_steps; ++step) {
+            match(reach, fit);
+            const Stopwatch watch(fit.seconds_solving);
+            Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(3 * count, 3 * count), same = Eigen::MatrixXd::Zero(count, count);
+            Eigen::VectorXd right = Eigen::VectorXd::Zero(3 * count);
+            for (Eigen::Index first = 0; first < n; first += rows_at_once) {
+                const Eigen::Index rows = std::min(rows_at_once, n - first);
+                Eigen::MatrixXd planes = Eigen::MatrixXd::Zero(3 * count, rows), places(count, rows);
+                for (Eigen::Index r = 0; r < rows; ++r) {
+                    const Eigen::Index v = (first + r) * stride;
+                    const auto i = static_cast<std::size_t>(v);
+                    const Vector3d x = now_.col(v);
+                    const double area = std::max(rings_.area[i] / system_.mean_area, 1e-6);
+                    const VertexMatch& one = matches_[i];
+                    double weight = one.fragment < 0 ? hold * area : shorten * area;
+                    Vector3d pull = one.fragment < 0 ? Vector3d(weight * (left.col(v) - x)) : Vector3d::Zero();
+                    for (const Guide& guide : guides_[i]) {
+                        const double share = weight_of(guide, smoothing);
+                        weight += share;
+                        pull += share * (guide.place - x);
+                    }
+                    const auto w = weights_->row(v).transpose();
+                    places.col(r) = std::sqrt(weight) * w;
+                    for (int axis = 0; axis < 3; ++axis) right.segment(axis * count, count) += pull[axis] * w;
+                    if (one.fragment < 0) continue;
+                    const Vector3d plane = search_.normal(one);
+                    const double off = plane.dot(one.place - x);
+                    for (int axis = 0; axis < 3; ++axis) {
+                        planes.col(r).segment(axis * count, count) = std::sqrt(area) * plane[axis] * w;
+                        right.segment(axis * count, count) += area * off * plane[axis] * w;
+                    }
+                }
+                normal.selfadjointView<Eigen::Lower>().rankUpdate(planes);
+                same.selfadjointView<Eigen::Lower>().rankUpdate(places);
+            }
+            for (int axis = 0; axis < 3; ++axis) normal.block(axis * count, axis * count, count, count) += same;
+            normal.diagonal().array() += 1e-12 * normal.diagonal().mean();
+            const Cholesky factor(normal);
+            if (!factor.found()) return;
+            const Eigen::VectorXd change = factor.solve(right);
+            if (!change.allFinite()) return;
+            for (int axis = 0; axis < 3; ++axis) cage_.row(axis) += change.segment(axis * count, count).transpose();
+            const Points before = now_;
+            now_ = points_of(*weights_, cage_);
+            if ((now_ - before).colwise().norm().maxCoeff() < settled * diagonal_) return;
+        }
+    }
+
+    /// How the surroundings of each vertex have turned.
+    [[nodiscard]] std::vector<Matrix3d> turns() const {
+        const auto n = static_cast<std::size_t>(rest_.cols());
+        std::vector<Matrix3d> covariances(n), turns(n);
+        parallel_for(n, [&](std::size_t i) {
+            Matrix3d sum = Matrix3d::Zero();
+            for (std::size_t k = rings_.begin[i]; k < rings_.begin[i + 1]; ++k) {
+                const int j = rings_.neighbour[k];
+                sum += rings_.weight[k] * (now_.col(j) - now_.col(static_cast<Eigen::Index>(i))) *
+                       (rest_.col(j) - rest_.col(static_cast<Eigen::Index>(i))).transpose();
+            }
+            covariances[i] = sum;
+        });
+        parallel_for(n, [&](std::size_t i) {
+            Matrix3d sum = covariances[i];
+            for (std::size_t k = rings_.begin[i]; k < rings_.begin[i + 1]; ++k)
+                sum += covariances[static_cast<std::size_t>(rings_.neighbour[k])];
+            const Svd3 svd(sum);
+            Vector3d signs(1, 1, 1);
+            if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0) signs.z() = -1;
+            turns[i] = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+        });
+        return turns;
+    }
+
+private:
+    static double between(const NonRigidOptions& options, int level, double first, double last) {
+        return first * std::pow(last / first, options.levels > 1 ? static_cast<double>(level) / (options.levels - 1) : 1);
+    }
+
+    /// Where few matches came or went since the weights were last set, they stay, and with them the factorisation: who lost its
+    /// match is held where it is, who found one waits.
+    [[nodiscard]] bool matched_as_before() const {
+        std::size_t changed = 0;
+        for (std::size_t i = 0; i < matches_.size(); ++i) changed += (matches_[i].fragment >= 0) != weighted_[i] ? 1 : 0;
+        return static_cast<double>(changed) <= 0.02 * static_cast<double>(matches_.size());
+    }
+
+    void solve(double smoothing, double transition, bool new_level) {
+        // In units of mean areas, and of lengths of the smoothing, so that weights are near one.
+        const double stay = std::pow(std::min(1.0, smoothing / transition), 4), mean_area = system_.mean_area;
+        turn();
+        const bool renew = new_level || !matched_as_before();
+        if (renew && weights_ != nullptr) {
+            // So much changes that its small matrix is best made anew.
+            through_cage_ = std::make_unique<CageSpaceSolver>(system_.constraints(), *weights_, cage_rest_);
+            solver_ = through_cage_.get();
+        }
+        if (renew) {
+            weighted_.assign(matches_.size(), false);
+            match_weight_.assign(matches_.size(), 0);
+        }
+        for (std::size_t i = 0; i < matches_.size(); ++i) {
+            const bool matched = matches_[i].fragment >= 0;
+            if (renew) {
+                const double share = rings_.area[i] / mean_area;
+                weighted_[i] = matched;
+                match_weight_[i] = matched ? share : 0;
+                solver_->set_weight(system_.match(i), match_weight_[i] + guide_weight(i, smoothing));
+                solver_->set_weight(system_.stay(i), stay * std::max(share, 1e-6));
+                if (new_level || weights_ != nullptr)
+                    solver_->set_target(system_.stay(i), start_.col(static_cast<Eigen::Index>(i)));
+            }
+            const Vector3d goal = matched ? matches_[i].place : Vector3d(now_.col(static_cast<Eigen::Index>(i)));
+            if (!guides_[i].empty()) solver_->set_target(system_.match(i), Points(guided(i, smoothing, goal)));
+            else if (weighted_[i]) solver_->set_target(system_.match(i), Points(goal));
+            if (system_.laplacian(i) == LevelSystem::no_constraint) continue;
+            solver_->set_target(system_.laplacian(i), displacement_.col(static_cast<Eigen::Index>(i)));
+            if (!renew) continue;
+            const double area = std::max(rings_.area[i], 1e-6 * mean_area);
+            solver_->set_weight(system_.laplacian(i),
+                                std::pow(smoothing, 4) * rings_.sum[i] * rings_.sum[i] / (area * mean_area));
+        }
+        SolveOptions once;
+        once.iterations = 1;
+        once.window = 0;
+        const SolveSummary summary = solver_->solve(weights_ != nullptr ? cage_ : now_, once);
+        if (weights_ != nullptr) now_ = points_of(*weights_, cage_);
+        if (!summary.usable)
+            throw Error(ErrorKind::failure, "fit", "no usable solution: " + summary.text(), "look at the template's faces");
+    }
+
+    /// What a patch of the smoothing's size would weigh: of a landmark the whole, of an outline the share of its length.
+    [[nodiscard]] double weight_of(const Guide& guide, double smoothing) const {
+        const double width = guide.length > 0 ? guide.length * smoothing : smoothing * smoothing;
+        return options_.guides * width / system_.mean_area;
+    }
+    [[nodiscard]] double guide_weight(std::size_t vertex, double smoothing) const {
+        double sum = 0;
+        for (const Guide& guide : guides_[vertex]) sum += weight_of(guide, smoothing);
+        return sum;
+    }
+    /// Where a vertex's match and its guides draw it together: sums of squares about several places are one about their mean.
+    [[nodiscard]] Vector3d guided(std::size_t vertex, double smoothing, const Vector3d& match) const {
+        double weight = match_weight_[vertex];
+        Vector3d sum = weight * match;
+        for (const Guide& guide : guides_[vertex]) {
+            const double share = weight_of(guide, smoothing);
+            sum += share * guide.place;
+            weight += share;
+        }
+        return weight > 0 ? Vector3d(sum / weight) : match;
+    }
+
+    /// Rest displacements turned with the surroundings of each vertex.
+    void turn() {
+        const std::vector<Matrix3d> turned = turns();
+        displacement_.setZero(3, rest_.cols());
+        parallel_for(turned.size(), [&](std::size_t i) {
+            Vector3d rest = Vector3d::Zero();
+            for (std::size_t k = rings_.begin[i]; k < rings_.begin[i + 1]; ++k)
+                rest +=
+                    rings_.weight[k] / rings_.sum[i] * (rest_.col(rings_.neighbour[k]) - rest_.col(static_cast<Eigen::Index>(i)));
+            displacement_.col(static_cast<Eigen::Index>(i)) = turned[i] * rest;
+        });
+    }
+
+    LevelSystem& system_;
+    const Mesh& mesh_;
+    const MatchSearch& search_;
+    MatchSearch::Labels labels_;
+    std::vector<std::vector<Guide>> guides_;  ///< of each vertex
+    double diagonal_;
+    const NonRigidOptions& options_;
+    const Points& rest_;
+    Points now_, start_, displacement_;  ///< start: of the level
+    const Rings& rings_;
+    Solver* solver_ = nullptr;
+    const CageWeights* weights_ = nullptr;  ///< in cage space
+    Points cage_rest_, cage_;
+    std::unique_ptr<CageSpaceSolver> through_cage_;
+    std::vector<VertexMatch> matches_;
+    std::vector<bool> weighted_;        ///< vertices whose match weighs in the factorisation
+    std::vector<double> match_weight_;  ///< and how much
+};
+
+/// The template with fewer vertices, for what is smooth anyway.
+struct Coarse {
+    Mesh mesh;
+    std::vector<Index> vertex_map, face_origin;
+};
+
+Coarse coarsened(const Mesh& mesh, std::size_t vertices) {
+    Coarse coarse{mesh, {}, {}};
+    SimplifyOptions options;
+    options.vertices = vertices;
+    options.outlines = "ignore";
+    const SimplifyResult done = simplify(coarse.mesh, options);
+    coarse.vertex_map = done.vertex_map;
+    coarse.face_origin.resize(coarse.mesh.number_of_faces());
+    for (Index f = 0; f < done.face_map.size(); ++f)
+        if (done.face_map[f] != no_index) coarse.face_origin[done.face_map[f]] = f;
+    return coarse;
+}
+
+constexpr std::size_t few = 4000;  // vertices that show every shape of the first levels
+
+}  // namespace
+
+struct TemplateFitter::State {
+    State(const Mesh& of, const AnnotationSet& with, const TemplateCage* around)
+        : mesh(of), set(with), cage(around), diagonal(box_diagonal(of)), fine(of) {}
+
+    /// Simplifies the template where that is worth while.
+    void prepare() {
+        if (coarse || mesh.number_of_vertices() <= 2 * few) return;
+        coarse = std::make_unique<Coarse>(coarsened(mesh, few));
+        smooth = std::make_unique<LevelSystem>(coarse->mesh);
+        edge = mean_edge_length(coarse->mesh);
+        const SurfaceSearch search(coarse->mesh);
+        nearest.resize(mesh.number_of_vertices());
+        parallel_for(nearest.size(),
+                     [&](std::size_t i) { nearest[i] = search.closest(mesh.point(Vertex(static_cast<Index>(i)))); });
+    }
+
+    /// Coordinates of the vertices that levels in cage space are solved with.
+    [[nodiscard]] const CageWeights& weights() {
+        if (!coarse) return cage->coordinates.vertex;
+        if (coarse_weights.size() == 0)
+            coarse_weights = compute_coordinates(cage->coordinates.kind, cage->cage, coarse->mesh).vertex;
+        return coarse_weights;
+    }
+
+    /// The fine mesh moved with the surroundings of the nearest place of the coarse one.
+    [[nodiscard]] Points follow(const Fitter& fitter) const {
+        const std::vector<Matrix3d> turns = fitter.turns();
+        Points points(3, static_cast<Eigen::Index>(mesh.number_of_vertices()));
+        parallel_for(nearest.size(), [&](std::size_t i) {
+            const Vector3d p = eigen(mesh.point(Vertex(static_cast<Index>(i))));
+            const auto c = corners(coarse->mesh, Face(nearest[i].face));
+            Vector3d sum = Vector3d::Zero();
+            for (std::size_t k = 0; k < 3; ++k) {
+                const auto v = static_cast<Eigen::Index>(c[k]);
+                sum += nearest[i].barycentric[k] * (turns[c[k]] * (p - fitter.rest().col(v)) + fitter.now().col(v));
+            }
+            points.col(static_cast<Eigen::Index>(i)) = sum;
+        });
+        return points;
+    }
+
+    const Mesh& mesh;
+    const AnnotationSet& set;
+    const TemplateCage* cage;
+    double diagonal;
+    LevelSystem fine;
+    CageWeights coarse_weights;
+    std::unique_ptr<Coarse> coarse;
+    std::unique_ptr<LevelSystem> smooth;  ///< of the coarse mesh
+    double edge = 0;                      ///< mean length of its edges
+    std::vector<SurfaceHit> nearest;      ///< of each vertex on it
+};
+
+TemplateFitter::TemplateFitter(const Mesh& mesh, const AnnotationSet& set, const TemplateCage* cage) {
+    if (mesh.number_of_faces() == 0) fail_input("template", "has no faces", "is it the right file?");
+    if (cage != nullptr) {
+        if (cage->coordinates.has_normals())
+            fail_usage(cage->coordinates.kind + " coordinates have a normal term, which a fit cannot use",
+                       "take mean-value coordinates");
+        if (static_cast<std::size_t>(cage->coordinates.vertex.rows()) != mesh.number_of_vertices() ||
+            static_cast<std::size_t>(cage->coordinates.vertex.cols()) != cage->cage.number_of_vertices())
+            fail_usage("the cage's coordinates are not those of the template's vertices", "make them anew");
+    }
+    state_ = std::make_unique<State>(mesh, set, cage);
+}
+TemplateFitter::~TemplateFitter() = default;
+TemplateFitter::TemplateFitter(TemplateFitter&&) noexcept = default;
+
+NonRigidFit TemplateFitter::fit(double scale, const std::vector<PlacedFragment>& fragments, const NonRigidOptions& options) {
+    check_options(options, "fit");
+    if (options.counterparts != "surface" &&
+        !(options.vertices.boundary + options.vertices.distance + options.vertices.outline > 0))
+        fail_usage("all three weights of equation 5.1 are zero", "give --distance-weight or another one");
+    constexpr double edges = 0.8;  // least smoothing length of a level on the coarse mesh, in its edges
+    State& s = *state_;
+    NonRigidFit fit;
+    const MatchSearch search(s.mesh, s.set, fragments, scale, options.outlines);
+    {
+        const Stopwatch watch(fit.seconds_coarsening);
+        s.prepare();
+    }
+    Fitter fine(s.fine, search, search.labels(s.mesh, {}), search.guides(), s.diagonal, options);
+    int level = 0;
+    std::vector<Guide> guides = search.guides();
+    if (s.coarse) {
+        const Coarse& coarse = *s.coarse;
+        while (level < options.levels && Fitter::smoothing(options, level, s.diagonal) >= edges * s.edge) ++level;
+        for (Guide& guide : guides) {
+            const Index here = coarse.vertex_map[guide.vertex];
+            if (here != no_index)
+                guide.place += eigen(coarse.mesh.point(Vertex(here))) - eigen(s.mesh.point(Vertex(guide.vertex)));
+            guide.vertex = here;
+        }
+        std::erase_if(guides, [&](const Guide& guide) { return guide.vertex >= coarse.mesh.number_of_vertices(); });
+    }
+    if (options.space != "mesh") {
+        if (s.cage == nullptr) fail_usage("the fit is to go through a cage, and there is none", "give the cage of the template");
+        Points rest(3, static_cast<Eigen::Index>(s.cage->cage.number_of_vertices()));
+        for (const Vertex v : s.cage->cage.vertices()) rest.col(static_cast<Eigen::Index>(v)) = eigen(s.cage->cage.point(v));
+        LevelSystem& system = s.coarse ? *s.smooth : s.fine;
+        Fitter through(system, search,
+                       s.coarse ? search.labels(s.coarse->mesh, s.coarse->face_origin) : search.labels(s.mesh, {}),
+                       std::move(guides), s.diagonal, options);
+        through.go_through(s.weights(), rest);
+        level = options.space == "both" ? std::max(1, options.levels - 1) : options.levels;
+        through.run(0, level, fit);
+        fine.start_at(points_of(s.cage->coordinates.vertex, through.cage()));
+        if (level == options.levels) {
+            fine.go_through(s.cage->coordinates.vertex, through.cage());
+            fine.polish(options.last_reach * s.diagonal, Fitter::smoothing(options, level - 1, s.diagonal), fit);
+        }
+    } else if (s.coarse) {
+        Fitter smooth(*s.smooth, search, search.labels(s.coarse->mesh, s.coarse->face_origin), std::move(guides), s.diagonal,
+                      options);
+        smooth.run(0, level, fit);
+        const Stopwatch watch(fit.seconds_coarsening);
+        if (level > 0) fine.start_at(s.follow(smooth));
+    }
+    fine.run(level, options.levels, fit);
+    fit.matches = fine.match(options.last_reach * s.diagonal, fit);
+    // So far all was in the template's unit.
+    for (VertexMatch& match : fit.matches) {
+        match.place *= scale;
+        match.distance *= scale;
+    }
+    for (NonRigidFit::Level& one : fit.levels) {
+        one.smoothing *= scale;
+        one.residual *= scale;
+    }
+    for (Eigen::Index i = 0; i < fine.now().cols(); ++i) fit.points.push_back(point_of(scale * fine.now().col(i)));
+    return fit;
+}
+
+NonRigidFit fit_template(const Mesh& scaled, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments,
+                         const NonRigidOptions& options) {
+    return TemplateFitter(scaled, set).fit(1, fragments, options);
+}
+
+void NonRigidOptions::describe(OptionList& visit) {
+    visit("space", space,
+          "what is solved for: the template's vertices (mesh), those of a cage around it (cage: fewer degrees of freedom, no "
+          "face "
+          "folds by noise), or those of the cage and in the last level the template's (both)",
+          Choices{"mesh", "cage", "both"});
+    visit("smoothing", start, "length below which the first level fits no detail, as a share of the template's diagonal",
+          Range{1e-3, 10});
+    visit("detail", end, "the same of the last level", Range{1e-4, 10});
+    visit("levels", levels, "levels of stiffness", Range{1, 100});
+    visit("steps", steps, "matches and solutions in each level, at most", Range{1, 1000});
+    visit("transition", stay,
+          "length over which the deformation of the first level fades where nothing is observed, as a share of the diagonal",
+          Range{1e-3, 1e3});
+    visit("fade", fade, "what a later level adds fades over so many of its smoothing lengths", Range{0.1, 1e3});
+    visit("reach", reach, "farthest match in the first level, as a share of the diagonal", Range{0, 10});
+    visit("last-reach", last_reach, "farthest match in the last level", Range{0, 10});
+    visit("match-angle", angle, "normals of matches differ by at most this, degrees", Range{0, 180});
+    visit("counterparts", counterparts,
+          "of vertices in matched annotations: closest places of the surface (surface), or vertices by distance, outline and "
+          "position along it (equation 5.1): the best of each (best), or each given once (one-to-one)",
+          Choices{"surface", "best", "one-to-one"});
+    visit("boundary-weight", vertices.boundary, "equation 5.1: of vertices on an outline against vertices inside", Range{0, 1e6});
+    visit("distance-weight", vertices.distance, "equation 5.1: of the distance", Range{0, 1e6});
+    visit("outline-weight", vertices.outline, "equation 5.1: of the positions along the outline", Range{0, 1e6});
+    visit("guides", guides, "weight of matched outlines and landmarks against that of the surface", Range{0, 1e6});
+    visit("outlines", outlines, "matched outlines and lines guide the fit by the position along them, from landmark to landmark",
+          Anything{});
+}
+
+}  // namespace ostraka

@@ -1,0 +1,171 @@
+#include "ostraka/reconstruction/fragment_file.h"
+
+#include "ostraka/annotation/annotation_file.h"
+#include "ostraka/core/error.h"
+#include "ostraka/io/mesh_file.h"
+#include "ostraka/measure/descriptors.h"
+
+#include <algorithm>
+#include <cctype>
+
+namespace ostraka {
+
+namespace {
+
+/// What a region's tag calls it, "outer", "inner" or "fracture"; empty for any other annotation.
+std::string facet_named(const Annotation& annotation) {
+    if (annotation.type != AnnotationType::region) return {};
+    std::string tag = annotation.tag;
+    std::transform(tag.begin(), tag.end(), tag.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return tag == "outer" || tag == "inner" || tag == "fracture" ? tag : std::string();
+}
+bool names_facets(const Annotation& annotation) { return !facet_named(annotation).empty(); }
+
+bool has_border(const Mesh& mesh) {
+    return std::any_of(mesh.edges().begin(), mesh.edges().end(), [&](Edge e) { return mesh.is_border(e); });
+}
+
+}  // namespace
+
+FragmentFile read_fragment(const Path& file, const FragmentFileOptions& options) {
+    check_options(options, "fragment");
+    FragmentFile result;
+    Fragment& fragment = result.fragment;
+    fragment.name = file.stem().string();
+    result.inputs.push_back(file);
+    if (const std::optional<PointCloud> cloud = read_point_cloud(file)) {
+        result.points = true;
+        result.notes = cloud->notes;
+        try {
+            CloudSurface surface = reconstruct_surface(*cloud, options.cloud);
+            result.notes.insert(result.notes.end(), surface.notes.begin(), surface.notes.end());
+            fragment.mesh = std::move(surface.mesh);
+        } catch (const Error& error) {
+            if (error.kind() != ErrorKind::input) throw;
+            fail_input(file.string() + ", " + error.where(), error.problem(), error.remedy());
+        }
+    } else {
+        MeshFile mesh = read_mesh(file);
+        fragment.mesh = std::move(mesh.mesh);
+    }
+    bool annotated = false;
+    const Path beside = file.parent_path() / (fragment.name + ".ant.json");
+    if (result.points && file_exists(beside))
+        result.notes.push_back(beside.filename().string() +
+                               " is not read: annotations beside points say nothing of the surface through them; give a mesh");
+    if (!result.points && file_exists(beside)) {
+        AnnotationSet set = read_annotations(beside, fragment.mesh);
+        result.inputs.push_back(beside);
+        std::swap(fragment.annotations.annotations, set.annotations);
+        fragment.annotations.unit = set.unit;
+        const auto& list = fragment.annotations.annotations;
+        annotated = options.facets != "none" && std::any_of(list.begin(), list.end(), names_facets);
+    }
+    const bool by_shape =
+        options.facets == "auto" || (options.facets == "either" && !annotated && (result.points || !has_border(fragment.mesh)));
+    result.facets_from = annotated && by_shape ? "shape and annotations"
+                         : annotated           ? "annotations"
+                         : by_shape            ? "shape"
+                                               : "nowhere";
+    if (by_shape) {
+        result.found = find_facets(fragment.mesh, options.finding);
+        fragment.facets = result.found.of_face;
+        constexpr double even = 0.5;
+        for (const FacetSegment& segment : result.found.segments)
+            if (segment.facet == Facet::fracture && segment.confidence <= even)
+                for (const Index f : segment.faces) fragment.facets[f] = Facet::outer;
+    }
+    if (annotated) {
+        const auto from_file = [&](Facet other) {
+            try {
+                return facets_of(fragment.mesh, fragment.annotations, other);
+            } catch (const Error& error) {
+                fail_input(beside.string() + ", " + error.where(), error.problem(), error.remedy());
+            }
+        };
+        std::vector<Facet> stated = from_file(Facet::outer);
+        if (by_shape) {
+            // Faces that no annotation names come out as either of two.
+            const std::vector<Facet> again = from_file(Facet::fracture);
+            for (std::size_t f = 0; f < stated.size(); ++f)
+                if (stated[f] == again[f]) fragment.facets[f] = stated[f];
+        } else {
+            fragment.facets = std::move(stated);
+        }
+    }
+    return result;
+}
+
+AnnotationSet facet_annotations(const Facets& facets, const std::string& unit) {
+    AnnotationSet set;
+    set.unit = unit;
+    for (const Facet facet : {Facet::outer, Facet::inner, Facet::fracture}) {
+        Annotation annotation;
+        annotation.id = static_cast<int>(facet);
+        annotation.tag = to_string(facet);
+        annotation.type = AnnotationType::region;
+        annotation.colour = facet == Facet::outer   ? std::array{213, 160, 90}
+                            : facet == Facet::inner ? std::array{86, 150, 210}
+                                                    : std::array{190, 40, 40};
+        double area = 0, confidence = 0;
+        for (const FacetSegment& segment : facets.segments) {
+            if (segment.facet != facet) continue;
+            annotation.faces.insert(annotation.faces.end(), segment.faces.begin(), segment.faces.end());
+            area += segment.area;
+            confidence += segment.area * segment.confidence;
+        }
+        if (annotation.faces.empty()) continue;
+        std::sort(annotation.faces.begin(), annotation.faces.end());
+        Quantity surface, sure;
+        surface.name = "area";
+        surface.values = {area};
+        surface.power = 2;
+        sure.name = "confidence";
+        sure.values = {area > 0 ? confidence / area : 0};
+        store(annotation, {surface, sure}, unit);
+        set.annotations.push_back(std::move(annotation));
+    }
+    return set;
+}
+
+void update_facet_annotations(AnnotationSet& set, const Facets& facets) {
+    AnnotationSet found = facet_annotations(facets, set.unit);
+    std::erase_if(set.annotations, [&](Annotation& old) {
+        const std::string name = facet_named(old);
+        if (name.empty()) return false;
+        const auto match = std::find_if(found.annotations.begin(), found.annotations.end(),
+                                        [&](const Annotation& one) { return one.tag == name; });
+        if (match == found.annotations.end()) return true;
+        std::vector<Quantity> quantities;
+        for (const Attribute& attribute : match->attributes) {
+            Quantity quantity;
+            quantity.name = attribute.name;
+            quantity.values = attribute.descriptor.values;
+            quantity.power = attribute.name == "area" ? 2 : 0;
+            quantities.push_back(quantity);
+        }
+        if (old.faces != match->faces)
+            for (Attribute& attribute : old.attributes)
+                if (attribute.type == AttributeType::descriptor) attribute.descriptor.stale = true;
+        old.faces = std::move(match->faces);
+        old.all = false;
+        store(old, quantities, set.unit);
+        found.annotations.erase(match);
+        return false;
+    });
+    for (Annotation& one : found.annotations) {
+        if (set.find(one.id) != nullptr) one.id = free_id(set);
+        set.annotations.push_back(std::move(one));
+    }
+}
+
+void FragmentFileOptions::describe(OptionList& visit) {
+    visit("facets", facets,
+          "outer, inner and fracture surface: as annotated; auto: from the shape, annotations override; either: as "
+          "annotated where there are such annotations, else from the shape if it is closed; none: all outer",
+          Choices{"either", "annotated", "auto", "none"});
+    finding.describe(visit);
+    cloud.describe(visit);
+}
+
+}  // namespace ostraka

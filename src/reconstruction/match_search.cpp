@@ -1,0 +1,242 @@
+#include "match_search.h"
+
+#include "outline_correspondences.h"
+
+#include "ostraka/core/parallel.h"
+#include "ostraka/geom/eigen.h"
+
+#include <algorithm>
+
+namespace ostraka {
+
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr int no_label = -1;
+
+/// For each face the number that comes with the smallest of the regions that hold it.
+std::vector<int> face_labels(const Mesh& mesh, const std::vector<std::pair<const Annotation*, int>>& regions) {
+    std::vector<int> labels(mesh.number_of_faces(), no_label);
+    std::vector<std::pair<double, std::size_t>> order;
+    for (std::size_t r = 0; r < regions.size(); ++r) {
+        double area = 0;
+        for (const Index face : regions[r].first->faces) area += face_area(mesh, Face(face));
+        order.emplace_back(area, r);
+    }
+    std::sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a > b; });
+    for (const auto& [area, r] : order)
+        for (const Index face : regions[r].first->faces) labels[face] = regions[r].second;
+    return labels;
+}
+
+}  // namespace
+
+MatchSearch::~MatchSearch() = default;
+
+MatchSearch::MatchSearch(const Mesh& mesh, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments, double scale,
+                         bool outlines)
+    : scale_(scale), fragments_(fragments) {
+    Motion unit;
+    unit.scale = 1 / scale;
+    // Regions that any fragment has.
+    std::vector<std::pair<const Annotation*, int>> ours;
+    for (std::size_t k = 0; k < fragments.size(); ++k) {
+        const PlacedFragment& fragment = fragments[k];
+        std::vector<std::pair<const Annotation*, int>> theirs;
+        for (const AnnotationMatch& match : fragment.matches) {
+            const Annotation *a = set.find(match.of_template), *b = fragment.annotations->find(match.of_fragment);
+            if (a == nullptr || b == nullptr || a->type != b->type) continue;
+            if (a->type == AnnotationType::region && !a->all && !b->all) {
+                theirs.emplace_back(b, a->id);
+                if (std::none_of(ours.begin(), ours.end(), [&](const auto& one) { return one.first == a; }))
+                    ours.emplace_back(a, a->id);
+            } else if (a->type == AnnotationType::point && a->points.size() == 1 && b->points.size() == 1) {
+                guides_.push_back({a->points.front(), eigen(fragment.mesh.point(Vertex(b->points.front()))) / scale, 0});
+                landmarks_.emplace_back(a->points.front(), b->points.front());
+                landmark_fragment_.push_back(static_cast<int>(k));
+            }
+        }
+        const std::vector<int> labels = face_labels(fragment.mesh, theirs);
+        for (const auto& [region, label] : theirs) {
+            Counterpart one{static_cast<int>(k), label, {}};
+            one.region.tag = region->tag;
+            one.region.type = AnnotationType::region;
+            for (const Index face : region->faces)
+                if (labels[face] == label && (fragment.facets.empty() || fragment.facets[face] != Facet::fracture))
+                    one.region.faces.push_back(face);
+            if (!one.region.faces.empty()) counterparts_.push_back(std::move(one));
+        }
+        const bool own = fragment.trees != nullptr;
+        trees_.push_back(own ? fragment.trees : std::make_shared<FragmentTrees>(fragment.mesh, fragment.facets));
+        to_template_.push_back(own ? unit.after(fragment.pose) : unit);
+        to_fragment_.push_back(to_template_.back().inverse());
+        for (const auto& [label, part] : trees_.back()->parts(labels)) parts_[label].push_back({static_cast<int>(k), &part});
+    }
+    face_labels_ = face_labels(mesh, ours);
+    if (outlines) add_outline_guides(mesh, set);
+}
+
+void MatchSearch::add_outline_guides(const Mesh& mesh, const AnnotationSet& set) {
+    for (std::size_t k = 0; k < fragments_.size(); ++k) {
+        const PlacedFragment& fragment = fragments_[k];
+        std::vector<bool> broken(fragment.facets.size());
+        for (std::size_t f = 0; f < broken.size(); ++f) broken[f] = fragment.facets[f] == Facet::fracture;
+        std::vector<std::pair<Index, Index>> landmarks;
+        for (std::size_t l = 0; l < landmarks_.size(); ++l)
+            if (landmark_fragment_[l] == static_cast<int>(k)) landmarks.push_back(landmarks_[l]);
+        if (landmarks.empty()) continue;
+        for (const AnnotationMatch& match : fragment.matches) {
+            const Annotation *a = set.find(match.of_template), *b = fragment.annotations->find(match.of_fragment);
+            if (a == nullptr || b == nullptr || a->type != b->type || a->type == AnnotationType::point || a->all || b->all)
+                continue;
+            Annotation outer = *b;
+            if (!broken.empty()) std::erase_if(outer.faces, [&](Index f) { return broken[f]; });
+            for (const OutlineGuide& guide : outline_guides(mesh, *a, fragment.mesh, outer, broken, landmarks, scale_)) {
+                // Of parts in parts the inner one decides.
+                const auto ring = mesh.faces_around_target(mesh.halfedge(Vertex(guide.vertex)));
+                const bool ours = a->type == AnnotationType::line || std::any_of(ring.begin(), ring.end(), [&](Face face) {
+                                      return face != Mesh::null_face() && face_labels_[face] == a->id;
+                                  });
+                if (ours) guides_.push_back({guide.vertex, guide.place / scale_, guide.length});
+            }
+        }
+    }
+}
+
+MatchSearch::Labels MatchSearch::labels(const Mesh& mesh, const std::vector<Index>& face_origin) const {
+    Labels labels;
+    for (Index f = 0; f < mesh.number_of_faces(); ++f)
+        labels.of_face.push_back(face_labels_[face_origin.empty() ? f : face_origin[f]]);
+    labels.of_vertex.resize(mesh.number_of_vertices());
+    for (const Vertex v : mesh.vertices()) {
+        if (mesh.is_isolated(v)) continue;
+        std::vector<int>& list = labels.of_vertex[v];
+        for (const Face face : mesh.faces_around_target(mesh.halfedge(v))) {
+            if (face == Mesh::null_face()) continue;
+            const int label = labels.of_face[face];
+            if (std::find(list.begin(), list.end(), label) == list.end()) list.push_back(label);
+        }
+        std::sort(list.begin(), list.end());
+    }
+    return labels;
+}
+
+std::vector<VertexMatch> MatchSearch::matches(const Points& now, const Mesh& connectivity, const Labels& labels, double reach,
+                                              double min_cosine) const {
+    const std::size_t n = labels.of_vertex.size();
+    // Normals of the shape as it is now.
+    std::vector<Vector3d> normals(n, Vector3d::Zero());
+    for (const Face face : connectivity.faces()) {
+        const auto c = corners(connectivity, face);
+        const Vector3d a = now.col(static_cast<Eigen::Index>(c[0])), b = now.col(static_cast<Eigen::Index>(c[1])),
+                       d = now.col(static_cast<Eigen::Index>(c[2]));
+        const Vector3d area = (b - a).cross(d - a);
+        for (const Vertex v : c) normals[v] += area;
+    }
+    std::vector<VertexMatch> found(n);
+    parallel_for(n, [&](std::size_t i) {
+        const double length = normals[i].norm();
+        if (!(length > 0)) return;
+        const Vector3d place = now.col(static_cast<Eigen::Index>(i));
+        double nearest = reach;
+        for (const int label : labels.of_vertex[i]) {
+            const auto list = parts_.find(label);
+            if (list == parts_.end()) continue;
+            for (const Part& one : list->second) {
+                const FragmentPart& part = *one.part;
+                const auto k = static_cast<std::size_t>(one.fragment);
+                const Motion& there = to_fragment_[k];
+                const auto hit = part.search->closest_compatible(
+                    point_of(there(place)), vector_of(there.turn * normals[i] / length), min_cosine, nearest * there.scale);
+                if (!hit) continue;
+                // Beyond the end of what is there, everything is nearest to its rim.
+                constexpr double on_edge = 1e-6;
+                const Face face(hit->face);
+                const auto c = corners(part.mesh, face);
+                bool at_end = false;
+                for (const Halfedge h : part.mesh.halfedges_around_face(part.mesh.halfedge(face))) {
+                    const Vertex opposite = part.mesh.target(part.mesh.next(h));
+                    for (std::size_t corner = 0; corner < 3; ++corner)
+                        if (c[corner] == opposite && hit->barycentric[corner] < on_edge)
+                            at_end = at_end || part.edge_breaks[part.mesh.edge(h)];
+                }
+                for (std::size_t corner = 0; corner < 3; ++corner)
+                    at_end = at_end || (hit->barycentric[corner] > 1 - on_edge && part.vertex_breaks[c[corner]]);
+                nearest = hit->distance / there.scale;
+                found[i] = at_end ? VertexMatch()
+                                  : VertexMatch{one.fragment, part.faces[hit->face], to_template_[k](eigen(hit->point)), nearest};
+            }
+        }
+    });
+    return found;
+}
+
+Vector3d MatchSearch::normal(const VertexMatch& match) const {
+    const auto k = static_cast<std::size_t>(match.fragment);
+    return (to_template_[k].turn * eigen(area_vector(trees_[k]->mesh(), Face(match.face)))).normalized();
+}
+
+std::vector<FragmentSample> MatchSearch::samples(int count) const {
+    double area = 0;
+    for (const auto& [label, parts] : parts_)
+        for (const Part& one : parts) area += surface_area(one.part->mesh);
+    std::vector<FragmentSample> samples;
+    const double each = area / count;
+    double sum = 0, next = 0.5 * each;
+    for (const auto& [label, parts] : parts_)
+        for (const Part& one : parts) {
+            const Mesh& mesh = one.part->mesh;
+            const Motion& motion = to_template_[static_cast<std::size_t>(one.fragment)];
+            for (const Face face : mesh.faces()) {
+                sum += face_area(mesh, face);
+                if (next >= sum) continue;
+                const Vector3d normal = motion.turn * eigen(area_vector(mesh, face));
+                samples.push_back({motion(eigen(centroid(mesh, face))), normal.normalized(), label});
+                while (next < sum) next += each;
+            }
+        }
+    return samples;
+}
+
+void MatchSearch::assign(const Points& now, const Mesh& connectivity, const Labels& labels, const VertexAssignmentOptions& how,
+                         std::vector<VertexMatch>& matches) const {
+    Mesh mesh = connectivity;
+    for (const Vertex v : mesh.vertices()) mesh.point(v) = point_of(scale_ * now.col(static_cast<Eigen::Index>(v)));
+    VertexAssignmentOptions options = how;
+    options.reach *= scale_;
+    for (const Counterpart& other : counterparts_) {
+        Annotation part;
+        part.type = AnnotationType::region;
+        for (Index f = 0; f < labels.of_face.size(); ++f)
+            if (labels.of_face[f] == other.label) part.faces.push_back(f);
+        if (part.faces.empty()) continue;
+        const PlacedFragment& fragment = fragments_[static_cast<std::size_t>(other.fragment)];
+        std::vector<std::pair<Index, Index>> landmarks;
+        if (labels.of_face.size() == face_labels_.size()) {
+            const std::vector<Index> ours = touched_vertices(mesh, part), theirs = touched_vertices(fragment.mesh, other.region);
+            for (std::size_t l = 0; l < landmarks_.size(); ++l)
+                if (landmark_fragment_[l] == other.fragment &&
+                    std::binary_search(ours.begin(), ours.end(), landmarks_[l].first) &&
+                    std::binary_search(theirs.begin(), theirs.end(), landmarks_[l].second))
+                    landmarks.push_back(landmarks_[l]);
+        }
+        const VertexAssignment found = assign_vertices(mesh, part, fragment.mesh, other.region, landmarks, options);
+        for (std::size_t i = 0; i < found.vertices.size(); ++i) {
+            const Index v = found.vertices[i], there = found.counterpart[i];
+            VertexMatch& match = matches[v];
+            // Of several fragments that have the part the nearest counts.
+            const bool ours = match.fragment == other.fragment || match.fragment < 0;
+            if (there == no_index || trees_[static_cast<std::size_t>(other.fragment)]->breaks()[there]) {
+                if (ours) match = VertexMatch();
+                continue;
+            }
+            const Eigen::Vector3d place = eigen(fragment.mesh.point(Vertex(there))) / scale_;
+            const double distance = (place - now.col(static_cast<Eigen::Index>(v))).norm();
+            if (!ours && match.distance <= distance) continue;
+            match = {other.fragment, fragment.mesh.face(fragment.mesh.halfedge(Vertex(there))), place, distance};
+        }
+    }
+}
+
+}  // namespace ostraka

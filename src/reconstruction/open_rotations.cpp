@@ -1,0 +1,86 @@
+#include "ostraka/reconstruction/open_rotations.h"
+
+#include "ostraka/axis/axis.h"
+#include "ostraka/geom/eigen.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace ostraka {
+
+using Eigen::Vector3d;
+
+namespace {
+
+/// Does what the search left open hold a turn about the axis? On a small or nearly round part it is one of several motions.
+bool turns_about(const Freedom& freedom, const Vector3d& direction) {
+    switch (freedom.kind) {
+        case FreedomKind::none:
+        case FreedomKind::shift:
+            return false;
+        case FreedomKind::turn:
+        case FreedomKind::tube:
+        case FreedomKind::screw:
+            return std::abs(freedom.direction.dot(direction)) > std::cos(0.2);
+        default:
+            return true;
+    }
+}
+
+bool broken(const Fragment& fragment) {
+    return std::find(fragment.facets.begin(), fragment.facets.end(), Facet::fracture) != fragment.facets.end();
+}
+
+}  // namespace
+
+std::optional<BreakTurns> decide_free_turns(const Mesh& scaled, const std::vector<const Fragment*>& fragments,
+                                            const std::vector<std::optional<PoseSearchResult>>& searched,
+                                            std::vector<FragmentPlacement>& placed, const BreakTurnOptions& options) {
+    const auto open = [&](std::size_t k) {
+        return k < searched.size() && searched[k] && searched[k]->decided && searched[k]->freedom.kind != FreedomKind::none;
+    };
+    std::vector<std::size_t> number;
+    std::size_t free = 0, breaks = 0;
+    for (std::size_t k = 0; k < fragments.size(); ++k) {
+        if (!placed[k].problem.empty()) continue;
+        number.push_back(k);
+        free += open(k) ? 1 : 0;
+        breaks += broken(*fragments[k]) ? 1 : 0;
+    }
+    if (options.turns == "never" || number.size() < 2 || free == 0 || breaks == 0) return std::nullopt;
+    std::vector<Index> faces(scaled.number_of_faces());
+    std::iota(faces.begin(), faces.end(), Index(0));
+    const Axis axis = rotation_axis(scaled, faces);
+    if (!axis.found) return std::nullopt;
+    const Vector3d direction = eigen(axis.direction);
+    std::vector<TurnableSherd> sherds;
+    free = 0;
+    for (const std::size_t k : number) {
+        const bool turns = open(k) && turns_about(searched[k]->freedom, direction);
+        free += turns ? 1 : 0;
+        sherds.push_back({fragments[k], placed[k].pose, !turns});
+    }
+    if (free == 0) return std::nullopt;
+    BreakTurns found = turn_by_breaks(scaled, eigen(axis.point), direction, sherds, options), result;
+    result.wall = found.wall;
+    result.group.assign(fragments.size(), -1);
+    result.poses.resize(fragments.size());
+    result.overlap.assign(fragments.size(), 0);
+    result.notes.resize(fragments.size());
+    for (std::size_t i = 0; i < number.size(); ++i) {
+        const std::size_t k = number[i];
+        placed[k].pose = result.poses[k] = found.poses[i];
+        result.group[k] = static_cast<int>(number[static_cast<std::size_t>(found.group[i])]);
+        result.overlap[k] = found.overlap[i];
+        result.notes[k] = std::move(found.notes[i]);
+    }
+    for (BreakJoint& joint : found.joints) {
+        joint.first = static_cast<int>(number[static_cast<std::size_t>(joint.first)]);
+        joint.second = static_cast<int>(number[static_cast<std::size_t>(joint.second)]);
+        result.joints.push_back(joint);
+    }
+    return result;
+}
+
+}  // namespace ostraka

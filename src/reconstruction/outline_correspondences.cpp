@@ -1,0 +1,220 @@
+#include "outline_correspondences.h"
+
+#include "ostraka/annotation/outline.h"
+#include "ostraka/geom/eigen.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace ostraka {
+
+using Eigen::Vector3d;
+
+std::vector<VertexChain> chains_of(const Mesh& mesh, const Annotation& part, const std::vector<bool>& broken) {
+    std::vector<VertexChain> chains;
+    for (const auto& line : part.polylines) {
+        const bool closed = line.size() > 2 && line.front() == line.back();
+        chains.push_back({std::vector<Index>(line.begin(), line.end() - (closed ? 1 : 0)), closed});
+    }
+    if (part.type != AnnotationType::region) return chains;
+    const auto ends_object = [&](Halfedge h) { return mesh.is_border(h) || (!broken.empty() && broken[mesh.face(h)]); };
+    for (const Outline& loop : extract_outlines(mesh, part.faces)) {
+        const std::size_t n = loop.size();
+        std::vector<bool> ends(n, false);  // the edge that begins here is none of the annotation's
+        for (std::size_t i = 0; i < n; ++i) {
+            const Halfedge h = find_halfedge(mesh, Vertex(loop[i]), Vertex(loop[(i + 1) % n]));
+            ends[i] = h == Mesh::null_halfedge() || ends_object(h) || ends_object(mesh.opposite(h));
+        }
+        const auto first = std::find(ends.begin(), ends.end(), true);
+        if (first == ends.end()) {
+            chains.push_back({loop, true});
+            continue;
+        }
+        const auto begin = static_cast<std::size_t>(first - ends.begin());
+        VertexChain chain;
+        for (std::size_t k = 1; k <= n; ++k) {
+            const std::size_t i = (begin + k) % n;
+            chain.vertices.push_back(loop[i]);
+            if (!ends[i]) continue;
+            if (chain.vertices.size() > 1) chains.push_back(chain);
+            chain.vertices.clear();
+        }
+    }
+    return chains;
+}
+
+namespace {
+
+/// A chain with the way to each of its vertices from the first.
+struct Way {
+    explicit Way(const Mesh& mesh, VertexChain of) : chain(std::move(of)) {
+        for (const Index v : chain.vertices) places.push_back(eigen(mesh.point(Vertex(v))));
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            at.push_back(length);
+            if (i + 1 < places.size() || chain.closed) length += (places[(i + 1) % places.size()] - places[i]).norm();
+        }
+    }
+    /// The place so far along; of a closed chain going on at the start.
+    [[nodiscard]] Vector3d place(double way) const {
+        if (chain.closed) way -= length * std::floor(way / length);
+        const auto after = std::upper_bound(at.begin(), at.end(), way);
+        const auto i = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, after - at.begin() - 1));
+        const std::size_t next = (i + 1) % places.size();
+        if (next == 0 && !chain.closed) return places.back();
+        const double edge = (places[next] - places[i]).norm();
+        const double share = edge > 0 ? std::clamp((way - at[i]) / edge, 0.0, 1.0) : 0;
+        return (1 - share) * places[i] + share * places[next];
+    }
+
+    VertexChain chain;
+    std::vector<Vector3d> places;
+    std::vector<double> at;
+    double length = 0;
+};
+
+std::vector<Way> ways_of(const Mesh& mesh, std::vector<VertexChain> chains) {
+    std::vector<Way> ways;
+    for (VertexChain& chain : chains) {
+        if (chain.vertices.size() < 2) continue;
+        Way way(mesh, std::move(chain));
+        if (way.length > 0) ways.push_back(std::move(way));
+    }
+    return ways;
+}
+
+/// Where a vertex is on one of the chains: which, and how far along; -1 where it is on none.
+std::pair<int, double> on_chain(const std::vector<Way>& ways, const Vector3d& place) {
+    std::pair<int, double> found{-1, 0};
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t c = 0; c < ways.size(); ++c)
+        for (std::size_t i = 0; i < ways[c].places.size(); ++i) {
+            const double distance = (ways[c].places[i] - place).norm();
+            if (distance >= least || distance > 0.05 * ways[c].length) continue;
+            least = distance;
+            found = {static_cast<int>(c), ways[c].at[i]};
+        }
+    return found;
+}
+
+struct Along {
+    std::vector<OutlineGuide> guides;
+    std::size_t pieces = 0;  ///< between landmarks that follow each other on both
+};
+
+/// Guides of one chain by the landmarks on it (way along ours, along theirs). A way of ours is `scale` of theirs.
+Along along(const Way& ours, const Way& theirs, std::vector<std::pair<double, double>> marks, double scale) {
+    constexpr double share_beyond = 0.25;
+    std::sort(marks.begin(), marks.end());
+    marks.erase(std::unique(marks.begin(), marks.end(), [](const auto& a, const auto& b) { return a.first == b.first; }),
+                marks.end());
+    const std::size_t n = marks.size();
+    struct Piece {
+        double from, to, there_from, there_to;
+    };
+    std::vector<Piece> pieces;
+    double known = 0, known_there = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+        const bool last = k + 1 == n;
+        if (last && !ours.chain.closed) break;
+        const auto& [a, b] = marks[k];
+        auto [c, d] = marks[(k + 1) % n];
+        if (last) c += ours.length;
+        if (theirs.chain.closed && (d < b || (n == 1 && d <= b))) d += theirs.length;
+        if (!(d > b)) continue;  // cut on their side
+        if ((d - b) > 2 * scale * (c - a) || scale * (c - a) > 2 * (d - b)) continue;
+        pieces.push_back({a, c, b, d});
+        known += c - a;
+        known_there += d - b;
+    }
+    const double ratio = known > 0 ? known_there / known : scale;
+    Along result;
+    result.pieces = pieces.size();
+    for (std::size_t i = 0; i < ours.places.size(); ++i) {
+        const std::size_t count = ours.places.size();
+        double length = 0;
+        if (i > 0 || ours.chain.closed) length += 0.5 * (ours.places[i] - ours.places[(i + count - 1) % count]).norm();
+        if (i + 1 < count || ours.chain.closed) length += 0.5 * (ours.places[(i + 1) % count] - ours.places[i]).norm();
+        OutlineGuide guide{ours.chain.vertices[i], Vector3d::Zero(), length};
+        bool found = false;
+        for (const double way : {ours.at[i], ours.at[i] + ours.length}) {
+            if (way > ours.length && !ours.chain.closed) break;
+            for (const Piece& piece : pieces) {
+                if (found || way < piece.from || way > piece.to) continue;
+                const double share = piece.to > piece.from ? (way - piece.from) / (piece.to - piece.from) : 0;
+                guide.place = theirs.place(piece.there_from + share * (piece.there_to - piece.there_from));
+                found = true;
+            }
+        }
+        if (!found) {
+            // From the nearest landmark, either way.
+            double nearest = std::numeric_limits<double>::infinity(), there = 0;
+            for (const auto& [a, b] : marks)
+                for (const double turn : {-1.0, 0.0, 1.0}) {
+                    if (turn != 0 && !ours.chain.closed) continue;
+                    const double off = ours.at[i] + turn * ours.length - a;
+                    if (std::abs(off) >= nearest) continue;
+                    nearest = std::abs(off);
+                    there = b + ratio * off;
+                }
+            if (!std::isfinite(nearest) || (!theirs.chain.closed && (there < 0 || there > theirs.length))) continue;
+            // Half a turn away nothing is known.
+            if (ours.chain.closed && nearest > 0.4 * ours.length) continue;
+            guide.place = theirs.place(there);
+            if (nearest > 0) guide.length *= share_beyond;
+        }
+        result.guides.push_back(guide);
+    }
+    return result;
+}
+
+double mean_square(const Mesh& mesh, const std::vector<OutlineGuide>& guides, double scale) {
+    double sum = 0;
+    for (const OutlineGuide& guide : guides) sum += (scale * eigen(mesh.point(Vertex(guide.vertex))) - guide.place).squaredNorm();
+    return guides.empty() ? std::numeric_limits<double>::infinity() : sum / static_cast<double>(guides.size());
+}
+
+}  // namespace
+
+std::vector<OutlineGuide> outline_guides(const Mesh& mesh, const Annotation& part, const Mesh& fragment,
+                                         const Annotation& of_fragment, const std::vector<bool>& broken,
+                                         const std::vector<std::pair<Index, Index>>& landmarks, double scale) {
+    const std::vector<Way> ours = ways_of(mesh, chains_of(mesh, part));
+    const auto theirs_turned = [&](bool turned) {
+        std::vector<VertexChain> chains = chains_of(fragment, of_fragment, broken);
+        if (turned)
+            for (VertexChain& chain : chains) std::reverse(chain.vertices.begin(), chain.vertices.end());
+        return ways_of(fragment, std::move(chains));
+    };
+    const std::vector<Way> forward = theirs_turned(false);
+    const bool line = part.type == AnnotationType::line;
+    const std::vector<Way> backward = line ? theirs_turned(true) : std::vector<Way>();
+    using Marks = std::vector<std::pair<double, double>>;
+    std::map<std::pair<int, int>, std::pair<Marks, Marks>> marks;  // by chains, forward and backward
+    for (const auto& [vertex, there] : landmarks) {
+        const Vector3d place = eigen(fragment.point(Vertex(there)));
+        const auto [a, way] = on_chain(ours, eigen(mesh.point(Vertex(vertex))));
+        const auto [b, way_there] = on_chain(forward, place);
+        if (a < 0 || b < 0) continue;
+        auto& both = marks[{a, b}];
+        both.first.emplace_back(way, way_there);
+        if (line) both.second.emplace_back(way, on_chain(backward, place).second);
+    }
+    std::vector<OutlineGuide> guides;
+    for (const auto& [chains, both] : marks) {
+        const Way& way = ours[static_cast<std::size_t>(chains.first)];
+        const auto there = static_cast<std::size_t>(chains.second);
+        Along best = along(way, forward[there], both.first, scale);
+        if (line) {
+            Along other = along(way, backward[there], both.second, scale);
+            if (other.pieces > best.pieces ||
+                (other.pieces == best.pieces && mean_square(mesh, other.guides, scale) < mean_square(mesh, best.guides, scale)))
+                best = std::move(other);
+        }
+        guides.insert(guides.end(), best.guides.begin(), best.guides.end());
+    }
+    return guides;
+}
+
+}  // namespace ostraka

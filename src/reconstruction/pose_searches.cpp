@@ -1,0 +1,171 @@
+#include "ostraka/reconstruction/pose_searches.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/file.h"
+#include "ostraka/core/provenance.h"
+
+#include <algorithm>
+
+namespace ostraka {
+
+struct PoseSearches::Whole {
+    Whole(const Mesh& mesh, const PoseSearchOptions& options) : surface(mesh), search(surface, options) {}
+    SurfaceSearch surface;
+    PoseSearch search;
+};
+
+PoseSearches::PoseSearches(const Mesh& mesh, const PoseSearchOptions& options) : mesh_(mesh), options_(options) {
+    std::string text = version() + '\n' + mesh_checksum(mesh);
+    for (const auto& [name, value] : list_options(options)) text += '\n' + name + '=' + value;
+    of_template_ = sha256(text);
+}
+PoseSearches::~PoseSearches() = default;
+PoseSearches::PoseSearches(PoseSearches&&) noexcept = default;
+
+std::string PoseSearches::key_of(const Fragment& fragment, double least_scale, double most_scale) const {
+    std::string text = of_template_ + '\n' + mesh_checksum(fragment.mesh) + '\n';
+    for (const Facet facet : fragment.facets) text += facet == Facet::fracture ? '-' : '+';
+    Json scales(rapidjson::kArrayType);
+    scales.PushBack(least_scale, scales.GetAllocator()).PushBack(most_scale, scales.GetAllocator());
+    return sha256(text + '\n' + to_text(scales));
+}
+
+std::optional<PoseSearchResult> PoseSearches::find(const Fragment& fragment, double least_scale, double most_scale) {
+    std::vector<bool> counts(fragment.facets.size());
+    for (std::size_t f = 0; f < counts.size(); ++f) counts[f] = fragment.facets[f] != Facet::fracture;
+    if (!counts.empty() && std::find(counts.begin(), counts.end(), true) == counts.end()) return {};
+    const std::string key = key_of(fragment, least_scale, most_scale);
+    if (const auto found = known_.find(key); found != known_.end()) {
+        ++reused_;
+        return found->second.result;
+    }
+    if (!whole_) whole_ = std::make_unique<Whole>(mesh_, options_);
+    PoseSearchResult result = whole_->search.find(fragment.mesh, counts, least_scale, most_scale);
+    ++made_;
+    known_.emplace(key, Known{fragment.name, result});
+    return result;
+}
+
+namespace {
+
+JsonValue to_array(const double* numbers, int count, JsonAllocator& allocator) {
+    JsonValue list(rapidjson::kArrayType);
+    for (int i = 0; i < count; ++i) list.PushBack(numbers[i], allocator);
+    return list;
+}
+JsonValue to_json(const Eigen::Vector3d& v, JsonAllocator& allocator) { return to_array(v.data(), 3, allocator); }
+JsonValue to_json(const Motion& motion, JsonAllocator& allocator) {
+    JsonValue entry(rapidjson::kObjectType);
+    const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> rows = motion.turn;
+    add_member(entry, "turn", to_array(rows.data(), 9, allocator), allocator);
+    add_member(entry, "shift", to_json(motion.shift, allocator), allocator);
+    add_member(entry, "scale", JsonValue(motion.scale), allocator);
+    return entry;
+}
+JsonValue to_json(const PoseSearchResult& result, JsonAllocator& allocator) {
+    JsonValue entry(rapidjson::kObjectType), candidates(rapidjson::kArrayType), freedom(rapidjson::kObjectType),
+        ways(rapidjson::kArrayType);
+    for (const PoseCandidate& one : result.candidates) {
+        JsonValue item(rapidjson::kObjectType);
+        add_member(item, "pose", to_json(one.pose, allocator), allocator);
+        add_member(item, "scale", JsonValue(one.scale), allocator);
+        add_member(item, "score", JsonValue(one.score), allocator);
+        add_member(item, "share", JsonValue(one.share), allocator);
+        add_member(item, "inside", JsonValue(one.inside), allocator);
+        add_member(item, "residual", JsonValue(one.residual), allocator);
+        candidates.PushBack(item, allocator);
+    }
+    add_member(entry, "candidates", std::move(candidates), allocator);
+    add_member(entry, "margin", JsonValue(result.margin), allocator);
+    add_member(entry, "confidence", JsonValue(result.confidence), allocator);
+    add_member(entry, "decided", JsonValue(result.decided), allocator);
+    add_member(entry, "reason", result.reason, allocator);
+    add_member(freedom, "kind", to_string(result.freedom.kind), allocator);
+    add_member(freedom, "point", to_json(result.freedom.point, allocator), allocator);
+    add_member(freedom, "direction", to_json(result.freedom.direction, allocator), allocator);
+    add_member(freedom, "pitch", JsonValue(result.freedom.pitch), allocator);
+    add_member(entry, "freedom", std::move(freedom), allocator);
+    for (const FreeWay& way : result.ways) {
+        JsonValue item(rapidjson::kObjectType);
+        add_member(item, "point", to_json(way.point, allocator), allocator);
+        add_member(item, "direction", to_json(way.direction, allocator), allocator);
+        add_member(item, "turns", JsonValue(way.turns), allocator);
+        add_member(item, "least", JsonValue(way.least), allocator);
+        add_member(item, "most", JsonValue(way.most), allocator);
+        ways.PushBack(item, allocator);
+    }
+    add_member(entry, "ways", std::move(ways), allocator);
+    return entry;
+}
+
+// The schema has been seen to before these.
+Eigen::Vector3d vector_from(const JsonValue& list) { return {list[0].GetDouble(), list[1].GetDouble(), list[2].GetDouble()}; }
+Motion motion_from(const JsonValue& entry) {
+    Motion motion;
+    for (int i = 0; i < 9; ++i) motion.turn(i / 3, i % 3) = entry["turn"][static_cast<rapidjson::SizeType>(i)].GetDouble();
+    motion.shift = vector_from(entry["shift"]);
+    motion.scale = entry["scale"].GetDouble();
+    return motion;
+}
+FreedomKind freedom_kind_from(const std::string& name) {
+    for (const FreedomKind kind : {FreedomKind::none, FreedomKind::turn, FreedomKind::shift, FreedomKind::screw,
+                                   FreedomKind::tube, FreedomKind::ball, FreedomKind::plane})
+        if (to_string(kind) == name) return kind;
+    return FreedomKind::more;
+}
+PoseSearchResult result_from(const JsonValue& entry) {
+    PoseSearchResult result;
+    for (const auto& item : entry["candidates"].GetArray())
+        result.candidates.push_back({motion_from(item["pose"]), item["scale"].GetDouble(), item["score"].GetDouble(),
+                                     item["share"].GetDouble(), item["inside"].GetDouble(), item["residual"].GetDouble()});
+    result.margin = entry["margin"].GetDouble();
+    result.confidence = entry["confidence"].GetDouble();
+    result.decided = entry["decided"].GetBool();
+    result.reason = entry["reason"].GetString();
+    const JsonValue& freedom = entry["freedom"];
+    result.freedom.kind = freedom_kind_from(freedom["kind"].GetString());
+    result.freedom.point = vector_from(freedom["point"]);
+    result.freedom.direction = vector_from(freedom["direction"]);
+    result.freedom.pitch = freedom["pitch"].GetDouble();
+    for (const auto& item : entry["ways"].GetArray())
+        result.ways.push_back({vector_from(item["point"]), vector_from(item["direction"]), item["turns"].GetBool(),
+                               item["least"].GetDouble(), item["most"].GetDouble()});
+    return result;
+}
+
+}  // namespace
+
+JsonValue PoseSearches::to_json(JsonAllocator& allocator) const {
+    JsonValue document(rapidjson::kObjectType), list(rapidjson::kArrayType);
+    add_member(document, "format", "ostraka-searches", allocator);
+    add_member(document, "version", JsonValue(1), allocator);
+    add_member(document, "template", of_template_, allocator);
+    for (const auto& [key, known] : known_) {
+        JsonValue entry(rapidjson::kObjectType), result = ostraka::to_json(known.result, allocator);
+        add_member(entry, "fragment", known.fragment, allocator);
+        add_member(entry, "key", key, allocator);
+        add_member(entry, "checksum", sha256(to_text(result)), allocator);
+        add_member(entry, "result", std::move(result), allocator);
+        list.PushBack(entry, allocator);
+    }
+    add_member(document, "searches", std::move(list), allocator);
+    return document;
+}
+
+std::size_t PoseSearches::add(const JsonValue& document, const std::string& file) {
+    validate(document, "searches", file);
+    std::size_t damaged = 0;
+    if (document["template"].GetString() != of_template_) return damaged;
+    for (const auto& entry : document["searches"].GetArray()) {
+        if (sha256(to_text(entry["result"])) != entry["checksum"].GetString()) {
+            ++damaged;
+            continue;
+        }
+        PoseSearchResult result = result_from(entry["result"]);
+        if (result.decided && result.candidates.empty()) ++damaged;
+        else known_.try_emplace(entry["key"].GetString(), Known{entry["fragment"].GetString(), std::move(result)});
+    }
+    return damaged;
+}
+
+}  // namespace ostraka

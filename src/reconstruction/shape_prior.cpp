@@ -1,0 +1,286 @@
+#include "ostraka/reconstruction/shape_prior.h"
+#include "ostraka/core/angles.h"
+#include "ostraka/core/dense.h"
+
+#include "match_search.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/geom/eigen.h"
+#include "ostraka/geom/submesh.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+
+namespace ostraka {
+
+using Eigen::Matrix3d;
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+void ShapePrior::check(std::size_t vertices) const {
+    if (mean.size() != vertices)
+        fail_input("class", "has " + std::to_string(mean.size()) + " vertices, and the template " + std::to_string(vertices),
+                   "give the class that was learnt with this template");
+    if (static_cast<std::size_t>(modes.rows()) != 3 * vertices || static_cast<std::size_t>(modes.cols()) != deviations.size())
+        fail_input("class", "its modes do not fit its mean", "learn it anew");
+    if (!modes.allFinite() ||
+        std::any_of(deviations.begin(), deviations.end(), [](double d) { return !(d > 0) || !std::isfinite(d); }))
+        fail_input("class", "has a mode that is not finite, or does not vary", "learn it anew");
+}
+
+namespace {
+
+/// A place of the class's shape and how far the fragment lies off its plane.
+struct Residual {
+    Vector3d place, normal;
+    double off = 0, weight = 0;
+    std::array<Index, 3> corners{};  ///< of the template
+    std::array<double, 3> barycentric{};
+};
+
+/// As how many independent places residuals count, `least` at least: those of a rough surface are independent of each other,
+/// those of a shape that the class does not have agree with their neighbours. The surface is halved across its longest side until
+/// there are patches enough; the mean residual of a patch varies by as much less than one residual does as the patch has
+/// independent ones.
+double independent_samples(std::vector<Residual> residuals, std::size_t unknowns, double least) {
+    const auto wanted = std::max(static_cast<std::size_t>(least), 2 * unknowns);
+    std::erase_if(residuals, [](const Residual& one) { return !(one.weight > 0); });
+    if (residuals.size() < 4 * wanted) return least;
+    std::vector<std::pair<std::size_t, std::size_t>> patches{{0, residuals.size()}};
+    while (patches.size() < wanted) {
+        std::vector<std::pair<std::size_t, std::size_t>> halves;
+        for (const auto& [from, to] : patches) {
+            Eigen::AlignedBox3d box;
+            for (std::size_t i = from; i < to; ++i) box.extend(residuals[i].place);
+            Eigen::Index axis = 0;
+            box.sizes().maxCoeff(&axis);
+            const std::size_t middle = from + (to - from) / 2;
+            const auto begin = residuals.begin();
+            std::nth_element(begin + static_cast<std::ptrdiff_t>(from), begin + static_cast<std::ptrdiff_t>(middle),
+                             begin + static_cast<std::ptrdiff_t>(to),
+                             [axis](const Residual& a, const Residual& b) { return a.place[axis] < b.place[axis]; });
+            halves.emplace_back(from, middle);
+            halves.emplace_back(middle, to);
+        }
+        patches = std::move(halves);
+    }
+    double squares = 0, of_means = 0;
+    for (const auto& [from, to] : patches) {
+        double sum = 0, weight = 0;
+        for (std::size_t i = from; i < to; ++i) {
+            sum += residuals[i].weight * residuals[i].off;
+            weight += residuals[i].weight;
+            squares += residuals[i].weight * residuals[i].off * residuals[i].off;
+        }
+        if (weight > 0) of_means += sum * sum / weight;
+    }
+    const auto count = static_cast<double>(patches.size());
+    // What is fitted takes its share of the means' variance.
+    of_means *= count / (count - static_cast<double>(unknowns));
+    const double most = static_cast<double>(residuals.size());
+    return of_means > 0 ? std::clamp(count * squares / of_means, least, std::max(least, most)) : least;
+}
+
+class PriorFitter {
+public:
+    PriorFitter(const Mesh& scaled, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments,
+                const ShapePrior& prior, const PriorOptions& options)
+        : scaled_(scaled), prior_(prior), options_(options), diagonal_(box_diagonal(scaled)) {
+        std::vector<Vector3d> there;
+        for (const Vertex v : scaled.vertices()) there.push_back(eigen(scaled.point(v)));
+        FitOptions free;
+        free.scale = true;
+        place_ = fit_motion(prior.mean, there, {}, free);
+        coefficients_ = VectorXd::Zero(prior.modes.cols());
+        const MatchSearch search(scaled, set, fragments);
+        guides_ = search.guides();
+        constexpr int most = 3000;
+        samples_ = search.samples(most);
+        const MatchSearch::Labels labels = search.labels(scaled, {});
+        for (const FragmentSample& sample : samples_) parts_.try_emplace(sample.label);
+        for (auto& [label, part] : parts_) {
+            std::vector<bool> keep(labels.of_face.size());
+            for (std::size_t f = 0; f < keep.size(); ++f) keep[f] = labels.of_face[f] == label;
+            part = keep_faces(scaled, keep);
+        }
+    }
+
+    PriorFit run() {
+        PriorFit fit;
+        Points now = shape();
+        for (; fit.iterations < options_.iterations; ++fit.iterations) {
+            if (!step(now, fit)) break;
+            const Points then = shape();
+            const double change = (then - now).colwise().norm().maxCoeff();
+            now = then;
+            if (change < 1e-5 * diagonal_) break;
+        }
+        fit.mesh = scaled_;
+        for (const Vertex v : fit.mesh.vertices()) fit.mesh.point(v) = point_of(now.col(static_cast<Eigen::Index>(v)));
+        for (Eigen::Index k = 0; k < coefficients_.size(); ++k)
+            fit.coefficients.push_back(coefficients_[k] / prior_.deviations[static_cast<std::size_t>(k)]);
+        return fit;
+    }
+
+private:
+    [[nodiscard]] Points shape() const {
+        Points points(3, static_cast<Eigen::Index>(prior_.mean.size()));
+        const VectorXd offset = prior_.modes * coefficients_;
+        for (Eigen::Index i = 0; i < points.cols(); ++i)
+            points.col(i) = place_(prior_.mean[static_cast<std::size_t>(i)] + offset.segment<3>(3 * i));
+        return points;
+    }
+
+    /// Where the fragments' samples are on the class's shape, in its planes: that is smooth, and they are not.
+    [[nodiscard]] std::vector<Residual> residuals(const Points& now) {
+        std::vector<Residual> found;
+        const double cosine = std::cos(options_.angle * pi / 180), reach = options_.reach * diagonal_;
+        for (auto& [label, part] : parts_) {
+            if (part.faces.empty()) continue;
+            for (const Vertex v : part.mesh.vertices())
+                part.mesh.point(v) = point_of(now.col(static_cast<Eigen::Index>(part.vertices[v])));
+            const SurfaceSearch search(part.mesh);
+            std::vector<std::optional<Residual>> of_sample(samples_.size());
+            parallel_for(samples_.size(), [&, label = label, part = &part](std::size_t i) {
+                const FragmentSample& sample = samples_[i];
+                if (sample.label != label) return;
+                const auto hit = search.closest_compatible(point_of(sample.place), vector_of(sample.normal), cosine, reach);
+                if (!hit) return;
+                Residual one;
+                one.place = eigen(hit->point);
+                one.normal = eigen(search.normal(hit->face));
+                one.off = one.normal.dot(sample.place - one.place);
+                const auto c = corners(part->mesh, Face(hit->face));
+                for (std::size_t k = 0; k < 3; ++k) one.corners[k] = part->vertices[c[k]];
+                one.barycentric = hit->barycentric;
+                of_sample[i] = one;
+            });
+            for (const auto& one : of_sample)
+                if (one) found.push_back(*one);
+        }
+        return found;
+    }
+
+    /// False where nothing is matched.
+    bool step(const Points& now, PriorFit& fit) {
+        std::vector<Residual> matches = residuals(now);
+        fit.matched = matches.size();
+        if (matches.size() < 3) return false;
+        // Who is off by far more than most does not count (Tukey's biweight).
+        std::vector<double> sizes;
+        for (const Residual& one : matches) sizes.push_back(std::abs(one.off));
+        const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+        std::nth_element(sizes.begin(), middle, sizes.end());
+        const double least_error = 1e-4 * diagonal_, limit = 4.685 * std::max(1.4826 * *middle, least_error);
+        double weight = 0;
+        for (Residual& one : matches) {
+            const double t = one.off / limit;
+            one.weight = std::abs(t) < 1 ? (1 - t * t) * (1 - t * t) : 0;
+            weight += one.weight;
+        }
+        if (!(weight > 0)) return false;
+        Vector3d centre = Vector3d::Zero();
+        double squares = 0, spread = 0;
+        for (Residual& one : matches) {
+            one.weight /= weight;
+            centre += one.weight * one.place;
+            squares += one.weight * one.off * one.off;
+        }
+        for (const Residual& one : matches) spread += one.weight * (one.place - centre).squaredNorm();
+        spread = std::sqrt(spread);
+        if (!(spread > 0)) return false;
+        // Unknown: turn and scale (times the spread), shift, coefficients (in deviations).
+        const Eigen::Index modes = coefficients_.size(), unknowns = 7 + modes;
+        MatrixXd normal = MatrixXd::Zero(unknowns, unknowns);
+        VectorXd right = VectorXd::Zero(unknowns), row(unknowns);
+        const Matrix3d linear = place_.scale * place_.turn;
+        const auto add = [&](const Residual& one) {
+            const Vector3d arm = (one.place - centre) / spread;
+            row.head<3>() = arm.cross(one.normal);
+            row[3] = one.normal.dot(arm);
+            row.segment<3>(4) = one.normal;
+            const Eigen::RowVector3d turned = one.normal.transpose() * linear;
+            row.tail(modes).setZero();
+            for (std::size_t c = 0; c < 3; ++c)
+                for (Eigen::Index k = 0; k < modes && one.barycentric[c] > 0; ++k)
+                    row[7 + k] += one.barycentric[c] * prior_.deviations[static_cast<std::size_t>(k)] *
+                                  turned.dot(prior_.modes.col(k).segment<3>(3 * static_cast<Eigen::Index>(one.corners[c])));
+            normal.selfadjointView<Eigen::Lower>().rankUpdate(row, one.weight);
+            right += one.weight * one.off * row;
+        };
+        for (const Residual& one : matches)
+            if (one.weight > 0) add(one);
+        fit.residual = std::sqrt(squares);
+        fit.samples = independent_samples(matches, static_cast<std::size_t>(unknowns), options_.samples);
+        // A landmark is one place more, less sure where the landmarks are off by more than the surface.
+        double apart = 0;
+        for (const Guide& guide : guides_)
+            apart += (guide.place - now.col(static_cast<Eigen::Index>(guide.vertex))).squaredNorm() /
+                     (3 * static_cast<double>(guides_.size()));
+        const double of_landmark = (apart > squares ? squares / apart : 1) / fit.samples;
+        for (const Guide& guide : guides_) {
+            const Vector3d p = now.col(static_cast<Eigen::Index>(guide.vertex));
+            for (int axis = 0; axis < 3; ++axis)
+                add({p, Vector3d::Unit(axis), guide.place[axis] - p[axis], of_landmark, {guide.vertex, 0, 0}, {1, 0, 0}});
+        }
+        normal = normal.selfadjointView<Eigen::Lower>();
+        // The observed surface counts as so many places with the residual as their error, which is never taken for less than
+        // what registration leaves; each coefficient is off by one deviation at will.
+        const double error = std::max(fit.residual, least_error), stiffness = error * error / fit.samples;
+        for (Eigen::Index k = 0; k < modes; ++k) {
+            const double b = coefficients_[k] / prior_.deviations[static_cast<std::size_t>(k)];
+            normal(7 + k, 7 + k) += stiffness;
+            right[7 + k] -= stiffness * b;
+        }
+        normal.diagonal().array() += 1e-12 * normal.diagonal().maxCoeff();
+        const VectorXd x = solve_ldlt<Eigen::Dynamic>(normal, right);
+        if (!x.allFinite()) return false;
+        // The same motion of what the modes give: first the coefficients, then the motion about the centre.
+        for (Eigen::Index k = 0; k < modes; ++k) {
+            const double deviation = prior_.deviations[static_cast<std::size_t>(k)];
+            coefficients_[k] =
+                std::clamp(coefficients_[k] + deviation * x[7 + k], -options_.most * deviation, options_.most * deviation);
+        }
+        const Vector3d turn = x.head<3>() / spread;
+        const double angle = turn.norm();
+        Motion about;
+        if (angle > 0) about.turn = Eigen::AngleAxisd(std::min(angle, 0.5), turn / angle).toRotationMatrix();
+        about.scale = std::clamp(1 + x[3] / spread, 0.8, 1.25);
+        about.shift = centre + x.segment<3>(4) - about.scale * (about.turn * centre);
+        place_ = about.after(place_);
+        return true;
+    }
+
+    const Mesh& scaled_;
+    const ShapePrior& prior_;
+    const PriorOptions& options_;
+    double diagonal_;
+    std::vector<Guide> guides_;
+    std::vector<FragmentSample> samples_;
+    std::map<int, SubMesh> parts_;  ///< of the template, by label
+    Motion place_;
+    VectorXd coefficients_;
+};
+
+}  // namespace
+
+PriorFit fit_prior(const Mesh& scaled, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments,
+                   const ShapePrior& prior, const PriorOptions& options) {
+    check_options(options, "fit");
+    prior.check(scaled.number_of_vertices());
+    return PriorFitter(scaled, set, fragments, prior, options).run();
+}
+
+void PriorOptions::describe(OptionList& visit) {
+    visit("class-iterations", iterations, "most steps of the fit of a class's modes", Range{1, 1000});
+    visit("class-limit", most, "standard deviations that a mode may go from the mean", Range{0, 100});
+    visit("class-samples", samples, "least number of independent places that the observed surface counts as, against the class",
+          Range{1, 1e9});
+}
+
+}  // namespace ostraka

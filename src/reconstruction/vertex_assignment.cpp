@@ -1,0 +1,286 @@
+#include "ostraka/reconstruction/vertex_assignment.h"
+#include "ostraka/core/angles.h"
+
+#include "assignment.h"
+#include "outline_correspondences.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/geom/eigen.h"
+
+#include <CGAL/Orthogonal_k_neighbor_search.h>
+#include <CGAL/Search_traits_3.h>
+#include <CGAL/Search_traits_adapter.h>
+#include <CGAL/property_map.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace ostraka {
+
+namespace {
+
+using Named = std::pair<Point, int>;
+using Traits = CGAL::Search_traits_adapter<Named, CGAL::First_of_pair_property_map<Named>, CGAL::Search_traits_3<Kernel>>;
+using Neighbours = CGAL::Orthogonal_k_neighbor_search<Traits>;
+using Tree = Neighbours::Tree;
+
+/// The vertices of a part, which of them are on an outline, and where.
+struct Part {
+    std::vector<Index> vertices;
+    std::vector<Point> places;
+    std::vector<Vector> normals;
+    std::vector<bool> boundary;
+    std::vector<int> inner, outer;  ///< positions in `vertices` of those inside and on outlines
+    /// For each vertex on an outline and each landmark the way along the outline; negative: none.
+    std::vector<std::vector<double>> ways;
+};
+
+/// Distances from each vertex of a chain onwards to one of them, going on at the start of a closed one; negative where there is
+/// no way.
+std::vector<double> ways_to(const Mesh& mesh, const VertexChain& chain, std::size_t goal) {
+    const std::size_t n = chain.vertices.size();
+    std::vector<double> ways(n, -1);
+    double length = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+        if (k > 0) {
+            if (goal < k && !chain.closed) break;
+            const std::size_t a = (goal + n - k) % n, b = (a + 1) % n;
+            length +=
+                std::sqrt(CGAL::squared_distance(mesh.point(Vertex(chain.vertices[a])), mesh.point(Vertex(chain.vertices[b]))));
+        }
+        ways[(goal + n - k) % n] = length;
+    }
+    return ways;
+}
+
+Part part_of(const Mesh& mesh, const Annotation& annotation, const std::vector<Index>& landmarks, const std::string& whose) {
+    Part part;
+    part.vertices = touched_vertices(mesh, annotation);
+    if (part.vertices.empty())
+        fail_input(whose + ", annotation '" + annotation.tag + "'", "has no vertices", "leave its match out");
+    std::map<Index, int> position;
+    for (std::size_t i = 0; i < part.vertices.size(); ++i) {
+        position.emplace(part.vertices[i], static_cast<int>(i));
+        part.places.push_back(mesh.point(Vertex(part.vertices[i])));
+        part.normals.push_back(vertex_normal(mesh, Vertex(part.vertices[i])));
+    }
+    const std::vector<VertexChain> chains = chains_of(mesh, annotation);
+    part.boundary.assign(part.vertices.size(), annotation.type != AnnotationType::region);
+    for (const VertexChain& chain : chains)
+        for (const Index v : chain.vertices) part.boundary[static_cast<std::size_t>(position.at(v))] = true;
+    part.ways.assign(part.vertices.size(), std::vector<double>(landmarks.size(), -1));
+    for (std::size_t l = 0; l < landmarks.size(); ++l) {
+        const Point& place = mesh.point(Vertex(landmarks[l]));
+        const VertexChain* nearest = nullptr;
+        std::size_t goal = 0;
+        double least = std::numeric_limits<double>::infinity();
+        for (const VertexChain& chain : chains)
+            for (std::size_t i = 0; i < chain.vertices.size(); ++i)
+                if (const double d = CGAL::squared_distance(mesh.point(Vertex(chain.vertices[i])), place); d < least) {
+                    least = d;
+                    nearest = &chain;
+                    goal = i;
+                }
+        if (nearest == nullptr) continue;
+        const std::vector<double> ways = ways_to(mesh, *nearest, goal);
+        for (std::size_t i = 0; i < ways.size(); ++i)
+            part.ways[static_cast<std::size_t>(position.at(nearest->vertices[i]))][l] = ways[i];
+    }
+    for (std::size_t i = 0; i < part.vertices.size(); ++i)
+        (part.boundary[i] ? part.outer : part.inner).push_back(static_cast<int>(i));
+    return part;
+}
+
+/// |difference of ways|, summed over the landmarks that both have a way to.
+double outline_cost(const std::vector<double>& a, const std::vector<double>& b) {
+    double sum = 0;
+    for (std::size_t l = 0; l < a.size(); ++l)
+        if (a[l] >= 0 && b[l] >= 0) sum += std::abs(a[l] - b[l]);
+    return sum;
+}
+
+/// A cost brought to 0 to 1.
+struct Scale {
+    double least = 0, most = 0;
+    [[nodiscard]] double operator()(double value) const { return most > least ? (value - least) / (most - least) : 0; }
+};
+
+class Assigner {
+public:
+    Assigner(Part ours, Part theirs, const VertexAssignmentOptions& options)
+        : ours_(std::move(ours)),
+          theirs_(std::move(theirs)),
+          options_(options),
+          least_cosine_(std::cos(options.angle * pi / 180)) {
+        for (const bool outer : {false, true}) {
+            std::vector<Named> named;
+            for (const int j : outer ? theirs_.outer : theirs_.inner)
+                named.emplace_back(theirs_.places[static_cast<std::size_t>(j)], j);
+            trees_[outer ? 1 : 0].insert(named.begin(), named.end());
+            if (!named.empty()) trees_[outer ? 1 : 0].build();
+        }
+        find_scales();
+    }
+
+    VertexAssignment run() {
+        VertexAssignment result;
+        result.vertices = ours_.vertices;
+        const std::size_t n = result.vertices.size();
+        result.counterpart.assign(n, no_index);
+        result.cost.assign(n, std::numeric_limits<double>::infinity());
+        const bool once = options_.counterpart == "one-to-one";
+        const auto wanted = static_cast<std::size_t>(once ? options_.candidates : 1);
+        std::vector<std::vector<std::pair<double, int>>> lists(n);
+        parallel_for(
+            n, [&](std::size_t i) { lists[i] = best(static_cast<int>(i), wanted); }, 64);
+        std::vector<int> chosen(n, -1);
+        if (once) {
+            const double sum = options_.boundary + options_.distance + options_.outline, unit = 1e9 / std::max(sum, 1e-300);
+            std::vector<fitting::AssignmentArc> arcs;
+            for (std::size_t i = 0; i < n; ++i)
+                for (const auto& [cost, j] : lists[i]) arcs.push_back({static_cast<int>(i), j, std::llround(unit * cost)});
+            chosen = fitting::assign_columns(static_cast<int>(n), static_cast<int>(theirs_.vertices.size()), arcs,
+                                             std::llround(1e9 * options_.unassigned));
+        } else {
+            for (std::size_t i = 0; i < n; ++i)
+                if (!lists[i].empty()) chosen[i] = lists[i].front().second;
+        }
+        for (std::size_t i = 0; i < n; ++i) {
+            if (chosen[i] < 0) continue;
+            result.counterpart[i] = theirs_.vertices[static_cast<std::size_t>(chosen[i])];
+            result.cost[i] = cost(static_cast<int>(i), chosen[i]);
+            result.total += result.cost[i];
+        }
+        return result;
+    }
+
+private:
+    [[nodiscard]] double distance(int i, int j) const {
+        return std::sqrt(
+            CGAL::squared_distance(ours_.places[static_cast<std::size_t>(i)], theirs_.places[static_cast<std::size_t>(j)]));
+    }
+    [[nodiscard]] bool both_outer(int i, int j) const {
+        return ours_.boundary[static_cast<std::size_t>(i)] && theirs_.boundary[static_cast<std::size_t>(j)];
+    }
+    [[nodiscard]] double ways(int i, int j) const {
+        return both_outer(i, j) ? outline_cost(ours_.ways[static_cast<std::size_t>(i)], theirs_.ways[static_cast<std::size_t>(j)])
+                                : 0;
+    }
+    [[nodiscard]] double cost(int i, int j) const {
+        const bool differ = ours_.boundary[static_cast<std::size_t>(i)] != theirs_.boundary[static_cast<std::size_t>(j)];
+        return options_.boundary * boundary_(differ ? 1 : 0) + options_.distance * distance_(distance(i, j)) +
+               options_.outline * outline_(ways(i, j));
+    }
+    [[nodiscard]] bool allowed(int i, int j) const {
+        if (options_.reach > 0 && distance(i, j) > options_.reach) return false;
+        return options_.angle >= 180 ||
+               ours_.normals[static_cast<std::size_t>(i)] * theirs_.normals[static_cast<std::size_t>(j)] >= least_cosine_;
+    }
+
+    /// Least and greatest of each cost over all pairs.
+    void find_scales() {
+        std::vector<double> nearest(ours_.vertices.size()), farthest(ours_.vertices.size());
+        parallel_for(
+            nearest.size(),
+            [&](std::size_t i) {
+                nearest[i] = std::numeric_limits<double>::infinity();
+                farthest[i] = 0;
+                for (const Tree& tree : trees_) {
+                    if (tree.empty()) continue;
+                    nearest[i] = std::min(nearest[i], std::sqrt(Neighbours(tree, ours_.places[i], 1).begin()->second));
+                    farthest[i] =
+                        std::max(farthest[i], std::sqrt(Neighbours(tree, ours_.places[i], 1, 0, false).begin()->second));
+                }
+            },
+            64);
+        distance_ = {*std::min_element(nearest.begin(), nearest.end()), *std::max_element(farthest.begin(), farthest.end())};
+        const bool same = (!ours_.inner.empty() && !theirs_.inner.empty()) || (!ours_.outer.empty() && !theirs_.outer.empty());
+        const bool differ = (!ours_.inner.empty() && !theirs_.outer.empty()) || (!ours_.outer.empty() && !theirs_.inner.empty());
+        boundary_ = {same ? 0.0 : 1.0, differ ? 1.0 : 0.0};
+        std::vector<double> least(ours_.outer.size(), std::numeric_limits<double>::infinity()), most(ours_.outer.size(), 0);
+        parallel_for(
+            ours_.outer.size(),
+            [&](std::size_t k) {
+                for (const int j : theirs_.outer) {
+                    const double d = ways(ours_.outer[k], j);
+                    least[k] = std::min(least[k], d);
+                    most[k] = std::max(most[k], d);
+                }
+            },
+            16);
+        const bool zero = !(ours_.inner.empty() && theirs_.inner.empty());  // pairs with one inside cost nothing
+        if (!ours_.outer.empty() && !theirs_.outer.empty())
+            outline_ = {zero ? 0.0 : *std::min_element(least.begin(), least.end()), *std::max_element(most.begin(), most.end())};
+    }
+
+    /// The best counterparts of a vertex that are allowed, best first; more than wanted of each kind are looked at where some are
+    /// not allowed.
+    [[nodiscard]] std::vector<std::pair<double, int>> best(int i, std::size_t wanted) const {
+        std::vector<std::pair<double, int>> list;
+        for (const int kind : {0, 1}) {
+            const auto& group = kind == 1 ? theirs_.outer : theirs_.inner;
+            if (group.empty()) continue;
+            if (kind == 1 && ours_.boundary[static_cast<std::size_t>(i)]) {
+                for (const int j : group)
+                    if (allowed(i, j)) list.emplace_back(cost(i, j), j);
+                continue;
+            }
+            for (std::size_t count = std::min(wanted + 4, group.size());; count = std::min(4 * count, group.size())) {
+                std::vector<std::pair<double, int>> found;
+                double farthest = 0;
+                const Neighbours search(trees_[kind], ours_.places[static_cast<std::size_t>(i)], static_cast<unsigned>(count));
+                for (const auto& [named, squared] : search) {
+                    farthest = std::max(farthest, squared);
+                    if (allowed(i, named.second)) found.emplace_back(cost(i, named.second), named.second);
+                }
+                const bool beyond = options_.reach > 0 && farthest > options_.reach * options_.reach;
+                if (found.size() < wanted && count < group.size() && !beyond) continue;
+                list.insert(list.end(), found.begin(), found.end());
+                break;
+            }
+        }
+        std::sort(list.begin(), list.end());
+        if (list.size() > wanted) list.resize(wanted);
+        return list;
+    }
+
+    Part ours_, theirs_;
+    const VertexAssignmentOptions& options_;
+    double least_cosine_;
+    std::array<Tree, 2> trees_;  ///< of the fragment's vertices inside, and on outlines
+    Scale distance_, boundary_, outline_;
+};
+
+}  // namespace
+
+VertexAssignment assign_vertices(const Mesh& mesh, const Annotation& part, const Mesh& fragment, const Annotation& of_fragment,
+                                 const std::vector<std::pair<Index, Index>>& landmarks, const VertexAssignmentOptions& options) {
+    check_options(options, "correspondence");
+    if (!(options.boundary + options.distance + options.outline > 0))
+        fail_usage("all three weights of equation 5.1 are zero", "give one of them");
+    std::vector<Index> ours, theirs;
+    for (const auto& [a, b] : landmarks) {
+        if (a >= mesh.number_of_vertices() || b >= fragment.number_of_vertices())
+            fail_input("landmark", "names a vertex that is not there", "give vertices of the template and of the fragment");
+        ours.push_back(a);
+        theirs.push_back(b);
+    }
+    return Assigner(part_of(mesh, part, ours, "template"), part_of(fragment, of_fragment, theirs, "fragment"), options).run();
+}
+
+void VertexAssignmentOptions::describe(OptionList& visit) {
+    visit("counterpart", counterpart, "of a template vertex: its best one, or one-to-one", Choices{"best", "one-to-one"});
+    visit("boundary-weight", boundary, "of vertices on an outline against vertices inside", Range{0, 1e6});
+    visit("distance-weight", distance, "of the distance of counterparts", Range{0, 1e6});
+    visit("outline-weight", outline, "of the positions along the outline, from landmark to landmark", Range{0, 1e6});
+    visit("assignment-reach", reach, "farthest counterpart, in the meshes' unit; 0: any", Range{0, 1e60});
+    visit("assignment-angle", angle, "of the normals of counterparts, degrees", Range{0, 180});
+    visit("candidates", candidates, "one-to-one: counterparts tried for each vertex", Range{1, 1000});
+    visit("unassigned", unassigned, "one-to-one: cost of a vertex without counterpart, as a share of the weights' sum",
+          Range{0, 1e6});
+}
+
+}  // namespace ostraka

@@ -1,0 +1,20 @@
+// Sherds as one mesh, and their axes laid onto their mean.
+#pragma once
+
+#include "ostraka/revolution/surface_of_revolution.h"
+
+namespace ostraka {
+
+struct JoinedSherds {
+    Mesh mesh;
+    std::vector<Index> faces;                     ///< that are not of a break
+    std::vector<std::vector<Index>> of_fragment;  ///< the same, fragment by fragment
+};
+
+JoinedSherds joined(const std::vector<const Fragment*>& sherds, const std::vector<Motion>& motions);
+
+/// Each sherd's own axis is laid onto the mean of all: sherds put together by hand stand off each other by their joints. Fills in
+/// axis, sherds and notes of the template. The motions, one a sherd.
+std::vector<Motion> common_axis(const std::vector<const Fragment*>& sherds, const TurnOptions& options, TurnedTemplate& result);
+
+}  // namespace ostraka

@@ -1,0 +1,91 @@
+#include "wall_section.h"
+
+#include "ostraka/core/angles.h"
+#include "ostraka/core/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ostraka {
+
+using Eigen::Vector3d;
+
+void ClayImage::drop_rare(const TurnOptions& options) {
+    const double least = options.presence / 360 * 2 * std::max(4, options.columns / 2);
+    for (std::size_t row = 0; row < image.rows; ++row)
+        if (image.present[row] < std::max(1.0, least)) image.clear(row);
+}
+
+bool ClayImage::has_rim(const TurnOptions& options) const {
+    const double highest = *std::max_element(tops.begin(), tops.end());
+    double near = 0, at = 0;
+    for (const double top : tops) {
+        if (top < highest - 30 * image.step) continue;
+        ++near;
+        if (top > highest - 4 * image.step) ++at;
+    }
+    return at > 0.8 * near && near > options.presence / 360 * static_cast<double>(tops.size());
+}
+
+ClayImage look_at_clay(const SurfaceSearch& search, const AxisFrame& frame, double low, double high, double far,
+                       const TurnOptions& options) {
+    ClayImage clay;
+    detail::ProfileImage& image = clay.image;
+    image.step = (high - low) / options.rows;
+    image.rows = static_cast<std::size_t>(options.rows);
+    image.columns = static_cast<std::size_t>(std::ceil(far / image.step)) + 2;
+    image.clay.assign(image.rows * image.columns, 0);
+    image.present.assign(image.rows, 0);
+    const int half = std::max(4, options.columns / 2);
+    std::vector<std::vector<bool>> met(image.rows, std::vector<bool>(2 * static_cast<std::size_t>(half), false));
+    parallel_for(
+        image.rows,
+        [&](std::size_t row) {
+            const Vector3d origin = frame.foot + (low + (static_cast<double>(row) + 0.5) * image.step) * frame.up;
+            for (int k = 0; k < half; ++k) {
+                // Not along symmetric directions, which edges of made meshes like.
+                const Vector3d direction = frame.direction(pi * (k + 0.37) / half);
+                const auto hits = search.line_hits(point_of(origin), vector_of(direction), 1.01 * far);
+                for (const double side : {1.0, -1.0}) {
+                    double begin = 0;
+                    bool inside = false, first = true, any = false;
+                    const auto visit = [&](const SurfaceHit& hit) {
+                        const double radius = side * hit.distance;
+                        if (radius < 0) return;
+                        const bool leaving = side * eigen(search.normal(hit.face)).dot(direction) > 0;
+                        if (first && leaving) inside = true, begin = 0;
+                        first = false;
+                        if (leaving && inside) {
+                            image.add(row, begin, radius);
+                            any = true;
+                            inside = false;
+                        } else if (!leaving && !inside) {
+                            begin = radius;
+                            inside = true;
+                        }
+                    };
+                    // Outwards from the axis on either side of it.
+                    std::vector<SurfaceHit> sorted = hits;
+                    std::stable_sort(sorted.begin(), sorted.end(), [&](const SurfaceHit& a, const SurfaceHit& b) {
+                        return std::abs(a.distance) < std::abs(b.distance);
+                    });
+                    for (const SurfaceHit& hit : sorted) visit(hit);
+                    if (!any) continue;
+                    met[row][static_cast<std::size_t>(side > 0 ? k : half + k)] = true;
+                    ++image.present[row];
+                }
+            }
+        },
+        4);
+    for (std::size_t row = 0; row < image.rows; ++row)
+        for (std::size_t c = 0; c < image.columns; ++c)
+            if (image.present[row] > 0) image.clay[row * image.columns + c] /= image.present[row];
+    std::vector<double>& tops = clay.tops;
+    tops.assign(2 * static_cast<std::size_t>(half), -1);
+    for (std::size_t row = 0; row < image.rows; ++row)
+        for (std::size_t k = 0; k < tops.size(); ++k)
+            if (met[row][k]) tops[k] = static_cast<double>(row) * image.step;
+    return clay;
+}
+
+}  // namespace ostraka

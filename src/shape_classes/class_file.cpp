@@ -1,0 +1,311 @@
+#include "ostraka/shape_classes/class_file.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/npy.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ostraka {
+
+namespace {
+
+template <class List, class Make>
+JsonValue list_of(const List& list, JsonAllocator& allocator, Make&& make) {
+    JsonValue array(rapidjson::kArrayType);
+    for (const auto& item : list) array.PushBack(make(item), allocator);
+    return array;
+}
+JsonValue numbers(const std::vector<double>& list, JsonAllocator& allocator) {
+    return list_of(list, allocator, [](double x) { return JsonValue(x); });
+}
+JsonValue texts(const std::vector<std::string>& list, JsonAllocator& allocator) {
+    return list_of(list, allocator, [&](const std::string& text) { return json_string(text, allocator); });
+}
+
+void add_quantity(JsonValue& object, const ClassQuantity& quantity, JsonAllocator& allocator) {
+    add_member(object, "kind", to_string(quantity.kind), allocator);
+    if (quantity.id >= 0) add_member(object, "id", JsonValue(quantity.id), allocator);
+    add_member(object, "name", quantity.name, allocator);
+    if (!quantity.of.empty()) add_member(object, "of", quantity.of, allocator);
+    if (!quantity.unit.empty()) add_member(object, "unit", quantity.unit, allocator);
+    add_member(object, "oneSided", JsonValue(quantity.one_sided), allocator);
+}
+
+struct Field {
+    const char* name;
+    double LearntRange::*value;
+};
+constexpr Field fields[] = {{"min", &LearntRange::min},
+                            {"max", &LearntRange::max},
+                            {"mean", &LearntRange::mean},
+                            {"percentile5", &LearntRange::percentile_5},
+                            {"percentile25", &LearntRange::percentile_25},
+                            {"median", &LearntRange::median},
+                            {"percentile75", &LearntRange::percentile_75},
+                            {"percentile95", &LearntRange::percentile_95}};
+
+JsonValue range_to_json(const LearntRange& range, JsonAllocator& allocator) {
+    JsonValue object(rapidjson::kObjectType);
+    add_quantity(object, range.quantity, allocator);
+    add_member(object, "count", JsonValue(static_cast<std::uint64_t>(range.count)), allocator);
+    if (range.count > 0)
+        for (const Field& field : fields) add_member(object, field.name, JsonValue(range.*field.value), allocator);
+    add_member(object, "logarithm", JsonValue(range.logarithm), allocator);
+    add_member(object, "falseReject", JsonValue(range.reject), allocator);
+    if (range.deviation) add_member(object, "deviation", JsonValue(*range.deviation), allocator);
+    if (range.low) add_member(object, "low", JsonValue(*range.low), allocator);
+    if (range.high) add_member(object, "high", JsonValue(*range.high), allocator);
+    add_member(object, "values", list_of(range.values, allocator, [](const auto& v) { return v ? JsonValue(*v) : JsonValue(); }),
+               allocator);
+    return object;
+}
+
+std::string text_of(const JsonValue& object, const char* name) {
+    const JsonValue* value = find_member(object, name);
+    return value != nullptr && value->IsString() ? value->GetString() : "";
+}
+std::optional<double> number_in(const JsonValue& object, const char* name) {
+    const JsonValue* value = find_member(object, name);
+    return value != nullptr && value->IsNumber() ? std::optional<double>(value->GetDouble()) : std::nullopt;
+}
+std::vector<std::string> texts_in(const JsonValue& object, const char* name) {
+    std::vector<std::string> list;
+    if (const JsonValue* value = find_member(object, name))
+        for (const auto& item : value->GetArray()) list.emplace_back(item.GetString());
+    return list;
+}
+
+LearntRange range_from(const JsonValue& object, std::size_t members, const std::string& where) {
+    LearntRange range;
+    range.quantity.kind = quantity_kind(object["kind"].GetString());
+    if (const JsonValue* id = find_member(object, "id")) range.quantity.id = id->GetInt();
+    range.quantity.name = object["name"].GetString();
+    range.quantity.of = text_of(object, "of");
+    range.quantity.unit = text_of(object, "unit");
+    range.quantity.one_sided = object["oneSided"].GetBool();
+    range.count = object["count"].GetUint64();
+    range.logarithm = object["logarithm"].GetBool();
+    range.reject = object["falseReject"].GetDouble();
+    for (const Field& field : fields) range.*field.value = number_in(object, field.name).value_or(0);
+    range.deviation = number_in(object, "deviation");
+    range.low = number_in(object, "low");
+    range.high = number_in(object, "high");
+    if (range.low && range.high && *range.low > *range.high)
+        fail_input(where,
+                   "of " + range.quantity.text() + " accepts at least " + std::to_string(*range.low) + " and at most " +
+                       std::to_string(*range.high),
+                   "mend it, or learn the class anew");
+    for (const auto& value : object["values"].GetArray())
+        range.values.push_back(value.IsNumber() ? std::optional<double>(value.GetDouble()) : std::nullopt);
+    if (range.values.size() != members)
+        fail_input(where,
+                   "has " + std::to_string(range.values.size()) + " values of " + range.quantity.text() + " for " +
+                       std::to_string(members) + " members",
+                   "learn the class anew");
+    return range;
+}
+
+Path beside(const Path& file, const std::string& name, const std::string& where) {
+    if (name.empty() || Path(name).filename() != Path(name) || name == "..")
+        fail_input(where, "names '" + name + "', which does not stand beside it", "learn the class anew");
+    return file.parent_path() / name;
+}
+
+/// What learning makes, and what no other file has: a mean of the members' size, modes of length one, and coefficients with the
+/// modes' variances.
+void check_shape(const ShapeModes& modes, const std::string& where) {
+    const auto refuse = [&](const std::string& what) { fail_input(where, what, "learn the class anew"); };
+    const double size = centroid_size(modes.mean);
+    if (!std::isfinite(size) || !(size > 0.05 * modes.mean_size) || !(size < 1.1 * modes.mean_size))
+        refuse("has a mean shape of another size than its members");
+    double sum = 0;
+    for (std::size_t k = 0; k < modes.variances.size(); ++k) {
+        const auto row = static_cast<Eigen::Index>(k);
+        if (!(std::abs(modes.modes.row(row).norm() - 1) < 1e-6)) refuse("has modes that are not of length one");
+        const double squares = modes.coefficients.col(row).squaredNorm(),
+                     expected = static_cast<double>(modes.coefficients.rows() - 1) * modes.variances[k];
+        if (!(modes.variances[k] > 0) || !(std::abs(squares - expected) <= 1e-6 * expected))
+            refuse("has coefficients of mode " + std::to_string(k + 1) + " that do not have its variance");
+        sum += modes.variances[k];
+    }
+    if (!(sum <= (1 + 1e-6) * modes.total)) refuse("has modes with more variance than all together");
+}
+
+}  // namespace
+
+void check_class_name(const std::string& name) {
+    if (name.empty() || Path(name).filename() != Path(name) || name == "." || name == "..")
+        fail_usage("the class is called '" + name + "', which no file can be", "give --name a plain word");
+}
+
+void write_class(const Path& folder, const ShapeClass& learnt, const Provenance& provenance) {
+    check_class_name(learnt.name);
+    const ShapeModes& modes = learnt.modes;
+    Json document(rapidjson::kObjectType);
+    auto& allocator = document.GetAllocator();
+    add_member(document, "format", "ostraka-class", allocator);
+    add_member(document, "version", JsonValue(1), allocator);
+    add_member(document, "name", learnt.name, allocator);
+    add_member(document, "template", learnt.template_file, allocator);
+    add_member(document, "topology", learnt.topology, allocator);
+    add_member(document, "sizes", JsonValue(learnt.sizes), allocator);
+    JsonValue members(rapidjson::kArrayType);
+    for (std::size_t i = 0; i < learnt.members.size(); ++i) {
+        const ClassMember& member = learnt.members[i];
+        JsonValue object(rapidjson::kObjectType);
+        add_member(object, "name", member.name, allocator);
+        add_member(object, "placedBy", member.placed_by, allocator);
+        add_member(object, "scale", JsonValue(member.scale), allocator);
+        add_member(object, "centroidSize", JsonValue(modes.centroid_sizes[i]), allocator);
+        add_member(object, "fromMean", JsonValue(modes.distances[i]), allocator);
+        std::vector<double> row;
+        for (Eigen::Index k = 0; k < modes.coefficients.cols(); ++k)
+            row.push_back(modes.coefficients(static_cast<Eigen::Index>(i), k));
+        add_member(object, "coefficients", numbers(row, allocator), allocator);
+        if (!member.notes.empty()) add_member(object, "notes", texts(member.notes, allocator), allocator);
+        members.PushBack(object, allocator);
+    }
+    add_member(document, "falseReject", JsonValue(learnt.reject), allocator);
+    add_member(document, "resolution", JsonValue(learnt.resolution), allocator);
+    add_member(document, "members", std::move(members), allocator);
+    add_member(document, "archetype", learnt.members[modes.archetype].name, allocator);
+    add_member(document, "diversity", JsonValue(learnt.diversity), allocator);
+
+    JsonValue shape(rapidjson::kObjectType);
+    std::vector<double> values;
+    for (Eigen::Index i = 0; i < modes.mean.rows(); ++i)
+        for (int k = 0; k < 3; ++k) values.push_back(modes.mean(i, k));
+    const std::string mean = learnt.name + ".mean.npy", rows = learnt.name + ".modes.npy";
+    write_npy(folder / mean, std::span<const double>(values), {static_cast<std::size_t>(modes.mean.rows()), 3});
+    add_member(shape, "mean", mean, allocator);
+    if (modes.modes.rows() > 0) {
+        values.clear();
+        for (Eigen::Index k = 0; k < modes.modes.rows(); ++k)
+            for (Eigen::Index i = 0; i < modes.modes.cols(); ++i) values.push_back(modes.modes(k, i));
+        write_npy(folder / rows, std::span<const double>(values),
+                  {static_cast<std::size_t>(modes.modes.rows()), static_cast<std::size_t>(modes.modes.cols())});
+        add_member(shape, "modes", rows, allocator);
+    }
+    add_member(shape, "variances", numbers(modes.variances, allocator), allocator);
+    add_member(shape, "totalVariance", JsonValue(modes.total), allocator);
+    add_member(shape, "meanSize", JsonValue(modes.mean_size), allocator);
+    add_member(document, "shape", std::move(shape), allocator);
+    add_member(document, "ranges", list_of(learnt.ranges, allocator, [&](const auto& r) { return range_to_json(r, allocator); }),
+               allocator);
+    add_member(document, "fragments",
+               list_of(learnt.fragments, allocator, [&](const auto& r) { return range_to_json(r, allocator); }), allocator);
+    add_member(document, "notes", texts(learnt.notes, allocator), allocator);
+    add_member(document, "provenance", provenance.to_json(allocator), allocator);
+    write_json(folder / (learnt.name + ".class.json"), document);
+}
+
+ShapeClass read_class(const Path& file) {
+    const Json document = read_json(file);
+    const std::string where = file.string();
+    validate(document, "class", where);
+    ShapeClass learnt;
+    learnt.name = document["name"].GetString();
+    learnt.template_file = beside(file, document["template"].GetString(), where).string();
+    learnt.topology = document["topology"].GetString();
+    learnt.sizes = document["sizes"].GetBool();
+    learnt.reject = document["falseReject"].GetDouble();
+    learnt.resolution = document["resolution"].GetDouble();
+    learnt.notes = texts_in(document, "notes");
+    learnt.diversity = document["diversity"].GetDouble();
+    ShapeModes& modes = learnt.modes;
+    modes.sizes = learnt.sizes;
+    const JsonValue& shape = document["shape"];
+    modes.mean_size = shape["meanSize"].GetDouble();
+    modes.total = shape["totalVariance"].GetDouble();
+    for (const auto& value : shape["variances"].GetArray()) modes.variances.push_back(value.GetDouble());
+    const auto array = [&](const char* name, std::size_t rows, std::size_t columns) {
+        const Path place = beside(file, shape[name].GetString(), where);
+        NpyArray<double> values = read_npy(place);
+        if (values.columns() != columns || (rows > 0 && values.rows() != rows))
+            fail_input(place.string(),
+                       "has " + std::to_string(values.rows()) + " rows and " + std::to_string(values.columns()) +
+                           " columns, not those of " + where,
+                       "learn the class anew");
+        if (std::any_of(values.values.begin(), values.values.end(), [](double x) { return !std::isfinite(x); }))
+            fail_input(place.string(), "holds numbers that are not finite", "learn the class anew");
+        return values;
+    };
+    const NpyArray<double> mean = array("mean", 0, 3);
+    modes.mean = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>(
+        mean.values.data(), static_cast<Eigen::Index>(mean.rows()), 3);
+    const std::size_t count = modes.variances.size();
+    modes.modes.resize(static_cast<Eigen::Index>(count), 3 * modes.mean.rows());
+    if (count > 0) {
+        if (!shape.HasMember("modes")) fail_input(where, "has variances of modes and no modes", "learn the class anew");
+        const NpyArray<double> rows = array("modes", count, 3 * mean.rows());
+        modes.modes = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
+            rows.values.data(), modes.modes.rows(), modes.modes.cols());
+    }
+    const JsonValue& members = document["members"];
+    modes.coefficients.resize(members.Size(), static_cast<Eigen::Index>(count));
+    for (rapidjson::SizeType i = 0; i < members.Size(); ++i) {
+        const JsonValue& member = members[i];
+        learnt.members.push_back(
+            {member["name"].GetString(), member["placedBy"].GetString(), member["scale"].GetDouble(), texts_in(member, "notes")});
+        modes.centroid_sizes.push_back(member["centroidSize"].GetDouble());
+        modes.distances.push_back(member["fromMean"].GetDouble());
+        if (member["coefficients"].Size() != count)
+            fail_input(where, "has another number of coefficients of '" + learnt.members.back().name + "' than modes",
+                       "learn the class anew");
+        for (rapidjson::SizeType k = 0; k < count; ++k)
+            modes.coefficients(i, static_cast<Eigen::Index>(k)) = member["coefficients"][k].GetDouble();
+        if (learnt.members.back().name == document["archetype"].GetString()) modes.archetype = i;
+    }
+    check_shape(modes, where);
+    const std::string archetype = document["archetype"].GetString();
+    if (learnt.members[modes.archetype].name != archetype)
+        fail_input(where, "has the archetype '" + archetype + "', which is none of its members", "learn the class anew");
+    for (const auto& range : document["ranges"].GetArray())
+        learnt.ranges.push_back(range_from(range, learnt.members.size(), where));
+    for (const auto& range : document["fragments"].GetArray())
+        learnt.fragments.push_back(range_from(range, learnt.members.size(), where));
+    return learnt;
+}
+
+JsonValue classification_to_json(const Classification& answer, JsonAllocator& allocator) {
+    JsonValue report(rapidjson::kObjectType), answers(rapidjson::kArrayType);
+    add_member(report, "object", answer.object, allocator);
+    add_member(report, "verdict", to_string(answer.verdict), allocator);
+    add_member(report, "text", answer.text, allocator);
+    const auto name = [&](int k) { return answer.answers[static_cast<std::size_t>(k)].name; };
+    if (answer.best >= 0) add_member(report, "class", name(answer.best), allocator);
+    if (answer.nearest >= 0) add_member(report, "nearest", name(answer.nearest), allocator);
+    for (const ClassAnswer& one : answer.answers) {
+        JsonValue object(rapidjson::kObjectType), checks(rapidjson::kArrayType);
+        add_member(object, "class", one.name, allocator);
+        add_member(object, "verdict", to_string(one.verdict), allocator);
+        if (!one.undecided.empty()) add_member(object, "undecided", one.undecided, allocator);
+        if (one.fit.problem.empty()) {
+            add_member(object, "score", JsonValue(one.score), allocator);
+            add_member(object, "placedBy", one.fit.placed_by, allocator);
+            add_member(object, "scale", JsonValue(one.fit.scale), allocator);
+            add_member(object, "coefficients", numbers(one.coordinates.coefficients, allocator), allocator);
+            add_member(object, "mahalanobis", JsonValue(one.coordinates.mahalanobis), allocator);
+        }
+        add_member(object, "against", texts(one.reasons(), allocator), allocator);
+        for (const QuantityCheck& check : one.checks) {
+            JsonValue item(rapidjson::kObjectType);
+            add_quantity(item, check.quantity, allocator);
+            if (check.quantity.value) add_member(item, "value", JsonValue(*check.quantity.value), allocator);
+            if (check.low) add_member(item, "low", JsonValue(*check.low), allocator);
+            if (check.high) add_member(item, "high", JsonValue(*check.high), allocator);
+            add_member(item, "decides", JsonValue(check.decides), allocator);
+            add_member(item, "off", JsonValue(check.off), allocator);
+            add_member(item, "excess", JsonValue(check.excess), allocator);
+            if (!check.most.empty()) add_member(item, "most", check.most, allocator);
+            checks.PushBack(item, allocator);
+        }
+        add_member(object, "checks", std::move(checks), allocator);
+        answers.PushBack(object, allocator);
+    }
+    add_member(report, "answers", std::move(answers), allocator);
+    return report;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,229 @@
+#include "ostraka/shape_classes/classify.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <tuple>
+
+namespace ostraka {
+
+std::string to_string(Membership membership) {
+    switch (membership) {
+        case Membership::member:
+            return "member";
+        case Membership::other:
+            return "other";
+        default:
+            return "undecided";
+    }
+}
+
+namespace {
+
+QuantityCheck check_of(const LearntRange& range, const std::optional<double>& value, bool attributes) {
+    QuantityCheck check;
+    check.quantity = range.quantity;
+    check.quantity.value = value;
+    check.low = range.low;
+    check.high = range.high;
+    check.decides = range.quantity.kind != QuantityKind::attribute || attributes;
+    if (!value || !range.high || !(range.reject > 0)) {
+        check.decides = false;
+        return check;
+    }
+    if (*value > *range.high) check.off = *value - *range.high;
+    if (range.low && *value < *range.low) check.off = *range.low - *value;
+    const double width = range.low ? *range.high - *range.low : *range.high;
+    if (check.off > 0) check.excess = width > 0 ? check.off / width : std::numeric_limits<double>::max();
+    return check;
+}
+
+std::string words(const QuantityCheck& check) {
+    const ClassQuantity& quantity = check.quantity;
+    const std::string unit = quantity.unit.empty() ? "" : " " + quantity.unit;
+    std::string text = quantity.text() + ": " + digits(quantity.value.value_or(0), 4) + unit;
+    const bool above = check.high && *quantity.value > *check.high;
+    text += above ? ", at most " + digits(*check.high, 4) : ", at least " + digits(check.low.value_or(0), 4);
+    return text + unit + " is accepted: " + digits(check.off, 3) + unit + (above ? " too much" : " too little") +
+           (check.most.empty() ? "" : "; most of all " + check.most);
+}
+
+/// Adds what is measured of all parts together; `most` gets, by key, which of them is farthest off.
+void add_parts(const ShapeClass& learnt, std::vector<ClassQuantity>& quantities, std::map<std::string, std::string>& most) {
+    std::vector<std::optional<double>> values;
+    for (const LearntRange& range : learnt.ranges) {
+        const auto found = std::find_if(quantities.begin(), quantities.end(),
+                                        [&](const ClassQuantity& one) { return one.key() == range.quantity.key(); });
+        values.push_back(found == quantities.end() ? std::optional<double>() : found->value);
+    }
+    for (PartsTogether& one : parts_together(learnt.ranges, values, expected_parts(learnt.ranges))) {
+        if (one.quantity.value) {
+            const double value = *values[one.most];
+            most[one.quantity.key()] = learnt.ranges[one.most].quantity.text() + ": " + digits(value, 4) + ", " +
+                                       digits(value / one.expected, 3) + " times the members' mean";
+        }
+        quantities.push_back(std::move(one.quantity));
+    }
+}
+
+double score_of(const ShapeClass& learnt, const LearntMember& object, const std::vector<ClassQuantity>& quantities,
+                const ShapeCoordinates& coordinates) {
+    double score = coordinates.distance;
+    if (object.fit.residuals) {
+        const FitResiduals& r = *object.fit.residuals;
+        score = 10 * (r.distance + r.back) + r.unmatched + r.unexplained + r.stretch + r.bend;
+    }
+    // What no fit changes: by how much the object's own surface differs from the members' mean.
+    for (const ClassQuantity& quantity : geometry_quantities(WholeShape())) {
+        const LearntRange* range = learnt.find(quantity.key());
+        const auto own = std::find_if(object.quantities.begin(), object.quantities.end(),
+                                      [&](const ClassQuantity& one) { return one.key() == quantity.key(); });
+        if (range != nullptr && range->count > 0 && range->mean > 0 && own != object.quantities.end() && own->value &&
+            *own->value > 0)
+            score += 2 * std::abs(std::log(*own->value / range->mean));
+    }
+    // Parts together: roots of mean squared logarithms, and how far its own annotations are from those of the template.
+    for (const ClassQuantity& quantity : quantities)
+        if (quantity.kind == QuantityKind::part && quantity.id < 0) score += quantity.value.value_or(0);
+    return score;
+}
+
+/// Members in correspondence show nothing of the error of a fit, which slides along the surface.
+bool fitted_to_given(const ShapeClass& learnt, const LearntMember& object) {
+    return object.fit.residuals && std::all_of(learnt.members.begin(), learnt.members.end(),
+                                               [](const auto& m) { return m.placed_by == "correspondence"; });
+}
+
+/// All that speaks against it are distances of vertices.
+bool only_shape(const ClassAnswer& answer) {
+    return !answer.against.empty() && std::all_of(answer.against.begin(), answer.against.end(), [&](std::size_t i) {
+        const std::string& name = answer.checks[i].quantity.name;
+        return name == "from the mean shape" || name == "outside the modes";
+    });
+}
+
+}  // namespace
+
+std::vector<std::string> ClassAnswer::reasons() const {
+    std::vector<std::string> list;
+    for (const std::size_t i : against) list.push_back(words(checks[i]));
+    return list;
+}
+
+ClassAnswer compare_with(const ShapeClass& learnt, const LearntMember& object, const ClassifyOptions& options) {
+    check_options(options, "classify");
+    ClassAnswer answer;
+    answer.name = learnt.name;
+    answer.fit = object.fit;
+    if (!object.fit.problem.empty()) {
+        answer.undecided = "the template could not be laid onto it: " + object.fit.problem;
+        answer.score = std::numeric_limits<double>::max();
+        return answer;
+    }
+    answer.coordinates = coordinates_in(learnt.modes, landmarks_of(object.fit.points));
+    std::vector<ClassQuantity> quantities = object.quantities;
+    const auto add = [&](const char* name, double value) {
+        quantities.emplace_back().name = name;
+        quantities.back().value = value;
+    };
+    add("from the mean shape", answer.coordinates.distance);
+    add("outside the modes", answer.coordinates.outside);
+    if (learnt.sizes) add("centroid size", answer.coordinates.centroid_size);
+    std::map<std::string, std::string> most;
+    add_parts(learnt, quantities, most);
+    answer.score = score_of(learnt, object, quantities, answer.coordinates);
+    bool any = false;
+    for (const LearntRange& range : learnt.ranges) {
+        const auto found = std::find_if(quantities.begin(), quantities.end(),
+                                        [&](const ClassQuantity& one) { return one.key() == range.quantity.key(); });
+        answer.checks.push_back(
+            check_of(range, found == quantities.end() ? std::optional<double>() : found->value, options.attributes));
+        QuantityCheck& check = answer.checks.back();
+        check.most = most[range.quantity.key()];
+        any = any || check.decides;
+        if (check.decides && check.off > 0) answer.against.push_back(answer.checks.size() - 1);
+    }
+    std::stable_sort(answer.against.begin(), answer.against.end(), [&](std::size_t a, std::size_t b) {
+        const auto rank = [&](const QuantityCheck& check) {
+            return check.quantity.kind == QuantityKind::constraint ? QuantityKind::proportion : check.quantity.kind;
+        };
+        const QuantityCheck &x = answer.checks[a], &y = answer.checks[b];
+        return std::make_tuple(rank(x), -x.excess) < std::make_tuple(rank(y), -y.excess);
+    });
+    if (!any) {
+        answer.undecided = learnt.has_thresholds()      ? "nothing of what was learnt can be measured on it"
+                           : learnt.members.size() == 1 ? "the class has one member, of which no threshold can be learnt"
+                                                        : "the class has two members, of which no threshold can be learnt";
+    } else if (fitted_to_given(learnt, object) && only_shape(answer)) {
+        answer.undecided = "the class was learnt from objects in correspondence and this one was fitted: " +
+                           words(answer.checks[answer.against.front()]) + ", which may be the fit's own error";
+        answer.against.clear();
+    } else {
+        answer.verdict = answer.against.empty() ? Membership::member : Membership::other;
+    }
+    return answer;
+}
+
+ClassAnswer ask_class(const ShapeClass& learnt, const ClassTemplate& known, const WholeObject& object,
+                      const ClassifyOptions& options) {
+    LearnOptions how;
+    how.fit = options.fit;
+    how.correspondence = options.correspondence;
+    how.modes.sizes = learnt.sizes;
+    return compare_with(learnt, learn_member(known, object, how), options);
+}
+
+Classification decide(std::string object, std::vector<ClassAnswer> answers, const ClassifyOptions& options) {
+    if (answers.empty()) fail_usage("there is no class to ask", "give one or more");
+    Classification result;
+    result.object = std::move(object);
+    result.answers = std::move(answers);
+    int second = -1;
+    std::size_t silent = 0;
+    for (std::size_t i = 0; i < result.answers.size(); ++i) {
+        const ClassAnswer& answer = result.answers[i];
+        const int k = static_cast<int>(i);
+        const auto better = [&](int other) {
+            return other < 0 || answer.score < result.answers[static_cast<std::size_t>(other)].score;
+        };
+        if (answer.fit.problem.empty() && better(result.nearest)) result.nearest = k;
+        if (answer.verdict == Membership::undecided) ++silent;
+        if (answer.verdict != Membership::member) continue;
+        if (better(result.best)) second = result.best, result.best = k;
+        else if (better(second)) second = k;
+    }
+    const auto name = [&](int k) { return "'" + result.answers[static_cast<std::size_t>(k)].name + "'"; };
+    const auto score = [&](int k) { return result.answers[static_cast<std::size_t>(k)].score; };
+    if (result.best >= 0 && second >= 0 && score(second) - score(result.best) <= options.close * score(second)) {
+        result.text = "cannot decide, because it may belong to " + name(result.best) + " as well as to " + name(second);
+        result.best = -1;
+    } else if (result.best >= 0) {
+        result.verdict = Membership::member;
+        result.text = "belongs to " + name(result.best);
+    } else if (silent == result.answers.size()) {
+        result.text = "cannot decide, because " + result.answers.front().undecided;
+        if (result.nearest >= 0 && result.answers.size() > 1) result.text += "; nearest to " + name(result.nearest);
+    } else {
+        result.verdict = Membership::other;
+        result.text = result.answers.size() == 1 ? "does not belong to " + name(0) : "belongs to none";
+        if (silent > 0) result.text += " of those that can tell";
+        if (result.answers.size() > 1 && result.nearest >= 0) result.text += "; nearest to " + name(result.nearest);
+    }
+    return result;
+}
+
+void ClassifyOptions::describe(OptionList& visit) {
+    fit.describe(visit);
+    visit("correspondence", correspondence,
+          "an object whose triangles are the template's is taken as it is (auto, given); the template is fitted to it (fitted)",
+          Choices{"auto", "given", "fitted"});
+    visit("attributes", attributes, "values of attributes out of their range speak against it, too", Anything{});
+    visit("close", close, "classes whose scores differ by less than this share of the better one cannot be told apart",
+          Range{0, 1});
+}
+
+}  // namespace ostraka

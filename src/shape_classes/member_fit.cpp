@@ -1,0 +1,277 @@
+#include "ostraka/shape_classes/member_fit.h"
+#include "ostraka/core/dense.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/core/text.h"
+#include "ostraka/geom/eigen.h"
+#include "ostraka/geom/surface_search.h"
+#include "ostraka/geom/with_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ostraka {
+
+using Eigen::Matrix2d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+std::string fit_is_off(const MemberFit& fit, double most) {
+    if (!fit.residuals || !(fit.residuals->off() > most)) return {};
+    const auto per_cent = [](double share) { return digits(100 * share, 3) + " %"; };
+    return "the template does not lie on it: " + per_cent(fit.residuals->unmatched) + " of the template and " +
+           per_cent(fit.residuals->unexplained) + " of the object are off the other, " + per_cent(most) +
+           " on average is the most";
+}
+
+bool in_correspondence(const Mesh& mesh, const Mesh& member) {
+    if (mesh.number_of_vertices() != member.number_of_vertices() || mesh.number_of_faces() != member.number_of_faces())
+        return false;
+    return std::all_of(mesh.faces().begin(), mesh.faces().end(),
+                       [&](Face face) { return corners(mesh, face) == corners(member, face); });
+}
+
+MemberFit member_in_correspondence(const Mesh& mesh, const WholeObject& member) {
+    if (!in_correspondence(mesh, member.mesh))
+        fail_input(
+            member.name,
+            "is not in correspondence with the template: it has " + std::to_string(member.mesh.number_of_vertices()) +
+                " vertices and " + std::to_string(member.mesh.number_of_faces()) + " faces, the template " +
+                std::to_string(mesh.number_of_vertices()) + " and " + std::to_string(mesh.number_of_faces()) +
+                (mesh.number_of_vertices() == member.mesh.number_of_vertices() ? ", or the faces join other vertices" : ""),
+            "leave out --correspondence: the template is then fitted to it");
+    MemberFit fit;
+    fit.placed_by = "correspondence";
+    fit.points.assign(member.mesh.points().begin(), member.mesh.points().end());
+    const double size = surface_area(mesh);
+    fit.scale = size > 0 ? std::sqrt(surface_area(member.mesh) / size) : 1;
+    return fit;
+}
+
+namespace {
+
+/// A triangle's edges as two columns, in a frame of its plane.
+Matrix2d flat(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+    const Vector3d u = b - a, v = c - a;
+    const double length = u.norm(), along = length > 0 ? u.dot(v) / length : 0;
+    Matrix2d m;
+    m << length, along, 0, length > 0 ? u.cross(v).norm() / length : 0;
+    return m;
+}
+
+double angle_at(const Mesh& mesh, Edge edge, const std::vector<Vector3d>& p) {
+    const Halfedge h = mesh.halfedge(edge, 0), o = mesh.opposite(h);
+    const Vector3d &a = p[mesh.source(h)], &b = p[mesh.target(h)];
+    const Vector3d n = (b - a).cross(p[mesh.target(mesh.next(h))] - a), m = (a - b).cross(p[mesh.target(mesh.next(o))] - b);
+    return std::atan2((b - a).norm() > 0 ? n.cross(m).dot((b - a).normalized()) : 0, n.dot(m));
+}
+
+/// Points spread evenly over a surface: so many, or each face's middle where there are fewer faces.
+struct Spread {
+    std::vector<Point> points;
+    std::vector<Vector> normals;
+};
+Spread spread_over(const Mesh& mesh, std::size_t count) {
+    Spread spread;
+    const double area = surface_area(mesh);
+    double sum = 0, next = 0.5 * area / static_cast<double>(count);
+    for (const Face face : mesh.faces()) {
+        sum += face_area(mesh, face);
+        if (sum < next) continue;
+        const Vector normal = area_vector(mesh, face);
+        const double length = std::sqrt(normal.squared_length());
+        for (; next < sum; next += area / static_cast<double>(count)) {
+            spread.points.push_back(centroid(mesh, face));
+            spread.normals.push_back(length > 0 ? normal / length : normal);
+        }
+    }
+    return spread;
+}
+
+constexpr std::size_t most_samples = 5000;
+constexpr double like_normals = 0.5;  ///< cosine: 60 degrees
+
+FitResiduals residuals_of(const Mesh& rest, const Mesh& fitted, const Mesh& object, double scale, double observed) {
+    FitResiduals residuals;
+    const double diagonal = scale * box_diagonal(rest);
+    const double reach = observed * diagonal;
+    const SurfaceSearch on_object(object), on_fitted(fitted);
+    const auto one_way = [&](const Spread& spread, const SurfaceSearch& goal, double& far) {
+        std::vector<double> squares(spread.points.size());
+        std::vector<char> off(spread.points.size());
+        parallel_for(spread.points.size(), [&](std::size_t i) {
+            const double distance = goal.closest(spread.points[i]).distance;
+            squares[i] = distance * distance;
+            off[i] = distance > reach || !goal.closest_compatible(spread.points[i], spread.normals[i], like_normals, reach);
+        });
+        double sum = 0, count = 0;
+        for (std::size_t i = 0; i < squares.size(); ++i) sum += squares[i], count += off[i];
+        const auto n = static_cast<double>(std::max<std::size_t>(1, squares.size()));
+        far = count / n;
+        return std::sqrt(sum / n) / diagonal;
+    };
+    residuals.distance = one_way(spread_over(fitted, most_samples), on_object, residuals.unmatched);
+    residuals.back = one_way(spread_over(object, most_samples), on_fitted, residuals.unexplained);
+    std::vector<Point> points(fitted.points().begin(), fitted.points().end());
+    measure_distortion(rest, points, scale, residuals);
+    return residuals;
+}
+
+Mesh scaled_by(const Mesh& mesh, double scale) {
+    Motion motion;
+    motion.scale = scale;
+    return moved(mesh, motion);
+}
+
+/// Where the template is at its scale, and how the object gets there.
+struct Place {
+    double scale = 1;
+    Motion pose;  ///< rigid, of the object
+    double overlap = 1;
+};
+
+std::vector<Place> places_by_surface(const Mesh& mesh, const WholeObject& member, const MemberFitOptions& options) {
+    const AlignSurface object(member.mesh, options.alignment.samples), rest(mesh, options.alignment.samples);
+    const double ratio = object.size() / rest.size();
+    const Mesh scaled = scaled_by(mesh, ratio);
+    const AlignSurface whole(scaled, options.alignment.samples);
+    std::vector<Motion> starts = principal_starts(whole, object);
+    // As the files have it, middle on middle.
+    const auto middle = [](const Mesh& surface) {
+        Vector3d sum = Vector3d::Zero();
+        double area = 0;
+        for (const Face face : surface.faces()) {
+            const double a = face_area(surface, face);
+            sum += a * eigen(centroid(surface, face));
+            area += a;
+        }
+        return Vector3d(sum / area);
+    };
+    Motion same;
+    same.shift = middle(member.mesh) - middle(scaled);
+    starts.push_back(same);
+    std::vector<Alignment> found;
+    for (const Motion& start : starts) found.push_back(align(whole, object, {start}, options.alignment));
+    std::stable_sort(found.begin(), found.end(), [](const Alignment& a, const Alignment& b) { return a.distance < b.distance; });
+    std::vector<Place> places;
+    for (const Alignment& alignment : found) {
+        // x = s R (ratio p) + t for a point p of the template: the object goes back by R and t, the template gets the scale.
+        Place place;
+        place.scale = ratio * alignment.motion.scale;
+        place.pose.turn = alignment.motion.turn.transpose();
+        place.pose.shift = -(place.pose.turn * alignment.motion.shift);
+        place.overlap = alignment.overlap;
+        const bool known = std::any_of(places.begin(), places.end(),
+                                       [&](const Place& other) { return (other.pose.turn - place.pose.turn).norm() < 0.2; });
+        if (!known) places.push_back(place);
+        if (places.size() == static_cast<std::size_t>(options.tries)) break;
+    }
+    return places;
+}
+
+}  // namespace
+
+void measure_distortion(const Mesh& mesh, const std::vector<Point>& points, double scale, FitResiduals& residuals) {
+    std::vector<Vector3d> rest, now;
+    for (const Vertex v : mesh.vertices()) {
+        rest.push_back(scale * eigen(mesh.point(v)));
+        now.push_back(eigen(points[v]));
+    }
+    double area = 0, squares = 0;
+    constexpr double most = 3;  // of a logarithm: triangles that collapse do not count without end
+    for (const Face face : mesh.faces()) {
+        const auto c = corners(mesh, face);
+        const double weight = face_area(mesh, face);
+        const Matrix2d before = flat(rest[c[0]], rest[c[1]], rest[c[2]]), after = flat(now[c[0]], now[c[1]], now[c[2]]);
+        if (!(weight > 0) || !(std::abs(before.determinant()) > 0)) continue;
+        const Vector2d s = singular_values(after * before.inverse());
+        double sum = 0;
+        for (int k = 0; k < 2; ++k) {
+            const double log = s[k] > 0 ? std::clamp(std::log(s[k]), -most, most) : -most;
+            sum += 0.5 * log * log;
+        }
+        area += weight;
+        squares += weight * sum;
+    }
+    residuals.stretch = area > 0 ? std::sqrt(squares / area) : 0;
+    double length = 0, turned = 0;
+    for (const Edge edge : mesh.edges()) {
+        if (mesh.is_border(edge)) continue;
+        const double weight = (rest[mesh.vertex(edge, 0)] - rest[mesh.vertex(edge, 1)]).norm();
+        const double turn = std::remainder(angle_at(mesh, edge, now) - angle_at(mesh, edge, rest), 2 * std::acos(-1.0));
+        length += weight;
+        turned += weight * turn * turn;
+    }
+    residuals.bend = length > 0 ? std::sqrt(turned / length) : 0;
+}
+
+MemberFit fit_member(const Mesh& mesh, const AnnotationSet& set, const WholeObject& member, const MemberFitOptions& options) {
+    check_options(options, "fit");
+    if (!(surface_area(mesh) > 0)) fail_input("template", "has no area", "is it the right file?");
+    if (!(surface_area(member.mesh) > 0)) fail_input(member.name, "has no area", "is it the right file?");
+    MemberFit best;
+    std::vector<Place> places;
+    if (!options.ignore_landmarks) {
+        const auto pairs = common_landmarks(mesh, set, member.mesh, member.annotations, &best.notes);
+        if (pairs.size() >= 3) {
+            const CommonPlacement placement = place_by_landmarks({pairs}, options.placement);
+            const FragmentPlacement& one = placement.fragments.front();
+            if (one.problem.empty()) {
+                places.push_back({placement.scale, one.pose, 1});
+                best.placed_by = "landmarks";
+            } else if (one.mirrored) {
+                best.problem = one.problem;
+                return best;
+            } else {
+                best.notes.push_back("landmarks do not place it: " + one.problem + "; placed by its surface");
+            }
+        }
+    }
+    if (places.empty()) {
+        places = places_by_surface(mesh, member, options);
+        best.placed_by = "surface";
+    }
+    double least = std::numeric_limits<double>::infinity();
+    for (const Place& place : places) {
+        const Mesh scaled = scaled_by(mesh, place.scale);
+        PlacedFragment placed{moved(member.mesh, place.pose), &member.annotations, {}, {}};
+        placed.matches = match_annotations(scaled, set, member.mesh, member.annotations, place.pose, {}, options.annotations);
+        std::vector<PlacedFragment> list;
+        list.push_back(std::move(placed));
+        const NonRigidFit fit = fit_template(scaled, set, list, options.fit);
+        const FitResiduals residuals =
+            residuals_of(mesh, with_points(mesh, fit.points), list.front().mesh, place.scale, options.observed);
+        const double cost = std::hypot(residuals.distance, residuals.back);
+        if (!(cost < least)) continue;
+        least = cost;
+        best.scale = place.scale;
+        best.share_placed = place.overlap;
+        best.residuals = residuals;
+        best.points.clear();
+        const Motion back = place.pose.inverse();
+        for (const Point& p : fit.points) best.points.push_back(point_of(back(eigen(p))));
+    }
+    if (best.points.empty()) best.problem = "the fit has no usable result: look at the mesh with 'mesh info'";
+    return best;
+}
+
+void MemberFitOptions::describe(OptionList& visit) {
+    placement.describe(visit);
+    alignment.describe(visit);
+    annotations.describe(visit);
+    fit.describe(visit);
+    visit("ignore-landmarks", ignore_landmarks, "lay the template onto objects by their surfaces alone", Anything{});
+    visit("tries", tries,
+          "without landmarks: placements that are fitted, the nearest ones of those by principal axes and as the files have "
+          "it; the best fit is kept",
+          Range{1, 5});
+    visit("observed", observed, "surfaces farther apart than this share of the diagonal do not lie on each other", Range{0, 1});
+    visit("most-off", most_off,
+          "a template does not lie on an object if a larger share of both surfaces (mean of unmatched and unexplained) is off "
+          "the other after the fit",
+          Range{0, 1});
+}
+
+}  // namespace ostraka

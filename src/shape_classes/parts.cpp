@@ -1,0 +1,200 @@
+#include "ostraka/shape_classes/parts.h"
+
+#include "ostraka/annotation/label_file.h"
+#include "ostraka/core/dense.h"
+#include "ostraka/geom/eigen.h"
+#include "ostraka/geom/surface_search.h"
+#include "ostraka/geom/with_points.h"
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace ostraka {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+namespace {
+
+struct Moments {
+    double area = 0;
+    Vector3d first = Vector3d::Zero();
+    Matrix3d second = Matrix3d::Zero();
+
+    void add(const Mesh& mesh, Face face, const Vector3d& origin) {
+        const auto c = corners(mesh, face);
+        const double a = face_area(mesh, face);
+        const Vector3d p = eigen(mesh.point(c[0])) - origin, q = eigen(mesh.point(c[1])) - origin,
+                       r = eigen(mesh.point(c[2])) - origin, m = (p + q + r) / 3;
+        area += a;
+        first += a * m;
+        second += a / 12 * (p * p.transpose() + q * q.transpose() + r * r.transpose() + 9 * m * m.transpose());
+    }
+    [[nodiscard]] Vector3d middle() const { return first / area; }
+    /// Length and width.
+    [[nodiscard]] std::array<double, 2> sides() const {
+        const Matrix3d covariance = second / area - middle() * middle().transpose();
+        const Vector3d values = symmetric_eigenvalues(covariance);
+        return {std::sqrt(12 * std::max(0.0, values[2])), std::sqrt(12 * std::max(0.0, values[1]))};
+    }
+};
+
+template <class Faces>
+Moments moments_of(const Mesh& mesh, const Faces& faces, const Vector3d& origin) {
+    Moments moments;
+    for (const auto face : faces) moments.add(mesh, Face(face), origin);
+    return moments;
+}
+
+bool is_part(const Mesh& mesh, const Annotation& annotation) {
+    return annotation.type == AnnotationType::region && !annotation.all && !annotation.faces.empty() &&
+           annotation.faces.size() < mesh.number_of_faces();
+}
+
+AnnotationSet parts_of(const Mesh& mesh, const AnnotationSet& set) {
+    AnnotationSet parts;
+    for (const Annotation& annotation : set.annotations)
+        if (is_part(mesh, annotation)) parts.annotations.push_back(annotation);
+    return parts;
+}
+
+/// Area that each pair of a carried and an own label share on the member.
+using Overlap = std::map<std::pair<std::int32_t, std::int32_t>, double>;
+
+Overlap overlap_of(const ClassTemplate& known, const Mesh& fitted, const AnnotationSet& parts, const WholeObject& member,
+                   const AnnotationSet& own) {
+    Overlap overlap;
+    const auto carried = labels_of(known.mesh, parts), there = labels_of(member.mesh, own);
+    const SurfaceSearch search(fitted);
+    for (const Face face : member.mesh.faces()) {
+        const std::int32_t label = carried[search.closest(centroid(member.mesh, face)).face];
+        if (label != no_label && there[face] != no_label) overlap[{label, there[face]}] += face_area(member.mesh, face);
+    }
+    return overlap;
+}
+
+/// Carried label -> own label where each has most of its area in the other.
+std::map<std::int32_t, std::int32_t> counterparts(const Overlap& overlap) {
+    std::map<std::int32_t, std::pair<double, std::int32_t>> best, back;
+    for (const auto& [pair, area] : overlap) {
+        auto& one = best[pair.first];
+        if (area > one.first) one = {area, pair.second};
+        auto& other = back[pair.second];
+        if (area > other.first) other = {area, pair.first};
+    }
+    std::map<std::int32_t, std::int32_t> result;
+    for (const auto& [label, one] : best)
+        if (back[one.second].second == label) result[label] = one.second;
+    return result;
+}
+
+}  // namespace
+
+std::vector<ClassQuantity> part_quantities(const ClassTemplate& known, const std::vector<Point>& points, const WholeObject* own) {
+    const AnnotationSet parts = parts_of(known.mesh, known.set);
+    std::vector<ClassQuantity> list;
+    if (parts.annotations.empty()) return list;
+    const Mesh fitted = with_points(known.mesh, points);
+    std::map<std::int32_t, std::int32_t> same;
+    AnnotationSet theirs;
+    if (own != nullptr) {
+        theirs = parts_of(own->mesh, own->annotations);
+        if (!theirs.annotations.empty()) same = counterparts(overlap_of(known, fitted, parts, *own, theirs));
+    }
+    const Vector3d origin = eigen(points.front());
+    const Moments whole = moments_of(fitted, fitted.faces(), origin);
+    Moments own_whole;
+    if (!same.empty()) own_whole = moments_of(own->mesh, own->mesh.faces(), origin);
+    struct Part {
+        const Annotation* annotation;
+        Moments moments;
+        Vector3d from;  ///< centroid of the whole it belongs to
+        double size = 1;
+    };
+    std::map<std::int32_t, Part> measured;
+    for (const Annotation& annotation : parts.annotations) {
+        const auto there = same.find(annotation.id);
+        const bool theirs_counts = there != same.end();
+        measured[annotation.id] = {&annotation,
+                                   theirs_counts ? moments_of(own->mesh, theirs.find(there->second)->faces, origin)
+                                                 : moments_of(fitted, annotation.faces, origin),
+                                   (theirs_counts ? own_whole : whole).middle(),
+                                   std::sqrt((theirs_counts ? own_whole : whole).area)};
+    }
+    const auto add = [&](const Annotation& annotation, const std::string& name, std::optional<double> value) {
+        ClassQuantity& quantity = list.emplace_back();
+        quantity.kind = QuantityKind::part;
+        quantity.id = annotation.id;
+        quantity.of = annotation.tag;
+        quantity.name = name;
+        if (value && std::isfinite(*value)) quantity.value = value;
+    };
+    std::set<std::pair<std::int32_t, std::int32_t>> neighbours;
+    const auto labels = labels_of(known.mesh, parts);
+    for (const Edge edge : known.mesh.edges()) {
+        if (known.mesh.is_border(edge)) continue;
+        const std::int32_t a = labels[known.mesh.face(known.mesh.halfedge(edge, 0))],
+                           b = labels[known.mesh.face(known.mesh.halfedge(edge, 1))];
+        if (a != b && a != no_label && b != no_label) neighbours.emplace(std::min(a, b), std::max(a, b));
+    }
+    for (const Annotation& annotation : parts.annotations) {
+        const Part& part = measured.at(annotation.id);
+        const bool any = part.moments.area > 0;
+        const auto sides = any ? part.moments.sides() : std::array<double, 2>{};
+        const auto when = [&](double value) { return any ? std::optional<double>(value) : std::nullopt; };
+        add(annotation, "share of the surface", when(part.moments.area / (part.size * part.size)));
+        add(annotation, "length", when(sides[0] / part.size));
+        add(annotation, "width", when(sides[1] / part.size));
+        add(annotation, "distance from the middle", any ? when((part.moments.middle() - part.from).norm() / part.size) : when(0));
+        for (const auto& [a, b] : neighbours) {
+            if (a != annotation.id) continue;
+            const Part& other = measured.at(b);
+            const bool both = any && other.moments.area > 0;
+            add(annotation, "distance to " + std::to_string(b) + " (" + other.annotation->tag + ")",
+                both ? when((part.moments.middle() - other.moments.middle()).norm() / part.size) : std::nullopt);
+        }
+    }
+    return list;
+}
+
+bool is_size_of_part(const ClassQuantity& quantity) { return !quantity.name.starts_with("distance"); }
+
+std::optional<double> own_disagreement(const ClassTemplate& known, const std::vector<Point>& points, const WholeObject& member) {
+    const AnnotationSet parts = parts_of(known.mesh, known.set), own = parts_of(member.mesh, member.annotations);
+    if (parts.annotations.empty() || own.annotations.empty()) return {};
+    const Overlap overlap = overlap_of(known, with_points(known.mesh, points), parts, member, own);
+    // The index of areas as if each were made of so many equal grains that a grain never pairs with itself: their number cancels.
+    std::map<std::int32_t, double> rows, columns;
+    double all = 0, both = 0, row = 0, column = 0;
+    for (const auto& [pair, area] : overlap) all += area;
+    if (!(all > 0)) return {};
+    for (const auto& [pair, area] : overlap) {
+        const double share = area / all;
+        both += share * share;
+        rows[pair.first] += share;
+        columns[pair.second] += share;
+    }
+    for (const auto& [label, share] : rows) row += share * share;
+    for (const auto& [label, share] : columns) column += share * share;
+    const double chance = row * column, most = 0.5 * (row + column);
+    return most > chance ? 1 - (both - chance) / (most - chance) : 0;
+}
+
+PartsOff parts_off(std::span<const std::optional<double>> values, std::span<const std::optional<double>> expected) {
+    PartsOff result;
+    double squares = 0, largest = -1;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (!values[i] || !expected[i] || !(*values[i] > 0) || !(*expected[i] > 0)) continue;
+        const double off = std::abs(std::log(*values[i] / *expected[i]));
+        squares += off * off;
+        ++result.count;
+        if (off > largest) largest = off, result.most = i;
+    }
+    if (result.count > 0) result.off = std::sqrt(squares / static_cast<double>(result.count));
+    return result;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,53 @@
+#include "ostraka/shape_classes/propagate.h"
+
+#include "ostraka/geom/with_points.h"
+#include "ostraka/measure/measure.h"
+
+#include <algorithm>
+
+namespace ostraka {
+
+namespace {
+
+/// Without provenance: that of the template is not that of the copy.
+AnnotationSet copy_of(const AnnotationSet& set) {
+    AnnotationSet copy;
+    copy.object_class = set.object_class;
+    copy.unit = set.unit;
+    copy.up = set.up;
+    copy.annotations = set.annotations;
+    return copy;
+}
+
+}  // namespace
+
+Propagated propagate(const ClassTemplate& known, const WholeObject& member, const PropagateOptions& options) {
+    Propagated result;
+    result.fit = fit_as_told(known, member, options.correspondence, options.fit);
+    if (!result.fit.problem.empty()) {
+        result.lost = known.set.annotations.size();
+        return result;
+    }
+    if (std::string off = fit_is_off(result.fit, options.fit.most_off); !off.empty()) {
+        result.lies_on = false;
+        result.notes.push_back(std::move(off));
+    }
+    const Mesh fitted = with_points(known.mesh, result.fit.points);
+    result.on_template = copy_of(known.set);
+    for (std::string& note : refresh_measures(fitted, result.on_template).notes) result.notes.push_back(std::move(note));
+    if (result.fit.placed_by == "correspondence") {
+        result.on_member = copy_of(result.on_template);
+        return result;
+    }
+    TransferResult carried = transfer(fitted, result.on_template, SurfaceSearch(member.mesh), options.transfer);
+    for (const TransferScore& score : carried.scores)
+        if (score.outcome != "kept" || !score.note.empty())
+            result.notes.push_back("annotation " + std::to_string(score.id) + " (" + score.tag + ") " + score.outcome +
+                                   (score.note.empty() ? "" : ": " + score.note));
+    result.on_member = std::move(carried.annotations);
+    result.lost = known.set.annotations.size() - std::min(known.set.annotations.size(), result.on_member->annotations.size());
+    static_cast<void>(refresh_measures(member.mesh, *result.on_member));
+    return result;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,210 @@
+#include "ostraka/shape_classes/quantities.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/geom/with_points.h"
+#include "ostraka/measure/measure.h"
+#include "ostraka/relation/check.h"
+#include "ostraka/semantic/measure_constraints.h"
+
+#include <cmath>
+#include <map>
+
+namespace ostraka {
+
+std::string to_string(QuantityKind kind) {
+    switch (kind) {
+        case QuantityKind::proportion:
+            return "proportion";
+        case QuantityKind::constraint:
+            return "constraint";
+        case QuantityKind::relation:
+            return "relation";
+        case QuantityKind::part:
+            return "part";
+        case QuantityKind::attribute:
+            return "attribute";
+        default:
+            return "geometry";
+    }
+}
+
+QuantityKind quantity_kind(const std::string& word) {
+    for (const QuantityKind kind : {QuantityKind::proportion, QuantityKind::constraint, QuantityKind::relation,
+                                    QuantityKind::part, QuantityKind::attribute, QuantityKind::geometry})
+        if (to_string(kind) == word) return kind;
+    fail_usage("'" + word + "' is no kind of quantity", "use proportion, constraint, relation, part, attribute or geometry");
+}
+
+std::string ClassQuantity::key() const {
+    return to_string(kind) + (id >= 0 ? " " + std::to_string(id) : "") + " " + (kind == QuantityKind::proportion ? "" : name);
+}
+
+std::string ClassQuantity::text() const {
+    switch (kind) {
+        case QuantityKind::geometry:
+            return name;
+        case QuantityKind::part:
+            return id < 0 ? name : name + " of part " + std::to_string(id) + (of.empty() ? "" : " (" + of + ")");
+        case QuantityKind::attribute:
+            return name + " of " + of;
+        case QuantityKind::proportion:
+            return "proportion " + std::to_string(id) + ", " + name;
+        default:
+            return to_string(kind) + " " + std::to_string(id) + " (" + of + "), " + name;
+    }
+}
+
+Landmarks landmarks_of(const std::vector<Point>& points) {
+    Landmarks landmarks(static_cast<Eigen::Index>(points.size()), 3);
+    for (std::size_t i = 0; i < points.size(); ++i)
+        landmarks.row(static_cast<Eigen::Index>(i)) << points[i].x(), points[i].y(), points[i].z();
+    return landmarks;
+}
+
+std::vector<Point> points_of(const Landmarks& landmarks) {
+    std::vector<Point> points;
+    for (Eigen::Index i = 0; i < landmarks.rows(); ++i) points.emplace_back(landmarks(i, 0), landmarks(i, 1), landmarks(i, 2));
+    return points;
+}
+
+std::vector<Point> in_template_frame(const Mesh& mesh, const std::vector<Point>& points, bool sizes) {
+    const Landmarks goal = landmarks_of({mesh.points().begin(), mesh.points().end()});
+    Landmarks own = landmarks_of(points);
+    if (!sizes) {
+        const double size = centroid_size(own);
+        if (!(size > 0)) fail_input("shape", "all its vertices are in one place", "is it the right file?");
+        own *= centroid_size(goal) / size;
+    }
+    return points_of(procrustes(own, goal).apply(own));
+}
+
+namespace {
+
+/// The measure that a constraint names by id or name; nullptr if there is none.
+const Attribute* named(const JsonValue& parameters, const char* member, const Annotation& annotation) {
+    const JsonValue* name = find_member(parameters, member);
+    if (name == nullptr) return nullptr;
+    for (const Attribute& attribute : annotation.attributes) {
+        if (attribute.type != AttributeType::measure) continue;
+        if (name->IsInt() ? attribute.id == name->GetInt() : name->IsString() && attribute.name == name->GetString())
+            return &attribute;
+    }
+    return nullptr;
+}
+
+/// The ratio of a proportion's two measures.
+std::optional<ClassQuantity> ratio_of(const Mesh& shape, const AnnotationSet& set, const Relationship& relationship) {
+    if (relationship.annotations.size() != 2) return {};
+    const Annotation *a = set.find(relationship.annotations[0]), *b = set.find(relationship.annotations[1]);
+    if (a == nullptr || b == nullptr) return {};
+    const Json parameters = parse_json(relationship.constraint.empty() ? "{}" : relationship.constraint, "constraint");
+    const Attribute *first = named(parameters, "measure1", *a), *second = named(parameters, "measure2", *b);
+    if (first == nullptr || second == nullptr) return {};
+    ClassQuantity quantity;
+    quantity.kind = QuantityKind::proportion;
+    quantity.id = relationship.id;
+    quantity.of = relationship.type;
+    quantity.name = first->name + " of " + a->tag + " / " + second->name + " of " + b->tag;
+    const double below = evaluate(shape, *b, second->measure);
+    if (below > 0) quantity.value = evaluate(shape, *a, first->measure) / below;
+    return quantity;
+}
+
+void add_attributes(const Mesh& shape, const AnnotationSet& set, std::vector<ClassQuantity>& list) {
+    for (const Annotation& annotation : set.annotations)
+        for (const Attribute& attribute : annotation.attributes) {
+            ClassQuantity quantity;
+            quantity.kind = QuantityKind::attribute;
+            quantity.id = annotation.id;
+            quantity.name = attribute.name;
+            quantity.of = annotation.tag;
+            if (attribute.type == AttributeType::measure) {
+                quantity.value = evaluate(shape, annotation, attribute.measure);
+                quantity.unit = set.unit;
+            } else if (attribute.type == AttributeType::descriptor && !attribute.descriptor.is_list &&
+                       attribute.descriptor.file.empty() && attribute.descriptor.values.size() == 1) {
+                quantity.value = evaluate(shape, annotation, attribute.name);
+                if (!quantity.value) continue;  // not one that is known how to take
+                quantity.unit = descriptor_unit(attribute.name, set.unit);
+            } else {
+                continue;
+            }
+            if (!std::isfinite(*quantity.value)) quantity.value.reset();
+            list.push_back(std::move(quantity));
+        }
+}
+
+}  // namespace
+
+std::vector<ClassQuantity> measure_quantities(const ClassTemplate& known, const std::vector<Point>& points, bool sizes) {
+    std::vector<ClassQuantity> list;
+    const std::vector<Point> normal = in_template_frame(known.mesh, points, sizes);
+    // Attributes of the object's own size, but where the template stands: measures have directions.
+    const Mesh framed = with_points(known.mesh, normal),
+               shape = with_points(known.mesh, in_template_frame(known.mesh, points, true));
+    std::map<int, ConstraintReport> constraints;
+    for (ConstraintReport& report : measure_constraints(known.mesh, known.set, known.graph, normal)) {
+        const int id = report.id;
+        constraints.emplace(id, std::move(report));
+    }
+    const auto relations = check_relations(framed, known.set, known.graph);
+    for (std::size_t i = 0; i < known.graph.relationships.size(); ++i) {
+        const Relationship& relationship = known.graph.relationships[i];
+        const auto add = [&](QuantityKind kind, const std::vector<Deviation>& deviations) {
+            for (const Deviation& deviation : deviations) {
+                ClassQuantity quantity;
+                quantity.kind = kind;
+                quantity.id = relationship.id;
+                quantity.of = relationship.type;
+                quantity.name = deviation.quantity;
+                quantity.unit = deviation.unit;
+                quantity.one_sided = deviation.tolerance.has_value();  // a residual: it holds up to its tolerance
+                if (deviation.value && std::isfinite(*deviation.value)) quantity.value = deviation.value;
+                list.push_back(std::move(quantity));
+            }
+        };
+        const auto constraint = constraints.find(relationship.id);
+        if (!relationship.is_constraint) {
+            add(QuantityKind::relation, relations[i].parameters.deviations);
+        } else if (constraint != constraints.end() && constraint->second.used) {
+            if (find_relation_type(relationship.type) != nullptr && relationship.type == "proportion")
+                if (auto ratio = ratio_of(framed, known.set, relationship)) list.push_back(std::move(*ratio));
+            add(QuantityKind::constraint, constraint->second.deviations);
+        }
+    }
+    add_attributes(shape, known.set, list);
+    return list;
+}
+
+std::vector<ClassQuantity> geometry_quantities(const std::optional<FitResiduals>& residuals) {
+    std::vector<ClassQuantity> list;
+    const auto add = [&](const char* name, double FitResiduals::*value) {
+        ClassQuantity quantity;
+        quantity.name = name;
+        quantity.one_sided = true;
+        if (residuals) quantity.value = (*residuals).*value;
+        list.push_back(std::move(quantity));
+    };
+    add("distance", &FitResiduals::distance);
+    add("distance back", &FitResiduals::back);
+    add("unmatched", &FitResiduals::unmatched);
+    add("unexplained", &FitResiduals::unexplained);
+    add("stretch", &FitResiduals::stretch);
+    add("bend", &FitResiduals::bend);
+    return list;
+}
+
+std::vector<ClassQuantity> geometry_quantities(const WholeShape& shape) {
+    std::vector<ClassQuantity> list;
+    const auto add = [&](const char* name, const std::optional<double>& value) {
+        list.emplace_back().name = name;
+        list.back().value = value;
+    };
+    add("compactness", shape.compactness);
+    add("geodesic mean", shape.geodesic_mean);
+    add("geodesic most", shape.geodesic_most);
+    add("geodesic variation", shape.geodesic_variation);
+    return list;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,207 @@
+#include "ostraka/shape_classes/sample.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/text.h"
+#include "ostraka/geom/eigen.h"
+#include "ostraka/geom/with_points.h"
+#include "ostraka/io/diagnose.h"
+#include "ostraka/semantic/deform.h"
+#include "ostraka/stats/random.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <queue>
+
+namespace ostraka {
+
+using Eigen::Vector3d;
+
+namespace {
+
+using Pairs = std::vector<std::pair<Index, Index>>;
+
+Pairs crossings(const Mesh& mesh) { return self_intersections(to_soup(mesh)).pairs; }
+
+/// 1 on the vertices given, falling smoothly to 0 within `reach` along edges.
+std::vector<double> fading(const Mesh& mesh, const std::vector<Index>& from, double reach) {
+    std::vector<double> distance(mesh.number_of_vertices(), std::numeric_limits<double>::infinity());
+    using Entry = std::pair<double, Index>;
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+    for (const Index v : from) distance[v] = 0, queue.emplace(0, v);
+    while (!queue.empty()) {
+        const auto [d, v] = queue.top();
+        queue.pop();
+        if (d > distance[v] || d > reach || mesh.is_isolated(Vertex(v))) continue;
+        for (const Halfedge h : mesh.halfedges_around_target(mesh.halfedge(Vertex(v)))) {
+            const Index n = mesh.source(h).idx();
+            const double next = d + (eigen(mesh.point(Vertex(n))) - eigen(mesh.point(Vertex(v)))).norm();
+            if (next < distance[n]) distance[n] = next, queue.emplace(next, n);
+        }
+    }
+    for (double& d : distance) {
+        const double t = std::clamp(1 - d / reach, 0.0, 1.0);
+        d = t * t * (3 - 2 * t);
+    }
+    return distance;
+}
+
+class Sampler {
+public:
+    Sampler(const ShapeClass& learnt, const ClassTemplate& known, const SampleOptions& options)
+        : learnt_(learnt), known_(known), options_(options), diagonal_(box_diagonal(known.mesh)), own_(crossings(known.mesh)) {
+        frame_ = landmarks_of({known.mesh.points().begin(), known.mesh.points().end()});
+        for (const Relationship& one : known.graph.relationships) constrained_ = constrained_ || one.is_constraint;
+        for (const Annotation& annotation : known.set.annotations)
+            if (annotation.type == AnnotationType::region && !annotation.all && !annotation.faces.empty() &&
+                annotation.faces.size() < known.mesh.number_of_faces())
+                parts_.push_back(&annotation);
+        if (options.by == "modes" && learnt.modes.variances.empty())
+            fail_input("class", "has no modes of variation", "learn it from two or more members that differ, or draw --by edits");
+        if (options.by == "edits" && parts_.empty())
+            fail_input("template", "has no region that is a part of it, which could be edited",
+                       "annotate parts, or draw --by modes");
+    }
+
+    Sampling run() {
+        Sampling result;
+        result.of_members = learnt_.diversity;
+        const auto most = static_cast<std::size_t>(options_.count) * static_cast<std::size_t>(options_.attempts);
+        std::vector<Landmarks> shapes;
+        while (result.samples.size() < static_cast<std::size_t>(options_.count) && result.tried < most) {
+            Random random(options_.seed, result.tried++);
+            ClassSample sample;
+            Landmarks shape = options_.by == "modes" ? by_modes(random, sample) : by_edits(random, sample);
+            if (!keep(shape, sample, result)) continue;
+            shapes.push_back(landmarks_of(sample.points));
+            result.samples.push_back(std::move(sample));
+        }
+        result.diversity = mean_distance(learnt_.modes, shapes);
+        return result;
+    }
+
+private:
+    Landmarks sized(Landmarks shape, Random& random) const {
+        if (learnt_.sizes) return shape;
+        // One of the members' sizes, or between two of them.
+        auto sizes = learnt_.modes.centroid_sizes;
+        std::sort(sizes.begin(), sizes.end());
+        const double at = random.uniform() * static_cast<double>(sizes.size() - 1);
+        const auto i = static_cast<std::size_t>(at);
+        const double size =
+            i + 1 < sizes.size() ? sizes[i] + (at - static_cast<double>(i)) * (sizes[i + 1] - sizes[i]) : sizes[i];
+        return shape * (size / learnt_.modes.mean_size);
+    }
+
+    Landmarks by_modes(Random& random, ClassSample& sample) const {
+        for (std::size_t k = 0; k < learnt_.modes.variances.size(); ++k) {
+            const auto column = learnt_.modes.coefficients.col(static_cast<Eigen::Index>(k));
+            const double low = options_.spread * column.minCoeff(), high = options_.spread * column.maxCoeff();
+            const double deviation = std::sqrt(learnt_.modes.variances[k]);
+            double b = 0;
+            int draws = 0;
+            do b = random.normal(0, deviation);
+            while ((b < low || b > high) && ++draws < 100);
+            sample.coefficients.push_back(std::clamp(b, low, high));
+        }
+        return sized(shape_of(learnt_.modes, sample.coefficients), random);
+    }
+
+    Landmarks by_edits(Random& random, ClassSample& sample) const {
+        Landmarks shape = learnt_.modes.mean;
+        const std::size_t edits = 1 + random.below(3);
+        for (std::size_t e = 0; e < edits; ++e) {
+            const Annotation& part = *parts_[random.below(parts_.size())];
+            const std::vector<Index> vertices = touched_vertices(known_.mesh, part);
+            const double factor = std::exp(random.normal(0, options_.edit));
+            Vector3d axis(random.normal(), random.normal(), random.normal());
+            const bool scale = random.uniform() < 0.5;
+            axis.normalize();
+            Vector3d middle = Vector3d::Zero();
+            for (const Index v : vertices)
+                middle += shape.row(static_cast<Eigen::Index>(v)).transpose() / static_cast<double>(vertices.size());
+            const auto weights = fading(known_.mesh, vertices, 0.1 * diagonal_);
+            for (Eigen::Index i = 0; i < shape.rows(); ++i) {
+                const Vector3d arm = shape.row(i).transpose() - middle;
+                const Vector3d move = (factor - 1) * (scale ? arm : Vector3d(axis.dot(arm) * axis));
+                shape.row(i) += weights[static_cast<std::size_t>(i)] * move.transpose();
+            }
+            sample.edits.push_back(part.tag + (scale ? " scaled by " : " stretched by ") + digits(factor, 4));
+        }
+        return sized(shape, random);
+    }
+
+    /// Restores the constraints and looks whether the shape may stay.
+    bool keep(const Landmarks& shape, ClassSample& sample, Sampling& result) {
+        const auto reject = [&](std::size_t& count, const std::string& why) {
+            if (count++ == 0) result.examples.push_back(why);
+            return false;
+        };
+        sample.points = points_of(shape);
+        if (constrained_) {
+            // Solved in the frame of the template, at its size unless sizes count.
+            const double factor = learnt_.sizes ? 1 : centroid_size(frame_) / centroid_size(shape);
+            const SimilarityMap there = procrustes(factor * shape, frame_);
+            const std::vector<Point> start = points_of(there.apply(factor * shape));
+            DeformOptions how;
+            how.conflicts = 0;
+            const DeformResult restored =
+                restore_constraints(known_.mesh, known_.set, known_.graph, start, std::vector<bool>(start.size(), false), how);
+            for (std::size_t i = 0; i < start.size(); ++i)
+                sample.moved = std::max(sample.moved, (eigen(restored.points[i]) - eigen(start[i])).norm() / diagonal_);
+            for (const ConstraintReport& report : restored.constraints)
+                if (report.used && report.verdict != Verdict::holds)
+                    return reject(result.by_constraints, "constraint " + std::to_string(report.id) + " (" + report.type +
+                                                             ") does not hold" + (report.text.empty() ? "" : ": " + report.text));
+            const Landmarks back = landmarks_of(restored.points).rowwise() - there.translation.transpose();
+            sample.points = points_of(back * there.rotation / factor);
+        }
+        LearntMember member;
+        member.fit.points = sample.points;
+        member.quantities = measure_quantities(known_, sample.points, learnt_.sizes);
+        const ClassAnswer answer = compare_with(learnt_, member);
+        if (!answer.against.empty()) return reject(result.by_ranges, answer.reasons().front());
+        const Mesh mesh = with_points(known_.mesh, sample.points);
+        for (const auto& pair : crossings(mesh))
+            if (!std::binary_search(own_.begin(), own_.end(), pair))
+                return reject(result.by_intersections,
+                              "faces " + std::to_string(pair.first) + " and " + std::to_string(pair.second) + " cross");
+        return true;
+    }
+
+    const ShapeClass& learnt_;
+    const ClassTemplate& known_;
+    const SampleOptions& options_;
+    double diagonal_;
+    Pairs own_;
+    Landmarks frame_;
+    bool constrained_ = false;
+    std::vector<const Annotation*> parts_;
+};
+
+}  // namespace
+
+Sampling sample_class(const ShapeClass& learnt, const ClassTemplate& known, const SampleOptions& options) {
+    check_options(options, "sample");
+    if (static_cast<std::size_t>(learnt.modes.mean.rows()) != known.mesh.number_of_vertices())
+        fail_input("class",
+                   "was learnt with a template of " + std::to_string(learnt.modes.mean.rows()) + " vertices, this one has " +
+                       std::to_string(known.mesh.number_of_vertices()),
+                   "use the template that stands beside the class");
+    return Sampler(learnt, known, options).run();
+}
+
+void SampleOptions::describe(OptionList& visit) {
+    visit("count", count, "members to draw", Range{1, 1e6});
+    visit("seed", seed, "seed of the random numbers", Range{0, 1e18});
+    visit("by", by,
+          "modes: normal coefficients within the range of the members'; edits: the mean shape with one to three random parts "
+          "stretched or scaled",
+          Choices{"modes", "edits"});
+    visit("spread", spread, "coefficients go so many times as far as the members'", Range{0, 10});
+    visit("edit", edit, "standard deviation of the logarithm of a part's stretch", Range{0, 2});
+    visit("attempts", attempts, "draws for each member wanted, at most", Range{1, 1e6});
+}
+
+}  // namespace ostraka

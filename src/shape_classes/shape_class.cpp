@@ -1,0 +1,385 @@
+#include "ostraka/shape_classes/shape_class.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/shape_classes/fragment_thresholds.h"
+#include "ostraka/shape_classes/parts.h"
+#include "ostraka/shape_classes/thresholds.h"
+#include "ostraka/stats/summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace ostraka {
+
+const LearntRange* ShapeClass::find(const std::string& key) const {
+    for (const LearntRange& range : ranges)
+        if (range.quantity.key() == key) return &range;
+    return nullptr;
+}
+
+MemberFit fit_as_told(const ClassTemplate& known, const WholeObject& member, const std::string& correspondence,
+                      const MemberFitOptions& options) {
+    if (correspondence == "given" || (correspondence == "auto" && in_correspondence(known.mesh, member.mesh)))
+        return member_in_correspondence(known.mesh, member);
+    return fit_member(known.mesh, known.set, member, options);
+}
+
+LearntMember learn_member(const ClassTemplate& known, const WholeObject& member, const LearnOptions& options,
+                          const WholeShape* whole) {
+    check_options(options, "learn");
+    return measure_member(known, member, fit_as_told(known, member, options.correspondence, options.fit), options, whole);
+}
+
+LearntMember measure_member(const ClassTemplate& known, const WholeObject& member, MemberFit fit, const LearnOptions& options,
+                            const WholeShape* whole) {
+    LearntMember learnt;
+    learnt.name = member.name;
+    learnt.fit = std::move(fit);
+    if (!learnt.fit.problem.empty()) return learnt;
+    learnt.quantities = measure_quantities(known, learnt.fit.points, options.modes.sizes);
+    for (ClassQuantity& quantity : part_quantities(known, learnt.fit.points, &member))
+        learnt.quantities.push_back(std::move(quantity));
+    if (const auto disagreement = own_disagreement(known, learnt.fit.points, member)) {
+        ClassQuantity& quantity = learnt.quantities.emplace_back();
+        quantity.kind = QuantityKind::part;
+        quantity.name = "own annotations elsewhere";
+        quantity.one_sided = true;
+        quantity.value = disagreement;
+    }
+    learnt.fragments = fragment_quantities(known, learnt.fit.points, learnt.quantities);
+    for (ClassQuantity& quantity : geometry_quantities(learnt.fit.residuals)) learnt.quantities.push_back(std::move(quantity));
+    for (ClassQuantity& quantity : geometry_quantities(whole != nullptr ? *whole : measure_whole_shape(member.mesh)))
+        learnt.quantities.push_back(std::move(quantity));
+    return learnt;
+}
+
+namespace {
+
+std::vector<double> known_of(const LearntRange& range) {
+    std::vector<double> known;
+    for (const auto& value : range.values)
+        if (value) known.push_back(*value);
+    return known;
+}
+
+/// A distance of a member from the others: the root of a sum of squares, whose members' values stand about zero in all
+/// directions.
+bool is_distance(const ClassQuantity& quantity) {
+    const std::string& name = quantity.name;
+    return quantity.one_sided && quantity.id < 0 &&
+           (name == "from the mean shape" || name == "outside the modes" || name == "sizes of the parts" ||
+            name == "places of the parts");
+}
+
+/// Shares, lengths, ratios: what ranges below zero would say nothing of. Deviations have signs, attributes may have.
+bool is_never_negative(const ClassQuantity& quantity) {
+    return quantity.kind == QuantityKind::proportion || quantity.kind == QuantityKind::part ||
+           quantity.kind == QuantityKind::geometry;
+}
+
+void summarise_range(LearntRange& range) {
+    const std::vector<double> known = known_of(range);
+    range.count = known.size();
+    if (known.empty()) return;
+    const Summary summary = summarise(known, range.quantity.key());
+    range.min = summary.min;
+    range.max = summary.max;
+    range.mean = summary.mean;
+    range.median = summary.median;
+    range.deviation = summary.deviation;
+    range.percentile_5 = sample_quantile(known, 0.05);
+    range.percentile_25 = sample_quantile(known, 0.25);
+    range.percentile_75 = sample_quantile(known, 0.75);
+    range.percentile_95 = sample_quantile(known, 0.95);
+    const QuantityKind kind = range.quantity.kind;
+    range.logarithm =
+        range.min > 0 && kind != QuantityKind::constraint && kind != QuantityKind::relation && !is_distance(range.quantity);
+}
+
+bool single_part(const LearntRange& range) { return range.quantity.kind == QuantityKind::part && range.quantity.id >= 0; }
+
+/// Values as they count as normal.
+SampleMoments range_moments(const LearntRange& range) {
+    std::vector<double> known = known_of(range);
+    if (is_distance(range.quantity)) {
+        // Left out, a member is n / (n - 1) times as far from the mean of the others as from that of all: the variance about it.
+        SampleMoments about;
+        about.count = known.size();
+        const auto n = static_cast<double>(about.count);
+        for (const double x : known) about.variance += (n - 1) / (n * n) * x * x;
+        about.freedom = n - 1;
+        return about;
+    }
+    if (range.logarithm)
+        for (double& x : known) x = std::log(x);
+    return moments_of(std::span<const double>(known));
+}
+
+void set_bounds(LearntRange& range, const SampleMoments& known, double resolution) {
+    const double largest = std::max(std::abs(range.min), std::abs(range.max));
+    // A distance has no side: of one direction t is the widest, of more than one the bound is that much safer.
+    const PredictionInterval interval = predict(known, range.quantity.one_sided && !is_distance(range.quantity), range.reject,
+                                                range.logarithm ? resolution : resolution * largest);
+    // Rounding does not refuse, nor what a range in per cent tolerates (solver: a tenth).
+    const bool per_cent = range.quantity.kind == QuantityKind::constraint && range.quantity.unit == "%";
+    const double more = per_cent ? 0.1 : 1e-6;
+    const double low = (range.logarithm ? std::exp(interval.low) : interval.low) - more,
+                 high = (range.logarithm ? std::exp(interval.high) : interval.high) + more;
+    if (!std::isfinite(low) || !std::isfinite(high)) return;
+    range.high = high;
+    if (!range.quantity.one_sided) range.low = is_never_negative(range.quantity) ? std::max(0.0, low) : low;
+}
+
+using Moments = std::map<std::string, SampleMoments>;  ///< by key: what to take instead of the range's own
+
+void set_thresholds(ShapeClass& learnt, const Moments& moderated) {
+    std::map<QuantityKind, std::size_t> counts;
+    for (const LearntRange& range : learnt.ranges)
+        if (!single_part(range) && range.count >= ShapeClass::least_members) ++counts[range.quantity.kind];
+    const auto kinds = std::max<std::size_t>(1, counts.size() - counts.count(QuantityKind::attribute));
+    for (LearntRange& range : learnt.ranges) {
+        range.low.reset();
+        range.high.reset();
+        range.reject = 0;
+        if (single_part(range) || range.count < ShapeClass::least_members) continue;
+        range.reject = learnt.reject / static_cast<double>(kinds * counts.at(range.quantity.kind));
+        const auto found = moderated.find(range.quantity.key());
+        set_bounds(range, found == moderated.end() ? range_moments(range) : found->second, learnt.resolution);
+    }
+}
+
+}  // namespace
+
+void learn_thresholds(ShapeClass& learnt) { set_thresholds(learnt, {}); }
+
+void moderate_thresholds(std::vector<ShapeClass>& classes) {
+    std::map<std::string, std::vector<SampleMoments>> samples;
+    const auto shared = [](const LearntRange& range) {
+        return (range.logarithm || is_distance(range.quantity)) && range.count >= ShapeClass::least_members &&
+               range.quantity.id < 0 &&
+               (range.quantity.kind == QuantityKind::geometry || range.quantity.kind == QuantityKind::part);
+    };
+    for (const ShapeClass& one : classes)
+        for (const LearntRange& range : one.ranges)
+            if (shared(range)) samples[range.quantity.key()].push_back(range_moments(range));
+    std::map<std::string, VariancePrior> priors;
+    for (const auto& [key, list] : samples)
+        if (const auto prior = variance_prior(list)) priors.emplace(key, *prior);
+    for (ShapeClass& one : classes) {
+        Moments moderated;
+        for (const LearntRange& range : one.ranges)
+            if (const auto prior = priors.find(range.quantity.key()); shared(range) && prior != priors.end())
+                moderated[range.quantity.key()] = prior->second.moderate(range_moments(range));
+        set_thresholds(one, moderated);
+    }
+}
+
+std::vector<std::optional<double>> expected_parts(const std::vector<LearntRange>& ranges, std::optional<std::size_t> without) {
+    std::vector<std::optional<double>> expected;
+    for (const LearntRange& range : ranges) {
+        expected.emplace_back();
+        if (!single_part(range)) continue;
+        double sum = 0, count = 0;
+        for (std::size_t i = 0; i < range.values.size(); ++i)
+            if (i != without && range.values[i] && *range.values[i] > 0) sum += std::log(*range.values[i]), ++count;
+        if (count > 0) expected.back() = std::exp(sum / count);
+    }
+    return expected;
+}
+
+std::vector<PartsTogether> parts_together(const std::vector<LearntRange>& ranges,
+                                          const std::vector<std::optional<double>>& values,
+                                          const std::vector<std::optional<double>>& expected) {
+    std::vector<PartsTogether> list;
+    for (const bool sizes : {true, false}) {
+        std::vector<std::size_t> places;
+        std::vector<std::optional<double>> own, usual;
+        for (std::size_t k = 0; k < ranges.size(); ++k) {
+            if (!single_part(ranges[k]) || is_size_of_part(ranges[k].quantity) != sizes) continue;
+            places.push_back(k);
+            own.push_back(values[k]);
+            usual.push_back(expected[k]);
+        }
+        if (places.empty()) continue;
+        PartsTogether& one = list.emplace_back();
+        one.quantity.kind = QuantityKind::part;
+        one.quantity.name = sizes ? "sizes of the parts" : "places of the parts";
+        one.quantity.one_sided = true;
+        const PartsOff off = parts_off(own, usual);
+        if (off.count == 0) continue;
+        one.quantity.value = off.off;
+        one.most = places[off.most];
+        one.expected = *usual[off.most];
+    }
+    return list;
+}
+
+double mean_distance(const ShapeModes& modes, const std::vector<Landmarks>& shapes) {
+    if (shapes.size() < 2) return 0;
+    std::vector<Landmarks> laid;
+    for (const Landmarks& shape : shapes) laid.push_back(coordinates_in(modes, shape).map.apply(shape));
+    double sum = 0;
+    for (std::size_t i = 0; i < laid.size(); ++i)
+        for (std::size_t j = i + 1; j < laid.size(); ++j) sum += (laid[i] - laid[j]).norm();
+    return sum / (0.5 * static_cast<double>(laid.size() * (laid.size() - 1))) / modes.mean_size;
+}
+
+namespace {
+
+using Quantities = std::vector<ClassQuantity> LearntMember::*;
+
+/// The values of each quantity on the members.
+std::vector<LearntRange> collected(const std::vector<const LearntMember*>& members, Quantities which) {
+    std::vector<LearntRange> ranges;
+    std::map<std::string, std::size_t> known;
+    for (std::size_t i = 0; i < members.size(); ++i)
+        for (const ClassQuantity& quantity : members[i]->*which) {
+            const auto [entry, fresh] = known.try_emplace(quantity.key(), ranges.size());
+            if (fresh) {
+                ranges.emplace_back().quantity = quantity;
+                ranges.back().quantity.value.reset();
+                ranges.back().values.resize(members.size());
+            }
+            ranges[entry->second].values[i] = quantity.value;
+        }
+    return ranges;
+}
+
+/// Each has its share of the rate at which members are refused.
+void add_fragment_ranges(ShapeClass& learnt, const std::vector<const LearntMember*>& members) {
+    learnt.fragments = collected(members, &LearntMember::fragments);
+    for (LearntRange& range : learnt.fragments) {
+        summarise_range(range);
+        if (range.count < ShapeClass::least_members) continue;
+        range.reject = learnt.reject / static_cast<double>(learnt.fragments.size());
+        set_bounds(range, range_moments(range), learnt.resolution);
+    }
+}
+
+void add_ranges(ShapeClass& learnt, const std::vector<const LearntMember*>& members) {
+    learnt.ranges = collected(members, &LearntMember::quantities);
+    const auto add = [&](const char* name, const std::vector<double>& values) {
+        LearntRange& range = learnt.ranges.emplace_back();
+        range.quantity.name = name;
+        range.quantity.one_sided = true;
+        range.values.resize(members.size());
+        for (std::size_t i = 0; i < values.size(); ++i) range.values[i] = values[i];
+    };
+    const std::size_t n = members.size();
+    // Of each member against the others.
+    std::vector<std::vector<PartsTogether>> together;
+    for (std::size_t i = 0; n > 1 && i < n; ++i) {
+        std::vector<std::optional<double>> own;
+        for (const LearntRange& range : learnt.ranges) own.push_back(range.values[i]);
+        together.push_back(parts_together(learnt.ranges, own, expected_parts(learnt.ranges, i)));
+    }
+    for (std::size_t k = 0; n > 1 && k < together.front().size(); ++k) {
+        LearntRange& range = learnt.ranges.emplace_back();
+        range.quantity = together.front()[k].quantity;
+        range.quantity.value.reset();
+        for (std::size_t i = 0; i < n; ++i) range.values.push_back(together[i][k].quantity.value);
+    }
+    add("from the mean shape", learnt.modes.left_out_distances);
+    add("outside the modes", learnt.modes.left_out_outside);
+    if (learnt.sizes) {
+        add("centroid size", learnt.modes.centroid_sizes);
+        learnt.ranges.back().quantity.one_sided = false;
+    }
+    for (LearntRange& range : learnt.ranges) summarise_range(range);
+    learn_thresholds(learnt);
+}
+
+/// The member nearest the mean; not one of `poor`, if there are others.
+void choose_archetype(ShapeModes& modes, const std::set<std::size_t>& poor) {
+    if (poor.size() >= modes.distances.size()) return;
+    std::size_t best = modes.distances.size();
+    for (std::size_t i = 0; i < modes.distances.size(); ++i)
+        if (poor.count(i) == 0 && (best == modes.distances.size() || modes.distances[i] < modes.distances[best])) best = i;
+    modes.archetype = best;
+}
+
+}  // namespace
+
+ShapeClass learn_class(const ClassTemplate& known, const std::vector<LearntMember>& members, const LearnOptions& options) {
+    check_options(options, "learn");
+    ShapeClass learnt;
+    learnt.sizes = options.modes.sizes;
+    learnt.reject = options.reject;
+    learnt.resolution = options.resolution;
+    std::vector<const LearntMember*> used;
+    std::vector<Landmarks> shapes;
+    std::set<std::size_t> poor;  // no archetype
+    constexpr double hopeless = 0.5;
+    for (const LearntMember& member : members) {
+        if (!member.fit.problem.empty()) {
+            learnt.notes.push_back(member.name + " is left out: " + member.fit.problem);
+            continue;
+        }
+        if (std::string off = fit_is_off(member.fit, hopeless); !off.empty()) {
+            learnt.notes.push_back(member.name + " is left out: " + off);
+            continue;
+        }
+        if (std::string off = fit_is_off(member.fit, options.fit.most_off); !off.empty()) {
+            learnt.notes.push_back(member.name + " counts, but is no archetype: " + off);
+            poor.insert(used.size());
+        }
+        used.push_back(&member);
+        shapes.push_back(landmarks_of(member.fit.points));
+        learnt.members.push_back({member.name, member.fit.placed_by, member.fit.scale, member.fit.notes});
+    }
+    if (used.empty())
+        fail_input("class", members.empty() ? "has no member" : "has no member that the template could be laid onto",
+                   "give one or more whole objects");
+    learnt.modes = learn_modes(shapes, landmarks_of({known.mesh.points().begin(), known.mesh.points().end()}), options.modes);
+    learnt.diversity = mean_distance(learnt.modes, shapes);
+    add_ranges(learnt, used);
+    add_fragment_ranges(learnt, used);
+    if (const LearntRange* range = learnt.find("geometry compactness"); range != nullptr && range->count > 0)
+        for (std::size_t i = 0; i < range->values.size(); ++i)
+            if (!range->values[i]) {
+                poor.insert(i);
+                learnt.notes.push_back(learnt.members[i].name +
+                                       " counts, but is no archetype: its surface is open or encloses no volume, and others' do");
+            }
+    choose_archetype(learnt.modes, poor);
+    learnt.topology = topology_checksum(known.mesh);
+    if (used.size() == 1)
+        learnt.notes.push_back("there is one member: neither modes nor thresholds can be learnt; give three or more");
+    else if (!learnt.has_thresholds())
+        learnt.notes.push_back("there are two members: thresholds cannot be learnt; give three or more");
+    else if (used.size() < 5)
+        learnt.notes.push_back("there are only " + std::to_string(used.size()) +
+                               " members: to refuse few members, the thresholds have to be wide");
+    if (used.size() > 1 && learnt.modes.variances.empty())
+        learnt.notes.push_back("the members have all one shape: thresholds know the resolution of what is measured, no more");
+    const bool constrained = std::any_of(known.graph.relationships.begin(), known.graph.relationships.end(),
+                                         [](const Relationship& one) { return one.is_constraint && one.weight > 0; });
+    if (!constrained) learnt.notes.push_back("the template has no constraint: relations and geometry alone decide");
+    return learnt;
+}
+
+ShapePrior prior_of(const ShapeModes& modes) {
+    ShapePrior prior;
+    for (Eigen::Index i = 0; i < modes.mean.rows(); ++i) prior.mean.emplace_back(modes.mean.row(i).transpose());
+    prior.modes = modes.modes.transpose();
+    for (const double variance : modes.variances) prior.deviations.push_back(std::sqrt(variance));
+    return prior;
+}
+
+void LearnOptions::describe(OptionList& visit) {
+    fit.describe(visit);
+    modes.describe(visit);
+    visit("correspondence", correspondence,
+          "members whose triangles are the template's are taken as they are, the template is fitted to others (auto); all have "
+          "to be in correspondence (given); it is fitted to all (fitted)",
+          Choices{"auto", "given", "fitted"});
+    visit("false-reject", reject,
+          "share of members that are refused, at most, where what is measured of them is normal or log-normal: all thresholds "
+          "together",
+          Range{1e-6, 0.5});
+    visit("resolution", resolution, "standard deviation of what is measured of one member, as a share of its value", Range{0, 1});
+}
+
+}  // namespace ostraka

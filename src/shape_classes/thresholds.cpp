@@ -1,0 +1,87 @@
+#include "ostraka/shape_classes/thresholds.h"
+
+#include "ostraka/core/error.h"
+
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
+#include <boost/math/special_functions/digamma.hpp>
+#include <boost/math/special_functions/trigamma.hpp>
+
+#include <cmath>
+#include <limits>
+
+namespace ostraka {
+
+namespace {
+
+/// Where the trigamma function has the value `y` > 0: it falls, so by halving between bounds (in the logarithm).
+double inverse_trigamma(double y) {
+    double low = 1e-8, high = 1e8;
+    for (int i = 0; i < 200; ++i) {
+        const double middle = std::sqrt(low * high);
+        (boost::math::trigamma(middle) > y ? low : high) = middle;
+    }
+    return std::sqrt(low * high);
+}
+
+constexpr double many = 1e6;  ///< degrees of freedom from which on Student's distribution is the normal one
+
+}  // namespace
+
+SampleMoments moments_of(std::span<const double> values) {
+    SampleMoments result;
+    result.count = values.size();
+    if (values.empty()) return result;
+    const auto n = static_cast<double>(values.size());
+    for (const double x : values) result.mean += x / n;
+    result.freedom = n - 1;
+    for (const double x : values) result.variance += (x - result.mean) * (x - result.mean);
+    result.variance = n > 1 ? result.variance / (n - 1) : 0;
+    return result;
+}
+
+PredictionInterval predict(const SampleMoments& known, bool one_sided, double reject, double resolution) {
+    if (known.count == 0 || !(known.freedom > 0))
+        fail_usage("nothing can be predicted from " + std::to_string(known.count) + " values", "give two or more");
+    if (!(reject > 0) || !(reject < 1)) fail_usage("the share to be rejected is not between 0 and 1", "use 0.05, say");
+    const double share = one_sided ? reject : reject / 2;
+    const double t =
+        known.freedom < many
+            ? boost::math::quantile(boost::math::complement(boost::math::students_t_distribution<double>(known.freedom), share))
+            : boost::math::quantile(boost::math::complement(boost::math::normal_distribution<double>(), share));
+    const double most = t * std::sqrt((known.variance + resolution * resolution) * (1 + 1 / static_cast<double>(known.count)));
+    return {known.mean - most, known.mean + most};
+}
+
+SampleMoments VariancePrior::moderate(const SampleMoments& own) const {
+    SampleMoments result = own;
+    if (std::isinf(freedom)) {
+        result.variance = variance;
+        result.freedom = freedom;
+        return result;
+    }
+    result.freedom = freedom + own.freedom;
+    result.variance = (freedom * variance + own.freedom * own.variance) / result.freedom;
+    return result;
+}
+
+std::optional<VariancePrior> variance_prior(std::span<const SampleMoments> samples) {
+    using boost::math::digamma;
+    using boost::math::trigamma;
+    std::vector<double> logs, expected;
+    for (const SampleMoments& one : samples) {
+        if (!(one.variance > 0) || !(one.freedom > 0)) continue;
+        logs.push_back(std::log(one.variance) - digamma(one.freedom / 2) + std::log(one.freedom / 2));
+        expected.push_back(trigamma(one.freedom / 2));
+    }
+    if (logs.size() < 3) return {};
+    const auto n = static_cast<double>(logs.size());
+    double mean = 0, excess = 0;
+    for (const double x : logs) mean += x / n;
+    for (std::size_t i = 0; i < logs.size(); ++i) excess += (logs[i] - mean) * (logs[i] - mean) / (n - 1) - expected[i] / n;
+    if (!(excess > 0)) return VariancePrior{std::exp(mean), std::numeric_limits<double>::infinity()};
+    const double half = inverse_trigamma(excess);
+    return VariancePrior{std::exp(mean + digamma(half) - std::log(half)), 2 * half};
+}
+
+}  // namespace ostraka

@@ -1,0 +1,75 @@
+// Words for describing made objects.
+#pragma once
+
+#include "ostraka/synthetic/made_object.h"
+
+#include <memory>
+#include <string>
+
+namespace ostraka::shapes {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Colour3 = std::array<std::uint8_t, 3>;
+
+/// Turn by `degrees` around an axis.
+inline Eigen::Matrix3d turned(double degrees, const Vector3d& axis) {
+    return Eigen::AngleAxisd(degrees * 3.14159265358979323846 / 180, axis.normalized()).toRotationMatrix();
+}
+
+/// Adds a part and returns its label.
+inline int add_part(MadeObject& object, const std::string& name, const Colour3& colour) {
+    object.parts.push_back(name);
+    object.part_colours.push_back(colour);
+    return static_cast<int>(object.parts.size()) - 1;
+}
+
+inline void add_member(MadeObject& object, SolidPointer solid, int part, double blend) {
+    Member member;
+    member.solid = std::move(solid);
+    member.blend = blend;
+    member.stretches = {{std::numeric_limits<double>::infinity(), part}};
+    object.members.push_back(std::move(member));
+}
+
+/// A member in several parts: `until` pairs the number of a profile point or bead with the part that ends there.
+template <class Items>
+void add_divided_member(MadeObject& object, SolidPointer solid, const Items& items, double blend,
+                        const std::vector<std::pair<double, int>>& until) {
+    const auto lengths = chord_lengths(items);
+    Member member;
+    member.solid = std::move(solid);
+    member.blend = blend;
+    for (const auto& [item, part] : until) {
+        const auto below = static_cast<std::size_t>(item);
+        const double share = item - static_cast<double>(below);
+        const double length = below + 1 < lengths.size() ? (1 - share) * lengths[below] + share * lengths[below + 1]
+                                                         : std::numeric_limits<double>::infinity();
+        member.stretches.push_back({length, part});
+    }
+    object.members.push_back(std::move(member));
+}
+
+/// Cuts a solid away; the walls it leaves become `part` (or, below 0, belong to what was cut).
+inline void carve(MadeObject& object, SolidPointer solid, int part, double blend) {
+    Member member;
+    member.solid = std::move(solid);
+    member.blend = blend;
+    member.carves = true;
+    if (part >= 0) member.stretches = {{std::numeric_limits<double>::infinity(), part}};
+    object.members.push_back(std::move(member));
+}
+
+using ObjectPointer = std::unique_ptr<const MadeObject>;
+ObjectPointer make_teapot();
+ObjectPointer make_vase();
+ObjectPointer make_statuette();
+ObjectPointer make_chair();
+ObjectPointer make_hand();
+ObjectPointer make_sphere();
+ObjectPointer make_torus_object();
+ObjectPointer make_box_object();
+ObjectPointer make_capsule();
+ObjectPointer make_cylinder_object();
+
+}  // namespace ostraka::shapes

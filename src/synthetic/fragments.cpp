@@ -1,0 +1,96 @@
+#include "ostraka/synthetic/fragments.h"
+#include "ostraka/core/angles.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/geom/eigen.h"
+#include "ostraka/geom/submesh.h"
+#include "ostraka/stats/random.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace ostraka {
+
+using Eigen::Vector3d;
+
+BrokenPiece break_off(const Mesh& whole, const Point& centre, const BreakOptions& options) {
+    check_options(options, "fragment");
+    const double area = surface_area(whole), diagonal = box_diagonal(whole);
+    if (!(area > 0)) fail_input("mesh", "has no area, so that nothing can be broken off it");
+    Random random(options.seed);
+    // Waves in space, of the fragment's size and shorter ones.
+    const double size = std::sqrt(options.share * area);
+    struct Wave {
+        Vector3d number;
+        double phase, height;
+    };
+    std::vector<Wave> waves;
+    for (int k = 0; k < 12; ++k) {
+        const double length = size * std::pow(0.15, k / 11.0);
+        Vector3d direction(random.normal(), random.normal(), random.normal());
+        direction.normalize();
+        waves.push_back(
+            {2 * pi / length * direction, random.uniform(0, 2 * pi), options.roughness * length * std::sqrt(2.0 / 12)});
+    }
+    const Vector3d middle = eigen(centre);
+    std::vector<double> distance(whole.number_of_faces());
+    for (const Face face : whole.faces()) {
+        const Vector3d place = eigen(centroid(whole, face));
+        distance[face] = (place - middle).norm();
+        for (const Wave& wave : waves) distance[face] += wave.height * std::sin(wave.number.dot(place) + wave.phase);
+    }
+    std::vector<Index> order(distance.size());
+    std::iota(order.begin(), order.end(), Index{0});
+    std::sort(order.begin(), order.end(),
+              [&](Index a, Index b) { return std::pair(distance[a], a) < std::pair(distance[b], b); });
+    std::vector<bool> keep(order.size(), false);
+    double sum = 0;
+    for (const Index face : order) {
+        if (sum >= options.share * area * (1 - 1e-12)) break;
+        keep[face] = true;
+        sum += face_area(whole, Face(face));
+    }
+    SubMesh piece = keep_faces(whole, keep, true);
+    if (options.erosion > 0) {
+        std::vector<Vector3d> rim;
+        for (const Vertex v : piece.mesh.vertices())
+            if (piece.mesh.is_border(v) && !whole.is_border(Vertex(piece.vertices[v]))) rim.push_back(eigen(piece.mesh.point(v)));
+        const double width = options.erosion * diagonal;
+        std::fill(keep.begin(), keep.end(), false);
+        for (const Face face : piece.mesh.faces()) {
+            const Vector3d place = eigen(centroid(piece.mesh, face));
+            keep[piece.faces[face]] =
+                std::none_of(rim.begin(), rim.end(), [&](const Vector3d& p) { return (p - place).norm() < width; });
+        }
+        piece = keep_faces(whole, keep, true);
+    }
+    if (piece.mesh.number_of_faces() == 0)
+        throw Error(ErrorKind::failure, "fragment", "nothing is left of it", "take a larger share, or wear less away");
+    BrokenPiece result{std::move(piece.mesh), std::move(piece.vertices), std::move(piece.faces), {}};
+    std::vector<Vector> normals;
+    for (const Vertex v : result.mesh.vertices()) normals.push_back(vertex_normal(whole, Vertex(result.vertices[v])));
+    if (options.noise > 0)
+        for (const Vertex v : result.mesh.vertices())
+            result.mesh.point(v) = result.mesh.point(v) + options.noise * diagonal * random.normal() * normals[v];
+    if (options.moved) {
+        Motion there;
+        Eigen::Quaterniond turn(random.normal(), random.normal(), random.normal(), random.normal());
+        there.turn = turn.normalized().toRotationMatrix();
+        there.shift = diagonal * Vector3d(random.normal(), random.normal(), random.normal());
+        for (const Vertex v : result.mesh.vertices()) result.mesh.point(v) = point_of(there(eigen(result.mesh.point(v))));
+        result.pose = there.inverse();
+    }
+    return result;
+}
+
+void BreakOptions::describe(OptionList& visit) {
+    visit("share", share, "of the surface that the fragment has", Range{0.001, 1});
+    visit("roughness", roughness, "waves of the break, as a share of the fragment's size", Range{0, 1});
+    visit("noise", noise, "standard deviation along the normal, as a share of the whole's diagonal", Range{0, 0.1});
+    visit("erosion", erosion, "width of the rim that is worn away, as a share of the whole's diagonal", Range{0, 0.5});
+    visit("moved", moved, "turned and shifted at random", Anything{});
+    visit("seed", seed, "of the break, the noise and the motion", Range{0, 9007199254740992.0});
+}
+
+}  // namespace ostraka

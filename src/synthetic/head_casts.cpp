@@ -1,0 +1,219 @@
+#include "ostraka/synthetic/head_casts.h"
+
+#include "ostraka/stats/random.h"
+
+#include "ostraka/geom/diffusion.h"
+#include "ostraka/geom/eigen.h"
+#include "ostraka/geom/submesh.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace ostraka {
+
+using Eigen::Vector3d;
+
+namespace {
+
+enum Stream : std::uint64_t { hand_stream = 1, pressure_stream, wear_stream, noise_stream, break_stream, pose_stream };
+
+HandWork draw_hand_work(const CastOptions& options, bool beard) {
+    Random draw(options.seed, hand_stream);
+    HandWork work;
+    work.back_depth = draw.uniform(-1.5, 2.5);
+    work.back_width = draw.uniform(-1, 1);
+    work.cut_back = draw.uniform(-2.5, -0.5);
+    work.cut_tilt = draw.uniform(-0.06, 0.06);
+    work.cut_turn = draw.uniform(-0.06, 0.06);
+    work.beard = beard;
+    work.beard_width *= draw.uniform(0.8, 1.25);
+    work.beard_length *= draw.uniform(0.7, 1.3);
+    work.beard_forward += draw.uniform(-1, 1);
+    work.beard_skew = draw.uniform(-1, 1);
+    const auto dents = options.dents > 0 ? draw.below(static_cast<std::uint64_t>(options.dents) + 1) : 0;
+    for (std::uint64_t i = 0; i < dents; ++i)
+        work.dents.push_back({draw.uniform(-8, 8), draw.uniform(5, 33), draw.uniform(1, 2.5), draw.uniform(0.15, 0.5)});
+    return work;
+}
+
+/// A smooth field between 0 and 1: a few waves across the head.
+class Waves {
+public:
+    Waves(Random& draw) {
+        for (auto& wave : waves_) {
+            wave.along = Vector3d(draw.normal(), draw.normal(), draw.normal()) * (2.5 / head_height);
+            wave.phase = draw.uniform(0, 6.283185307179586);
+        }
+    }
+    [[nodiscard]] double at(const Vector3d& p) const {
+        double sum = 0;
+        for (const auto& wave : waves_) sum += std::sin(wave.along.dot(p) + wave.phase);
+        return std::clamp(0.5 + sum / static_cast<double>(waves_.size()), 0.0, 1.0);
+    }
+
+private:
+    struct Wave {
+        Vector3d along;
+        double phase;
+    };
+    std::array<Wave, 3> waves_;
+};
+
+/// Where two features all but touch, one lattice in a few sees a handle between them: then another one is taken.
+MadeMesh meshed(const MadeObject& head, MakeOptions options) {
+    constexpr int attempts = 4;
+    for (int attempt = 1;; ++attempt, options.seed += 1000003) {
+        try {
+            return make_mesh(head, options);
+        } catch (const Error& error) {
+            if (error.kind() != ErrorKind::failure || attempt == attempts) throw;
+        }
+    }
+}
+
+void wear_down(Mesh& mesh, double sigma, Random& draw) {
+    const Waves waves(draw);
+    const Eigen::MatrixXd before = positions(mesh);
+    Eigen::MatrixXd worn = Diffusion(mesh).smoothed(before, sigma, 3);
+    for (Eigen::Index v = 0; v < worn.rows(); ++v) {
+        const double share = 0.5 + 0.5 * waves.at(before.row(v).transpose());
+        worn.row(v) = before.row(v) + share * (worn.row(v) - before.row(v));
+    }
+    set_positions(mesh, worn);
+}
+
+void press(Mesh& mesh, double strength, Random& draw) {
+    const auto drawn = [&] { return strength * std::clamp(draw.normal(), -2.0, 2.0); };
+    const Vector3d stretch(1 + drawn(), 1 + drawn(), 1 + drawn());
+    const double bend_forward = drawn() / head_height, bend_side = drawn() / head_height, twist = drawn() / head_height;
+    for (const Vertex v : mesh.vertices()) {
+        Vector3d p = stretch.cwiseProduct(eigen(mesh.point(v)));
+        const double up = p.z() - head_height / 2, angle = 2 * twist * up;
+        p = Vector3d(p.x() * std::cos(angle) - p.y() * std::sin(angle), p.x() * std::sin(angle) + p.y() * std::cos(angle), p.z());
+        p.x() += bend_forward * up * up, p.y() += bend_side * up * up;
+        mesh.point(v) = point_of(p);
+    }
+}
+
+void scan(Mesh& mesh, double deviation, Random& draw) {
+    std::vector<Vector> normals;
+    for (const Vertex v : mesh.vertices()) normals.push_back(vertex_normal(mesh, v));
+    for (const Vertex v : mesh.vertices()) mesh.point(v) += deviation * draw.normal() * normals[v];
+}
+
+}  // namespace
+
+HeadCast cast_head(const HeadShape& shape, const CastOptions& options) {
+    check_options(options, "head");
+    HeadCast cast;
+    Random broken(options.seed, break_stream);
+    cast.beard = broken.uniform() < options.beard;
+    cast.chunk = broken.uniform() < options.chunk;
+    MakeOptions make;
+    make.vertices = options.vertices;
+    make.seed = options.seed;
+    MadeMesh made = meshed(*head_object(shape, draw_hand_work(options, cast.beard)), make);
+    Mesh& mesh = made.mesh;
+
+    Random wear(options.seed, wear_stream), pressure(options.seed, pressure_stream), noise(options.seed, noise_stream);
+    cast.wear = options.wear * wear.uniform(0.5, 1);
+    if (cast.wear > 0) wear_down(mesh, cast.wear * head_height, wear);
+    if (options.pressure > 0) press(mesh, options.pressure, pressure);
+    cast.shrinkage = options.shrinkage * pressure.uniform();
+    if (options.noise > 0) scan(mesh, options.noise * head_height, noise);
+
+    std::vector<bool> keep(mesh.number_of_faces(), true);
+    // A piece is struck off the brow, a cheek or the hair, never the whole face.
+    const Vector3d struck(broken.uniform(6, 11), (broken.uniform() < 0.5 ? -1 : 1) * broken.uniform(6, 11),
+                          broken.uniform(8, 36));
+    const double reach = broken.uniform(4.5, 7);
+    for (const Face face : mesh.faces()) {
+        if (made.face_labels[face] == static_cast<std::int32_t>(HeadPart::stump)) keep[face] = false;
+        if (cast.chunk && (eigen(centroid(mesh, face)) - struck).norm() < reach) keep[face] = false;
+    }
+    SubMesh rest = keep_faces(mesh, keep, true);
+    cast.mesh = std::move(rest.mesh);
+    for (const Index face : rest.faces) cast.face_labels.push_back(made.face_labels[face]);
+
+    Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+    Vector3d shift = Vector3d::Zero();
+    if (!options.keep_pose) {
+        Random pose(options.seed, pose_stream);
+        turn = Eigen::Quaterniond(pose.normal(), pose.normal(), pose.normal(), pose.normal()).normalized().toRotationMatrix();
+        shift = 3 * head_height * Vector3d(pose.uniform(), pose.uniform(), pose.uniform());
+    }
+    for (const Vertex v : cast.mesh.vertices())
+        cast.mesh.point(v) = point_of((1 - cast.shrinkage) * (turn * eigen(cast.mesh.point(v))) + shift);
+    return cast;
+}
+
+std::vector<PlannedHead> plan_heads(const MouldPopulationOptions& population, const CastOptions& cast) {
+    check_options(population, "heads");
+    check_options(cast, "heads");
+    Random draw(population.seed, 1);
+    const auto fresh = [&draw] { return draw.below(std::uint64_t{1} << 48); };
+    std::vector<PlannedHead> heads;
+    std::vector<HeadShape> moulds;
+    for (int mould = 0; mould < population.moulds; ++mould) {
+        ArchetypeOptions archetype;
+        archetype.long_hair = mould % 2 == 1;
+        archetype.difference = population.difference;
+        archetype.seed = fresh();
+        moulds.push_back(head_archetype(archetype));
+    }
+    for (int i = 0; i < population.objects + population.hand_made; ++i) {
+        PlannedHead head;
+        head.cast = cast;
+        head.cast.seed = fresh();
+        if (i < population.objects) {
+            const int mould = i % population.moulds;
+            head.mould = "mould-" + std::to_string(mould + 1);
+            head.shape = moulds[static_cast<std::size_t>(mould)];
+        } else {
+            ArchetypeOptions archetype;
+            archetype.hand_made = true;
+            archetype.difference = population.difference;
+            archetype.seed = fresh();
+            head.shape = head_archetype(archetype);
+            using Hat = HeadShape::Hat;
+            head.mould = head.shape.hat == Hat::pointed     ? "hand, pointed hat"
+                         : head.shape.hat == Hat::truncated ? "hand, truncated hat"
+                                                            : "hand, turban";
+        }
+        heads.push_back(std::move(head));
+    }
+    for (std::size_t i = heads.size(); i-- > 1;) std::swap(heads[i], heads[draw.below(i + 1)]);
+    for (std::size_t i = 0; i < heads.size(); ++i) {
+        const std::string digits = std::to_string(i + 1);
+        heads[i].name = "head-" + std::string(digits.size() < 3 ? 3 - digits.size() : 0, '0') + digits;
+    }
+    return heads;
+}
+
+void CastOptions::describe(OptionList& visit) {
+    visit("wear", wear,
+          "how worn a cast is at most: standard deviation of a Gaussian that smooths its surface, as a share of the head's "
+          "height; each cast has half of it to all of it, and half of that at some places",
+          Range{0, 0.1});
+    visit("pressure", pressure, "soft clay gives way: standard deviation of stretches along the axes and of a bend, as a share",
+          Range{0, 0.1});
+    visit("shrinkage", shrinkage, "casts are smaller than their archetype by up to this share", Range{0, 0.3});
+    visit("noise", noise, "scan noise: standard deviation along the normal, as a share of the head's height", Range{0, 0.01});
+    visit("beard", beard, "share of the casts that bear a beard added by hand", Range{0, 1});
+    visit("chunk", chunk, "share of the casts that miss a piece of the face", Range{0, 1});
+    visit("dents", dents, "small dents in the front, up to", Range{0, 20});
+    visit("keep-pose", keep_pose, "leave heads upright, looking along x, instead of turned and moved at random", Anything{});
+    visit("vertices", vertices, "number of vertices of the whole head", Range{1500, 1e6});
+    visit("cast-seed", seed, "draws all of it, and the mesh", Range{0, 9007199254740992.0});
+}
+
+void MouldPopulationOptions::describe(OptionList& visit) {
+    visit("objects", objects, "number of moulded heads", Range{1, 100000});
+    visit("moulds", moulds, "number of moulds; every other one has long hair", Range{1, 1000});
+    visit("hand-made", hand_made, "heads formed by hand besides", Range{0, 100000});
+    visit("difference", difference, "how far archetypes lie apart: 1 = proportions vary by about 8 %", Range{0, 3});
+    visit("seed", seed, "draws everything", Range{0, 9007199254740992.0});
+}
+
+}  // namespace ostraka

@@ -1,0 +1,153 @@
+#include "ostraka/synthetic/make_mesh.h"
+
+#include "evening.h"
+#include "lattice.h"
+#include "random.h"
+
+#include "ostraka/core/parallel.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+
+namespace ostraka {
+
+using Eigen::Vector3d;
+
+namespace {
+
+/// Lattice vertices made for each one wanted: with fewer, thin triangles must stay; with more, time is lost.
+constexpr double surplus = 1.6;
+
+double area(const shapes::Triangles& mesh) {
+    double sum = 0;
+    for (const auto& [a, b, c] : mesh.faces) {
+        sum += 0.5 * (mesh.points[b] - mesh.points[a]).cross(mesh.points[c] - mesh.points[a]).norm();
+    }
+    return sum;
+}
+
+/// Closed surfaces have 3/2 edges a face, so V - E + F = V - F / 2.
+bool has_genus(const shapes::Triangles& mesh, int genus) {
+    return static_cast<long long>(mesh.points.size()) - static_cast<long long>(mesh.faces.size() / 2) == 2 - 2 * genus;
+}
+
+bool is_connected(const shapes::Triangles& mesh) {
+    std::vector<Index> leader(mesh.points.size());
+    std::iota(leader.begin(), leader.end(), Index{0});
+    const auto find = [&](Index v) {
+        while (leader[v] != v) v = leader[v] = leader[leader[v]];
+        return v;
+    };
+    std::size_t pieces = mesh.points.size();
+    for (const auto& [a, b, c] : mesh.faces) {
+        for (const Index v : {b, c}) {
+            const Index p = find(a), q = find(v);
+            if (p != q) leader[std::max(p, q)] = std::min(p, q), --pieces;
+        }
+    }
+    return pieces == 1;
+}
+
+[[noreturn]] void refuse(const MadeObject& object, std::uint64_t vertices) {
+    fail_usage("the " + object.name + " cannot be held by " + std::to_string(vertices) + " vertices",
+               "ask for at least " + std::to_string(object.minimum_vertices));
+}
+
+/// The marched surface with about `vertices` vertices, or with more if it takes more to hold the shape.
+shapes::Triangles marched(const MadeObject& object, double vertices, std::uint64_t seed) {
+    // A first coarse surface tells the area.
+    const double coarse = object.box().diagonal().norm() / 40;
+    const double pilot_area = area(shapes::march(object, shapes::seeded_lattice(object, coarse, seed)));
+    double cube = std::min(std::sqrt(shapes::lattice_vertices_per_area * pilot_area / vertices), 0.9 * object.thinnest);
+    for (int attempt = 0; attempt < 4; ++attempt, cube /= 1.4) {
+        shapes::Triangles mesh = shapes::march(object, shapes::seeded_lattice(object, cube, seed));
+        if (has_genus(mesh, object.genus) && is_connected(mesh)) return mesh;
+    }
+    throw Error(ErrorKind::failure, object.name,
+                "the marched surface does not have the object's genus " + std::to_string(object.genus),
+                "ask for more vertices or use another seed");
+}
+
+/// Where parts meet in a narrow strip, centroids can cut a few faces off from their part: patches of fewer than four faces
+/// take the label most common around them (the smallest of equally common ones), unless they are all there is of the part.
+void join_crumbs(const Mesh& mesh, std::vector<std::int32_t>& labels, std::size_t parts) {
+    constexpr std::size_t crumb = 4;
+    const std::vector<std::int32_t> before = labels;
+    std::vector<bool> seen(labels.size(), false), has_patch(parts, false);
+    std::vector<std::vector<Face>> crumbs;
+    for (const Face start : mesh.faces()) {
+        if (seen[start.idx()]) continue;
+        const std::int32_t label = before[start.idx()];
+        std::vector<Face> patch{start};
+        seen[start.idx()] = true;
+        for (std::size_t i = 0; i < patch.size(); ++i) {
+            for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(patch[i]))) {
+                const Face next = mesh.face(mesh.opposite(h));
+                if (seen[next.idx()] || before[next.idx()] != label) continue;
+                seen[next.idx()] = true;
+                patch.push_back(next);
+            }
+        }
+        if (patch.size() < crumb) crumbs.push_back(std::move(patch));
+        else has_patch[static_cast<std::size_t>(label)] = true;
+    }
+    for (const auto& patch : crumbs) {
+        const std::int32_t label = before[patch.front().idx()];
+        if (!has_patch[static_cast<std::size_t>(label)]) continue;
+        std::map<std::int32_t, int> around;
+        for (const Face face : patch) {
+            for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(face))) {
+                const std::int32_t other = before[mesh.face(mesh.opposite(h)).idx()];
+                if (other != label) ++around[other];
+            }
+        }
+        const auto most =
+            std::max_element(around.begin(), around.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+        for (const Face face : patch) labels[face.idx()] = most->first;
+    }
+}
+
+}  // namespace
+
+MadeMesh make_mesh(const MadeObject& object, const MakeOptions& options) {
+    check_options(options, "mesh make");
+    if (options.vertices < object.minimum_vertices) refuse(object, options.vertices);
+    const auto wanted = static_cast<std::size_t>(options.vertices);
+    shapes::Triangles even =
+        shapes::make_even(object, marched(object, surplus * static_cast<double>(wanted), options.seed), wanted);
+    if (static_cast<double>(even.points.size()) > 1.01 * static_cast<double>(wanted)) refuse(object, options.vertices);
+
+    MadeMesh made;
+    made.vertex_labels.resize(even.points.size());
+    made.face_labels.resize(even.faces.size());
+    parallel_for(even.points.size(), [&](std::size_t v) { made.vertex_labels[v] = object.part(even.points[v]); });
+    parallel_for(even.faces.size(), [&](std::size_t f) {
+        const auto& [a, b, c] = even.faces[f];
+        made.face_labels[f] = object.part(object.project(Vector3d((even.points[a] + even.points[b] + even.points[c]) / 3)));
+    });
+    if (options.noise > 0) {
+        const double edge = std::sqrt(area(even) / static_cast<double>(even.points.size()) * 2 / std::sqrt(3.0));
+        parallel_for(even.points.size(), [&](std::size_t v) {
+            const Vector3d normal = object.sample(even.points[v]).gradient.normalized();
+            even.points[v] += options.noise * edge * (2 * shapes::random_share(options.seed, 1000 + v) - 1) * normal;
+        });
+    }
+    TriangleSoup soup;
+    soup.points.reserve(even.points.size());
+    for (const Vector3d& p : even.points) soup.points.push_back({p.x(), p.y(), p.z()});
+    soup.triangles = std::move(even.faces);
+    even = {};
+    made.mesh = build_mesh(soup);
+    join_crumbs(made.mesh, made.face_labels, object.parts.size());
+    return made;
+}
+
+void MakeOptions::describe(OptionList& visit) {
+    visit("vertices", vertices, "number of vertices wanted (met to 1 %)", Range{4, 5e7});
+    visit("seed", seed, "turns and shifts the lattice and draws the noise: another seed, another mesh of the same object",
+          Range{0, 9007199254740992.0});
+    visit("noise", noise, "moves each vertex along the normal by up to this share of the mean edge length", Range{0, 0.25});
+}
+
+}  // namespace ostraka

@@ -1,0 +1,304 @@
+#include "ostraka/synthetic/shatter.h"
+#include "ostraka/core/angles.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/geom/eigen.h"
+#include "ostraka/geom/surface_search.h"
+#include "ostraka/stats/random.h"
+
+#include <CGAL/Polygon_mesh_processing/connected_components.h>
+#include <CGAL/Polygon_mesh_processing/corefinement.h>
+#include <CGAL/boost/graph/helpers.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace ostraka {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+namespace {
+
+/// Rings of one number of vertices each, a pole where the radius is 0.
+Mesh turned(const std::vector<Vector2d>& profile, int around) {
+    TriangleSoup soup;
+    std::vector<std::vector<Index>> rings;
+    for (const Vector2d& p : profile) {
+        auto& ring = rings.emplace_back();
+        for (int k = 0; k < (p.x() > 0 ? around : 1); ++k) {
+            const double angle = 2 * pi * k / around;
+            ring.push_back(static_cast<Index>(soup.points.size()));
+            soup.points.push_back({p.x() * std::cos(angle), p.x() * std::sin(angle), p.y()});
+        }
+    }
+    for (std::size_t i = 0; i + 1 < rings.size(); ++i) {
+        const auto &p = rings[i], &q = rings[i + 1];
+        for (std::size_t k = 0; k < static_cast<std::size_t>(around); ++k) {
+            const std::size_t next = (k + 1) % static_cast<std::size_t>(around);
+            if (p.size() > 1) soup.triangles.push_back({p[k], p[next], q[q.size() > 1 ? next : 0]});
+            if (q.size() > 1) soup.triangles.push_back({p[p.size() > 1 ? k : 0], q[next], q[k]});
+        }
+    }
+    return build_mesh(soup);
+}
+
+/// Everything on one side of a rough sheet, as a closed mesh.
+struct Sheet {
+    Vector3d middle, normal, u, v;
+    double extent = 1, roughness = 0;
+    struct Wave {
+        Vector2d number;
+        double phase, height;
+    };
+    std::vector<Wave> waves;
+
+    Sheet(const Vector3d& place, const Vector3d& across, double size, double rough, Random& random)
+        : middle(place), normal(across), extent(size), roughness(rough) {
+        u = normal.cross(std::abs(normal.x()) < 0.6 ? Vector3d::UnitX() : Vector3d::UnitY()).normalized();
+        v = normal.cross(u);
+        constexpr int count = 14;
+        for (int k = 0; k < count; ++k) {
+            const double length = extent * std::pow(0.06, k / (count - 1.0)), angle = random.uniform(0, 2 * pi);
+            waves.push_back({2 * pi / length * Vector2d(std::cos(angle), std::sin(angle)), random.uniform(0, 2 * pi),
+                             roughness * std::sqrt(length * extent) * std::sqrt(2.0 / count)});
+        }
+    }
+    [[nodiscard]] double height(const Vector2d& p) const {
+        double sum = 0;
+        for (const Wave& wave : waves) sum += wave.height * std::sin(wave.number.dot(p) + wave.phase);
+        return sum;
+    }
+    /// `side` is 1 or -1: what lies above or below.
+    [[nodiscard]] Mesh half(double side, double edge) const {
+        const int n = std::clamp(static_cast<int>(std::lround(2.2 * extent / edge)), 8, 300);
+        TriangleSoup soup;
+        const auto corner = [&](int i, int j) { return static_cast<Index>(i * (n + 1) + j); };
+        const double far = 1.1 * extent;
+        for (int i = 0; i <= n; ++i)
+            for (int j = 0; j <= n; ++j) {
+                const Vector2d p(far * (2.0 * i / n - 1), far * (2.0 * j / n - 1));
+                const Vector3d at = middle + p.x() * u + p.y() * v + height(p) * normal;
+                soup.points.push_back({at.x(), at.y(), at.z()});
+            }
+        const auto count = static_cast<Index>(soup.points.size());
+        const Vector3d top = middle + side * 2 * far * normal;
+        soup.points.push_back({top.x(), top.y(), top.z()});
+        const auto add = [&](Index a, Index b, Index c) {
+            if (side > 0) std::swap(b, c);
+            soup.triangles.push_back({a, b, c});
+        };
+        for (int i = 0; i < n; ++i)
+            for (int j = 0; j < n; ++j) {
+                add(corner(i, j), corner(i + 1, j), corner(i + 1, j + 1));
+                add(corner(i, j), corner(i + 1, j + 1), corner(i, j + 1));
+            }
+        // A pyramid that holds the piece: its tip is far beyond.
+        for (int i = 0; i < n; ++i) {
+            add(corner(i + 1, 0), corner(i, 0), count);
+            add(corner(i, n), corner(i + 1, n), count);
+            add(corner(0, i), corner(0, i + 1), count);
+            add(corner(n, i + 1), corner(n, i), count);
+        }
+        return build_mesh(soup);
+    }
+};
+
+/// The same mesh with vertices and faces in an order that depends on nothing but their places: what cuts leave does not.
+Mesh in_order(const Mesh& mesh) {
+    const TriangleSoup soup = to_soup(mesh);
+    std::vector<Index> order(soup.points.size()), place(order.size());
+    std::iota(order.begin(), order.end(), Index(0));
+    std::sort(order.begin(), order.end(), [&](Index a, Index b) { return soup.points[a] < soup.points[b]; });
+    TriangleSoup sorted;
+    for (const Index i : order) {
+        place[i] = static_cast<Index>(sorted.points.size());
+        sorted.points.push_back(soup.points[i]);
+    }
+    for (const auto& t : soup.triangles) {
+        std::array<Index, 3> corners{place[t[0]], place[t[1]], place[t[2]]};
+        std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+        sorted.triangles.push_back(corners);
+    }
+    std::sort(sorted.triangles.begin(), sorted.triangles.end());
+    return build_mesh(sorted);
+}
+
+double extent_of(const Mesh& mesh, const Vector3d& middle) {
+    double far = 0;
+    for (const Vertex v : mesh.vertices()) far = std::max(far, (eigen(mesh.point(v)) - middle).norm());
+    return far;
+}
+
+Vector3d middle_of(const Mesh& mesh) {
+    Vector3d sum = Vector3d::Zero();
+    double area = 0;
+    for (const Face f : mesh.faces()) {
+        const double a = face_area(mesh, f);
+        sum += a * eigen(centroid(mesh, f));
+        area += a;
+    }
+    return sum / area;
+}
+
+/// What is worn off: faces of breaks move in, and vertices near their edges to the mean of their neighbours.
+void wear(Sherd& sherd, double depth) {
+    Mesh& mesh = sherd.mesh;
+    const std::size_t n = mesh.number_of_vertices();
+    std::vector<Vector3d> in(n, Vector3d::Zero());
+    std::vector<double> distance(n, 1e300);
+    std::vector<Vertex> rim;
+    for (const Vertex v : mesh.vertices()) {
+        bool some = false, all = true;
+        for (const Face f : mesh.faces_around_target(mesh.halfedge(v))) {
+            if (sherd.broken[f]) in[v] += eigen(area_vector(mesh, f));
+            (sherd.broken[f] ? some : all) = sherd.broken[f];
+        }
+        if (some && in[v].norm() > 0) in[v] = depth * in[v].normalized();
+        if (some && !all) distance[v] = 0, rim.push_back(v);
+    }
+    for (const Vertex v : mesh.vertices()) mesh.point(v) = point_of(eigen(mesh.point(v)) - in[v]);
+    // Distances from the rim over edges, as far as they matter.
+    std::vector<Vertex> front = rim;
+    const double reach = 2 * depth;
+    while (!front.empty()) {
+        std::vector<Vertex> next;
+        for (const Vertex v : front)
+            for (const Halfedge h : mesh.halfedges_around_target(mesh.halfedge(v))) {
+                const Vertex w = mesh.source(h);
+                const double d = distance[v] + (eigen(mesh.point(v)) - eigen(mesh.point(w))).norm();
+                if (d < distance[w] && d < reach) distance[w] = d, next.push_back(w);
+            }
+        front = std::move(next);
+    }
+    for (int round = 0; round < 3; ++round) {
+        std::vector<Point> moved(n);
+        for (const Vertex v : mesh.vertices()) {
+            Vector3d mean = Vector3d::Zero();
+            double count = 0;
+            for (const Halfedge h : mesh.halfedges_around_target(mesh.halfedge(v)))
+                mean += eigen(mesh.point(mesh.source(h))), ++count;
+            const double weight = distance[v] < reach ? 0.6 * (1 - distance[v] / reach) : 0;
+            moved[v] = point_of((1 - weight) * eigen(mesh.point(v)) + weight * mean / count);
+        }
+        for (const Vertex v : mesh.vertices()) mesh.point(v) = moved[v];
+    }
+}
+
+}  // namespace
+
+Mesh make_pot(const PotOptions& options) {
+    check_options(options, "pot");
+    if (options.wall > 0.5 * options.radius) fail_usage("the wall is thicker than half of the radius", "make it thinner");
+    Random random(options.shape, 3);
+    const double a = random.uniform(0.15, 0.4), b = random.uniform(0.05, 0.2), c = random.uniform(0, 2 * pi),
+                 foot = random.uniform(0.4, 0.6);
+    const auto radius = [&](double t) {
+        return options.radius * (foot + (1 - foot) * std::sin(0.5 * pi * std::min(1.0, 1.8 * t)) - a * std::pow(t, 3) +
+                                 b * std::sin(5 * t + c) * t);
+    };
+    const int rows = std::max(8, static_cast<int>(std::lround(1.15 * options.height / options.edge))),
+              steps = std::max(2, static_cast<int>(std::lround(radius(0) / options.edge)));
+    std::vector<Vector2d> line{{0, 0}};
+    for (int k = 1; k < steps; ++k) line.push_back({radius(0) * k / steps, 0});
+    for (int k = 0; k <= rows; ++k) line.push_back({radius(double(k) / rows), options.height * k / rows});
+    // Inside, the same curve farther in, down to the floor.
+    std::vector<Vector2d> inner;
+    for (int k = rows; k >= 0; --k) {
+        const double t = double(k) / rows, step = 1e-4;
+        Vector2d along(radius(t + step) - radius(t - step), 2 * step * options.height);
+        along.normalize();
+        const Vector2d p = Vector2d(radius(t), options.height * t) + options.wall * Vector2d(-along.y(), along.x());
+        if (p.y() > options.wall * 1.3 && p.x() > 0) inner.push_back(p);
+    }
+    line.insert(line.end(), inner.begin(), inner.end());
+    const double floor = inner.back().x();
+    const int floors = std::max(2, static_cast<int>(std::lround(floor / options.edge)));
+    for (int k = floors; k > 0; --k) line.push_back({floor * (k - 0.5) / floors, options.wall});
+    line.push_back({0, options.wall});
+    return turned(line, std::max(12, static_cast<int>(std::lround(2 * pi * 0.8 * options.radius / options.edge))));
+}
+
+std::vector<Sherd> shatter(const Mesh& whole, const ShatterOptions& options) {
+    check_options(options, "shatter");
+    namespace PMP = CGAL::Polygon_mesh_processing;
+    if (whole.number_of_faces() == 0 || !CGAL::is_closed(whole)) fail_input("mesh", "is not closed, so that it has no inside");
+    Random random(options.seed, 4);
+    const SurfaceSearch skin(whole);
+    const double diagonal = skin.diagonal(), edge = skin.typical_edge();
+    std::vector<Mesh> pieces{whole};
+    for (int attempt = 0; static_cast<int>(pieces.size()) < options.pieces; ++attempt) {
+        if (attempt > 20 * options.pieces)
+            throw Error(ErrorKind::failure, "mesh", "cannot be cut into so many pieces", "ask for fewer, or another seed");
+        const auto largest = static_cast<std::size_t>(
+            std::max_element(pieces.begin(), pieces.end(),
+                             [](const Mesh& x, const Mesh& y) { return surface_area(x) < surface_area(y); }) -
+            pieces.begin());
+        const Mesh piece = pieces[largest];
+        const Vector3d middle = middle_of(piece);
+        Vector3d across(random.normal(), random.normal(), random.normal());
+        const double extent = extent_of(piece, middle);
+        const Sheet sheet(middle + 0.15 * extent * random.uniform(-1, 1) * across.normalized(), across.normalized(), 1.2 * extent,
+                          options.roughness, random);
+        std::vector<Mesh> parts;
+        bool sound = true;
+        for (const double side : {1.0, -1.0}) {
+            Mesh body = piece, half = sheet.half(side, edge), result;
+            sound = sound && PMP::corefine_and_compute_intersection(body, half, result) && !result.is_empty();
+            if (!sound) break;
+            result.collect_garbage();
+            result = in_order(result);
+            const std::size_t before = parts.size();
+            std::vector<Mesh> components;
+            PMP::split_connected_components(result, components);
+            for (const Mesh& one : components) parts.push_back(in_order(one));
+            std::sort(parts.begin() + static_cast<std::ptrdiff_t>(before), parts.end(),
+                      [](const Mesh& x, const Mesh& y) { return surface_area(x) > surface_area(y); });
+        }
+        // Crumbs are no sherds: another cut.
+        const double least = 0.15 / options.pieces * surface_area(whole);
+        for (const Mesh& part : parts) sound = sound && CGAL::is_closed(part) && surface_area(part) > least;
+        if (!sound) continue;
+        pieces.erase(pieces.begin() + static_cast<std::ptrdiff_t>(largest));
+        for (Mesh& part : parts) pieces.push_back(std::move(part));
+    }
+    std::vector<Sherd> sherds;
+    for (Mesh& piece : pieces) {
+        Sherd sherd{std::move(piece), {}};
+        for (const Face f : sherd.mesh.faces()) {
+            const SurfaceHit hit = skin.closest(centroid(sherd.mesh, f));
+            sherd.broken.push_back(hit.distance > 1e-7 * diagonal);
+        }
+        if (options.erosion > 0) wear(sherd, options.erosion * diagonal);
+        if (options.noise > 0) {
+            Random own(options.seed, 100 + sherds.size());
+            std::vector<Vector3d> normals(sherd.mesh.number_of_vertices(), Vector3d::Zero());
+            for (const Face f : sherd.mesh.faces())
+                for (const Vertex v : corners(sherd.mesh, f)) normals[v] += eigen(area_vector(sherd.mesh, f));
+            for (const Vertex v : sherd.mesh.vertices())
+                sherd.mesh.point(v) =
+                    point_of(eigen(sherd.mesh.point(v)) + own.normal() * options.noise * diagonal * normals[v].normalized());
+        }
+        sherds.push_back(std::move(sherd));
+    }
+    return sherds;
+}
+
+void PotOptions::describe(OptionList& visit) {
+    visit("height", height, "of the vessel", Range{1e-9, 1e9});
+    visit("radius", radius, "of the body", Range{1e-9, 1e9});
+    visit("wall", wall, "thickness of the wall", Range{1e-9, 1e9});
+    visit("edge", edge, "length of the triangles' edges", Range{1e-9, 1e9});
+    visit("shape", shape, "of the profile: another number is another vessel", Range{0, 9007199254740992.0});
+}
+
+void ShatterOptions::describe(OptionList& visit) {
+    visit("pieces", pieces, "at least so many pieces", Range{1, 1000});
+    visit("roughness", roughness, "height of the breaks' waves, share of the piece's extent", Range{0, 0.2});
+    visit("erosion", erosion, "what is worn off breaks and their edges, share of the diagonal", Range{0, 0.1});
+    visit("noise", noise, "standard deviation along the normal, share of the diagonal", Range{0, 0.1});
+    visit("seed", seed, "of cuts and noise", Range{0, 9007199254740992.0});
+}
+
+}  // namespace ostraka

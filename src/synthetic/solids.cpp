@@ -1,0 +1,321 @@
+#include "ostraka/synthetic/solid.h"
+
+#include "spline.h"
+
+#include "ostraka/core/error.h"
+
+namespace ostraka {
+
+using Eigen::AlignedBox3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+namespace {
+
+/// A solid in its own frame, placed in the world.
+class PlacedSolid : public Solid {
+public:
+    explicit PlacedSolid(const Placement& placement) : placement_(placement), back_(placement.turn.transpose()) {}
+    [[nodiscard]] Sample sample(const Vector3d& p) const final {
+        Sample s = local(to_local(p));
+        s.gradient = placement_.turn * s.gradient;
+        return s;
+    }
+    [[nodiscard]] AlignedBox3d box() const final {
+        const Vector3d half = placement_.turn.cwiseAbs() * half_extents();
+        return {placement_.centre - half, placement_.centre + half};
+    }
+
+protected:
+    [[nodiscard]] virtual Sample local(const Vector3d& p) const = 0;
+    [[nodiscard]] virtual Vector3d half_extents() const = 0;
+    [[nodiscard]] Vector3d to_local(const Vector3d& p) const { return back_ * (p - placement_.centre); }
+
+private:
+    Placement placement_;
+    Eigen::Matrix3d back_;
+};
+
+/// From a function of (distance to the vertical axis, height) to one of space.
+Sample revolve(const Vector3d& p, double distance, double value, const Vector2d& gradient) {
+    if (distance < 1e-300) return {value, {0, 0, gradient.y()}};
+    return {value, {gradient.x() * p.x() / distance, gradient.x() * p.y() / distance, gradient.y()}};
+}
+
+class Ellipsoid final : public PlacedSolid {
+public:
+    Ellipsoid(const Placement& placement, const Vector3d& radii)
+        : PlacedSolid(placement), radii_(radii), smallest_(radii.minCoeff()) {}
+    [[nodiscard]] double flatness() const override { return smallest_ / radii_.maxCoeff(); }
+
+protected:
+    [[nodiscard]] Sample local(const Vector3d& p) const override {
+        const Vector3d q = p.cwiseQuotient(radii_);
+        const double length = q.norm();
+        if (length < 1e-300) return {-smallest_, Vector3d::UnitX()};
+        return {smallest_ * (length - 1), smallest_ / length * q.cwiseQuotient(radii_)};
+    }
+    [[nodiscard]] Vector3d half_extents() const override { return radii_; }
+
+private:
+    Vector3d radii_;
+    double smallest_;
+};
+
+class RoundedBox final : public PlacedSolid {
+public:
+    RoundedBox(const Placement& placement, const Vector3d& half, double rounding)
+        : PlacedSolid(placement), half_(half), core_(half - Vector3d::Constant(rounding)), rounding_(rounding) {}
+
+protected:
+    [[nodiscard]] Sample local(const Vector3d& p) const override {
+        const Vector3d q = p.cwiseAbs() - core_;
+        const Vector3d sign(p.x() < 0 ? -1 : 1, p.y() < 0 ? -1 : 1, p.z() < 0 ? -1 : 1);
+        int side = 0;
+        if (q.maxCoeff(&side) <= 0) return {q[side] - rounding_, sign[side] * Vector3d::Unit(side)};
+        const Vector3d outside = q.cwiseMax(0.0);
+        const double distance = outside.norm();
+        return {distance - rounding_, outside.cwiseProduct(sign) / distance};
+    }
+    [[nodiscard]] Vector3d half_extents() const override { return half_; }
+
+private:
+    Vector3d half_, core_;
+    double rounding_;
+};
+
+class RoundedCylinder final : public PlacedSolid {
+public:
+    RoundedCylinder(const Placement& placement, double radius, double half_height, double rounding)
+        : PlacedSolid(placement), half_(radius, half_height), core_(half_ - Vector2d::Constant(rounding)), rounding_(rounding) {}
+
+protected:
+    [[nodiscard]] Sample local(const Vector3d& p) const override {
+        const double axis_distance = std::hypot(p.x(), p.y());
+        const double up = p.z() < 0 ? -1 : 1;
+        const Vector2d q(axis_distance - core_.x(), std::abs(p.z()) - core_.y());
+        if (q.maxCoeff() <= 0) {
+            const bool lid = q.y() > q.x();
+            return revolve(p, axis_distance, q.maxCoeff() - rounding_, lid ? Vector2d(0, up) : Vector2d(1, 0));
+        }
+        const Vector2d outside = q.cwiseMax(0.0);
+        const double distance = outside.norm();
+        return revolve(p, axis_distance, distance - rounding_, Vector2d(outside.x(), outside.y() * up) / distance);
+    }
+    [[nodiscard]] Vector3d half_extents() const override { return {half_.x(), half_.x(), half_.y()}; }
+
+private:
+    Vector2d half_, core_;
+    double rounding_;
+};
+
+class Torus final : public PlacedSolid {
+public:
+    Torus(const Placement& placement, double ring, double tube) : PlacedSolid(placement), ring_(ring), tube_(tube) {}
+
+protected:
+    [[nodiscard]] Sample local(const Vector3d& p) const override {
+        const double axis_distance = std::hypot(p.x(), p.y());
+        const Vector2d q(axis_distance - ring_, p.z());
+        const double distance = q.norm();
+        return revolve(p, axis_distance, distance - tube_, distance < 1e-300 ? Vector2d(1, 0) : Vector2d(q / distance));
+    }
+    [[nodiscard]] Vector3d half_extents() const override { return {ring_ + tube_, ring_ + tube_, tube_}; }
+
+private:
+    double ring_, tube_;
+};
+
+class Tube final : public Solid {
+public:
+    explicit Tube(const std::vector<Bead>& beads) : path_(path(beads)), radius_(radii(beads)) {
+        for (const double t : path_.samples(samples_per_piece)) {
+            const Vector3d centre = path_.at(t).value;
+            const double radius = radius_.at(t).value[0];
+            samples_.push_back({t, centre, radius});
+            // The ball at a sample does not cover what bulges between two samples: allow a little.
+            const Vector3d reach = Vector3d::Constant(radius * 1.02 + path_.length() * 1e-3);
+            box_.extend(centre - reach);
+            box_.extend(centre + reach);
+        }
+        for (std::size_t piece = 0; piece + 1 < beads.size(); ++piece) {
+            Ball& ball = balls_.emplace_back(samples_[piece * samples_per_piece + samples_per_piece / 2]);
+            double reach = 0;
+            for (int k = 0; k <= samples_per_piece; ++k) {
+                const Ball& sample = samples_[piece * samples_per_piece + static_cast<std::size_t>(k)];
+                reach = std::max(reach, (sample.centre - ball.centre).norm() + sample.radius);
+            }
+            ball.radius = reach;
+        }
+    }
+    [[nodiscard]] Sample sample(const Vector3d& p) const override {
+        const double t = parameter(p);
+        const Vector3d away = p - path_.at(t).value;
+        const double distance = away.norm();
+        return {distance - radius_.at(t).value[0], distance < 1e-300 ? Vector3d(Vector3d::UnitX()) : Vector3d(away / distance)};
+    }
+    [[nodiscard]] double parameter(const Vector3d& p) const override {
+        const auto ball_distance = [&p](const Ball& ball) { return (p - ball.centre).norm() - ball.radius; };
+        const std::size_t best = shapes::SampleGroups{samples_per_piece, samples_.size()}.least(
+            [&](std::size_t piece) { return ball_distance(balls_[piece]); },
+            [&](std::size_t i) { return ball_distance(samples_[i]); });
+        const double low = samples_[best == 0 ? 0 : best - 1].t, high = samples_[std::min(best + 1, samples_.size() - 1)].t;
+        return shapes::bracketed_root(low, high, samples_[best].t, [&](double t) {
+            const auto c = path_.at(t);
+            const auto r = radius_.at(t);
+            const Vector3d away = c.value - p;
+            const double distance = std::max(away.norm(), 1e-300), along = away.dot(c.first) / distance;
+            return std::pair(along - r.first[0],
+                             (c.first.squaredNorm() - along * along + away.dot(c.second)) / distance - r.second[0]);
+        });
+    }
+    [[nodiscard]] AlignedBox3d box() const override { return box_; }
+
+private:
+    static constexpr int samples_per_piece = 8;
+    struct Ball {
+        double t;
+        Vector3d centre;
+        double radius;
+    };
+    static shapes::Spline<3> path(const std::vector<Bead>& beads) {
+        std::vector<Vector3d> points;
+        for (const auto& bead : beads) points.push_back(bead.centre);
+        return {chord_lengths(beads), points};
+    }
+    static shapes::Spline<1> radii(const std::vector<Bead>& beads) {
+        using One = shapes::Spline<1>::Vec;
+        std::vector<One> values;
+        for (const auto& bead : beads) values.push_back(One(bead.radius));
+        // Level ends, so that the tube runs smoothly into the balls that close it.
+        return {chord_lengths(beads), values, One(0.0), One(0.0)};
+    }
+    shapes::Spline<3> path_;
+    shapes::Spline<1> radius_;
+    std::vector<Ball> samples_, balls_;  ///< on the path; around each piece's
+    AlignedBox3d box_;
+};
+
+class Lathe final : public PlacedSolid {
+public:
+    Lathe(const Placement& placement, const std::vector<Vector2d>& profile)
+        : PlacedSolid(placement), curve_(chord_lengths(profile), profile, Vector2d(1, 0), Vector2d(-1, 0)) {
+        for (const double t : curve_.samples(samples_per_piece)) {
+            samples_.emplace_back(t, curve_.at(t).value);
+            extents_ = extents_.cwiseMax(samples_.back().second.cwiseAbs() * 1.01 + Vector2d::Constant(curve_.length() * 1e-3));
+        }
+        for (std::size_t piece = 0; piece + 1 < profile.size(); ++piece) {
+            const Vector2d middle = samples_[piece * samples_per_piece + samples_per_piece / 2].second;
+            double reach = 0;
+            for (int k = 0; k <= samples_per_piece; ++k) {
+                reach =
+                    std::max(reach, (samples_[piece * samples_per_piece + static_cast<std::size_t>(k)].second - middle).norm());
+            }
+            discs_.emplace_back(middle, reach);
+        }
+    }
+    [[nodiscard]] double parameter(const Vector3d& p) const override {
+        const Vector3d q = to_local(p);
+        return closest({std::hypot(q.x(), q.y()), q.z()});
+    }
+
+protected:
+    [[nodiscard]] Sample local(const Vector3d& p) const override {
+        const double axis_distance = std::hypot(p.x(), p.y());
+        const Vector2d q(axis_distance, p.z());
+        const auto c = curve_.at(closest(q));
+        const Vector2d outward = Vector2d(c.first.y(), -c.first.x()).normalized();
+        const Vector2d away = q - c.value;
+        const double distance = away.norm(), side = away.dot(outward) < 0 ? -1 : 1;
+        return revolve(p, axis_distance, side * distance, distance < 1e-9 ? outward : Vector2d(side / distance * away));
+    }
+    [[nodiscard]] Vector3d half_extents() const override { return {extents_.x(), extents_.x(), extents_.y()}; }
+
+private:
+    static constexpr int samples_per_piece = 8;
+    [[nodiscard]] double closest(const Vector2d& q) const {
+        const std::size_t best = shapes::SampleGroups{samples_per_piece, samples_.size()}.least(
+            [&](std::size_t piece) { return (q - discs_[piece].first).norm() - discs_[piece].second; },
+            [&](std::size_t i) { return (q - samples_[i].second).norm(); });
+        const double low = samples_[best == 0 ? 0 : best - 1].first,
+                     high = samples_[std::min(best + 1, samples_.size() - 1)].first;
+        return shapes::bracketed_root(low, high, samples_[best].first, [&](double t) {
+            const auto c = curve_.at(t);
+            const Vector2d away = c.value - q;
+            return std::pair(away.dot(c.first), c.first.squaredNorm() + away.dot(c.second));
+        });
+    }
+    shapes::Spline<2> curve_;
+    std::vector<std::pair<double, Vector2d>> samples_;
+    std::vector<std::pair<Vector2d, double>> discs_;  ///< around each piece's samples
+    Vector2d extents_ = Vector2d::Zero();
+};
+
+template <class Items, class Position>
+std::vector<double> cumulative(const Items& items, Position position) {
+    std::vector<double> lengths{0};
+    for (std::size_t i = 1; i < items.size(); ++i)
+        lengths.push_back(lengths.back() + (position(items[i]) - position(items[i - 1])).norm());
+    return lengths;
+}
+
+[[noreturn]] void refuse(const char* solid, const char* problem) {
+    std::string text = solid;
+    text += ' ';
+    text += problem;
+    fail_usage(text);
+}
+
+template <class Items>
+void check_path(const Items& items, const char* what) {
+    if (items.size() < 2) refuse(what, "needs at least two points");
+    const auto lengths = chord_lengths(items);
+    for (std::size_t i = 1; i < lengths.size(); ++i) {
+        if (!(lengths[i] > lengths[i - 1])) refuse(what, "has two equal points in a row");
+    }
+}
+
+void check_sizes(const char* what, std::initializer_list<double> sizes, double rounding = 0,
+                 double most = std::numeric_limits<double>::infinity()) {
+    for (const double size : sizes) {
+        if (!(size > 0 && std::isfinite(size))) refuse(what, "has a size that is not positive");
+    }
+    if (!(rounding >= 0 && rounding <= most)) refuse(what, "has a rounding that does not fit its size");
+}
+
+}  // namespace
+
+SolidPointer make_ellipsoid(const Placement& placement, const Vector3d& radii) {
+    check_sizes("an ellipsoid", {radii.x(), radii.y(), radii.z()});
+    return std::make_unique<Ellipsoid>(placement, radii);
+}
+SolidPointer make_box(const Placement& placement, const Vector3d& half, double rounding) {
+    check_sizes("a box", {half.x(), half.y(), half.z()}, rounding, half.minCoeff());
+    return std::make_unique<RoundedBox>(placement, half, rounding);
+}
+SolidPointer make_cylinder(const Placement& placement, double radius, double half_height, double rounding) {
+    check_sizes("a cylinder", {radius, half_height}, rounding, std::min(radius, half_height));
+    return std::make_unique<RoundedCylinder>(placement, radius, half_height, rounding);
+}
+SolidPointer make_torus(const Placement& placement, double ring_radius, double tube_radius) {
+    check_sizes("a torus", {ring_radius, tube_radius, ring_radius - tube_radius});
+    return std::make_unique<Torus>(placement, ring_radius, tube_radius);
+}
+SolidPointer make_tube(const std::vector<Bead>& beads) {
+    check_path(beads, "a tube");
+    for (const auto& bead : beads) check_sizes("a tube", {bead.radius});
+    return std::make_unique<Tube>(beads);
+}
+SolidPointer make_lathe(const Placement& placement, const std::vector<Vector2d>& profile) {
+    check_path(profile, "a lathe's profile");
+    if (profile.front().x() != 0 || profile.back().x() != 0) fail_usage("a lathe's profile must start and end on the axis");
+    return std::make_unique<Lathe>(placement, profile);
+}
+std::vector<double> chord_lengths(const std::vector<Bead>& beads) {
+    return cumulative(beads, [](const Bead& bead) { return bead.centre; });
+}
+std::vector<double> chord_lengths(const std::vector<Vector2d>& profile) {
+    return cumulative(profile, [](const Vector2d& point) { return point; });
+}
+
+}  // namespace ostraka

@@ -1,0 +1,133 @@
+#include "ostraka/core/angles.h"
+#include "ostraka/synthetic/statuettes.h"
+
+#include "random.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/stats/random.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ostraka {
+
+namespace {
+
+/// Numbers of one object, one after the other.
+class Draws {
+public:
+    Draws(std::uint64_t seed, std::uint64_t object) : seed_(seed), next_(object << 20) {}
+    double share() { return shapes::random_share(seed_, next_++); }
+    double normal() {
+        const double radius = std::sqrt(-2 * std::log(1 - share()));
+        return radius * std::cos(2 * pi * share());
+    }
+    /// Log-normal about its median; tails are cut at 2.5 standard deviations.
+    double around(double median, double spread) { return median * std::exp(spread * std::clamp(normal(), -2.5, 2.5)); }
+    int among(int choices) { return std::min(static_cast<int>(share() * choices), choices - 1); }
+
+private:
+    std::uint64_t seed_, next_;
+};
+
+}  // namespace
+
+StatuetteLevel statuette_level(int level) {
+    static const StatuetteLevel levels[5] = {
+        // ovality, drift, marks, sway, wall noise, off centre
+        {{0.006, 8, 0.0030, 0.015, 0.04, 0.05}, {0.036, 90, 0.0150, 0.070, 0.12, 0.15}, 0.25},
+        {{0.008, 12, 0.0035, 0.018, 0.045, 0.06}, {0.028, 75, 0.0115, 0.055, 0.11, 0.14}, 0.35},
+        {{0.010, 16, 0.0042, 0.021, 0.05, 0.07}, {0.022, 60, 0.0090, 0.044, 0.095, 0.12}, 0.45},
+        {{0.012, 20, 0.0050, 0.025, 0.055, 0.08}, {0.018, 45, 0.0075, 0.036, 0.080, 0.11}, 0.50},
+        {{0.014, 25, 0.0057, 0.028, 0.06, 0.09}, {0.0165, 35, 0.0066, 0.032, 0.070, 0.10}, 0.55}};
+    if (level < 1 || level > 5) fail_usage("there is no level " + std::to_string(level), "use 1 to 5");
+    return levels[level - 1];
+}
+
+std::vector<StatuetteParameters> draw_population(const PopulationOptions& options) {
+    check_options(options, "population of statuettes");
+    const StatuetteLevel level = statuette_level(options.level);
+    std::vector<StatuetteParameters> list(static_cast<std::size_t>(options.objects));
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        Draws draw(options.seed, i);
+        StatuetteParameters& one = list[i];
+        const bool wheel = i % 2 == 0;
+        one.technique = wheel ? "wheel" : "hand";
+        const TechniqueLevel& medians = wheel ? level.wheel : level.hand;
+        one.height = draw.around(200, options.size_spread);
+        one.base_diameter = draw.around(58, options.size_spread);
+        one.arm_length = draw.around(82, options.size_spread);
+        one.head_height = draw.around(44, options.size_spread);
+        one.ovality = std::min(draw.around(medians.ovality, level.spread), 0.15);
+        one.ovality_drift = std::min(draw.around(medians.ovality_drift, level.spread), 360.0);
+        one.finger_marks = std::min(draw.around(medians.finger_marks, level.spread), 0.05);
+        one.sway = std::min(draw.around(medians.sway, level.spread), 0.2);
+        one.wall_noise = std::min(draw.around(medians.wall_noise, level.spread), 0.25);
+        one.off_centre = std::min(draw.around(medians.off_centre, level.spread), 0.4);
+        // What does not tell the techniques apart by itself: all thrown bodies are hollow, half of the others as well.
+        const double hollow = draw.share(), wall = draw.around(5, 0.1), grooves = draw.share();
+        one.wall = wheel || hollow < 0.5 ? wall : 0;
+        one.grooves = wheel ? 0.25 * grooves : 0;
+        one.cavity_seen = options.cavity_seen + (1 - options.cavity_seen) * draw.share();
+        const bool open = draw.share() < 0.5;
+        one.interior = options.interior == "mixed" ? (open ? "open" : "closed") : options.interior;
+        one.scan_noise = options.scan_noise;
+        one.holes = draw.among(options.holes + 1);
+        one.hole_radius = 3 + 3 * draw.share();
+        const char* poses[] = {"forward", "offering", "raised", "down"};
+        const char* hats[] = {"cone", "cap", "none"};
+        one.pose = poses[draw.among(4)];
+        one.hat = hats[draw.among(3)];
+        one.beard = draw.share() < 0.5;
+        one.seed = options.seed * 1000003 + i;
+        one.vertices = options.vertices;
+    }
+    return list;
+}
+
+bool ProportionedOptions::is_fixed(const std::string& size) const {
+    return !none && std::find(fixed.begin(), fixed.end(), size) != fixed.end();
+}
+
+void ProportionedOptions::describe(OptionList& visit) {
+    visit("fixed", fixed, "sizes in fixed proportion to each other, with commas between them",
+          Choices(std::vector<std::string>(size_names.begin(), size_names.end())))
+        .words();
+    visit("none", none, "no fixed proportion, but that the two arms are equally long");
+    visit("objects", objects, "number of statuettes", Range{1, 100000});
+    visit("size-deviation", size_deviation, "standard deviation of the logarithm of their common size", Range{0, 0.2});
+    visit("ratio-deviation", ratio_deviation, "standard deviation of the logarithm of ratios that are not fixed", Range{0, 0.2});
+    visit("planted-deviation", planted_deviation, "standard deviation of the logarithm of fixed ratios", Range{0, 0.2});
+    visit("scan-noise", scan_noise, "standard deviation of each vertex along its normal", Range{0, 0.5}, "mm");
+    visit("seed", seed, "of the whole population", Range{0, 1e9});
+    visit("vertices", vertices, "of each mesh", Range{4000, 5e6});
+}
+
+std::vector<StatuetteParameters> draw_population(const ProportionedOptions& options) {
+    check_options(options, "population of statuettes");
+    if (!options.none && options.fixed.size() < 2) fail_usage("--fixed names one measure", "a proportion is between two");
+    PopulationOptions population;
+    population.objects = options.objects;
+    population.seed = options.seed;
+    population.vertices = options.vertices;
+    population.scan_noise = options.scan_noise;
+    std::vector<StatuetteParameters> list = draw_population(population);
+    const double ratio = options.ratio_deviation / std::sqrt(2.0), planted = options.planted_deviation / std::sqrt(2.0);
+    constexpr std::array<double, 4> medians{198, 58, 80, 42};
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        Random random(options.seed, i);
+        // Within three deviations.
+        const auto draw = [&](double deviation) { return deviation * std::clamp(random.normal(), -3.0, 3.0); };
+        const double size = draw(options.size_deviation), shared = draw(ratio);
+        for (std::size_t k = 0; k < 4; ++k) {
+            const double own = draw(ratio), small = draw(planted);
+            const bool fixed = options.is_fixed(ProportionedOptions::size_names.at(k));
+            StatuetteParameters& one = list[i];
+            double* sizes[]{&one.height, &one.base_diameter, &one.arm_length, &one.head_height};
+            *sizes[k] = medians.at(k) * std::exp(size + (fixed ? shared + small : own));
+        }
+    }
+    return list;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,201 @@
+// A statuette as a scanner sees it: noise, a cavity seen in part, holes; and the places that are known on it.
+#include "ostraka/core/angles.h"
+#include "ostraka/synthetic/statuettes.h"
+
+#include "random.h"
+#include "statuette_build.h"
+
+#include "ostraka/core/parallel.h"
+#include "ostraka/geom/surface_search.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ostraka {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr std::uint64_t noise_numbers = std::uint64_t{1} << 40, hole_numbers = std::uint64_t{1} << 50;
+
+/// Standard normal number of a vertex (Box and Muller 1958).
+double normal_number(std::uint64_t seed, std::uint64_t vertex) {
+    const double a = shapes::random_share(seed, noise_numbers + 2 * vertex),
+                 b = shapes::random_share(seed, noise_numbers + 2 * vertex + 1);
+    return std::sqrt(-2 * std::log(1 - a)) * std::cos(2 * pi * b);
+}
+
+void add_noise(Mesh& mesh, double deviation, std::uint64_t seed) {
+    if (deviation == 0) return;
+    std::vector<Point> moved(mesh.number_of_vertices());
+    parallel_for(moved.size(), [&](std::size_t i) {
+        const Vertex v(static_cast<Index>(i));
+        moved[i] = mesh.point(v) + deviation * normal_number(seed, i) * vertex_normal(mesh, v);
+    });
+    for (std::size_t i = 0; i < moved.size(); ++i) mesh.point(Vertex(static_cast<Index>(i))) = moved[i];
+}
+
+/// Faces of the cavity above a wavy line, or none.
+void miss_interior(std::vector<bool>& missing, const Mesh& mesh, const std::vector<std::int32_t>& labels, std::int32_t inside,
+                   const shapes::StatuetteBody& body) {
+    const double edge = mean_edge_length(mesh);
+    for (const Face f : mesh.faces()) {
+        if (labels[f.idx()] != inside) continue;
+        const Point c = centroid(mesh, f);
+        const double wave = 1 + std::cos(3 * std::atan2(c.y(), c.x()) + body.ragged);
+        if (c.z() > body.frame.cavity_depth - (1 + wave) * edge) missing[f.idx()] = true;
+    }
+}
+
+/// Faces of the body's outer side around random places of it.
+void miss_patches(std::vector<bool>& missing, const Mesh& mesh, const std::vector<std::int32_t>& labels,
+                  const StatuetteParameters& p, double highest) {
+    std::vector<Face> body;
+    for (const Face f : mesh.faces())
+        if (labels[f.idx()] <= 1 && centroid(mesh, f).z() < highest && centroid(mesh, f).z() > 0.02 * highest) body.push_back(f);
+    if (body.empty()) return;
+    for (int hole = 0; hole < p.holes; ++hole) {
+        const double share = shapes::random_share(p.seed, hole_numbers + static_cast<std::uint64_t>(hole));
+        const Face middle = body[std::min(static_cast<std::size_t>(share * static_cast<double>(body.size())), body.size() - 1)];
+        const Point centre = centroid(mesh, middle);
+        const Vector way = area_vector(mesh, middle);
+        for (const Face f : body) {
+            if (CGAL::squared_distance(centroid(mesh, f), centre) < p.hole_radius * p.hole_radius &&
+                area_vector(mesh, f) * way > 0)
+                missing[f.idx()] = true;
+        }
+    }
+}
+
+/// Takes away more until no vertex joins two fans: then what is left is a manifold.
+void open_pinches(std::vector<bool>& missing, const Mesh& mesh) {
+    for (bool again = true; again;) {
+        again = false;
+        for (const Vertex v : mesh.vertices()) {
+            int fans = 0;
+            for (const Halfedge h : mesh.halfedges_around_target(mesh.halfedge(v))) {
+                const Face here = mesh.face(h), next = mesh.face(mesh.opposite(h));
+                if (!missing[here.idx()] && missing[next.idx()]) ++fans;
+            }
+            if (fans < 2) continue;
+            for (const Face f : mesh.faces_around_target(mesh.halfedge(v))) missing[f.idx()] = true;
+            again = true;
+        }
+    }
+}
+
+/// The largest piece of what is left, as a mesh of its own; labels follow.
+void take_away(Statuette& statuette, const std::vector<bool>& missing) {
+    const Mesh& mesh = statuette.mesh;
+    std::vector<Index> piece(mesh.number_of_faces(), no_index);
+    Index pieces = 0, largest = 0;
+    std::size_t most = 0;
+    for (const Face start : mesh.faces()) {
+        if (missing[start.idx()] || piece[start.idx()] != no_index) continue;
+        std::vector<Face> list{start};
+        piece[start.idx()] = pieces;
+        for (std::size_t i = 0; i < list.size(); ++i) {
+            for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(list[i]))) {
+                const Face next = mesh.face(mesh.opposite(h));
+                if (missing[next.idx()] || piece[next.idx()] != no_index) continue;
+                piece[next.idx()] = pieces;
+                list.push_back(next);
+            }
+        }
+        if (list.size() > most) most = list.size(), largest = pieces;
+        ++pieces;
+    }
+    TriangleSoup soup;
+    std::vector<Index> renamed(mesh.number_of_vertices(), no_index);
+    std::vector<std::int32_t> labels;
+    for (const Face f : mesh.faces()) {
+        if (piece[f.idx()] != largest) continue;
+        std::array<Index, 3> triangle{};
+        std::size_t corner = 0;
+        for (const Vertex v : corners(mesh, f)) {
+            Index& name = renamed[v.idx()];
+            if (name == no_index) {
+                name = static_cast<Index>(soup.points.size());
+                const Point& q = mesh.point(v);
+                soup.points.push_back({q.x(), q.y(), q.z()});
+            }
+            triangle[corner++] = name;
+        }
+        soup.triangles.push_back(triangle);
+        labels.push_back(statuette.face_labels[f.idx()]);
+    }
+    statuette.mesh = build_mesh(soup);
+    statuette.face_labels = std::move(labels);
+}
+
+std::vector<std::pair<std::string, Vector3d>> known_places(const MadeObject& object, const StatuetteParameters& p,
+                                                           const shapes::StatuetteBody& body) {
+    std::vector<std::pair<std::string, Vector3d>> places;
+    const auto add = [&](const std::string& name, const Vector3d& near) { places.emplace_back(name, object.project(near)); };
+    // Ends of the longest diameter of the rim; of a round base, those to the sides.
+    const double rim = body.frame.outline.front().y();
+    const Vector2d foot = body.outside->centre(rim);
+    const double turn = p.ovality > 0 ? body.direction + p.ovality_drift * pi / 180 * rim / body.frame.joint_height : 0.5 * pi;
+    for (const double side : {-1.0, 1.0}) {
+        const Vector2d way = (std::sin(turn) < 0 ? -side : side) * Vector2d(std::cos(turn), std::sin(turn));
+        const double angle = std::atan2(way.y(), way.x());
+        const double radius = body.frame.outline.front().x() + body.outside->displacement(angle, rim);
+        add(side < 0 ? "base right" : "base left", {foot.x() + radius * way.x(), foot.y() + radius * way.y(), rim});
+    }
+    if (p.wall == 0) add("base centre", {foot.x(), foot.y(), 0});
+    const Vector2d neck = body.outside->centre(body.frame.joint_height);
+    add("top of the head", {neck.x(), neck.y(), p.height});
+    add("head joint", {neck.x() - body.frame.neck_radius, neck.y(), body.frame.joint_height});
+    for (const shapes::Arm& arm : shapes::body_arms(p, body)) {
+        const std::string side = arm.side() < 0 ? " right" : " left";
+        const std::vector<Vector3d> outside = arm.outside(6);
+        add("arm joint" + side, outside[0]);
+        for (std::size_t i = 1; i <= 5; ++i) add("arm outside " + std::to_string(i) + side, outside[i]);
+        add("hand end" + side, outside.back());
+    }
+    return places;
+}
+
+}  // namespace
+
+Statuette generate_statuette(const StatuetteParameters& parameters) {
+    shapes::check_parameters(parameters);
+    const shapes::StatuetteBody body(parameters);
+    const auto object = shapes::build_statuette(parameters, body);
+    MakeOptions options;
+    options.vertices = parameters.vertices;
+    options.seed = parameters.seed;
+    MadeMesh made = make_mesh(*object, options);
+    Statuette statuette{parameters, object->parts, object->part_colours, std::move(made.mesh), std::move(made.face_labels), {}};
+    add_noise(statuette.mesh, parameters.scan_noise, parameters.seed);
+
+    std::vector<bool> missing(statuette.mesh.number_of_faces(), false);
+    if (parameters.wall > 0 && parameters.interior == "open") {
+        const auto inside = static_cast<std::int32_t>(object->parts.size()) - 1;
+        miss_interior(missing, statuette.mesh, statuette.face_labels, inside, body);
+    }
+    miss_patches(missing, statuette.mesh, statuette.face_labels, parameters, 0.75 * body.frame.joint_height);
+    if (std::find(missing.begin(), missing.end(), true) != missing.end()) {
+        open_pinches(missing, statuette.mesh);
+        take_away(statuette, missing);
+    }
+
+    const SurfaceSearch search(statuette.mesh);
+    const double near = 2 * mean_edge_length(statuette.mesh);
+    for (const auto& [name, place] : known_places(*object, parameters, body)) {
+        const Point p(place.x(), place.y(), place.z());
+        const SurfaceHit hit = search.closest(p);
+        if (hit.distance > near) continue;
+        const auto three = corners(statuette.mesh, Face(hit.face));
+        const auto closer = [&](Vertex a, Vertex b) {
+            return CGAL::squared_distance(statuette.mesh.point(a), p) < CGAL::squared_distance(statuette.mesh.point(b), p);
+        };
+        const Vertex vertex = *std::min_element(three.begin(), three.end(), closer);
+        statuette.landmarks.push_back({name, static_cast<Index>(vertex.idx()), hit.face, hit.barycentric, hit.point});
+    }
+    return statuette;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,343 @@
+#include "ostraka/synthetic/statuettes.h"
+#include "ostraka/core/angles.h"
+
+#include "builder.h"
+#include "random.h"
+#include "statuette_build.h"
+#include "warp.h"
+
+#include "ostraka/core/error.h"
+
+#include <cmath>
+#include <map>
+
+namespace ostraka {
+
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using shapes::Wave;
+
+namespace shapes {
+
+namespace {
+
+/// Random phases, periods and wavelengths, all of one seed.
+class Draws {
+public:
+    explicit Draws(std::uint64_t seed) : seed_(seed) {}
+    double between(double low, double high) { return low + (high - low) * random_share(seed_, next_++); }
+    double angle() { return between(0, 2 * pi); }
+
+private:
+    std::uint64_t seed_, next_ = 0;
+};
+
+/// Waves of random phase, each of the same size, whose root mean square over the body is `deviation`.
+std::vector<Wave> random_waves(Draws& draw, int count, double deviation, int least_around, int most_around, double shortest,
+                               double longest) {
+    std::vector<Wave> waves;
+    for (int i = 0; i < count; ++i) {
+        const int around = least_around + i % (most_around - least_around + 1);
+        const double side = draw.between(-1, 1) < 0 ? -1 : 1;
+        const double upward = side * 2 * pi / draw.between(shortest, longest);
+        waves.push_back({deviation * std::sqrt(2.0 / count), around, upward, draw.angle()});
+    }
+    return waves;
+}
+
+/// Half waves and shorter ones up the body; the amplitudes fall with the wavelength.
+std::vector<Wave> sway_waves(Draws& draw, double deviation, double height) {
+    std::vector<Wave> waves;
+    const double norm = std::sqrt(1 + 1 / 4.0 + 1 / 9.0);
+    for (int k = 1; k <= 3; ++k) waves.push_back({deviation / (k * norm), 0, pi * k / height, draw.angle()});
+    return waves;
+}
+
+}  // namespace
+
+StatuetteFrame::StatuetteFrame(const StatuetteParameters& p)
+    : neck_radius(0.2 * p.head_height),
+      joint_height(p.height - std::sqrt(p.head_height * p.head_height - neck_radius * neck_radius)),
+      tube_radius(0.33 * p.base_diameter),
+      cavity_depth(0.8 * joint_height * p.cavity_seen) {
+    // Radius and height, in base radii and heights of the joint: rim, flare, tube, shoulders, neck.
+    const double radius = 0.5 * p.base_diameter / (1 + p.ovality);
+    const std::vector<Vector2d> shape{{1, 0.022},   {0.975, 0.05}, {0.88, 0.10}, {0.765, 0.17}, {0.69, 0.28},
+                                      {0.66, 0.41}, {0.65, 0.55},  {0.67, 0.68}, {0.73, 0.785}, {0.70, 0.875}};
+    using One = Spline<1>::Vec;
+    std::vector<double> heights;
+    std::vector<One> radii;
+    const auto add = [&](double across, double up) { heights.push_back(up), radii.push_back(One(across)); };
+    for (const Vector2d& point : shape) add(point.x() * radius, point.y() * joint_height);
+    add(0.5 * (radii.back()[0] + neck_radius), 0.945 * joint_height);
+    add(1.04 * neck_radius, 0.985 * joint_height);
+    // Many points, so that splines through them and through points beside them hardly differ.
+    const Spline<1> curve(heights, radii);
+    for (const double z : curve.samples(3)) outline.emplace_back(curve.at(z).value[0], z);
+}
+
+StatuetteBody::StatuetteBody(const StatuetteParameters& p) : frame(p) {
+    Draws draw(p.seed);
+    using One = Spline<1>::Vec;
+    std::vector<double> heights;
+    std::vector<One> radii;
+    for (const Vector2d& point : frame.outline) {
+        heights.push_back(point.y());
+        radii.push_back(One(point.x()));
+    }
+    const double high = frame.joint_height, sway = p.sway * frame.tube_radius / std::sqrt(2.0);
+    direction = draw.angle();
+    std::vector<Wave> relative{{p.ovality, 2, -2 * p.ovality_drift * pi / 180 / high, -2 * direction}};
+    for (const Wave& wave : random_waves(draw, 10, p.finger_marks, 3, 7, 30, 80)) relative.push_back(wave);
+    // Hands and wheel rise together: one turn for 7 mm.
+    const std::vector<Wave> grooves{{0.5 * p.grooves, 1, 2 * pi / 7, draw.angle()}};
+    const std::vector<Wave> x = sway_waves(draw, sway, high), y = sway_waves(draw, sway, high);
+    // Waves begin above the foot's rim and end at the neck.
+    const Warp warp{.low = heights.front(),
+                    .high = high,
+                    .offset = Vector2d::Zero(),
+                    .centre_x = x,
+                    .centre_y = y,
+                    .size = Spline<1>(heights, radii),
+                    .relative = relative,
+                    .absolute = grooves,
+                    .core = 0.6 * frame.neck_radius};
+    outside = std::make_shared<const Warp>(warp);
+    const double way = draw.angle();
+    Warp within = warp;
+    within.offset = p.off_centre * p.wall * Vector2d(std::cos(way), std::sin(way));
+    for (const Wave& wave : random_waves(draw, 8, p.wall_noise * p.wall, 1, 4, 40, 100)) within.absolute.push_back(wave);
+    inside = std::make_shared<const Warp>(std::move(within));
+    ragged = draw.angle();
+}
+
+namespace {
+
+/// The outline with the flat foot below it and the stump in the head above.
+std::vector<Vector2d> body_profile(const StatuetteParameters& p, const StatuetteFrame& frame) {
+    const double rim = frame.outline.front().x(), lift = frame.outline.front().y();
+    std::vector<Vector2d> profile{{0, 0}, {0.5 * (rim - lift), 0}, {0.85 * (rim - lift), 0}, {rim - lift, 0}};
+    for (const double angle : {pi / 6, pi / 3})
+        profile.emplace_back(rim - lift * (1 - std::sin(angle)), lift * (1 - std::cos(angle)));
+    for (const Vector2d& point : frame.outline) profile.push_back(point);
+    profile.emplace_back(frame.neck_radius, frame.joint_height + 0.04 * p.head_height);
+    profile.emplace_back(frame.neck_radius, frame.joint_height + 0.15 * p.head_height);
+    profile.emplace_back(0, frame.joint_height + 0.25 * p.head_height);
+    return profile;
+}
+
+std::vector<Vector2d> cavity_profile(const StatuetteParameters& p, const StatuetteFrame& frame) {
+    const double rim = frame.outline.front().x() - p.wall;
+    std::vector<Vector2d> profile{{0, -0.06 * frame.joint_height}, {rim, -0.06 * frame.joint_height}};
+    double last = 0;
+    for (const Vector2d& point : frame.outline) {
+        if (point.y() > 0.89 * frame.joint_height) break;
+        profile.emplace_back(point.x() - p.wall, point.y());
+        last = point.y();
+    }
+    profile.emplace_back(0, last + 0.06 * frame.joint_height);
+    return profile;
+}
+
+}  // namespace
+
+Arm::Arm(const StatuetteParameters& p, const StatuetteBody& body, double side) : side_(side), bare_(p.pose != "offering") {
+    static const std::map<std::string, std::vector<Vector3d>> poses{
+        {"forward", {{0, 0, 0}, {0.10, 0.22, -0.22}, {0.45, 0.24, -0.32}, {0.85, 0.14, -0.20}}},
+        {"offering", {{0, 0, 0}, {0.08, 0.22, -0.26}, {0.42, 0.10, -0.38}, {0.74, -0.27, -0.30}}},
+        {"raised", {{0, 0, 0}, {0.08, 0.34, -0.04}, {0.12, 0.58, 0.20}, {0.12, 0.66, 0.56}}},
+        {"down", {{0, 0, 0}, {0.02, 0.24, -0.20}, {0.06, 0.34, -0.58}, {0.12, 0.34, -0.95}}}};
+    const StatuetteFrame& frame = body.frame;
+    const double height = 0.855 * frame.joint_height, thick = 0.40 * frame.tube_radius;
+    const Vector2d centre = body.outside->centre(height);
+    const Vector3d shoulder(centre.x(), centre.y() + side * 1.30 * frame.tube_radius, height);
+    const auto beads_of = [&](double reach) {
+        std::vector<Bead> list;
+        const double thickness[] = {1.05, 0.95, 0.85, 0.85};
+        std::size_t i = 0;
+        for (const Vector3d& way : poses.at(p.pose))
+            list.push_back({shoulder + reach * Vector3d(way.x(), side * way.y(), way.z()), thick * thickness[i++]});
+        return list;
+    };
+    // The length along the outside grows with the reach: bisection.
+    double low = 0.2 * p.arm_length, high = 2 * p.arm_length;
+    for (int i = 0; i < 50; ++i) {
+        const double middle = 0.5 * (low + high);
+        beads = beads_of(middle);
+        (outside_length() < p.arm_length ? low : high) = middle;
+    }
+}
+
+/// Places along the outside, from the joint to the tip of the hand.
+std::vector<Vector3d> Arm::outside(int pieces) const {
+    std::vector<Vector3d> points;
+    std::vector<double> radii;
+    for (const Bead& bead : beads) points.push_back(bead.centre), radii.push_back(bead.radius);
+    const std::vector<double> knots = chord_lengths(beads);
+    const Spline<3> path(knots, points);
+    std::vector<Vector3d> places;
+    for (int i = 0; i <= pieces; ++i) {
+        const double t = path.length() * i / pieces;
+        const auto state = path.at(t);
+        const Vector3d along = state.first.normalized(), out(0, 0.8 * side_, 0.6);
+        const Vector3d away = (out - out.dot(along) * along).normalized();
+        std::size_t piece = 0;
+        while (piece + 2 < knots.size() && knots[piece + 1] < t) ++piece;
+        const double share = (t - knots[piece]) / (knots[piece + 1] - knots[piece]);
+        places.push_back(state.value + ((1 - share) * radii[piece] + share * radii[piece + 1]) * away);
+        if (i == pieces && bare_) places.push_back(state.value + radii.back() * along);
+    }
+    return places;
+}
+
+double Arm::outside_length() const {
+    const std::vector<Vector3d> places = outside(60);
+    double length = 0;
+    for (std::size_t i = 1; i < places.size(); ++i) length += (places[i] - places[i - 1]).norm();
+    return length;
+}
+
+namespace {
+
+void add_head(MadeObject& object, const StatuetteParameters& p, const StatuetteBody& body, int head) {
+    const double h = p.head_height, joint = body.frame.joint_height;
+    const Vector2d c = body.outside->centre(joint);
+    const auto at = [&](double x, double y, double z) { return Vector3d(c.x() + x * h, c.y() + y * h, joint + z * h); };
+    // The joint lies a neck radius below the head's height, so that the top is somewhat less than h above it.
+    const double top = (p.height - joint) / h;
+    const double skull_top = p.hat == "none" ? top : p.hat == "cap" ? top - 0.07 : 0.72;
+    const double skull = 0.5 * (skull_top - 0.04);
+    add_member(object, make_ellipsoid({at(0.02, 0, 0.04 + skull), Matrix3d::Identity()}, {0.33 * h, 0.29 * h, skull * h}), head,
+               0.1 * h);
+    const double eyes = 0.04 + 1.12 * skull;
+    add_member(object, make_tube({{at(0.32, 0, eyes + 0.04), 0.045 * h}, {at(0.39, 0, eyes - 0.10), 0.075 * h}}), head, 0.08 * h);
+    for (const double side : {1.0, -1.0}) {
+        add_member(object,
+                   make_ellipsoid({at(0.295, side * 0.125, eyes + 0.01), Matrix3d::Identity()}, {0.045 * h, 0.06 * h, 0.04 * h}),
+                   head, 0.02 * h);
+        add_member(object,
+                   make_ellipsoid({at(0.0, side * 0.29, eyes - 0.03), Matrix3d::Identity()}, {0.07 * h, 0.05 * h, 0.10 * h}),
+                   head, 0.04 * h);
+    }
+    if (p.beard)
+        add_member(object, make_tube({{at(0.26, 0, eyes - 0.26), 0.09 * h}, {at(0.34, 0, eyes - 0.36), 0.055 * h}}), head,
+                   0.1 * h);
+    if (p.hat == "none") return;
+    const int hat = add_part(object, "hat", {90, 110, 150});
+    // The lathe's profile ends on the axis at the topmost point.
+    const std::vector<Vector2d> cone{
+        {0, 0},         {0.30, 0.01}, {0.345, 0.05}, {0.31, 0.12}, {0.20, 0.55 * (top - 0.60)}, {0.10, 0.85 * (top - 0.60)},
+        {0, top - 0.60}};
+    const std::vector<Vector2d> cap{{0, 0}, {0.29, 0.02}, {0.365, 0.07}, {0.35, 0.14}, {0.24, 0.21}, {0, 0.24}};
+    std::vector<Vector2d> profile = p.hat == "cone" ? cone : cap;
+    const double rise = p.hat == "cone" ? 0.60 : top - 0.24;
+    for (Vector2d& point : profile) point *= h;
+    add_member(object, make_lathe({at(0, 0, rise), Matrix3d::Identity()}, profile), hat, 0.05 * h);
+}
+
+}  // namespace
+
+std::unique_ptr<MadeObject> build_statuette(const StatuetteParameters& p, const StatuetteBody& body) {
+    const StatuetteFrame& frame = body.frame;
+    auto object = std::make_unique<MadeObject>();
+    object->name = p.technique + "-made statuette";
+    object->object_class = "votive statuette";
+    object->description = "tubular body on a flared base, head, two arms";
+    object->genus = p.pose == "offering" ? 1 : 0;
+    object->minimum_vertices = 4000;
+    object->thinnest = 4;
+    const int tube = add_part(*object, "body", {196, 140, 96}), base = add_part(*object, "base", {150, 104, 74});
+    const int head = add_part(*object, "head", {214, 170, 130});
+    const int right = add_part(*object, "right arm", {80, 140, 90}), left = add_part(*object, "left arm", {190, 70, 60});
+    const std::vector<Vector2d> profile = body_profile(p, frame);
+    Member trunk;
+    trunk.solid = make_warped(make_lathe({}, profile), body.outside);
+    trunk.stretches = {{chord_lengths(profile)[15], base}, {std::numeric_limits<double>::infinity(), tube}};
+    object->members.push_back(std::move(trunk));
+    const double shoulders = 0.85 * frame.joint_height, r = frame.tube_radius;
+    const Vector2d c = body.outside->centre(shoulders);
+    add_member(*object, make_ellipsoid({{c.x(), c.y(), shoulders}, Matrix3d::Identity()}, {0.95 * r, 1.5 * r, 0.72 * r}), tube,
+               0.6 * r);
+    add_head(*object, p, body, head);
+    for (const Arm& arm : body_arms(p, body)) add_member(*object, make_tube(arm.beads), arm.side() < 0 ? right : left, 0.2 * r);
+    if (p.pose == "offering") {
+        const auto arms = body_arms(p, body);
+        const Vector3d between = 0.5 * (arms[0].beads.back().centre + arms[1].beads.back().centre);
+        const double gap = (arms[0].beads.back().centre - arms[1].beads.back().centre).norm();
+        const double wide = std::max(0.5 * gap, 0.45 * r);
+        add_member(*object,
+                   make_ellipsoid({between + Vector3d(0.2 * r, 0, 0.1 * r), Matrix3d::Identity()}, {wide, wide, 0.35 * r}),
+                   add_part(*object, "offering", {220, 180, 70}), 0.1 * r);
+    }
+    if (p.wall > 0) {
+        carve(*object, make_below(make_warped(make_lathe({}, cavity_profile(p, frame)), body.inside), frame.cavity_depth),
+              add_part(*object, "inside", {120, 100, 90}), 0);
+        object->thinnest = std::max(p.wall * (1 - 1.5 * p.wall_noise - p.off_centre), 0.3 * p.wall);
+    }
+    object->finish();
+    return object;
+}
+
+std::array<Arm, 2> body_arms(const StatuetteParameters& p, const StatuetteBody& body) {
+    return {Arm(p, body, -1), Arm(p, body, 1)};
+}
+
+void check_parameters(const StatuetteParameters& p) {
+    check_options(p, "statuette");
+    if (p.wall > 0 && p.wall * (1 + 3 * p.wall_noise + p.off_centre) > 0.7 * 0.65 * 0.5 * p.base_diameter)
+        fail_usage("a wall of " + std::to_string(p.wall) + " mm leaves no cavity in a base of " +
+                       std::to_string(p.base_diameter) + " mm",
+                   "use a thinner wall, a wider base, or 0 for a solid body");
+    if (p.head_height > 0.4 * p.height || p.base_diameter > 0.6 * p.height || p.arm_length > p.height)
+        fail_usage("the head, the base or the arm is too large for a statuette of " + std::to_string(p.height) + " mm",
+                   "keep the head below 0.4, the base below 0.6 and the arm below 1 of the height");
+}
+
+}  // namespace shapes
+
+std::unique_ptr<const MadeObject> statuette_object(const StatuetteParameters& parameters) {
+    shapes::check_parameters(parameters);
+    return shapes::build_statuette(parameters, shapes::StatuetteBody(parameters));
+}
+
+void StatuetteParameters::describe(OptionList& visit) {
+    visit("technique", technique, "wheel or hand", Choices{"wheel", "hand"});
+    visit("height", height, "from the base to the topmost point, mm", Range{100, 500});
+    visit("base-diameter", base_diameter, "mm", Range{20, 200});
+    visit("arm-length", arm_length, "from the joint along the outside to the end of the hand, mm", Range{30, 250});
+    visit("head-height", head_height, "from the joint at the back of the neck to the topmost point, mm", Range{20, 150});
+    visit("ovality", ovality, "of the body, relative to its radius", Range{0, 0.15});
+    visit("ovality-drift", ovality_drift, "degrees by which its direction turns", Range{0, 360});
+    visit("finger-marks", finger_marks, "root mean square, relative to the radius", Range{0, 0.05});
+    visit("sway", sway, "root mean square of the centres, relative to the tube's radius", Range{0, 0.2});
+    visit("grooves", grooves, "height of throwing grooves, mm", Range{0, 1});
+    visit("wall", wall, "mean thickness, mm; 0: solid", Range{0, 12});
+    visit("wall-noise", wall_noise, "root mean square, relative to the wall", Range{0, 0.25});
+    visit("off-centre", off_centre, "of the cavity, relative to the wall", Range{0, 0.4});
+    visit("cavity-seen", cavity_seen, "share of the cavity's depth", Range{0.1, 1});
+    visit("interior", interior, "what the mesh does where the scanner's sight ends", Choices{"closed", "open"});
+    visit("scan-noise", scan_noise, "standard deviation along the normal, mm", Range{0, 0.5});
+    visit("holes", holes, "patches that the scan misses", Range{0, 20});
+    visit("hole-radius", hole_radius, "mm", Range{1, 20});
+    visit("pose", pose, "of the arms", Choices{"forward", "offering", "raised", "down"});
+    visit("hat", hat, "on the head", Choices{"cone", "cap", "none"});
+    visit("beard", beard, "a piece of clay under the chin", Anything{});
+    visit("seed", seed, "of phases, noise, holes and lattice", Range{0, 9007199254740992.0});
+    visit("vertices", vertices, "of the whole mesh, before anything is missing", Range{4000, 5e6});
+}
+
+void PopulationOptions::describe(OptionList& visit) {
+    visit("objects", objects, "statuettes, half of them of each technique", Range{1, 100000});
+    visit("level", level, "difficulty: 1, the techniques far apart, to 5, nearly alike", Range{1, 5});
+    visit("seed", seed, "of the whole population", Range{0, 1e9});
+    visit("vertices", vertices, "of each mesh", Range{4000, 5e6});
+    visit("scan-noise", scan_noise, "standard deviation of each vertex along its normal, mm", Range{0, 0.5});
+    visit("interior", interior, "of hollow bodies, where the scanner's sight ends", Choices{"mixed", "closed", "open"});
+    visit("cavity-seen", cavity_seen, "least share of a cavity's depth that the scanner saw; the most is all", Range{0.1, 1});
+    visit("holes", holes, "most patches that a scan misses", Range{0, 20});
+    visit("size-spread", size_spread, "standard deviation of the logarithm of each size (height, base, arm, head)",
+          Range{0, 0.15});
+}
+
+}  // namespace ostraka

@@ -1,0 +1,293 @@
+// A template's parts, each by itself and all together.
+#include "ostraka/coords/coordinate_file.h"
+#include "ostraka/core/error.h"
+#include "ostraka/core/inside.h"
+#include "ostraka/core/limits.h"
+#include "ostraka/core/npy.h"
+#include "ostraka/relation/rules.h"
+#include "ostraka/template_package/template.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace ostraka {
+
+namespace {
+
+using std::to_string;
+
+std::string counted(std::size_t count, const std::string& one, const std::string& many) {
+    return to_string(count) + " " + (count == 1 ? one : many);
+}
+
+class Loader {
+public:
+    Loader(TemplateFile file, const TemplateOptions& options) : options_(options) { result_.file = std::move(file); }
+
+    Template run() {
+        // In this order: later parts are held against earlier ones.
+        for (const std::string& role : template_roles())
+            for (const TemplatePart* part : result_.file.of(role)) attempt(*part);
+        if (result_.annotations) contradictions();
+        if (result_.annotations && result_.vocabulary) words();
+        if (result_.annotations && result_.rules) class_rules();
+        return std::move(result_);
+    }
+
+private:
+    void defect(const std::string& part, const std::string& text) { result_.findings.push_back({true, part, text}); }
+    void remark(const std::string& part, const std::string& text) { result_.findings.push_back({false, part, text}); }
+
+    void attempt(const TemplatePart& part) {
+        TemplateEntry entry{part.role, part.name, 0, {}};
+        if (part.role == "cage") result_.cages.emplace_back();
+        try {
+            const bool there = file_exists(part.file);
+            if (there) entry.bytes = size_of_file(part.file);
+            if (part.sha256.empty()) remark(part.name, "the template holds no checksum of it");
+            else if (there && sha256_of_file(part.file) != part.sha256)
+                defect(part.name, "the file is another one than when the template was packed (its checksum differs)");
+            entry.text = read(part);
+        } catch (const Error& error) {
+            if (error.kind() == ErrorKind::failure) throw;
+            // The part is named already.
+            std::string where = error.where();
+            if (where.starts_with(part.file.string())) where.erase(0, part.file.string().size());
+            where.erase(0, where.find_first_not_of(", :"));
+            defect(part.name, (where.empty() ? "" : where + ": ") + error.problem() +
+                                  (error.remedy().empty() ? "" : " (" + error.remedy() + ")"));
+            entry.text = "cannot be read";
+        }
+        result_.entries.push_back(std::move(entry));
+    }
+
+    std::string read(const TemplatePart& part) {
+        if (part.role == "mesh") return read_mesh_part(part);
+        if (part.role == "annotations") return read_annotation_part(part);
+        if (part.role == "graph") return read_graph_part(part);
+        if (part.role == "cage") return read_cage(part);
+        if (part.role == "coordinates") return read_coordinates(part);
+        if (part.role == "landmarks") return read_landmarks(part);
+        if (part.role == "vocabulary") {
+            result_.vocabulary = read_vocabulary(part.file);
+            return counted(result_.vocabulary->concepts.size(), "concept", "concepts");
+        }
+        if (part.role == "rules") {
+            result_.rules = read_class_rules(part.file);
+            return counted(result_.rules->rules.size(), "rule", "rules");
+        }
+        (void)read_json(part.file);
+        return "JSON";
+    }
+
+    std::string read_mesh_part(const TemplatePart& part) {
+        result_.mesh = read_mesh(part.file);
+        for (const auto& note : result_.mesh->notes) remark(part.name, note);
+        return size_of(result_.mesh->mesh);
+    }
+    static std::string size_of(const Mesh& mesh) {
+        return to_string(mesh.number_of_vertices()) + " vertices, " + to_string(mesh.number_of_faces()) + " faces";
+    }
+
+    std::string read_annotation_part(const TemplatePart& part) {
+        if (!result_.mesh) return "not looked at: there is no mesh to hold them against";
+        ReadAnnotationsOptions reading;
+        reading.force_mesh = options_.force_mesh;
+        result_.annotations = read_annotations(part.file, result_.mesh->mesh, reading);
+        for (const auto& note : result_.annotations->notes) remark(part.name, note);
+        for (const Annotation& annotation : result_.annotations->annotations)
+            for (const Attribute& attribute : annotation.attributes) {
+                const std::string& array = attribute.descriptor.file;
+                if (array.empty()) continue;
+                const std::string at = "the attribute '" + attribute.name + "'";
+                if (!options_.allow_outside) try {
+                        (void)file_inside(array, part.file.parent_path(), part.name, at, "the folder of the annotations",
+                                          "move the array into the folder, or allow it with --allow-outside");
+                    } catch (const Error& error) {
+                        defect(part.name, error.problem() + " (" + error.remedy() + ")");
+                        continue;
+                    }
+                if (!file_exists(part.file.parent_path() / array))
+                    remark(part.name, "the array '" + array + "' of the attribute '" + attribute.name + "' is not there");
+            }
+        return counted(result_.annotations->annotations.size(), "annotation", "annotations");
+    }
+
+    std::string read_graph_part(const TemplatePart& part) {
+        if (!result_.annotations) return "not looked at: there are no annotations to hold it against";
+        result_.graph = read_graph(part.file, *result_.annotations);
+        const auto constraints = std::count_if(result_.graph->relationships.begin(), result_.graph->relationships.end(),
+                                               [](const Relationship& relationship) { return relationship.is_constraint; });
+        return counted(result_.graph->relationships.size(), "relationship", "relationships") + ", " +
+               counted(static_cast<std::size_t>(constraints), "constraint", "constraints");
+    }
+
+    std::string read_cage(const TemplatePart& part) {
+        MeshFile file = read_mesh(part.file);
+        std::string text = size_of(file.mesh);
+        if (result_.mesh) {
+            const CageCheck found = check_cage(file.mesh, result_.mesh->mesh);
+            if (!found.closed) defect(part.name, "the cage is not closed: it has a border");
+            else if (found.flat) defect(part.name, "the cage has no face with an area");
+            else if (!found.outward) defect(part.name, "the cage is inside out");
+            else if (!found.encloses()) {
+                const std::size_t beyond = found.outside.size() - found.touching;
+                const std::string what = beyond > 0           ? to_string(beyond) + " vertices of the mesh lie outside"
+                                         : found.touching > 0 ? to_string(found.touching) + " vertices of the mesh lie on it"
+                                                              : std::string("faces of the mesh cross it");
+                remark(part.name, "the cage does not enclose the mesh: " + what);
+                text += ", " + what;
+            } else {
+                text += ", encloses the mesh";
+            }
+            if (!found.intersections.empty())
+                remark(part.name, "the cage intersects itself, at " + counted(found.intersections.size(), "pair", "pairs") +
+                                      " of its faces");
+        }
+        result_.cages.back() = std::move(file.mesh);
+        return text;
+    }
+
+    std::string read_coordinates(const TemplatePart& part) {
+        const std::vector<std::size_t> shape = shape_of_matrix(part.file);
+        if (result_.mesh && shape[0] != result_.mesh->mesh.number_of_vertices())
+            defect(part.name, "the coordinates have " + to_string(shape[0]) + " rows, the mesh " +
+                                  to_string(result_.mesh->mesh.number_of_vertices()) + " vertices");
+        bool fits = false, known = false;
+        for (const auto& cage : result_.cages)
+            if (cage) known = true, fits = fits || shape[1] == cage->number_of_vertices() || shape[1] == cage->number_of_faces();
+        if (known && !fits)
+            defect(part.name,
+                   "the coordinates have " + to_string(shape[1]) + " columns, which is no cage's number of vertices or faces");
+        if (result_.cages.empty()) defect(part.name, "coordinates without a cage");
+        check_header(part);
+        return to_string(shape[0]) + " x " + to_string(shape[1]);
+    }
+
+    /// Where the weights have their header beside them, it says which mesh and cage they are of.
+    void check_header(const TemplatePart& part) {
+        if (!file_exists(coordinate_header_file(part.file))) {
+            // The second array of Green coordinates belongs to the header of the first.
+            if (!part.name.ends_with(".normal.npy"))
+                remark(part.name, "has no header " + coordinate_header_file(part.file).filename().string() +
+                                      " that says which mesh and cage it is of");
+            return;
+        }
+        const CoordinateHeader header = read_coordinate_header(part.file);
+        if (sha256_of_file(part.file) != header.vertex.sha256) defect(part.name, "its header was written for another array");
+        if (result_.mesh && header.mesh.sha256 != mesh_checksum(result_.mesh->mesh))
+            defect(part.name, "its header says that it was computed for another mesh");
+        bool known = false, found = false;
+        for (const auto& cage : result_.cages)
+            if (cage) known = true, found = found || header.cage.sha256 == mesh_checksum(*cage);
+        if (known && !found) defect(part.name, "its header says that it was computed for another cage");
+    }
+
+    static std::vector<std::size_t> shape_of_matrix(const Path& file) {
+        const std::string bytes = read_file(file);
+        const NpyView view = view_npy(bytes, file.string());
+        if (view.shape.size() != 2) fail_input(file.string(), "the array has one dimension, not two");
+        if (view.type != "<f8")
+            fail_input(file.string(), "the array is not of little-endian float64", "write it with numpy.save, as float64");
+        for (std::size_t i = 0; i < view.count(); ++i) {
+            double value = 0;
+            std::memcpy(&value, view.data.data() + i * sizeof value, sizeof value);
+            if (!std::isfinite(value))
+                fail_input(file.string(), "number " + to_string(i) + " of the array is not finite", "compute it anew");
+        }
+        return view.shape;
+    }
+
+    std::string read_landmarks(const TemplatePart& part) {
+        const std::string ending = extension(part.file);
+        if (ending != ".json" && ending != ".ant") {
+            (void)read_file(part.file);
+            remark(part.name, "landmarks of the ending '" + ending + "' are not looked into");
+            return "not looked into";
+        }
+        if (!result_.mesh) return "not looked at: there is no mesh to hold them against";
+        ReadAnnotationsOptions reading;
+        reading.force_mesh = options_.force_mesh;
+        const AnnotationSet set = read_annotations(part.file, result_.mesh->mesh, reading);
+        std::size_t points = 0;
+        for (const Annotation& annotation : set.annotations) points += annotation.type == AnnotationType::point;
+        if (points == 0) defect(part.name, "holds no annotation of points");
+        return counted(points, "landmark", "landmarks");
+    }
+
+    /// The template wins; both are named. Two units are a defect: measures would be taken for others.
+    void contradictions() {
+        AnnotationSet& set = *result_.annotations;
+        const TemplateFile& file = result_.file;
+        const std::string name = file.of("annotations").front()->name;
+        const auto differ = [&](const std::string& what, const std::string& ours, const std::string& theirs) {
+            remark(name, "the " + what + " of the annotations is " + theirs + ", that of the template " + ours +
+                             ": the template's counts");
+        };
+        if (!file.unit.empty() && !set.unit.empty() && file.unit != set.unit)
+            defect(name, "the unit of the annotations is '" + set.unit + "', that of the template '" + file.unit +
+                             "': one mesh has one unit");
+        if (!file.object_class.empty() && !set.object_class.empty() && file.object_class != set.object_class)
+            differ("class", "'" + file.object_class + "'", "'" + set.object_class + "'");
+        if (file.up && set.up) {
+            const auto &a = *file.up, &b = *set.up;
+            if (!(unit_vector({a[0], a[1], a[2]}) * unit_vector({b[0], b[1], b[2]}) >= 1 - 1e-9))
+                differ("upward direction", text_of(a), text_of(b));
+        }
+        if (!file.unit.empty()) set.unit = file.unit;
+        if (!file.object_class.empty()) set.object_class = file.object_class;
+        if (file.up) set.up = file.up;
+    }
+    static std::string text_of(const std::array<double, 3>& v) {
+        std::string text = "(";
+        for (std::size_t k = 0; k < 3; ++k) {
+            char buffer[32];
+            std::snprintf(buffer, sizeof buffer, "%.6g", v[k]);
+            text += (k == 0 ? "" : ", ") + std::string(buffer);
+        }
+        return text + ")";
+    }
+
+    void words() {
+        const std::string name = result_.file.of("annotations").front()->name;
+        for (const auto& finding : check_against_vocabulary(*result_.annotations, *result_.vocabulary))
+            result_.findings.push_back({finding.defect, name, "at " + finding.where + ": " + finding.text});
+        const std::string& name_of_class = result_.annotations->object_class;
+        if (!name_of_class.empty() && !VocabularySearch(*result_.vocabulary).concept_of(name_of_class))
+            remark(name, "the class '" + name_of_class + "' is no concept of the vocabulary");
+    }
+
+    void class_rules() {
+        const TemplatePart& part = *result_.file.of("rules").front();
+        const Vocabulary* words = result_.vocabulary ? &*result_.vocabulary : nullptr;
+        const RelationGraph* graph = result_.graph ? &*result_.graph : nullptr;
+        try {
+            for (const BrokenRule& broken :
+                 broken_rules(result_.mesh->mesh, *result_.annotations, *result_.rules, words, graph, part.name))
+                defect(result_.file.of("annotations").front()->name, "rule '" + broken.rule + "': " + broken.text);
+        } catch (const Error& error) {
+            if (error.kind() != ErrorKind::input) throw;
+            defect(part.name, error.problem());
+        }
+    }
+
+    TemplateOptions options_;
+    Template result_;
+};
+
+}  // namespace
+
+bool Template::sound() const {
+    return std::none_of(findings.begin(), findings.end(), [](const Finding& finding) { return finding.defect; });
+}
+
+Template load_template(TemplateFile file, const TemplateOptions& options) { return Loader(std::move(file), options).run(); }
+
+void check_usable(const Template& known, const std::string& file) {
+    for (const Finding& finding : known.findings)
+        if (finding.defect) fail_input(file + ", " + finding.where, finding.text, "mend it: 'template check' tells all");
+    if (!known.mesh) fail_input(file, "has no mesh", "pack one");
+}
+
+}  // namespace ostraka

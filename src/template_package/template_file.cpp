@@ -1,0 +1,143 @@
+// *.template.json
+#include "ostraka/core/error.h"
+#include "ostraka/core/inside.h"
+#include "ostraka/template_package/template.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace ostraka {
+
+namespace {
+
+using std::to_string;
+
+std::string text_of(const JsonValue& value) { return {value.GetString(), value.GetStringLength()}; }
+
+/// Where a name leads.
+Path locate(const std::string& name, const Path& folder, bool allow_outside, const std::string& where, const std::string& at) {
+    require_file_name(name, where, at);
+    if (allow_outside) return folder / Path(name);
+    return file_inside(
+        name, folder, where, at, "the template's folder",
+        "move the part into the template's folder ('template pack --copy' does so), or allow it with --allow-outside");
+}
+
+}  // namespace
+
+const std::vector<std::string>& template_roles() {
+    static const std::vector<std::string> roles{"mesh",       "annotations", "graph",  "cage",     "coordinates",
+                                                "vocabulary", "rules",       "ranges", "landmarks"};
+    return roles;
+}
+
+std::vector<const TemplatePart*> TemplateFile::of(const std::string& role) const {
+    std::vector<const TemplatePart*> list;
+    for (const TemplatePart& part : parts)
+        if (part.role == role) list.push_back(&part);
+    return list;
+}
+
+TemplateFile template_from_json(const JsonValue& document, const Path& folder, const std::string& where,
+                                const TemplateOptions& options) {
+    if (const JsonValue* format = find_member(document, "format");
+        format != nullptr && format->IsString() && text_of(*format) != "ostraka-template")
+        fail_input(where, "at /format: the format is '" + text_of(*format) + "'", "give a template ('ostraka-template')");
+    validate(document, "template", where);
+    TemplateFile result;
+    if (const JsonValue* name = find_member(document, "class")) result.object_class = text_of(*name);
+    if (const JsonValue* unit = find_member(document, "unit")) result.unit = text_of(*unit);
+    if (const JsonValue* up = find_member(document, "up")) {
+        result.up = {(*up)[0].GetDouble(), (*up)[1].GetDouble(), (*up)[2].GetDouble()};
+        if (result.up == std::array<double, 3>{0, 0, 0})
+            fail_input(where, "at /up: the upward direction is zero", "give a direction such as [0, 0, 1]");
+    }
+    for (const std::string& role : template_roles()) {
+        const JsonValue* value = find_member(document, role);
+        if (value == nullptr) continue;
+        const auto add = [&](const JsonValue& name, const std::string& at) {
+            result.parts.push_back({role, text_of(name), locate(text_of(name), folder, options.allow_outside, where, at), {}});
+        };
+        if (value->IsString()) add(*value, "/" + role);
+        else
+            for (rapidjson::SizeType i = 0; i < value->Size(); ++i) add((*value)[i], "/" + role + "/" + to_string(i));
+    }
+    if (const JsonValue* checksums = find_member(document, "checksums"))
+        for (const auto& member : checksums->GetObject()) {
+            bool known = false;
+            for (TemplatePart& part : result.parts)
+                if (part.name == text_of(member.name)) part.sha256 = text_of(member.value), known = true;
+            if (!known)
+                fail_input(where, "at /checksums: '" + text_of(member.name) + "' is no part of the template",
+                           "name a part or take it away");
+        }
+    return result;
+}
+
+TemplateFile read_template(const Path& file, const TemplateOptions& options) {
+    const Path folder = file.has_parent_path() ? file.parent_path() : Path(".");
+    return template_from_json(read_json(file), folder, file.string(), options);
+}
+
+Json template_to_json(const TemplateFile& file, const Provenance& provenance) {
+    Json document(rapidjson::kObjectType);
+    auto& allocator = document.GetAllocator();
+    add_member(document, "format", "ostraka-template", allocator);
+    add_member(document, "version", JsonValue(1), allocator);
+    if (!file.object_class.empty()) add_member(document, "class", file.object_class, allocator);
+    if (!file.unit.empty()) add_member(document, "unit", file.unit, allocator);
+    if (file.up) {
+        JsonValue up(rapidjson::kArrayType);
+        for (const double x : *file.up) up.PushBack(x, allocator);
+        add_member(document, "up", std::move(up), allocator);
+    }
+    JsonValue checksums(rapidjson::kObjectType);
+    std::map<std::string, std::string> sums;
+    for (const std::string& role : template_roles()) {
+        const auto parts = file.of(role);
+        if (parts.empty()) continue;
+        if (parts.size() == 1) {
+            add_member(document, role, parts.front()->name, allocator);
+        } else {
+            JsonValue list(rapidjson::kArrayType);
+            for (const TemplatePart* part : parts) list.PushBack(json_string(part->name, allocator), allocator);
+            add_member(document, role, std::move(list), allocator);
+        }
+        for (const TemplatePart* part : parts)
+            if (!part->sha256.empty() && sums.emplace(part->name, part->sha256).second)
+                add_member(checksums, part->name, part->sha256, allocator);
+    }
+    if (!sums.empty()) add_member(document, "checksums", std::move(checksums), allocator);
+    add_member(document, "provenance", provenance.to_json(allocator), allocator);
+    return document;
+}
+
+std::string part_name(const Path& folder, const Path& part) {
+    std::error_code code;
+    const Path home = std::filesystem::weakly_canonical(std::filesystem::absolute(folder), code);
+    const Path file = std::filesystem::weakly_canonical(std::filesystem::absolute(part), code);
+    const Path relative = file.lexically_relative(home);
+    return (relative.empty() ? file : relative).generic_string();
+}
+
+TemplateFile copy_template(const TemplateFile& file, const Path& folder, const std::string& name, const Provenance& provenance) {
+    TemplateFile copy = file;
+    for (TemplatePart& part : copy.parts) {
+        part.name = part.file.filename().string();
+        if (std::any_of(copy.parts.begin(), copy.parts.end(), [&](const TemplatePart& other) {
+                return &other < &part && other.name == part.name && other.file != part.file;
+            }))
+            fail_input("template", "two of its parts are called '" + part.name + "', from different folders",
+                       "rename one of them");
+        const Path place = folder / part.name;
+        const std::string bytes = read_file(part.file);
+        if (!same_place(place, part.file)) write_file(place, bytes);
+        part.sha256 = sha256(bytes);
+        part.file = place;
+    }
+    write_json(folder / name, template_to_json(copy, provenance));
+    return copy;
+}
+
+}  // namespace ostraka

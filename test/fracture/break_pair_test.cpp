@@ -1,0 +1,211 @@
+#include "ostraka/fracture/break_pair.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/fracture/facets.h"
+#include "ostraka/geom/eigen.h"
+#include "ostraka/io/mesh_file.h"
+#include "ostraka/reconstruction/fragment_file.h"
+#include "ostraka/stats/random.h"
+#include "scratch.h"
+#include "sherds.h"
+
+namespace ostraka {
+namespace {
+
+using test::made_bar;
+using test::made_sherd;
+using test::MadeSherd;
+
+Fragment fragment_of(const MadeSherd& sherd, const std::string& name, const Motion& motion = {}) {
+    Fragment fragment;
+    fragment.name = name;
+    fragment.mesh = moved(sherd.mesh, motion);
+    fragment.facets = sherd.facets;
+    return fragment;
+}
+
+Motion random_motion(std::uint64_t seed, double size) {
+    Random random(seed);
+    Motion motion;
+    motion.turn =
+        Eigen::Quaterniond(random.normal(), random.normal(), random.normal(), random.normal()).normalized().toRotationMatrix();
+    motion.shift = size * Eigen::Vector3d(random.normal(), random.normal(), random.normal());
+    return motion;
+}
+
+/// Degrees, and the largest distance of a vertex from its place as a share of the diagonal.
+std::pair<double, double> errors(const Mesh& mesh, const Motion& pose, const Motion& truth) {
+    double farthest = 0;
+    for (const Vertex v : mesh.vertices())
+        farthest = std::max(farthest, (pose(eigen(mesh.point(v))) - truth(eigen(mesh.point(v)))).norm());
+    return {Eigen::AngleAxisd(pose.turn.transpose() * truth.turn).angle() * 180 / M_PI, farthest / box_diagonal(mesh)};
+}
+
+PairOptions quick() {
+    PairOptions options;
+    options.frames = 80;
+    options.samples = 600;
+    options.starts = 60;
+    options.refined = 10;
+    return options;
+}
+
+TEST(BreakPair, NeighboursComeTogetherFromAnywhere) {
+    const MadeSherd a = made_sherd(1, 2, 0, 1), b = made_sherd(2, 3, 1, 2);
+    for (const double scale : {1.0, 1e-6, 1e6}) {
+        Motion unit;
+        unit.scale = scale;
+        const Motion away = random_motion(7, 30 * scale).after(unit);
+        const Fragment first = fragment_of(a, "a", unit), second = fragment_of(b, "b", away);
+        const BreakPair pair = pair_breaks(first, second, quick());
+        ASSERT_TRUE(pair.decided()) << pair.undecided;
+        Motion truth = unit.after(away.inverse());
+        EXPECT_NEAR(truth.scale, 1, 1e-9);
+        const auto [angle, shift] = errors(second.mesh, pair.candidates.front().pose, truth);
+        EXPECT_LT(angle, 2) << scale << ", with half of the usual places along the rims";
+        EXPECT_LT(shift, 0.02) << scale;
+        EXPECT_EQ(pair.candidates.front().pose.scale, 1);
+    }
+}
+
+TEST(BreakPair, ASolidThatBroke) {
+    const MadeSherd below = made_bar(), above = made_bar(1, true);
+    const Motion away = random_motion(3, 20);
+    const Fragment first = fragment_of(below, "below"), second = fragment_of(above, "above", away);
+    const BreakPair pair = pair_breaks(first, second, quick());
+    ASSERT_TRUE(pair.decided()) << pair.undecided;
+    const auto [angle, shift] = errors(second.mesh, pair.candidates.front().pose, away.inverse());
+    EXPECT_LT(angle, 0.5);
+    EXPECT_LT(shift, 0.01);
+    EXPECT_GT(pair.candidates.front().contact, 0.9);
+    EXPECT_LT(pair.candidates.front().penetration, 0.01);
+    for (std::size_t i = 1; i < pair.candidates.size(); ++i) EXPECT_LE(pair.candidates[i].score, pair.candidates[i - 1].score);
+}
+
+TEST(BreakPair, StrangersAreLessSure) {
+    const Fragment a = fragment_of(made_bar(), "a");
+    const Fragment mate = fragment_of(made_bar(1, true), "mate");
+    // A bar with another break.
+    MadeSherd other = made_bar(1, true);
+    for (const Vertex v : other.mesh.vertices()) {
+        const Point p = other.mesh.point(v);
+        const double fade = (8 - p.z()) / 4;
+        other.mesh.point(v) = Point(p.x(), p.y(), p.z() + fade * 0.2 * std::sin(7 * p.x() - 2 * p.y()));
+    }
+    const double with_mate = pair_breaks(a, mate, quick()).candidates.front().score,
+                 with_stranger = pair_breaks(a, fragment_of(other, "other"), quick()).candidates.front().score;
+    EXPECT_GT(with_mate, with_stranger + 0.2);
+}
+
+TEST(BreakPair, ThreadsDoNotMatter) {
+    const Fragment a = fragment_of(made_bar(), "a"), b = fragment_of(made_bar(1, true), "b", random_motion(4, 5));
+    PairOptions options = quick();
+    options.frames = 30;
+    const int before = threads();
+    set_threads(1);
+    const BreakPair one = pair_breaks(a, b, options);
+    set_threads(3);
+    const BreakPair three = pair_breaks(a, b, options);
+    set_threads(before);
+    ASSERT_EQ(one.candidates.size(), three.candidates.size());
+    for (std::size_t i = 0; i < one.candidates.size(); ++i) {
+        EXPECT_EQ(one.candidates[i].pose.turn, three.candidates[i].pose.turn);
+        EXPECT_EQ(one.candidates[i].pose.shift, three.candidates[i].pose.shift);
+        EXPECT_EQ(one.candidates[i].score, three.candidates[i].score);
+    }
+}
+
+TEST(BreakPair, WhatCannotBeLaidTogetherIsSaid) {
+    const Fragment a = fragment_of(made_bar(), "a");
+    Fragment whole = fragment_of(made_bar(1, true), "whole");
+    whole.facets.assign(whole.facets.size(), Facet::outer);
+    EXPECT_THROW(pair_breaks(a, whole, quick()), Error);
+    whole.facets.clear();
+    EXPECT_THROW(pair_breaks(a, whole, quick()), Error) << "no facets: all outer";
+    whole.facets.assign(whole.mesh.number_of_faces(), Facet::fracture);
+    EXPECT_THROW(pair_breaks(a, whole, quick()), Error) << "no rim";
+    EXPECT_THROW(pair_breaks(a, Fragment(), quick()), Error);
+    PairOptions options;
+    options.reach = 2;
+    EXPECT_THROW(pair_breaks(a, a, options), Error);
+    // Far too small to touch a share of the other's break: cannot be told.
+    options = quick();
+    options.least_contact = 1;
+    Motion smaller;
+    smaller.scale = 0.2;
+    const BreakPair pair = pair_breaks(a, fragment_of(made_sherd(4, 5, 0, 1), "small", smaller), options);
+    EXPECT_FALSE(pair.decided());
+    EXPECT_FALSE(pair.undecided.empty());
+}
+
+TEST(BreakPair, ScannedBottle) {
+    const Path folder = Path(OSTRAKA_SHARED_DATA) / "fragments-bottle-pair";
+    if (!std::filesystem::exists(folder)) GTEST_SKIP() << "THE BOTTLE IS NOT THERE: " << folder;
+    const FragmentFile first = read_fragment(folder / "obj1_challenge.ply");
+    FragmentFile second = read_fragment(folder / "obj2_challenge.ply");
+    EXPECT_TRUE(first.points);
+    EXPECT_EQ(first.facets_from, "shape");
+    // The motion that the second half was moved by: the truth is its inverse.
+    const Json solution = read_json(folder / "solution.json");
+    Motion moved_by;
+    for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j)
+            moved_by.turn(i, j) = solution["r"][static_cast<unsigned>(i)][static_cast<unsigned>(j)].GetDouble();
+        moved_by.shift[i] = solution["t"][static_cast<unsigned>(i)].GetDouble();
+    }
+    const Motion away = random_motion(11, 1);
+    second.fragment.mesh = moved(second.fragment.mesh, away);
+    const BreakPair pair = pair_breaks(first.fragment, second.fragment);
+    ASSERT_TRUE(pair.decided()) << pair.undecided;
+    const auto [angle, shift] =
+        errors(second.fragment.mesh, pair.candidates.front().pose, moved_by.inverse().after(away.inverse()));
+    EXPECT_LT(angle, 0.5);
+    EXPECT_LT(shift, 0.005);
+    EXPECT_LT(pair.candidates.front().residual, 0.004755) << "as published for this pair";
+}
+
+std::string quoted(const Path& path) { return "'" + path.string() + "'"; }
+
+TEST(PairCommand, MovesTheSecondToTheFirst) {
+    const test::Scratch scratch;
+    const MadeSherd below = made_bar(), above = made_bar(1, true);
+    const Motion away = random_motion(5, 10);
+    write_mesh(scratch / "a.ply", below.mesh);
+    write_mesh(scratch / "b.ply", moved(above.mesh, away));
+    const std::string command = "pair " + quoted(scratch / "a.ply") + " " + quoted(scratch / "b.ply") +
+                                " --frames 60 --samples 500 --starts 40 --refined 6";
+    const auto run = test::run_command(command + " --output " + quoted(scratch / "out"));
+    ASSERT_EQ(run.code, 0) << run.err << run.out;
+    EXPECT_NE(run.out.find("facets by shape"), std::string::npos) << run.out;
+    const Json report = read_json(scratch / "out" / "pair.json");
+    validate(report, "pair", "pair");
+    EXPECT_STREQ(report["verdict"].GetString(), "together");
+    EXPECT_TRUE(report.HasMember("provenance"));
+    const MeshFile second = read_mesh(scratch / "out" / "second.ply");
+    EXPECT_EQ(second.extras.face_labels.size(), second.mesh.number_of_faces());
+    for (const Vertex v : second.mesh.vertices())
+        EXPECT_LT((eigen(second.mesh.point(v)) - eigen(above.mesh.point(v))).norm(), 0.05);
+    EXPECT_EQ(test::run_command(command).code, 2) << "no folder";
+    // Names of outputs that are inputs.
+    std::filesystem::create_directory(scratch / "own");
+    for (const char* name : {"first.ply", "second.ply"}) {
+        std::filesystem::copy(scratch / "b.ply", scratch / "own" / name);
+        const std::string before = read_file(scratch / "own" / name);
+        const auto own =
+            test::run_command("pair " + quoted(scratch / "a.ply") + " " + quoted(scratch / "own" / name) +
+                              " --frames 60 --samples 500 --starts 40 --refined 6 --output " + quoted(scratch / "own"));
+        EXPECT_EQ(own.code, 2);
+        EXPECT_NE(own.err.find("also an input"), std::string::npos) << own.err;
+        EXPECT_EQ(read_file(scratch / "own" / name), before);
+        std::filesystem::remove(scratch / "own" / name);
+    }
+    EXPECT_EQ(test::run_command(command + " --reach 2 --output " + quoted(scratch / "out2")).code, 2);
+    const auto none = test::run_command(command + " --facets none --output " + quoted(scratch / "out2"));
+    EXPECT_EQ(none.code, 1);
+    EXPECT_NE(none.err.find("fracture"), std::string::npos) << none.err;
+    EXPECT_FALSE(std::filesystem::exists(scratch / "out2"));
+}
+
+}  // namespace
+}  // namespace ostraka

@@ -1,0 +1,209 @@
+#include "ostraka/fracture/facets.h"
+
+#include "meshes.h"
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+#include "scratch.h"
+#include "sherds.h"
+
+#include "ostraka/annotation/annotation_file.h"
+#include "ostraka/geom/surface_search.h"
+#include "ostraka/io/mesh_file.h"
+
+namespace ostraka {
+namespace {
+
+using test::agreement;
+using test::made_bar;
+using test::made_sherd;
+using test::MadeSherd;
+
+TEST(Facets, ASherdHasTwoSidesAndABreak) {
+    const MadeSherd sherd = made_sherd(1, 2, 0, 1);
+    const Facets found = find_facets(sherd.mesh);
+    EXPECT_TRUE(found.shell);
+    EXPECT_NEAR(found.thickness, 0.7, 0.05);
+    EXPECT_GT(agreement(sherd, found.of_face), 0.95);
+    EXPECT_GT(found.confidence, 0.8);
+    double area = 0;
+    std::vector<int> seen(sherd.mesh.number_of_faces(), 0);
+    for (const FacetSegment& segment : found.segments) {
+        area += segment.area;
+        for (const Index f : segment.faces) {
+            EXPECT_EQ(found.of_face[f], segment.facet);
+            ++seen[f];
+        }
+    }
+    EXPECT_NEAR(area, surface_area(sherd.mesh), 1e-9 * area);
+    EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), static_cast<std::ptrdiff_t>(seen.size()));
+}
+
+TEST(Facets, UnitPlaceResolutionAndThreadsDoNotMatter) {
+    const MadeSherd sherd = made_sherd(1, 2, 0, 1);
+    const Facets found = find_facets(sherd.mesh);
+    Motion turn;
+    turn.turn = Eigen::AngleAxisd(2, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+    for (const double scale : {1e-6, 1.0, 1e6}) {
+        turn.scale = scale;
+        turn.shift = 1000 * scale * Eigen::Vector3d(1, -1, 2);
+        EXPECT_GT(agreement({moved(sherd.mesh, turn), found.of_face}, find_facets(moved(sherd.mesh, turn)).of_face), 0.995)
+            << scale;
+    }
+    const MadeSherd fine = made_sherd(1, 2, 0, 1, 2);
+    EXPECT_GT(agreement(fine, find_facets(fine.mesh).of_face), 0.95);
+    const int before = threads();
+    for (const int count : {1, 3}) {
+        set_threads(count);
+        const Facets again = find_facets(sherd.mesh);
+        EXPECT_EQ(again.of_face, found.of_face);
+        EXPECT_EQ(again.confidence, found.confidence);
+    }
+    set_threads(before);
+}
+
+TEST(Facets, ASolidHasARoughEnd) {
+    for (const int fineness : {1, 2}) {
+        const MadeSherd bar = made_bar(fineness);
+        const Facets found = find_facets(bar.mesh);
+        EXPECT_FALSE(found.shell);
+        EXPECT_GT(agreement(bar, found.of_face), 0.95) << fineness;
+        EXPECT_EQ(found.area(Facet::inner), 0);
+        EXPECT_GT(found.area(Facet::fracture), 0.5 * M_PI);
+    }
+}
+
+TEST(Facets, WhatIsWholeHasNoBreak) {
+    for (const auto& soup : {test::octahedron_sphere(4), test::box(12), test::torus(48, 24), test::patch(30, 30)}) {
+        const Mesh mesh = build_mesh(soup);
+        const Facets found = find_facets(mesh);
+        EXPECT_EQ(found.area(Facet::fracture), 0);
+        EXPECT_NEAR(found.area(Facet::outer), surface_area(mesh), 1e-9 * surface_area(mesh));
+    }
+}
+
+TEST(Facets, WhatCannotBeToldIsSaid) {
+    EXPECT_THROW(find_facets(Mesh()), Error);
+    TriangleSoup flat;
+    flat.points = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
+    flat.triangles = {{0, 1, 2}};
+    EXPECT_THROW(find_facets(build_mesh(flat)), Error);
+    flat.points[2] = {0, 1, 0};
+    EXPECT_EQ(find_facets(build_mesh(flat)).of_face, std::vector<Facet>{Facet::outer});
+    FacetOptions options;
+    options.edge = 0;
+    EXPECT_THROW(find_facets(build_mesh(flat), options), Error);
+}
+
+TEST(Facets, ScannedSherds) {
+    const Path folder = Path(OSTRAKA_SHARED_DATA) / "fragments-vessel-sherds";
+    if (!std::filesystem::exists(folder)) GTEST_SKIP() << "THE SHERDS ARE NOT THERE: " << folder;
+    std::vector<Mesh> meshes;
+    for (int i = 1; i <= 5; ++i) meshes.push_back(read_mesh(folder / ("TU_96_2_5f_piece0" + std::to_string(i) + ".obj")).mesh);
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        const Facets found = find_facets(meshes[i]);
+        EXPECT_TRUE(found.shell);
+        EXPECT_GT(found.area(Facet::outer), found.area(Facet::inner)) << "the outside of a vessel is larger";
+        // Near another sherd and facing it: broken there, or close beside it.
+        double right = 0, called = 0, all = 0, same = 0;
+        std::vector<double> area(meshes[i].number_of_faces());
+        std::vector<bool> facing(area.size(), false);
+        for (std::size_t j = 0; j < meshes.size(); ++j) {
+            if (j == i) continue;
+            const SurfaceSearch other(meshes[j]);
+            for (const Face face : meshes[i].faces()) {
+                const Vector n = area_vector(meshes[i], face);
+                area[face] = std::sqrt(n.squared_length());
+                const SurfaceHit hit = other.closest(centroid(meshes[i], face));
+                if (hit.distance < 1.3 && other.normal(hit.face) * n < -0.3 * area[face]) facing[face] = true;
+            }
+        }
+        for (std::size_t f = 0; f < area.size(); ++f) {
+            const bool broken = found.of_face[f] == Facet::fracture;
+            all += area[f];
+            same += broken == facing[f] ? area[f] : 0;
+            called += broken ? area[f] : 0;
+            right += broken && facing[f] ? area[f] : 0;
+        }
+        EXPECT_GT(same / all, 0.9) << "sherd " << i + 1;
+        EXPECT_GT(right / called, 0.8) << "sherd " << i + 1;
+    }
+}
+
+std::string quoted(const Path& path) { return "'" + path.string() + "'"; }
+
+TEST(FacetsCommand, WritesThreeRegions) {
+    const test::Scratch scratch;
+    const MadeSherd sherd = made_sherd(1, 2, 0, 1);
+    write_mesh(scratch / "sherd.ply", sherd.mesh);
+    const auto run = test::run_command("annotation facets " + quoted(scratch / "sherd.ply") + " " +
+                                       quoted(scratch / "sherd.ant.json") + " --unit mm --json");
+    ASSERT_EQ(run.code, 0) << run.err;
+    const Json report = parse_json(run.out, "report");
+    EXPECT_TRUE(report["result"]["shell"].GetBool());
+    const AnnotationSet set = read_annotations(scratch / "sherd.ant.json", sherd.mesh);
+    ASSERT_EQ(set.annotations.size(), 3U);
+    EXPECT_GT(agreement(sherd, facets_of(sherd.mesh, set)), 0.95);
+    // Again, with landmarks and other regions there, one facet under a name of a person's own spelling and one twice.
+    AnnotationSet more = read_annotations(scratch / "sherd.ant.json", sherd.mesh);
+    Annotation mark, handle;
+    mark.id = free_id(more);
+    mark.tag = "outer";
+    mark.type = AnnotationType::point;
+    mark.points = {7};
+    handle.id = mark.id + 1;
+    handle.tag = "handle";
+    handle.faces = {1, 2, 3};
+    const int outer = more.annotations[0].id, again = handle.id + 1;
+    more.annotations[0].tag = "Outer";
+    more.annotations[0].faces = {0};
+    more.annotations[0].attributes.emplace_back();
+    more.annotations[0].attributes.back().id = 9;
+    more.annotations[0].attributes.back().name = "glaze";
+    more.annotations[0].attributes.back().note = "brown";
+    more.annotations.erase(more.annotations.begin() + 1);
+    Annotation twice = more.annotations[0];
+    twice.id = again;
+    more.annotations.insert(more.annotations.end(), {mark, handle, twice});
+    write_annotations(scratch / "sherd.ant.json", more, sherd.mesh, "sherd.ply", {});
+    const std::string update = "annotation facets " + quoted(scratch / "sherd.ply") + " " + quoted(scratch / "sherd.ant.json");
+    EXPECT_EQ(test::run_command(update + " --unit cm").code, 2) << "the file says mm";
+    ASSERT_EQ(test::run_command(update).code, 0);
+    const AnnotationSet updated = read_annotations(scratch / "sherd.ant.json", sherd.mesh);
+    EXPECT_EQ(updated.unit, "mm");
+    const std::string provenance = to_text(updated.provenance);
+    for (const char* part : {"\"sherd.ply\"", "\"sherd.ant.json\"", "\"facet-edge\"", "\"force-mesh\""})
+        EXPECT_NE(provenance.find(part), std::string::npos) << part << provenance;
+    EXPECT_NE(to_text(set.provenance).find("\"unit\": \"mm\""), std::string::npos);
+    const std::string before = read_file(scratch / "sherd.ant.json");
+    ASSERT_EQ(test::run_command(update + " --output " + quoted(scratch / "other.ant.json")).code, 0);
+    EXPECT_EQ(read_file(scratch / "sherd.ant.json"), before) << "--output leaves the file as it is";
+    EXPECT_EQ(facets_of(sherd.mesh, read_annotations(scratch / "other.ant.json", sherd.mesh)), facets_of(sherd.mesh, set));
+    EXPECT_EQ(test::run_command(update + " --output " + quoted(scratch / "sherd.ant.json")).code, 2);
+    EXPECT_EQ(test::run_command("annotation facets " + quoted(scratch / "sherd.ply") + " " + quoted(scratch / "sherd.ply")).code,
+              2)
+        << "the mesh is not written over";
+    EXPECT_EQ(updated.annotations.size(), 5U);
+    EXPECT_EQ(facets_of(sherd.mesh, updated), facets_of(sherd.mesh, set));
+    ASSERT_NE(updated.find(outer), nullptr);
+    EXPECT_EQ(updated.find(outer)->tag, "Outer");
+    EXPECT_EQ(updated.find(outer)->faces, set.annotations[0].faces);
+    EXPECT_EQ(updated.find(outer)->attributes.size(), set.annotations[0].attributes.size() + 1) << "the glaze is kept";
+    EXPECT_EQ(updated.find(again), nullptr);
+    ASSERT_NE(updated.find(mark.id), nullptr);
+    EXPECT_EQ(updated.find(mark.id)->points, mark.points);
+    ASSERT_NE(updated.find(handle.id), nullptr);
+    EXPECT_EQ(updated.find(handle.id)->faces, handle.faces);
+
+    write_mesh(scratch / "whole.ply", build_mesh(test::octahedron_sphere(3)));
+    EXPECT_EQ(
+        test::run_command("annotation facets " + quoted(scratch / "whole.ply") + " " + quoted(scratch / "whole.ant.json")).code,
+        3);
+    EXPECT_FALSE(std::filesystem::exists(scratch / "whole.ant.json")) << "no fracture, nothing written";
+    EXPECT_EQ(test::run_command("annotation facets " + quoted(scratch / "whole.ply") + " " + quoted(scratch / "x.ant.json") +
+                                " --facet-edge 0")
+                  .code,
+              2);
+}
+
+}  // namespace
+}  // namespace ostraka

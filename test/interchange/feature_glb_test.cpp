@@ -1,0 +1,276 @@
+// GLB with features: there and back, other meshes, the rules of the extensions, the public validator, damage.
+#include "ostraka/interchange/feature_glb.h"
+#include "mutate.h"
+#include "ostraka/core/error.h"
+#include "scratch.h"
+#include "sets.h"
+
+#include <gtest/gtest.h>
+#include <Eigen/Geometry>
+
+#include <cstring>
+#include <map>
+
+using namespace ostraka;
+using namespace ostraka::example;
+
+namespace {
+
+std::string written(const Mesh& mesh, const AnnotationSet& set) {
+    std::vector<std::string> notes;
+    return feature_glb(mesh, set, "m <1>.ply", {}, notes);
+}
+
+std::uint32_t word_at(const std::string& bytes, std::size_t at) {
+    std::uint32_t value = 0;
+    std::memcpy(&value, bytes.data() + at, 4);
+    return value;
+}
+
+Json json_of(const std::string& glb) { return parse_json(glb.substr(20, word_at(glb, 12)), "glb"); }
+
+std::string message(const std::string& bytes, const Mesh& mesh) {
+    try {
+        read_feature_glb(bytes, mesh, "file");
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return {};
+}
+
+/// The file with another JSON chunk.
+std::string with_json(const std::string& glb, std::string json) {
+    json.resize((json.size() + 3) / 4 * 4, ' ');
+    const std::size_t rest = 20 + word_at(glb, 12);
+    std::string head = glb.substr(0, 20);
+    const auto size = static_cast<std::uint32_t>(json.size()), total = static_cast<std::uint32_t>(20 + size + glb.size() - rest);
+    std::memcpy(head.data() + 8, &total, 4);
+    std::memcpy(head.data() + 12, &size, 4);
+    return head + json + glb.substr(rest);
+}
+
+std::string with(const std::string& glb, const std::string& from, const std::string& to) {
+    std::string json = glb.substr(20, word_at(glb, 12));
+    const std::size_t at = json.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    if (at != std::string::npos) json.replace(at, from.size(), to);
+    return with_json(glb, json);
+}
+
+}  // namespace
+
+TEST(FeatureGlb, ComesBackWhole) {
+    const Mesh mesh = spheres(3);
+    const AnnotationSet set = wild_set(mesh);
+    const std::string glb = written(mesh, set);
+    const PlacedAnnotations read = read_feature_glb(glb, mesh, "file");
+    EXPECT_EQ(as_file(read.set, mesh), as_file(set, mesh));
+    for (const PlacedAnnotation& placement : read.placements) EXPECT_EQ(placement.how, "indices");
+    EXPECT_EQ(written(mesh, set), glb);
+    EXPECT_EQ(as_file(read_feature_glb(written(mesh, {}), mesh, "f").set, mesh), as_file({}, mesh));
+}
+
+TEST(FeatureGlb, KeepsTheRulesOfTheFormat) {
+    const Mesh mesh = spheres(3);
+    const AnnotationSet set = wild_set(mesh);
+    const std::string glb = written(mesh, set);
+    EXPECT_EQ(glb.substr(0, 4), "glTF");
+    EXPECT_EQ(word_at(glb, 8), glb.size());
+    const std::size_t json_size = word_at(glb, 12), binary = 20 + json_size + 8;
+    EXPECT_EQ(binary % 8, 0U) << "eight-byte values in the binary chunk are aligned in the file";
+    EXPECT_EQ(glb.substr(20, json_size).find_first_of("<>&"), std::string::npos);
+    const Json document = json_of(glb);
+    std::size_t end = 0;
+    for (const auto& view : document["bufferViews"].GetArray()) {
+        EXPECT_EQ(view["byteOffset"].GetUint() % 8, 0U);
+        EXPECT_GE(view["byteOffset"].GetUint(), end);
+        EXPECT_GE(view["byteLength"].GetUint(), 1U);
+        end = view["byteOffset"].GetUint() + view["byteLength"].GetUint();
+    }
+    EXPECT_LE(end, document["buffers"][0]["byteLength"].GetUint());
+    // String offsets ascend, begin with 0 and end within the values.
+    const JsonValue& metadata = document["extensions"]["EXT_structural_metadata"];
+    const JsonValue& table = metadata["propertyTables"][0];
+    EXPECT_EQ(table["count"].GetUint(), set.annotations.size());
+    const JsonValue& described = metadata["schema"]["classes"][table["class"].GetString()]["properties"];
+    std::size_t columns = 0;
+    for (const auto& property : table["properties"].GetObject()) {
+        ++columns;
+        ASSERT_TRUE(described.HasMember(property.name));
+        const JsonValue& type = described[property.name.GetString()];
+        const JsonValue& values = document["bufferViews"][property.value["values"].GetUint()];
+        if (std::string(type["type"].GetString()) != "STRING") {
+            const std::map<std::string, std::size_t> sizes{{"INT32", 4}, {"UINT8", 3}, {"FLOAT64", 8}};
+            const std::size_t size = type.HasMember("componentType") ? sizes.at(type["componentType"].GetString()) : 1;
+            EXPECT_EQ(values["byteLength"].GetUint(), size * set.annotations.size()) << property.name.GetString();
+            continue;
+        }
+        const JsonValue& offsets = document["bufferViews"][property.value["stringOffsets"].GetUint()];
+        ASSERT_EQ(offsets["byteLength"].GetUint(), 4 * (set.annotations.size() + 1));
+        const std::size_t at = binary + offsets["byteOffset"].GetUint();
+        EXPECT_EQ(word_at(glb, at), 0U);
+        for (std::size_t i = 0; i < set.annotations.size(); ++i)
+            EXPECT_LE(word_at(glb, at + 4 * i), word_at(glb, at + 4 * i + 4));
+        EXPECT_LE(word_at(glb, at + 4 * set.annotations.size()), values["byteLength"].GetUint());
+    }
+    EXPECT_EQ(columns, described.MemberCount());
+    // Features: each id that occurs has a row, counts are right, 16 bit values stand four bytes apart.
+    for (const auto& primitive : document["meshes"][0]["primitives"].GetArray())
+        for (const auto& id : primitive["extensions"]["EXT_mesh_features"]["featureIds"].GetArray()) {
+            const std::string name = "_FEATURE_ID_" + std::to_string(id["attribute"].GetUint());
+            const JsonValue& accessor = document["accessors"][primitive["attributes"][name.c_str()].GetUint()];
+            EXPECT_EQ(accessor["componentType"].GetUint(), 5123U);
+            const JsonValue& view = document["bufferViews"][accessor["bufferView"].GetUint()];
+            EXPECT_EQ(view["byteStride"].GetUint(), 4U);
+            std::set<std::uint32_t> seen;
+            for (std::size_t i = 0; i < accessor["count"].GetUint(); ++i)
+                seen.insert(word_at(glb, binary + view["byteOffset"].GetUint() + 4 * i));
+            seen.erase(id["nullFeatureId"].GetUint());
+            EXPECT_EQ(seen.size(), id["featureCount"].GetUint());
+            EXPECT_LT(*seen.rbegin(), set.annotations.size());
+        }
+}
+
+TEST(FeatureGlb, IsShownUprightInMetres) {
+    const Mesh mesh = spheres(3);
+    AnnotationSet set = wild_set(mesh);
+    const Json json = json_of(written(mesh, set));
+    const JsonValue& node = json["nodes"][json["scenes"][0]["nodes"][0].GetUint()];
+    EXPECT_EQ(node["children"][0].GetInt(), 0);
+    EXPECT_NEAR(node["scale"][0].GetDouble(), 0.001, 1e-15);
+    // The quaternion takes z, up in the set, to y.
+    const auto& q = node["rotation"];
+    const Eigen::Quaterniond turn(q[3].GetDouble(), q[0].GetDouble(), q[1].GetDouble(), q[2].GetDouble());
+    EXPECT_LT((turn * Eigen::Vector3d::UnitZ() - Eigen::Vector3d::UnitY()).norm(), 1e-12);
+    set.up.reset();
+    set.unit = "";
+    EXPECT_EQ(json_of(written(mesh, set))["nodes"].Size(), 1U);
+    set.up = {0, -1, 0};  // upside down
+    const Json turned = json_of(written(mesh, set));
+    EXPECT_NEAR(std::abs(turned["nodes"][1]["rotation"][3].GetDouble()), 0, 1e-12);
+}
+
+TEST(FeatureGlb, TheSmallestRegionLiesInTheFirstSet) {
+    const Mesh mesh = grid(4);
+    AnnotationSet set;
+    for (const Index count : {32U, 8U, 2U}) {
+        Annotation region;
+        region.id = static_cast<int>(count);
+        for (Index f = 0; f < count; ++f) region.faces.push_back(f);
+        set.annotations.push_back(region);
+    }
+    const Json document = json_of(written(mesh, set));
+    const JsonValue& ids = document["meshes"][0]["primitives"][0]["extensions"]["EXT_mesh_features"]["featureIds"];
+    EXPECT_EQ(ids.Size(), 3U);
+    // Regions side by side need one set; vertices on their border are doubled, others are not.
+    AnnotationSet halves;
+    for (const Index half : {0U, 1U}) {
+        Annotation region;
+        region.id = static_cast<int>(half);
+        for (Index f = 0; f < 16; ++f) region.faces.push_back(16 * half + f);
+        halves.annotations.push_back(region);
+    }
+    const Json flat = json_of(written(mesh, halves));
+    const JsonValue& primitive = flat["meshes"][0]["primitives"][0];
+    EXPECT_EQ(primitive["extensions"]["EXT_mesh_features"]["featureIds"].Size(), 1U);
+    EXPECT_EQ(flat["accessors"][primitive["attributes"]["POSITION"].GetUint()]["count"].GetUint(), 25U + 5U);
+}
+
+TEST(FeatureGlb, ManyAnnotationsHaveFloatIds) {
+    const Mesh mesh = grid(2);
+    AnnotationSet set;
+    for (int i = 0; i < 66000; ++i) {
+        Annotation point;
+        point.id = i;
+        point.type = AnnotationType::point;
+        point.points = {static_cast<Index>(i % 9)};
+        set.annotations.push_back(std::move(point));
+    }
+    const PlacedAnnotations read = read_feature_glb(written(mesh, set), mesh, "f");
+    ASSERT_EQ(read.set.annotations.size(), set.annotations.size());
+    for (std::size_t i = 0; i < set.annotations.size(); i += 997)
+        EXPECT_EQ(read.set.annotations[i].points, set.annotations[i].points);
+}
+
+TEST(FeatureGlb, AnotherMeshTakesTheNearestFeatures) {
+    const Mesh mesh = spheres(4);
+    const AnnotationSet set = wild_set(mesh);
+    const std::string glb = written(mesh, set);
+    TriangleSoup soup = to_soup(spheres(5));
+    for (auto& p : soup.points) p = {0.8 * p[0] - 0.6 * p[1], 0.6 * p[0] + 0.8 * p[1], p[2]};
+    const Mesh other = build_mesh(soup);
+    const PlacedAnnotations read = read_feature_glb(glb, other, "file");
+    ASSERT_EQ(read.set.annotations.size(), set.annotations.size());
+    for (std::size_t i = 0; i < set.annotations.size(); ++i) {
+        const Annotation &before = set.annotations[i], &after = read.set.annotations[i];
+        EXPECT_EQ(after.tag, before.tag);
+        ASSERT_EQ(after.type, before.type);
+        EXPECT_EQ(read.placements[i].how, "places");
+        if (before.type != AnnotationType::region) continue;
+        double there = 0, here = 0;
+        for (const Index f : before.faces) there += face_area(mesh, Face(f));
+        for (const Index f : after.faces) here += face_area(other, Face(f));
+        EXPECT_NEAR(here, there, 0.03 * there) << before.tag;
+    }
+    EXPECT_NE(message(glb, spheres(2, {{40, 0, 0}})).find("farther than"), std::string::npos);
+}
+
+TEST(FeatureGlb, BadFilesAreRefusedWithTheirPlace) {
+    const Mesh mesh = spheres(3);
+    const std::string glb = written(mesh, wild_set(mesh));
+    EXPECT_NE(message("solid", mesh).find("no GLB"), std::string::npos);
+    EXPECT_NE(message(glb.substr(0, glb.size() / 2), mesh).find("cut off"), std::string::npos);
+    EXPECT_EQ(message(with(glb, "\"scene\":0", "\"scene\":0"), mesh), "");
+    const auto expect = [&](const char* from, const char* to, const char* said) {
+        const std::string text = message(with(glb, from, to), mesh);
+        EXPECT_NE(text.find(said), std::string::npos) << to << ": " << text;
+    };
+    expect(R"("nodes":[{"mesh":0})", R"("nodes":[{"mesh":0,"scale":[2,2,2]})", "/nodes/0/scale");
+    expect(R"("type":"VEC3","min")", R"("type":"VEC2","min")", "/accessors/0/type");
+    expect(R"("componentType":5126)", R"("componentType":5199)", "/accessors/0/componentType");
+    expect(R"("bufferView":0)", R"("bufferView":4000)", "bufferViews");
+    expect(R"("byteLength":)", R"("byteLength":9)", "beyond the buffer");
+    expect(R"("propertyTable":0)", R"("propertyTable":7)", "several tables");
+    expect(R"("asset")", R"("extensionsRequired":["KHR_draco_mesh_compression"],"asset")", "extensionsRequired");
+    expect(R"("stringOffsets":)", R"("stringOffsets":1)", "");
+}
+
+TEST(FeatureGlb, ThePublicValidatorFindsNoError) {
+    // The Khronos validator is no package of the distribution: this runs where someone has put it.
+    const char* const module = std::getenv("OSTRAKA_GLTF_VALIDATOR");
+    if (module == nullptr || !std::filesystem::exists(module))
+        GTEST_SKIP() << "set OSTRAKA_GLTF_VALIDATOR to the folder of the npm package gltf-validator";
+    const Mesh mesh = spheres(3);
+    const test::Scratch scratch;
+    const Path glb = scratch.file("a.glb", written(mesh, wild_set(mesh)));
+    const Path script = scratch.file(
+        "check.js",
+        std::string("const v = require(") + '"' + module + "\");\n" +
+            "v.validateBytes(new Uint8Array(require('fs').readFileSync(process.argv[2]))).then(r => {\n" +
+            "  console.log(JSON.stringify(r.issues)); process.exit(r.issues.numErrors + r.issues.numWarnings);\n}, e => { "
+            "console.log(e); process.exit(99); });\n");
+    const std::string out = (scratch / "out").string();
+    const int status = std::system(("node " + script.string() + " " + glb.string() + " > " + out + " 2>&1").c_str());
+    EXPECT_EQ(status, 0) << read_file(out);
+}
+
+TEST(FeatureGlb, DamagedFilesEndInAClearError) {
+    const Mesh mesh = spheres(3), other = spheres(2);
+    const std::string glb = written(mesh, wild_set(mesh));
+    std::size_t successes = 0;
+    for (std::uint64_t seed = 0; seed < 400; ++seed) {
+        try {
+            PlaceOptions skip;
+            skip.skip_far = seed % 4 == 1;
+            // Most damage falls into the binary part: half of the copies are hurt in the JSON only.
+            const std::string json = glb.substr(20, word_at(glb, 12));
+            const std::string copy = seed % 3 == 0 ? test::mutate(glb, seed) : with_json(glb, test::mutate(json, seed));
+            read_feature_glb(copy, seed % 2 == 0 ? mesh : other, "file", skip);
+            ++successes;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::input) << error.what();
+            EXPECT_FALSE(error.problem().empty());
+        }
+    }
+    EXPECT_LT(successes, 400U);
+}

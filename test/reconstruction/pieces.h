@@ -1,0 +1,69 @@
+// A body, its landmarks, and fragments of it.
+#pragma once
+
+#include "meshes.h"
+
+#include "ostraka/fracture/fragment.h"
+#include "ostraka/geom/eigen.h"
+#include "ostraka/synthetic/fragments.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace ostraka::test {
+
+/// A body with a head: a sphere with waves, so that no turn leaves it as it is.
+inline Mesh body(int levels = 4) {
+    Mesh mesh = build_mesh(octahedron_sphere(levels));
+    for (const Vertex v : mesh.vertices()) {
+        const Eigen::Vector3d p = eigen(mesh.point(v));
+        mesh.point(v) = point_of((1 + 0.15 * std::sin(3 * p.x() + 1) * std::cos(2 * p.y()) + 0.1 * p.z() * p.x()) *
+                                 Eigen::Vector3d(p.x(), 1.2 * p.y(), 1.8 * p.z()));
+    }
+    return mesh;
+}
+
+inline Mesh deformed_by(const Mesh& mesh, const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& map) {
+    Mesh result = mesh;
+    for (const Vertex v : result.vertices()) result.point(v) = point_of(map(eigen(mesh.point(v))));
+    return result;
+}
+
+inline Annotation landmark(int id, const std::string& tag, Index vertex) {
+    Annotation one;
+    one.id = id;
+    one.tag = tag;
+    one.type = AnnotationType::point;
+    one.points = {vertex};
+    return one;
+}
+
+/// Twelve vertices evenly over the list as landmarks.
+inline AnnotationSet landmarks_of(const Mesh& mesh) {
+    AnnotationSet set;
+    const auto n = static_cast<Index>(mesh.number_of_vertices());
+    for (int i = 0; i < 40; ++i)
+        set.annotations.push_back(landmark(i, "landmark " + std::to_string(i), (static_cast<Index>(i) * 97U) % n));
+    return set;
+}
+
+/// A fragment of `whole` around a place, with the landmarks that it has.
+struct Cut {
+    Fragment fragment;
+    BrokenPiece piece;
+};
+inline Cut cut(const Mesh& whole, const AnnotationSet& set, const Point& centre, const BreakOptions& options) {
+    Cut result{{"piece", {}, {}, {}}, break_off(whole, centre, options)};
+    result.fragment.mesh = result.piece.mesh;
+    for (const Annotation& one : set.annotations) {
+        const auto& kept = result.piece.vertices;
+        const auto found = std::find(kept.begin(), kept.end(), one.points.front());
+        if (found != kept.end())
+            result.fragment.annotations.annotations.push_back(
+                landmark(one.id, one.tag, static_cast<Index>(found - kept.begin())));
+    }
+    return result;
+}
+
+}  // namespace ostraka::test

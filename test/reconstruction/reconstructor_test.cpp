@@ -1,0 +1,216 @@
+#include "ostraka/reconstruction/reconstruct.h"
+
+#include "pieces.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/json.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+namespace ostraka {
+namespace {
+
+using namespace test;
+using Eigen::Vector3d;
+
+/// All that a reconstruction says, to the bit.
+void expect_same(const Reconstruction& a, const Reconstruction& b, const std::string& what) {
+    EXPECT_EQ(a.placement.scale, b.placement.scale) << what;
+    ASSERT_EQ(a.placement.fragments.size(), b.placement.fragments.size()) << what;
+    for (std::size_t k = 0; k < a.placement.fragments.size(); ++k) {
+        const FragmentPlacement &one = a.placement.fragments[k], &other = b.placement.fragments[k];
+        EXPECT_EQ(one.pose.turn, other.pose.turn) << what;
+        EXPECT_EQ(one.pose.shift, other.pose.shift) << what;
+        EXPECT_EQ(one.residual, other.residual) << what;
+        EXPECT_EQ(one.problem, other.problem) << what;
+    }
+    EXPECT_EQ(a.points, b.points) << what;
+    EXPECT_EQ(a.distance, b.distance) << what;
+    EXPECT_EQ(mesh_checksum(a.object.mesh), mesh_checksum(b.object.mesh)) << what;
+    EXPECT_EQ(a.object.fragment, b.object.fragment) << what;
+    EXPECT_EQ(a.object.confidence, b.object.confidence) << what;
+    EXPECT_EQ(a.crossings, b.crossings) << what;
+    EXPECT_EQ(a.strain, b.strain) << what;
+    EXPECT_EQ(a.verdict, b.verdict) << what;
+    ASSERT_EQ(a.annotations.size(), b.annotations.size()) << what;
+    for (std::size_t k = 0; k < a.annotations.size(); ++k) {
+        ASSERT_EQ(a.annotations[k].size(), b.annotations[k].size()) << what;
+        for (std::size_t i = 0; i < a.annotations[k].size(); ++i) {
+            EXPECT_EQ(a.annotations[k][i].of_template, b.annotations[k][i].of_template) << what;
+            EXPECT_EQ(a.annotations[k][i].score, b.annotations[k][i].score) << what;
+        }
+    }
+}
+
+/// A template with landmarks and a region, and three fragments of a deformed object; one has no landmarks.
+struct Pieces {
+    explicit Pieces(int levels) : mesh(body(levels)), set(landmarks_of(mesh)) {
+        const Mesh whole = deformed_by(
+            mesh, [](const Vector3d& p) { return Vector3d(1.05 * p.x(), p.y() + 0.04 * p.z() * p.z(), 1.08 * p.z()); });
+        Annotation head;
+        head.id = 100;
+        head.tag = "head";
+        for (const Face face : mesh.faces())
+            if (centroid(mesh, face).z() > 1.2) head.faces.push_back(face);
+        set.annotations.push_back(head);
+        AnnotationSet points = landmarks_of(mesh);
+        BreakOptions options;
+        options.share = 0.3;
+        options.noise = 0.001;
+        const std::vector<Point> places{Point(0, 0, 1.9), Point(0, 0, -1.9), Point(1.2, 0, 0)};
+        for (std::size_t k = 0; k < places.size(); ++k) {
+            Cut one = cut(whole, points, places[k], options);
+            one.fragment.name = "piece " + std::to_string(k);
+            if (k == 0) {
+                Annotation part = head;
+                part.faces.clear();
+                for (Index f = 0; f < one.piece.faces.size(); ++f)
+                    if (std::binary_search(head.faces.begin(), head.faces.end(), one.piece.faces[f])) part.faces.push_back(f);
+                one.fragment.annotations.annotations.push_back(part);
+            }
+            if (k == 2) one.fragment.annotations.annotations.clear();
+            fragments.push_back(std::move(one.fragment));
+        }
+    }
+    Mesh mesh;
+    AnnotationSet set;
+    std::vector<Fragment> fragments;
+    RelationGraph graph;
+};
+
+TEST(Reconstructor, AddingAndRemovingIsTheSameAsFromScratch) {
+    // With and without a simplified template.
+    for (const int levels : {4, 6}) {
+        const Pieces pieces(levels);
+        Reconstructor all(pieces.mesh, pieces.set, pieces.graph);
+        std::vector<std::size_t> there;
+        const auto check = [&](const std::string& what) {
+            std::vector<const Fragment*> list;
+            for (const std::size_t k : there) list.push_back(&pieces.fragments[k]);
+            expect_same(all.run(), reconstruct(pieces.mesh, pieces.set, pieces.graph, list), what);
+        };
+        const auto add = [&](std::size_t k) {
+            all.add(pieces.fragments[k]);
+            there.push_back(k);
+        };
+        const auto remove = [&](std::size_t position) {
+            all.remove(position);
+            there.erase(there.begin() + static_cast<std::ptrdiff_t>(position));
+        };
+        add(0);
+        check("one");
+        check("one again");
+        add(1);
+        check("two");
+        remove(0);
+        check("the second");
+        if (levels > 4) continue;  // longer chains on the small one only
+        add(2);
+        check("and the third");
+        add(0);
+        check("all");
+        remove(1);
+        check("without the third");
+        remove(0);
+        check("the first again");
+        EXPECT_EQ(all.size(), 1U);
+    }
+}
+
+TEST(Reconstructor, SearchesOfAFragmentAreMadeOnce) {
+    const Pieces pieces(4);
+    Reconstructor all(pieces.mesh, pieces.set, pieces.graph);
+    all.add(pieces.fragments[2]);
+    (void)all.run();
+    EXPECT_EQ(all.searches().made(), 1U);
+    all.remove(0);
+    all.add(pieces.fragments[2]);
+    (void)all.run();
+    EXPECT_EQ(all.searches().made(), 1U);
+    EXPECT_EQ(all.searches().reused(), 1U);
+}
+
+TEST(Reconstructor, RefusesWhatIsNotThere) {
+    const Pieces pieces(3);
+    Reconstructor all(pieces.mesh, pieces.set, pieces.graph);
+    EXPECT_THROW((void)all.run(), Error);
+    EXPECT_THROW(all.remove(0), Error);
+    all.add(pieces.fragments[0]);
+    EXPECT_THROW(all.remove(1), Error);
+    Mesh turned = pieces.mesh;
+    for (const Vertex v : turned.vertices()) turned.point(v) = point_of(-eigen(turned.point(v)));
+    const Fragment inside_out{"turned", turned, {}, {}};
+    EXPECT_THROW(all.add(inside_out), Error);
+    EXPECT_EQ(all.size(), 1U);
+}
+
+class PoseSearchFile : public ::testing::Test {
+protected:
+    PoseSearchFile() : pieces(4), searches(pieces.mesh, {}) {
+        const auto found = searches.find(pieces.fragments[2], 1, 1);
+        EXPECT_TRUE(found.has_value());
+        document.CopyFrom(parse_json(to_text(searches.to_json(document.GetAllocator())), "searches"), document.GetAllocator());
+    }
+    Pieces pieces;
+    PoseSearches searches;
+    Json document;
+};
+
+TEST_F(PoseSearchFile, ComesBackToTheBit) {
+    validate(document, "searches", "searches");
+    PoseSearches again(pieces.mesh, {});
+    EXPECT_EQ(again.add(document, "searches"), 0U);
+    const auto one = again.find(pieces.fragments[2], 1, 1), other = searches.find(pieces.fragments[2], 1, 1);
+    EXPECT_EQ(again.made(), 0U);
+    EXPECT_EQ(again.reused(), 1U);
+    ASSERT_EQ(one->candidates.size(), other->candidates.size());
+    for (std::size_t i = 0; i < one->candidates.size(); ++i) {
+        EXPECT_EQ(one->candidates[i].pose.turn, other->candidates[i].pose.turn);
+        EXPECT_EQ(one->candidates[i].pose.shift, other->candidates[i].pose.shift);
+        EXPECT_EQ(one->candidates[i].score, other->candidates[i].score);
+    }
+    EXPECT_EQ(one->confidence, other->confidence);
+    EXPECT_EQ(one->freedom.kind, other->freedom.kind);
+    EXPECT_EQ(to_text(again.to_json(document.GetAllocator())), to_text(searches.to_json(document.GetAllocator())));
+}
+
+TEST_F(PoseSearchFile, IsNotUsedForAnythingElse) {
+    // Another fragment, other facets, another range, other options, another template.
+    PoseSearches again(pieces.mesh, {});
+    EXPECT_EQ(again.add(document, "searches"), 0U);
+    Fragment moved_one{"moved", pieces.fragments[2].mesh, {}, {}};
+    moved_one.mesh.point(Vertex(0)) = moved_one.mesh.point(Vertex(0)) + Vector(1e-9, 0, 0);
+    (void)again.find(moved_one, 1, 1);
+    Fragment broken{"broken", pieces.fragments[2].mesh, {}, {}};
+    broken.facets.assign(broken.mesh.number_of_faces(), Facet::outer);
+    broken.facets[0] = Facet::fracture;
+    (void)again.find(broken, 1, 1);
+    (void)again.find(pieces.fragments[2], 1.1, 1.1);
+    EXPECT_EQ(again.reused(), 0U);
+    EXPECT_EQ(again.made(), 3U);
+    PoseSearchOptions options;
+    options.seed = 2;
+    PoseSearches otherwise(pieces.mesh, options);
+    EXPECT_EQ(otherwise.add(document, "searches"), 0U);
+    EXPECT_TRUE(otherwise.empty());
+    Mesh other = pieces.mesh;
+    other.point(Vertex(0)) = other.point(Vertex(0)) + Vector(1e-9, 0, 0);
+    PoseSearches elsewhere(other, {});
+    EXPECT_EQ(elsewhere.add(document, "searches"), 0U);
+    EXPECT_TRUE(elsewhere.empty());
+}
+
+TEST_F(PoseSearchFile, NoticesWhatWasChanged) {
+    document["searches"][0]["result"]["candidates"][0]["pose"]["shift"][0].SetDouble(0.5);
+    PoseSearches again(pieces.mesh, {});
+    EXPECT_EQ(again.add(document, "searches"), 1U);
+    EXPECT_TRUE(again.empty());
+    document["searches"][0]["result"].RemoveMember("margin");
+    EXPECT_THROW((void)again.add(document, "searches"), Error);
+    EXPECT_THROW((void)again.add(parse_json("{}", "x"), "x"), Error);
+}
+
+}  // namespace
+}  // namespace ostraka

@@ -1,0 +1,222 @@
+#include "ostraka/fracture/rotational_matching.h"
+
+#include "meshes.h"
+#include "sherds.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/geom/eigen.h"
+#include "ostraka/reconstruction/open_rotations.h"
+#include "ostraka/stats/random.h"
+#include "ostraka/synthetic/shatter.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace ostraka {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double degree = std::numbers::pi / 180;
+
+PotOptions small_pot(std::uint64_t shape) {
+    PotOptions options;
+    options.shape = shape;
+    options.edge = 0.5;
+    return options;
+}
+
+/// Sherds of a made pot, each turned about the axis at random and a little off its place, as a search leaves them.
+struct BrokenPot {
+    Mesh whole;
+    std::vector<Fragment> fragments;
+    std::vector<TurnableSherd> sherds;
+    Motion frame;  ///< of everything
+
+    BrokenPot(const PotOptions& pot, const ShatterOptions& breaking, double off = 0.003, Motion where = {}) : frame(where) {
+        const Mesh upright = make_pot(pot);
+        whole = moved(upright, frame);
+        std::vector<Sherd> pieces = shatter(upright, breaking);
+        fragments.resize(pieces.size());
+        Random random(breaking.seed, 21);
+        for (std::size_t k = 0; k < pieces.size(); ++k) add(k, pieces[k], pot, off, random);
+    }
+    void add(std::size_t k, const Sherd& piece, const PotOptions& pot, double off, Random& random) {
+        Fragment& one = fragments[k];
+        one.name = std::to_string(k + 1);
+        for (const Face f : piece.mesh.faces()) {
+            const Vector3d n = eigen(area_vector(piece.mesh, f)), p = eigen(centroid(piece.mesh, f));
+            const bool floor = p.z() < 1.2 * pot.wall, out = floor ? n.z() < 0 : n.head<2>().dot(p.head<2>()) > 0;
+            one.facets.push_back(piece.broken[f] ? Facet::fracture : out ? Facet::outer : Facet::inner);
+        }
+        one.mesh = moved(piece.mesh, frame);
+        Motion turn, lean, back = frame.inverse();
+        turn.turn = Eigen::AngleAxisd(random.uniform(-3, 3), Vector3d::UnitZ()).toRotationMatrix();
+        lean.turn = Eigen::AngleAxisd(off * random.normal(), Vector3d(random.normal(), random.normal(), 0).normalized())
+                        .toRotationMatrix();
+        lean.shift = off * pot.height * Vector3d(random.normal(), random.normal(), random.normal()) / 3;
+        sherds.push_back({&fragments[k], frame.after(turn.after(lean)).after(back), false});
+    }
+    [[nodiscard]] BreakTurns turn(const BreakTurnOptions& options = {}) const {
+        return turn_by_breaks(whole, frame(Vector3d::Zero()), frame.turn * Vector3d::UnitZ(), sherds, options);
+    }
+    /// Root mean square way of the second sherd's vertices from where it belongs against the first.
+    [[nodiscard]] double off(const BreakTurns& result, int a, int b) const {
+        const Motion between =
+            result.poses[static_cast<std::size_t>(a)].inverse().after(result.poses[static_cast<std::size_t>(b)]);
+        const Mesh& mesh = fragments[static_cast<std::size_t>(b)].mesh;
+        double squares = 0;
+        for (const Vertex v : mesh.vertices()) squares += (between(eigen(mesh.point(v))) - eigen(mesh.point(v))).squaredNorm();
+        return std::sqrt(squares / static_cast<double>(mesh.number_of_vertices()));
+    }
+};
+
+ShatterOptions breaking(std::uint64_t seed, int pieces = 5) {
+    ShatterOptions options;
+    options.seed = seed;
+    options.pieces = pieces;
+    return options;
+}
+
+void expect_together(const BrokenPot& pot, const BreakTurns& result) {
+    for (std::size_t k = 0; k < pot.sherds.size(); ++k) {
+        EXPECT_EQ(result.group[k], result.group[0]) << "sherd " << k + 1 << ": " << result.notes[k];
+        EXPECT_LT(result.overlap[k], 0.03);
+    }
+    std::size_t carry = 0;
+    for (const BreakJoint& joint : result.joints) {
+        carry += joint.carries ? 1 : 0;
+        // To a wall's thickness: the poses given are off by a third of it.
+        if (!joint.decided) continue;
+        EXPECT_LT(pot.off(result, joint.first, joint.second), result.wall);
+    }
+    EXPECT_EQ(carry + 1, pot.sherds.size()) << "a tree";
+}
+
+TEST(BreakTurns, SherdsOfAPotComeTogether) {
+    for (const std::uint64_t seed : {1, 2}) {
+        const BrokenPot pot(small_pot(seed), breaking(seed));
+        const BreakTurns result = pot.turn();
+        expect_together(pot, result);
+        EXPECT_NEAR(result.wall, 0.6, 0.2);
+    }
+}
+
+TEST(BreakTurns, AlsoWornAndNoisy) {
+    ShatterOptions worn = breaking(3);
+    worn.erosion = 0.002;
+    worn.noise = 0.0005;
+    const BrokenPot pot(small_pot(3), worn);
+    expect_together(pot, pot.turn());
+}
+
+TEST(BreakTurns, DoNotDependOnThePlaceOrTheUnit) {
+    Motion far;
+    far.turn = Eigen::AngleAxisd(1.1, Vector3d(1, 2, -1).normalized()).toRotationMatrix();
+    far.shift = Vector3d(300, -200, 500);
+    const BrokenPot pot(small_pot(1), breaking(1)), there(small_pot(1), breaking(1), 0.003, far);
+    expect_together(there, there.turn());
+    PotOptions tiny = small_pot(1);
+    tiny.height *= 1e-3, tiny.radius *= 1e-3, tiny.wall *= 1e-3, tiny.edge *= 1e-3;
+    const BrokenPot small(tiny, breaking(1));
+    expect_together(small, small.turn());
+}
+
+TEST(BreakTurns, AreTheSameForAnyNumberOfThreads) {
+    const BrokenPot pot(small_pot(2), breaking(2, 4));
+    const int before = threads();
+    set_threads(1);
+    const BreakTurns one = pot.turn();
+    set_threads(3);
+    const BreakTurns three = pot.turn();
+    set_threads(before);
+    ASSERT_EQ(one.poses.size(), three.poses.size());
+    for (std::size_t k = 0; k < one.poses.size(); ++k) {
+        EXPECT_EQ(one.poses[k].turn, three.poses[k].turn);
+        EXPECT_EQ(one.poses[k].shift, three.poses[k].shift);
+    }
+}
+
+TEST(BreakTurns, WhatIsFixedStays) {
+    BrokenPot pot(small_pot(1), breaking(1));
+    pot.sherds[1].fixed = true;
+    const BreakTurns result = pot.turn();
+    EXPECT_LT((result.poses[1].turn - pot.sherds[1].pose.turn).norm(), 1e-9);
+    expect_together(pot, result);
+}
+
+TEST(BreakTurns, ASherdOfAnotherBreakIsNamedAndOverlapsNothing) {
+    const PotOptions shape = small_pot(4);
+    BrokenPot pot(shape, breaking(4, 6));
+    const std::vector<Sherd> others = shatter(make_pot(shape), breaking(77, 12));
+    // Two go, so that there is room for one that does not belong.
+    const auto smallest = static_cast<std::size_t>(
+        std::min_element(others.begin(), others.end(),
+                         [](const Sherd& x, const Sherd& y) { return surface_area(x.mesh) < surface_area(y.mesh); }) -
+        others.begin());
+    pot.sherds.resize(pot.sherds.size() - 2);
+    pot.fragments.resize(pot.sherds.size());
+    pot.fragments.emplace_back();
+    Random random(5);
+    pot.sherds.clear();
+    for (std::size_t k = 0; k + 1 < pot.fragments.size(); ++k) pot.sherds.push_back({&pot.fragments[k], Motion(), false});
+    pot.add(pot.fragments.size() - 1, others[smallest], shape, 0.003, random);
+    const BreakTurns result = pot.turn();
+    EXPECT_FALSE(result.notes.back().empty());
+    for (const BreakJoint& joint : result.joints)
+        EXPECT_FALSE(joint.decided && joint.second + 1 == static_cast<int>(pot.sherds.size()));
+}
+
+TEST(BreakTurns, OneSherdAndNoBreaks) {
+    BrokenPot pot(small_pot(1), breaking(1, 2));
+    pot.sherds.resize(1);
+    const BreakTurns alone = pot.turn();
+    ASSERT_EQ(alone.poses.size(), 1U);
+    EXPECT_TRUE(alone.joints.empty());
+    EXPECT_LT((alone.poses[0].turn - pot.sherds[0].pose.turn).norm(), 1e-9);
+
+    BrokenPot whole(small_pot(1), breaking(1, 3));
+    for (Fragment& one : whole.fragments) one.facets.assign(one.mesh.number_of_faces(), Facet::outer);
+    const BreakTurns none = whole.turn();
+    EXPECT_TRUE(none.joints.empty());
+    for (const std::string& note : none.notes) EXPECT_NE(note.find("no break"), std::string::npos);
+
+    EXPECT_THROW((void)turn_by_breaks(whole.whole, Vector3d::Zero(), Vector3d::UnitZ(), {}), Error);
+    EXPECT_THROW((void)turn_by_breaks(whole.whole, Vector3d::Zero(), Vector3d::Zero(), whole.sherds), Error);
+}
+
+TEST(FreeTurns, OnlyWhereASearchLeftThemOpen) {
+    const BrokenPot pot(small_pot(1), breaking(1, 3));
+    std::vector<const Fragment*> fragments;
+    std::vector<FragmentPlacement> placed;
+    std::vector<std::optional<PoseSearchResult>> searched;
+    for (const TurnableSherd& one : pot.sherds) {
+        fragments.push_back(one.fragment);
+        placed.emplace_back();
+        placed.back().pose = one.pose;
+        searched.emplace_back();
+    }
+    EXPECT_FALSE(decide_free_turns(pot.whole, fragments, searched, placed)) << "none was searched";
+    for (auto& one : searched) {
+        one.emplace();
+        one->decided = true;
+    }
+    EXPECT_FALSE(decide_free_turns(pot.whole, fragments, searched, placed)) << "nothing is open";
+    for (auto& one : searched) one->freedom.kind = FreedomKind::turn;
+    BreakTurnOptions never;
+    never.turns = "never";
+    EXPECT_FALSE(decide_free_turns(pot.whole, fragments, searched, placed, never));
+    placed[1].problem = "lost";
+    const auto turns = decide_free_turns(pot.whole, fragments, searched, placed);
+    ASSERT_TRUE(turns);
+    EXPECT_EQ(turns->group[1], -1);
+    for (const BreakJoint& joint : turns->joints) EXPECT_TRUE(joint.first != 1 && joint.second != 1);
+    const Mesh box = build_mesh(test::octahedron_sphere(3));
+    EXPECT_FALSE(decide_free_turns(box, fragments, searched, placed)) << "a ball has no axis";
+}
+
+}  // namespace
+}  // namespace ostraka

@@ -1,0 +1,122 @@
+#include "scratch.h"
+
+#include "ostraka/core/json.h"
+#include "ostraka/io/mesh_file.h"
+#include "ostraka/synthetic/shatter.h"
+#include "ostraka/template_package/template.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+namespace ostraka {
+namespace {
+
+using test::run_command;
+
+std::string quoted(const Path& path) { return "'" + path.string() + "'"; }
+
+/// A coarse pot in three sherds, where they were.
+class TurnCommand : public ::testing::Test {
+protected:
+    void SetUp() override {
+        PotOptions pot;
+        pot.edge = 0.6;
+        ShatterOptions breaking;
+        breaking.pieces = 3;
+        for (const Sherd& one : shatter(make_pot(pot), breaking)) {
+            files.push_back(scratch / ("sherd" + std::to_string(files.size() + 1) + ".ply"));
+            write_mesh(files.back(), one.mesh);
+        }
+    }
+    [[nodiscard]] std::string all() const {
+        std::string text;
+        for (const Path& file : files) text += quoted(file) + " ";
+        return text;
+    }
+    test::Scratch scratch;
+    std::vector<Path> files;
+};
+
+TEST_F(TurnCommand, ReportsAsTheSchemaSays) {
+    const auto run =
+        run_command("template turn " + all() + "--vertices 3000 --unit mm --json --output " + quoted(scratch / "out"));
+    ASSERT_EQ(run.code, 0) << run.err;
+    const Json report = parse_json(run.out, "report");
+    const JsonValue& result = report["result"];
+    validate(result, "turned", "report");
+    EXPECT_NEAR(result["height"].GetDouble(), 20, 0.5);
+    EXPECT_TRUE(result["base"].GetBool());
+    ASSERT_EQ(result["sherds"].Size(), files.size());
+    EXPECT_STREQ(result["sherds"][0]["name"].GetString(), "sherd1");
+    const Mesh mesh = read_mesh(scratch / "out" / "turned.ply").mesh;
+    EXPECT_EQ(result["vertices"].GetUint64(), mesh.number_of_vertices());
+    const Template made = load_template(read_template(scratch / "out" / "turned.template.json"));
+    for (const Finding& finding : made.findings) EXPECT_FALSE(finding.defect) << finding.text;
+    // What the schema does not allow is refused by it.
+    Json broken = parse_json(run.out, "report");
+    broken["result"].RemoveMember("height");
+    EXPECT_THROW(validate(broken["result"], "turned", "report"), Error);
+}
+
+TEST_F(TurnCommand, AFitOnItTurnsSherdsByTheirBreaks) {
+    ASSERT_EQ(run_command("template turn " + all() + "--vertices 6000 --output " + quoted(scratch / "out")).code, 0);
+    // Half a turn for the first one: about the vessel's axis, which tells nothing of where it is.
+    Mesh mesh = read_mesh(files[0]).mesh;
+    for (const Vertex v : mesh.vertices()) mesh.point(v) = Point(-mesh.point(v).x(), -mesh.point(v).y(), mesh.point(v).z());
+    write_mesh(files[0], mesh);
+    const std::string fit = "fit " + quoted(scratch / "out" / "turned.template.json") + " " + all() +
+                            "--facets auto --json --output " + quoted(scratch / "fitted");
+    const auto run = run_command(fit);
+    ASSERT_TRUE(run.code == 0 || run.code == 3) << run.err;
+    const Json report = parse_json(run.out, "report");
+    const JsonValue& result = report["result"];
+    validate(result, "assembly", "report");
+    ASSERT_TRUE(result.HasMember("joints"));
+    ASSERT_GT(result["joints"].Size(), 0U);
+    // The first one is turned back against the others.
+    for (const auto& joint : result["joints"].GetArray())
+        if (joint["carries"].GetBool() && joint["decided"].GetBool()) {
+            const auto pose = [&](const std::string& name) {
+                for (const auto& one : result["fragments"].GetArray())
+                    if (name == one["name"].GetString()) {
+                        const double angle = std::atan2(one["pose"][1][0].GetDouble() - one["pose"][0][1].GetDouble(),
+                                                        one["pose"][0][0].GetDouble() + one["pose"][1][1].GetDouble());
+                        return angle + (name == "sherd1" ? M_PI : 0.0);
+                    }
+                ADD_FAILURE() << name;
+                return 0.0;
+            };
+            EXPECT_NEAR(std::remainder(pose(joint["first"].GetString()) - pose(joint["second"].GetString()), 2 * M_PI), 0, 0.06);
+        }
+    for (const auto& one : result["fragments"].GetArray()) {
+        ASSERT_TRUE(one.HasMember("turn")) << one["name"].GetString();
+        EXPECT_TRUE(one["turn"]["decided"].GetBool());
+    }
+    const auto never = run_command(fit + " --turns never");
+    EXPECT_FALSE(parse_json(never.out, "report")["result"].HasMember("joints"));
+    EXPECT_EQ(run_command(fit + " --turns perhaps").code, 2);
+}
+
+TEST_F(TurnCommand, BadInputIsNamedAndNothingIsWritten) {
+    const Path out = scratch / "out";
+    const std::string rest = " --output " + quoted(out);
+    const auto missing = run_command("template turn " + quoted(scratch / "nope.ply") + rest);
+    EXPECT_EQ(missing.code, 1);
+    EXPECT_NE(missing.err.find("nope.ply"), std::string::npos) << missing.err;
+    EXPECT_EQ(run_command("template turn" + rest).code, 2) << "no sherd";
+    EXPECT_EQ(run_command("template turn " + all()).code, 2) << "no folder";
+    EXPECT_EQ(run_command("template turn " + all() + "--vertices 1" + rest).code, 2);
+    TriangleSoup open = to_soup(read_mesh(files[0]).mesh);
+    open.triangles.pop_back();
+    write_mesh(scratch / "open.ply", build_mesh(open));
+    const auto hole = run_command("template turn " + quoted(scratch / "open.ply") + rest);
+    EXPECT_EQ(hole.code, 1);
+    EXPECT_NE(hole.err.find("open"), std::string::npos) << hole.err;
+    EXPECT_NE(hole.err.find("not closed"), std::string::npos) << hole.err;
+    EXPECT_FALSE(std::filesystem::exists(out / "turned.ply"));
+}
+
+}  // namespace
+}  // namespace ostraka

@@ -1,0 +1,160 @@
+#include "ostraka/revolution/surface_of_revolution.h"
+
+#include "ostraka/annotation/annotation_file.h"
+#include "ostraka/core/error.h"
+#include "ostraka/geom/eigen.h"
+#include "ostraka/geom/surface_search.h"
+
+#include <CGAL/boost/graph/Euler_operations.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace ostraka {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double pi = std::numbers::pi;
+
+/// A pot's wall at t from 0 (bottom) to 1 (rim): radius and height, outside and inside.
+Vector2d outside(double t) { return {1 + 0.5 * std::sin(2.6 * t), 2.5 * t}; }
+Vector2d inside(double t) { return {0.85 + 0.5 * std::sin(2.6 * t), 0.2 + 2.3 * t}; }
+
+/// A closed piece of the wall between two angles, from t = low to t = high.
+Fragment sherd(double from, double to, double low, double high, const Motion& motion) {
+    constexpr Index rows = 40;
+    const auto columns = static_cast<Index>((to - from) / 0.05) + 2;
+    std::vector<Vector2d> line;
+    for (Index i = 0; i <= rows; ++i) line.push_back(outside(low + (high - low) * i / rows));
+    for (Index i = 0; i <= rows; ++i) line.push_back(inside(high + (low - high) * i / rows));
+    TriangleSoup soup;
+    const auto n = static_cast<Index>(line.size());
+    for (Index j = 0; j < columns; ++j)
+        for (const Vector2d& p : line) {
+            const double a = from + (to - from) * j / (columns - 1);
+            const Vector3d q = motion({p.x() * std::cos(a), p.x() * std::sin(a), p.y()});
+            soup.points.push_back({q.x(), q.y(), q.z()});
+        }
+    for (Index j = 0; j + 1 < columns; ++j)
+        for (Index i = 0; i < n; ++i) {
+            const Index a = j * n + i, b = j * n + (i + 1) % n, c = a + n, d = b + n;
+            soup.triangles.push_back({a, c, b});
+            soup.triangles.push_back({b, c, d});
+        }
+    for (Index i = 0; i < rows; ++i) {
+        const Index a = i, b = i + 1, c = n - 2 - i, d = n - 1 - i, last = (columns - 1) * n;
+        soup.triangles.push_back({a, b, d});
+        soup.triangles.push_back({b, c, d});
+        soup.triangles.push_back({last + a, last + d, last + b});
+        soup.triangles.push_back({last + b, last + d, last + c});
+    }
+    Fragment fragment;
+    fragment.name = "sherd";
+    fragment.mesh = build_mesh(soup);
+    return fragment;
+}
+
+Motion tilted() {
+    Motion motion;
+    motion.turn = Eigen::AngleAxisd(0.9, Vector3d(1, 2, 0.3).normalized()).toRotationMatrix();
+    motion.shift = Vector3d(10, -5, 3);
+    return motion;
+}
+
+Motion shifted(const Motion& motion, const Vector3d& by) {
+    Motion other;
+    other.shift = by;
+    return other.after(motion);
+}
+
+/// Largest distance of the wall, as it was made, from the template, both laid on one axis with their lowest places level.
+double worst(const TurnedTemplate& turned) {
+    double most = 0;
+    const double low = outside(0).y();
+    for (int i = 0; i <= 50; ++i)
+        for (const Vector2d& p : {outside(0.04 + 0.92 * i / 50), inside(0.04 + 0.92 * i / 50)}) {
+            double least = 1e300;
+            for (std::size_t k = 0; k + 1 < turned.profile.size(); ++k) {
+                const Vector2d a = turned.profile[k], d = turned.profile[k + 1] - a, q = p - Vector2d(0, low) - a;
+                least = std::min(least, (q - std::clamp(q.dot(d) / d.squaredNorm(), 0.0, 1.0) * d).norm());
+            }
+            most = std::max(most, least);
+        }
+    return most;
+}
+
+TEST(TurnedTemplate, IsTheVesselOfItsSherds) {
+    const Motion there = tilted();
+    const Vector3d up = there.turn * Vector3d::UnitZ();
+    const Fragment a = sherd(0, 2, 0, 0.7, there), b = sherd(2.2, 4, 0.3, 1, there), c = sherd(4.1, 6, 0, 1, there);
+    const TurnedTemplate turned = turn_template({&a, &b, &c});
+    EXPECT_GT(std::abs(eigen(turned.axis.direction).dot(up)), 1 - 1e-5);
+    EXPECT_LT((eigen(turned.axis.point) - there.shift).cross(up).norm(), 0.01);
+    EXPECT_FALSE(turned.base);
+    EXPECT_TRUE(turned.rim);
+    EXPECT_TRUE(CGAL::is_closed(turned.mesh));
+    EXPECT_NEAR(double(turned.mesh.number_of_vertices()), 25000, 1000);
+    // Either end may be up: there is no base to tell.
+    const bool same_way = eigen(turned.axis.direction).dot(up) > 0;
+    if (same_way) {
+        EXPECT_LT(worst(turned), 0.02);
+    }
+    const SurfaceSearch surface(turned.mesh);
+    for (const Fragment* one : {&a, &b, &c})
+        for (const Vertex v : one->mesh.vertices()) EXPECT_LT(surface.closest(one->mesh.point(v)).distance, 0.12);
+    for (const SherdOnProfile& one : turned.sherds) {
+        EXPECT_TRUE(one.axis.found);
+        EXPECT_LT(one.lean, 0.3);
+        EXPECT_LT(one.aside, 0.01);
+        EXPECT_LT(one.residual, 0.01);
+    }
+    ASSERT_NO_THROW(check_annotations(turned.annotations, turned.mesh, "turned"));
+    double outer = 0, inner = 0;
+    for (const Annotation& one : turned.annotations.annotations) {
+        if (one.tag == "outer") outer = double(one.faces.size());
+        if (one.tag == "inner") inner = double(one.faces.size());
+    }
+    EXPECT_GT(outer, inner);
+    EXPECT_EQ(outer + inner, double(turned.mesh.number_of_faces()));
+}
+
+TEST(TurnedTemplate, JointsOfALayoutGo) {
+    const Motion there = tilted();
+    const Vector3d up = there.turn * Vector3d::UnitZ(), x = there.turn * Vector3d::UnitX();
+    const Fragment a = sherd(0, 2, 0, 1, shifted(there, 0.08 * x + 0.05 * up)), b = sherd(2.2, 4, 0, 1, there),
+                   c = sherd(4.1, 6, 0, 1, shifted(there, -0.06 * x));
+    const TurnedTemplate turned = turn_template({&a, &b, &c});
+    for (const SherdOnProfile& one : turned.sherds) EXPECT_LT(one.residual, 0.02);
+    EXPECT_GT((turned.sherds[0].motion.shift - turned.sherds[1].motion.shift).norm(), 0.05);
+    EXPECT_NEAR((turned.sherds[0].motion(there.shift + 0.05 * up) - turned.sherds[1].motion(there.shift)).dot(up), 0, 0.03);
+}
+
+TEST(TurnedTemplate, OneSherdIsEnough) {
+    const Fragment one = sherd(0, 2.5, 0, 1, {});
+    const TurnedTemplate turned = turn_template({&one});
+    EXPECT_GT(std::abs(turned.axis.direction.z()), 1 - 1e-4);
+    EXPECT_TRUE(CGAL::is_closed(turned.mesh));
+    double widest = 0;
+    for (const Vector2d& p : turned.profile) widest = std::max(widest, p.x());
+    EXPECT_NEAR(widest, 1.5, 0.02);
+}
+
+TEST(TurnedTemplate, RefusesWhatCannotBeTurned) {
+    EXPECT_THROW(turn_template({}), Error);
+    Fragment open = sherd(0, 2, 0, 1, {});
+    const Face first = *open.mesh.faces().begin();
+    CGAL::Euler::remove_face(open.mesh.halfedge(first), open.mesh);
+    open.mesh.collect_garbage();
+    EXPECT_THROW(turn_template({&open}), Error);
+    // Two that do not lie as they did in one vessel.
+    Motion aside;
+    aside.turn = Eigen::AngleAxisd(0.7, Vector3d::UnitX()).toRotationMatrix();
+    const Fragment a = sherd(0, 2, 0, 1, {}), b = sherd(2.2, 4, 0, 1, aside);
+    EXPECT_THROW(turn_template({&a, &b}), Error);
+}
+
+}  // namespace
+}  // namespace ostraka

@@ -1,0 +1,478 @@
+#include "family/towers.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/geom/with_points.h"
+#include "ostraka/measure/measure.h"
+#include "ostraka/shape_classes/class_file.h"
+#include "ostraka/shape_classes/propagate.h"
+#include "ostraka/shape_classes/thresholds.h"
+#include "ostraka/stats/random.h"
+#include "scratch.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace ostraka {
+namespace {
+
+using test::class_of;
+using test::member_of;
+using test::Tower;
+using test::tower;
+
+Motion far_away() {
+    Motion motion;
+    motion.turn = Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+    motion.shift = Eigen::Vector3d(1000, -2000, 500);
+    return motion;
+}
+
+/// Two planted modes without turn, shift or change of size: rows that are orthogonal to the rigid motions to first order.
+struct Planted {
+    Landmarks mean = Landmarks::Zero(60, 3), first = Landmarks::Zero(60, 3), second = Landmarks::Zero(60, 3);
+    Planted() {
+        Random random(3);
+        for (Eigen::Index i = 0; i < 30; ++i)
+            for (int k = 0; k < 3; ++k) mean(i, k) = random.uniform(0.2, 1);
+        // Points in mirrored pairs: odd fields have no moment.
+        for (Eigen::Index i = 0; i < 30; ++i) mean.row(30 + i) = -mean.row(i);
+        for (Eigen::Index i = 0; i < 30; ++i) {
+            const double along = random.normal(), across = random.normal();
+            first.row(i) << along, 0, 0;
+            first.row(30 + i) << along, 0, 0;
+            second.row(i) << 0, across, 0;
+            second.row(30 + i) << 0, across, 0;
+        }
+        first.rowwise() -= first.colwise().mean().eval();
+        second.rowwise() -= second.colwise().mean().eval();
+        first /= first.norm();
+        second -= (first.array() * second.array()).sum() * first;
+        second /= second.norm();
+    }
+};
+
+TEST(ShapeModes, KnownModesComeBack) {
+    const Planted planted;
+    std::vector<Landmarks> members;
+    // Coefficients that are uncorrelated: a cross.
+    for (const auto& [a, b] : {std::pair{0.3, 0.0}, {-0.3, 0.0}, {0.0, 0.1}, {0.0, -0.1}}) {
+        const Motion motion = far_away();
+        Landmarks shape = planted.mean + a * planted.first + b * planted.second;
+        shape = (shape * motion.turn.transpose()).rowwise() + motion.shift.transpose();
+        members.push_back(shape);
+    }
+    ModeOptions options;
+    options.sizes = true;
+    const ShapeModes modes = learn_modes(members, planted.mean, options);
+    ASSERT_GE(modes.variances.size(), 2U);
+    EXPECT_NEAR(modes.variances[0], 2 * 0.3 * 0.3 / 3, 1e-3);
+    EXPECT_NEAR(modes.variances[1], 2 * 0.1 * 0.1 / 3, 1e-3);
+    EXPECT_NEAR((modes.mean - planted.mean).norm(), 0, 0.02) << "the mean stands where the frame is";
+    const auto along = [&](Eigen::Index k, const Landmarks& field) {
+        double sum = 0;
+        for (Eigen::Index i = 0; i < field.rows(); ++i) sum += modes.modes.row(k).segment<3>(3 * i).dot(field.row(i));
+        return std::abs(sum);
+    };
+    EXPECT_GT(along(0, planted.first), 0.99);
+    EXPECT_GT(along(1, planted.second), 0.99);
+    EXPECT_LT((modes.modes * modes.modes.transpose() - Eigen::MatrixXd::Identity(modes.modes.rows(), modes.modes.rows())).norm(),
+              1e-9);
+    // A shape of the family is given by its coefficients; one off the family is not.
+    const ShapeCoordinates inside = coordinates_in(modes, members[0]);
+    EXPECT_LT(inside.outside, 1e-6);
+    EXPECT_NEAR((landmarks_of(points_of(shape_of(modes, inside.coefficients))) - inside.map.apply(members[0])).norm(), 0, 1e-6);
+    Landmarks off = members[0];
+    off(0, 2) += 0.5;
+    EXPECT_GT(coordinates_in(modes, off).outside, 0.01);
+}
+
+TEST(ShapeModes, OneAndEqualMembersHaveNoModes) {
+    const Planted planted;
+    const ShapeModes one = learn_modes({planted.mean}, planted.mean);
+    EXPECT_TRUE(one.variances.empty());
+    EXPECT_TRUE(one.left_out_distances.empty());
+    const ShapeModes same = learn_modes({planted.mean, 1e6 * planted.mean, planted.mean}, planted.mean);
+    EXPECT_TRUE(same.variances.empty()) << "sizes do not count";
+    EXPECT_NEAR(same.left_out_distances[1], 0, 1e-7);
+    EXPECT_THROW(static_cast<void>(learn_modes({}, planted.mean)), Error);
+}
+
+TEST(ShapeModes, WhatIsLeftOutIsMeasuredByTheOthers) {
+    const Planted planted;
+    const std::vector<Landmarks> members{planted.mean + 0.3 * planted.first, planted.mean - 0.3 * planted.first,
+                                         planted.mean + 0.1 * planted.first, planted.mean + 0.2 * planted.second};
+    ModeOptions options;
+    options.sizes = true;
+    const ShapeModes modes = learn_modes(members, planted.mean, options);
+    // The last one alone has the second field: all of it is outside of what the others span.
+    EXPECT_GT(modes.left_out_outside[3] * modes.mean_size, 0.19);
+    EXPECT_LT(modes.left_out_outside[0] * modes.mean_size, 0.05);
+}
+
+/// Members whose top is 0.9 to 1.1 of the base.
+std::vector<WholeObject> usual(const Tower& known) {
+    std::vector<WholeObject> members;
+    for (const auto& [name, top, width] :
+         {std::tuple{"a", 0.9, 1.0}, {"b", 1.0, 1.05}, {"c", 1.1, 0.95}, {"d", 0.95, 1.0}, {"e", 1.05, 1.02}})
+        members.push_back(member_of(known, name, 1, top, width, far_away()));
+    return members;
+}
+
+std::vector<WholeObject> one_alone(const Tower& known) {
+    std::vector<WholeObject> members;
+    members.push_back(member_of(known, "a", 1, 0.9, 1));
+    return members;
+}
+
+TEST(ShapeClass, LearnsTheRangesThatItsMembersHave) {
+    const Tower known = tower();
+    const ShapeClass learnt = class_of(known, usual(known));
+    const LearntRange* ratio = learnt.find("proportion 7 ");
+    ASSERT_NE(ratio, nullptr);
+    EXPECT_EQ(ratio->count, 5U);
+    EXPECT_NEAR(ratio->min, 0.9, 1e-9);
+    EXPECT_NEAR(ratio->max, 1.1, 1e-9);
+    EXPECT_NEAR(ratio->median, 1, 1e-9);
+    // It is the prediction interval of the logarithms, at its share of the rate at which members are refused.
+    std::vector<double> logs;
+    for (const double x : {0.9, 1.0, 1.1, 0.95, 1.05}) logs.push_back(std::log(x));
+    const PredictionInterval expected = predict(moments_of(logs), false, ratio->reject, learnt.resolution);
+    EXPECT_NEAR(*ratio->high, std::exp(expected.high), 1e-5);
+    EXPECT_NEAR(*ratio->low, std::exp(expected.low), 1e-5);
+    double rate = 0;
+    for (const LearntRange& range : learnt.ranges)
+        if (range.quantity.kind != QuantityKind::attribute) rate += range.reject;
+    EXPECT_NEAR(rate, 0.05, 1e-12) << "all together refuse what was told";
+    const LearntRange* height = learnt.find("attribute 2 height");
+    ASSERT_NE(height, nullptr);
+    EXPECT_NEAR(height->mean, 1, 1e-9) << "heights stay the members' own, wherever they lie";
+    EXPECT_EQ(height->quantity.unit, "mm");
+    EXPECT_EQ(learnt.modes.distances[learnt.modes.archetype],
+              *std::min_element(learnt.modes.distances.begin(), learnt.modes.distances.end()));
+}
+
+TEST(Classify, NamesThePlantedProportion) {
+    const Tower known = tower();
+    const ShapeClass learnt = class_of(known, usual(known));
+    const ClassAnswer good = ask_class(learnt, known.known(), member_of(known, "good", 1, 1.02, 1.01));
+    EXPECT_EQ(good.verdict, Membership::member) << (good.against.empty() ? "" : good.reasons().front());
+    const ClassAnswer bad = ask_class(learnt, known.known(), member_of(known, "bad", 1, 1.6, 1, far_away()));
+    ASSERT_EQ(bad.verdict, Membership::other);
+    const QuantityCheck& first = bad.checks[bad.against.front()];
+    EXPECT_EQ(first.quantity.kind, QuantityKind::proportion);
+    EXPECT_EQ(first.quantity.id, 7);
+    EXPECT_NEAR(*first.quantity.value, 1.6, 1e-9);
+    EXPECT_NEAR(first.off, 1.6 - *first.high, 1e-9);
+    EXPECT_NE(bad.reasons().front().find("proportion 7"), std::string::npos);
+    const Classification decided = decide("bad", {bad});
+    EXPECT_EQ(decided.verdict, Membership::other);
+    EXPECT_EQ(decided.best, -1);
+    EXPECT_EQ(decide("good", {good}).best, 0);
+}
+
+TEST(Classify, SaysWhenItCannotDecide) {
+    const Tower known = tower();
+    const ShapeClass one = class_of(known, one_alone(known));
+    ASSERT_FALSE(one.notes.empty());
+    const ClassAnswer answer = ask_class(one, known.known(), member_of(known, "x", 1, 1, 1));
+    EXPECT_EQ(answer.verdict, Membership::undecided);
+    const Classification decided = decide("x", {answer});
+    EXPECT_EQ(decided.text.find("cannot decide, because"), 0U) << decided.text;
+    // Of two members, and of members of one shape.
+    std::vector<WholeObject> equal;
+    equal.push_back(member_of(known, "a", 1, 0.9, 1));
+    equal.push_back(member_of(known, "b", 1, 0.9, 1, far_away()));
+    const ShapeClass two = class_of(known, equal);
+    EXPECT_EQ(ask_class(two, known.known(), member_of(known, "x", 1, 0.9, 1)).verdict, Membership::undecided);
+    equal.push_back(member_of(known, "c", 1, 0.9, 1));
+    const ShapeClass same = class_of(known, equal);
+    EXPECT_NE(same.notes.back().find("one shape"), std::string::npos) << same.notes.back();
+    EXPECT_EQ(ask_class(same, known.known(), member_of(known, "x", 1, 0.9, 1)).verdict, Membership::member);
+    EXPECT_EQ(ask_class(same, known.known(), member_of(known, "x", 1, 1.8, 1)).verdict, Membership::other);
+    // Two classes that say the same cannot be told apart.
+    const ShapeClass learnt = class_of(known, usual(known));
+    const ClassAnswer yes = ask_class(learnt, known.known(), member_of(known, "x", 1, 1, 1));
+    const Classification both = decide("x", {yes, yes});
+    EXPECT_EQ(both.verdict, Membership::undecided) << both.text;
+    EXPECT_THROW(static_cast<void>(decide("x", {})), Error);
+    EXPECT_THROW(static_cast<void>(class_of(known, {})), Error);
+}
+
+/// The nearest member to the mean of all was fitted badly.
+TEST(ShapeClass, BadFitsAreSaidAndAreNoArchetype) {
+    const Tower known = tower();
+    std::vector<LearntMember> members;
+    for (const WholeObject& member : usual(known)) members.push_back(learn_member(known.known(), member));
+    const ShapeClass before = learn_class(known.known(), members);
+    const std::size_t nearest = before.modes.archetype;
+    LearntMember& bad = members[nearest];
+    bad.fit.residuals.emplace();
+    bad.fit.residuals->unmatched = 0.4;
+    const ShapeClass noted = learn_class(known.known(), members);
+    EXPECT_EQ(noted.members.size(), members.size());
+    EXPECT_NE(noted.modes.archetype, nearest);
+    const auto says = [&](const ShapeClass& learnt, const std::string& words) {
+        return std::any_of(learnt.notes.begin(), learnt.notes.end(), [&](const std::string& note) {
+            return note.starts_with(bad.name + " ") && note.find(words) != std::string::npos;
+        });
+    };
+    EXPECT_TRUE(says(noted, "no archetype"));
+    bad.fit.residuals->unexplained = 1;
+    const ShapeClass without = learn_class(known.known(), members);
+    EXPECT_EQ(without.members.size(), members.size() - 1);
+    EXPECT_TRUE(says(without, "is left out"));
+    // One without volume: what cannot be measured of it is said.
+    bad.fit.residuals.reset();
+    for (ClassQuantity& quantity : bad.quantities)
+        if (quantity.name == "compactness") quantity.value.reset();
+    const ShapeClass flat = learn_class(known.known(), members);
+    EXPECT_NE(flat.modes.archetype, nearest);
+    EXPECT_TRUE(says(flat, "no volume"));
+}
+
+TEST(ShapeClass, WhatIsNeverNegativeIsNotAcceptedBelowZero) {
+    const Tower known = tower();
+    std::vector<LearntMember> members;
+    for (const WholeObject& member : usual(known)) members.push_back(learn_member(known.known(), member));
+    double value = 0;  // one of them zero: no logarithm
+    for (LearntMember& member : members)
+        for (ClassQuantity& quantity : member.quantities)
+            if (quantity.name == "compactness") quantity.value = value, value += 0.1;
+    const ShapeClass learnt = learn_class(known.known(), members);
+    const LearntRange* range = learnt.find("geometry compactness");
+    ASSERT_NE(range, nullptr);
+    ASSERT_TRUE(range->low.has_value());
+    EXPECT_EQ(*range->low, 0);
+}
+
+TEST(Classify, AFitsOwnErrorDoesNotSpeakAgainstAnObject) {
+    const Tower known = tower();
+    const ShapeClass learnt = class_of(known, usual(known));
+    LearntMember object = learn_member(known.known(), member_of(known, "x", 1, 1, 1));
+    ASSERT_EQ(compare_with(learnt, object).verdict, Membership::member);
+    // Vertices that slid along the surface: nothing else that is measured changes.
+    Random random(7);
+    for (Point& p : object.fit.points) p = Point(p.x() + random.uniform(-0.2, 0.2), p.y() + random.uniform(-0.2, 0.2), p.z());
+    EXPECT_EQ(compare_with(learnt, object).verdict, Membership::other) << "in correspondence the vertices are what is compared";
+    object.fit.residuals.emplace();
+    const ClassAnswer answer = compare_with(learnt, object);
+    EXPECT_EQ(answer.verdict, Membership::undecided);
+    EXPECT_NE(answer.undecided.find("this one was fitted"), std::string::npos) << answer.undecided;
+}
+
+TEST(Classify, WithoutConstraintsGeometryDecidesAndThatIsSaid) {
+    Tower known = tower();
+    known.graph.relationships.clear();
+    const ShapeClass learnt = class_of(known, usual(known));
+    EXPECT_NE(std::find_if(learnt.notes.begin(), learnt.notes.end(),
+                           [](const std::string& note) { return note.find("no constraint") != std::string::npos; }),
+              learnt.notes.end());
+    const ClassAnswer bad = ask_class(learnt, known.known(), member_of(known, "bad", 1, 4, 1));
+    ASSERT_EQ(bad.verdict, Membership::other);
+    for (const std::size_t i : bad.against)
+        EXPECT_TRUE(bad.checks[i].quantity.kind == QuantityKind::geometry || bad.checks[i].quantity.kind == QuantityKind::part);
+}
+
+TEST(Classify, SizesCountWhereTold) {
+    const Tower known = tower();
+    Motion large;
+    large.scale = 3;
+    const WholeObject big = member_of(known, "big", 1, 1, 1, large);
+    EXPECT_EQ(ask_class(class_of(known, usual(known)), known.known(), big).verdict, Membership::member);
+    LearnOptions options;
+    options.modes.sizes = true;
+    EXPECT_EQ(ask_class(class_of(known, usual(known), options), known.known(), big).verdict, Membership::other);
+}
+
+TEST(MemberFit, FitsATowerOfOtherTrianglesAndCarriesAnnotations) {
+    const Tower known = tower();
+    Motion shifted;
+    shifted.shift = Eigen::Vector3d(10, -20, 5);
+    WholeObject object = member_of(known, "object", 0.5, 0.6, 0.95, shifted);
+    // Other vertices: the box cut finer.
+    TriangleSoup fine = to_soup(member_of(known, "same", 0.5, 0.6, 0.95, shifted).mesh);
+    const std::size_t before = fine.triangles.size();
+    for (std::size_t t = 0; t < before; ++t) {
+        const auto c = fine.triangles[t];
+        std::array<double, 3> middle{};
+        for (const Index v : c)
+            for (std::size_t k = 0; k < 3; ++k) middle[k] += fine.points[v][k] / 3;
+        const auto m = static_cast<Index>(fine.points.size());
+        fine.points.push_back(middle);
+        fine.triangles[t] = {c[0], c[1], m};
+        fine.triangles.push_back({c[1], c[2], m});
+        fine.triangles.push_back({c[2], c[0], m});
+    }
+    object.mesh = build_mesh(fine);
+    EXPECT_FALSE(in_correspondence(known.mesh, object.mesh));
+    EXPECT_THROW(static_cast<void>(member_in_correspondence(known.mesh, object)), Error);
+    const MemberFit fit = fit_member(known.mesh, known.set, object);
+    ASSERT_TRUE(fit.problem.empty()) << fit.problem;
+    ASSERT_TRUE(fit.residuals.has_value());
+    EXPECT_LT(fit.residuals->distance, 0.01);
+    EXPECT_LT(fit.residuals->unexplained, 0.2);
+    const Propagated carried = propagate(known.known(), object);
+    ASSERT_TRUE(carried.on_member.has_value());
+    double area = 0;
+    for (const Annotation& annotation : carried.on_member->annotations) {
+        ASSERT_EQ(annotation.type, AnnotationType::region) << annotation.tag;
+        for (const Index f : annotation.faces) area += face_area(object.mesh, Face(f));
+    }
+    EXPECT_NEAR(area / surface_area(object.mesh), 1, 0.15) << "the two halves cover it";
+}
+
+TEST(MemberFit, DistortionIsThatOfTheMap) {
+    const Tower known = tower();
+    const WholeObject wide = member_of(known, "wide", 1, 1, 2);
+    std::vector<Point> points(wide.mesh.points().begin(), wide.mesh.points().end());
+    FitResiduals residuals;
+    measure_distortion(known.mesh, points, 2, residuals);
+    EXPECT_NEAR(residuals.stretch, 0, 1e-9) << "twice as large is the template's scale";
+    EXPECT_NEAR(residuals.bend, 0, 1e-6);
+    measure_distortion(known.mesh, points, 1, residuals);
+    EXPECT_NEAR(residuals.stretch, std::log(2.0), 1e-9);
+}
+
+TEST(ClassSample, HoldsTheConstraintsAndTheRanges) {
+    const Tower known = tower();
+    const ShapeClass learnt = class_of(known, usual(known));
+    SampleOptions options;
+    options.count = 5;
+    const Sampling sampling = sample_class(learnt, known.known(), options);
+    ASSERT_EQ(sampling.samples.size(), 5U) << (sampling.examples.empty() ? "" : sampling.examples.front());
+    const LearntRange* ratio = learnt.find("proportion 7 ");
+    for (const ClassSample& sample : sampling.samples) {
+        const Mesh mesh = with_points(known.mesh, sample.points);
+        const double top = evaluate(mesh, known.set.annotations[1], known.set.annotations[1].attributes[0].measure);
+        const double base = evaluate(mesh, known.set.annotations[0], known.set.annotations[0].attributes[0].measure);
+        EXPECT_GE(top / base, *ratio->low);
+        EXPECT_LE(top / base, *ratio->high);
+        WholeObject object{"sample", mesh, {}};
+        EXPECT_EQ(compare_with(learnt, learn_member(known.known(), object)).against.empty(), true);
+    }
+    EXPECT_GT(sampling.diversity, 0);
+    // Told again, the same to the bit; another seed gives others.
+    const Sampling again = sample_class(learnt, known.known(), options);
+    EXPECT_EQ(again.samples[3].points, sampling.samples[3].points);
+    options.seed = 2;
+    EXPECT_NE(sample_class(learnt, known.known(), options).samples[0].points, sampling.samples[0].points);
+}
+
+TEST(ClassSample, RestoresAStatedProportionOrRejects) {
+    // The template allows 1.02 at most, its members have up to 1.1: draws beyond are brought back.
+    const Tower known = tower(1.02);
+    const ShapeClass learnt = class_of(known, usual(known));
+    SampleOptions options;
+    options.count = 4;
+    options.seed = 5;
+    const Sampling sampling = sample_class(learnt, known.known(), options);
+    for (const ClassSample& sample : sampling.samples) {
+        const Mesh mesh = with_points(known.mesh, in_template_frame(known.mesh, sample.points, false));
+        const double top = evaluate(mesh, known.set.annotations[1], known.set.annotations[1].attributes[0].measure);
+        const double base = evaluate(mesh, known.set.annotations[0], known.set.annotations[0].attributes[0].measure);
+        EXPECT_LE(top / base, 1.02 * 1.001 + 1e-3);
+    }
+    EXPECT_EQ(sampling.tried, sampling.samples.size() + sampling.by_constraints + sampling.by_ranges + sampling.by_intersections);
+}
+
+TEST(ClassSample, DiversityIsTheMeanDistanceOfTwo) {
+    const Tower known = tower();
+    const ShapeClass learnt = class_of(known, usual(known));
+    const ShapeModes& modes = learnt.modes;
+    // Along one mode by +-a and 0: 2a, a and a off each other, wherever they lie and however large they are.
+    const double a = 1e-4 * modes.mean_size;
+    std::vector<Landmarks> shapes;
+    for (const double b : {a, -a, 0.0}) {
+        const Landmarks shape = shape_of(modes, {b});
+        const Motion motion = far_away();
+        shapes.push_back(
+            shapes.size() == 1 ? Landmarks((3 * shape * motion.turn.transpose()).rowwise() + motion.shift.transpose()) : shape);
+    }
+    EXPECT_NEAR(mean_distance(modes, shapes) / (4.0 / 3 * 1e-4), 1, 1e-3);
+    EXPECT_NEAR(mean_distance(modes, {shapes[0], shapes[0]}), 0, 1e-12) << "equal ones have none";
+    EXPECT_EQ(mean_distance(modes, {shapes[0]}), 0);
+    // Without spread all draws are the mean; with more they differ more.
+    SampleOptions options;
+    options.count = 4;
+    options.attempts = 50;
+    options.spread = 0;
+    EXPECT_NEAR(sample_class(learnt, known.known(), options).diversity, 0, 1e-9);
+    options.spread = 0.3;
+    const double few = sample_class(learnt, known.known(), options).diversity;
+    options.spread = 1;
+    const Sampling wide = sample_class(learnt, known.known(), options);
+    EXPECT_GT(few, 0);
+    EXPECT_GT(wide.diversity, few);
+    std::vector<Landmarks> drawn;
+    for (const ClassSample& sample : wide.samples) drawn.push_back(landmarks_of(sample.points));
+    EXPECT_EQ(wide.diversity, mean_distance(modes, drawn)) << "it is that of what is written";
+}
+
+TEST(ClassSample, EditsAndBadInput) {
+    const Tower known = tower();
+    const ShapeClass learnt = class_of(known, usual(known));
+    SampleOptions options;
+    options.count = 2;
+    options.by = "edits";
+    options.edit = 0.02;
+    const Sampling sampling = sample_class(learnt, known.known(), options);
+    EXPECT_GT(sampling.tried, 0U);
+    for (const ClassSample& sample : sampling.samples) EXPECT_FALSE(sample.edits.empty());
+    options.by = "modes";
+    EXPECT_THROW(static_cast<void>(sample_class(class_of(known, one_alone(known)), known.known(), options)), Error);
+}
+
+TEST(ClassFile, ComesBackAsWritten) {
+    const test::Scratch scratch;
+    const Tower known = tower();
+    ShapeClass learnt = class_of(known, usual(known));
+    learnt.template_file = "tower.template.json";
+    write_class(scratch.path(), learnt, Provenance{"test", {}, {}});
+    const ShapeClass read = read_class(scratch / "tower.class.json");
+    EXPECT_EQ(read.modes.modes, learnt.modes.modes);
+    EXPECT_EQ(read.modes.mean, learnt.modes.mean);
+    EXPECT_EQ(read.modes.coefficients, learnt.modes.coefficients);
+    ASSERT_EQ(read.ranges.size(), learnt.ranges.size());
+    for (std::size_t i = 0; i < read.ranges.size(); ++i) {
+        EXPECT_EQ(read.ranges[i].quantity.key(), learnt.ranges[i].quantity.key());
+        EXPECT_EQ(read.ranges[i].high, learnt.ranges[i].high);
+        EXPECT_EQ(read.ranges[i].values, learnt.ranges[i].values);
+    }
+    const WholeObject object = member_of(known, "bad", 1, 1.6, 1);
+    EXPECT_EQ(ask_class(read, known.known(), object).reasons(), ask_class(learnt, known.known(), object).reasons());
+    // What was written and then changed is no class.
+    const auto refused = [&](const ShapeClass& changed) {
+        write_class(scratch.path(), changed, Provenance{"test", {}, {}});
+        EXPECT_THROW(static_cast<void>(read_class(scratch / "tower.class.json")), Error);
+    };
+    ShapeClass changed = learnt;
+    changed.modes.mean *= 1e300;
+    refused(changed);
+    changed = learnt;
+    changed.modes.modes.row(0) *= 2;
+    refused(changed);
+    changed = learnt;
+    changed.modes.coefficients(0, 0) = 1e300;
+    refused(changed);
+    changed = learnt;
+    changed.modes.variances[0] *= 3;
+    refused(changed);
+    write_class(scratch.path(), learnt, Provenance{"test", {}, {}});
+    std::string text = read_file(scratch / "tower.class.json");
+    const std::string archetype = "\"archetype\": \"" + learnt.members[learnt.modes.archetype].name + "\"";
+    const std::size_t at = text.find(archetype);
+    ASSERT_NE(at, std::string::npos);
+    text.replace(at, archetype.size(), "\"archetype\": \"nobody\"");
+    write_file(scratch / "tower.class.json", text);
+    EXPECT_THROW(static_cast<void>(read_class(scratch / "tower.class.json")), Error);
+    write_class(scratch.path(), learnt, Provenance{"test", {}, {}});
+    EXPECT_EQ(read_class(scratch / "tower.class.json").modes.archetype, learnt.modes.archetype);
+    std::filesystem::remove(scratch / "tower.modes.npy");
+    EXPECT_THROW(static_cast<void>(read_class(scratch / "tower.class.json")), Error);
+    learnt.name = "../up";
+    EXPECT_THROW(write_class(scratch.path(), learnt, Provenance{"test", {}, {}}), Error);
+}
+
+}  // namespace
+}  // namespace ostraka

@@ -1,0 +1,110 @@
+#include "ostraka/shape_classes/parts.h"
+
+#include "family/towers.h"
+
+#include "ostraka/stats/random.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace ostraka {
+namespace {
+
+using test::class_of;
+using test::member_of;
+using test::Tower;
+using test::tower;
+
+std::vector<Point> points_in(const Mesh& mesh) { return {mesh.points().begin(), mesh.points().end()}; }
+
+double value_of(const std::vector<ClassQuantity>& list, int id, const std::string& name) {
+    for (const ClassQuantity& one : list)
+        if (one.id == id && one.name == name) return one.value.value_or(-1);
+    ADD_FAILURE() << name << " of " << id << " is not there";
+    return -1;
+}
+
+TEST(Parts, OfATowerAreThoseOfTwoOpenBoxes) {
+    // Each half is a box 1 x 1 x 1/2 without one of its square faces: area 1 + 4/2 of 6 in all.
+    const Tower known = tower();
+    const auto list = part_quantities(known.known(), points_in(known.mesh));
+    const double side = std::sqrt(6.0);
+    EXPECT_NEAR(value_of(list, 1, "share of the surface"), 0.5, 1e-12);
+    // Along x: the square and the two sides across y have 1/12 each, the two sides across x lie at +- 1/2.
+    const double variance = ((1 + 1) * (1.0 / 12) + 1 * 0.25) / 3;
+    EXPECT_NEAR(value_of(list, 1, "length"), std::sqrt(12 * variance) / side, 1e-12);
+    EXPECT_NEAR(value_of(list, 1, "width"), value_of(list, 1, "length"), 1e-12);
+    // Centroid of a half along z: (1 * 0 + 2 * 1/4) / 3 = 1/6 from its outer end, so 1/3 from the middle.
+    EXPECT_NEAR(value_of(list, 2, "distance from the middle"), 1.0 / 3 / side, 1e-12);
+    EXPECT_NEAR(value_of(list, 1, "distance to 2 (top)"), 2.0 / 3 / side, 1e-12);
+}
+
+TEST(Parts, NeitherPlaceNorSizeChangesThem) {
+    const Tower known = tower();
+    Motion motion;
+    motion.turn = Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
+    for (const double scale : {1e-6, 1.0, 1e6}) {
+        motion.scale = scale;
+        motion.shift = scale * Eigen::Vector3d(1000, 2000, -500);
+        const auto here = part_quantities(known.known(), points_in(member_of(known, "a", 1, 0.8, 1.1).mesh)),
+                   there = part_quantities(known.known(), points_in(member_of(known, "a", 1, 0.8, 1.1, motion).mesh));
+        ASSERT_EQ(here.size(), there.size());
+        for (std::size_t i = 0; i < here.size(); ++i) EXPECT_NEAR(*here[i].value, *there[i].value, 1e-8) << here[i].text();
+    }
+}
+
+TEST(Parts, AMembersOwnRegionsAreMeasuredWhereTheyAreTheSame) {
+    const Tower known = tower();
+    WholeObject member = member_of(known, "a", 1, 1, 1);
+    EXPECT_FALSE(own_disagreement(known.known(), points_in(known.mesh), member).has_value()) << "it has none";
+    // Its own parts meet a cell higher, under other names and ids.
+    Annotation low, high;
+    low.id = 40;
+    high.id = 41;
+    for (const Face face : member.mesh.faces())
+        (centroid(member.mesh, face).z() < 4.0 / 3 ? low : high).faces.push_back(face.idx());
+    member.annotations.annotations = {low, high};
+    const auto own = part_quantities(known.known(), points_in(known.mesh), &member);
+    double area = 0;
+    for (const Index f : high.faces) area += face_area(member.mesh, Face(f));
+    EXPECT_NEAR(value_of(own, 2, "share of the surface"), area / surface_area(member.mesh), 1e-12);
+    const auto disagreement = own_disagreement(known.known(), points_in(member.mesh), member);
+    ASSERT_TRUE(disagreement.has_value());
+    EXPECT_GT(*disagreement, 0.1);
+    EXPECT_LT(*disagreement, 0.8);
+    // The template's own parts agree in full, and cells at random by no more than chance.
+    member.annotations.annotations = known.set.annotations;
+    EXPECT_NEAR(own_disagreement(known.known(), points_in(member.mesh), member).value_or(9), 0, 1e-12);
+    Random random(5);
+    low.faces.clear();
+    high.faces.clear();
+    for (const Face face : member.mesh.faces()) (random.uniform() < 0.5 ? low : high).faces.push_back(face.idx());
+    member.annotations.annotations = {low, high};
+    EXPECT_NEAR(own_disagreement(known.known(), points_in(member.mesh), member).value_or(9), 1, 0.1);
+}
+
+TEST(Parts, TheOneThatIsFarthestOffIsNamed) {
+    const std::vector<std::optional<double>> own{1.0, 4.0, std::nullopt, 0.5, 3.0}, usual{1.0, 2.0, 1.0, 1.0, std::nullopt};
+    const PartsOff off = parts_off(own, usual);
+    EXPECT_EQ(off.count, 3U);
+    EXPECT_EQ(off.most, 1U) << "of two that are equally far off the first";
+    EXPECT_NEAR(off.off, std::log(2.0) * std::sqrt(2.0 / 3), 1e-12);
+    EXPECT_EQ(parts_off({}, {}).count, 0U);
+
+    Tower known = tower();
+    known.graph.relationships.clear();  // nothing is stated: the parts speak
+    std::vector<WholeObject> members;
+    for (const auto& [name, top] : {std::pair{"a", 0.98}, {"b", 1.0}, {"c", 1.02}, {"d", 1.01}, {"e", 0.99}})
+        members.push_back(member_of(known, name, 1, top, 1));
+    const ShapeClass learnt = class_of(known, members);
+    const ClassAnswer bad = ask_class(learnt, known.known(), member_of(known, "bad", 1, 2.5, 1));
+    ASSERT_EQ(bad.verdict, Membership::other);
+    const QuantityCheck& first = bad.checks[bad.against.front()];
+    EXPECT_EQ(first.quantity.kind, QuantityKind::part);
+    EXPECT_NE(first.most.find("of part "), std::string::npos) << first.most;
+    EXPECT_NE(bad.reasons().front().find("times the members' mean"), std::string::npos) << bad.reasons().front();
+}
+
+}  // namespace
+}  // namespace ostraka
