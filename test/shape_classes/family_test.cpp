@@ -1,4 +1,4 @@
-#include "family/towers.h"
+#include "shape_classes/towers.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/geom/with_points.h"

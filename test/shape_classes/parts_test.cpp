@@ -1,6 +1,6 @@
 #include "ostraka/shape_classes/parts.h"
 
-#include "family/towers.h"
+#include "shape_classes/towers.h"
 
 #include "ostraka/stats/random.h"
 
