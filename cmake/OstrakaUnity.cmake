@@ -1,7 +1,7 @@
-# Batches of files that are compiled as one: files of one module, in the order of their names, so many a batch. What a batch saves
-# is reading the same headers and making the same templates again for each file. Files that take long on their own, and those with
-# flags of their own, stay alone.
-set(OSTRAKA_UNITY_BATCH 8 CACHE STRING "Files a batch")
+# Batches of files that are compiled as one: files of one module, in the order of their names, up to a number of bytes. What a batch
+# saves is reading the same headers and making the same templates again for each file. Files that take long on their own, and those
+# with flags of their own, stay alone.
+set(OSTRAKA_UNITY_BATCH 100000 CACHE STRING "Bytes of source a batch")
 set(OSTRAKA_UNITY_ALONE src/axis/skeleton.cpp src/synthetic/shatter.cpp src/io/wrap.cpp src/point_cloud/point_cloud.cpp src/remesh/remesh.cpp
   src/core/dense.cpp src/point_cloud/point_surface.cpp src/interchange/feature_writer.cpp)
 
@@ -15,12 +15,17 @@ function(ostraka_unity target)
     if(NOT name MATCHES "^src/([a-z_]+)/" OR name IN_LIST OSTRAKA_UNITY_ALONE OR own_flags)
       continue()
     endif()
-    if(NOT CMAKE_MATCH_1 STREQUAL last)
-      set(last ${CMAKE_MATCH_1})
-      set(count 0)
+    set(module ${CMAKE_MATCH_1})
+    file(SIZE ${source} size)
+    if(NOT module STREQUAL last)
+      set(last ${module})
+      set(batch 0)
+      set(bytes 0)
+    elseif(bytes GREATER_EQUAL OSTRAKA_UNITY_BATCH)
+      math(EXPR batch "${batch} + 1")
+      set(bytes 0)
     endif()
-    math(EXPR batch "${count} / ${OSTRAKA_UNITY_BATCH}")
-    math(EXPR count "${count} + 1")
+    math(EXPR bytes "${bytes} + ${size}")
     set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${last}_${batch})
   endforeach()
 endfunction()

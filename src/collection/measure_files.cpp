@@ -13,7 +13,7 @@ namespace ostraka {
 
 namespace {
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_measure = std::numeric_limits<double>::quiet_NaN();
 
 std::string lower_case(std::string text) {
     for (char& c : text)
@@ -96,7 +96,7 @@ MeasureTable measure_table(const std::vector<std::string>& names, const std::vec
         table.units.push_back(objects[i]->unit);
         rows.push_back(&*objects[i]);
     }
-    table.values.setConstant(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(definitions.list.size()), none);
+    table.values.setConstant(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(definitions.list.size()), no_measure);
     for (std::size_t j = 0; j < definitions.list.size(); ++j) {
         std::map<std::pair<int, std::string>, std::size_t> kinds;
         for (const ObjectMeasures* row : rows)
@@ -201,7 +201,7 @@ MeasureTable read_measure_table(const Path& file) {
         for (std::size_t c = 0; c < columns.size(); ++c) {
             const std::string cell(trimmed(rows[r].cells[columns[c]]));
             std::optional<double> value;
-            if (cell.empty() || cell == "-") value = none;
+            if (cell.empty() || cell == "-") value = no_measure;
             else value = number_of(cell);
             if (!value) {
                 std::string pointed = cell;

@@ -17,7 +17,7 @@ namespace {
 
 using proportions::Pair;
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_ratio = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t most_measures = 60;
 constexpr std::size_t enough_objects = 10;
 
@@ -49,7 +49,7 @@ std::vector<Kind> kinds_of(const MeasureTable& table) {
         for (std::size_t c = 0; c < kind.measures.size(); ++c)
             for (Eigen::Index i = 0; i < table.values.rows(); ++i) {
                 const double value = table.values(i, static_cast<Eigen::Index>(kind.measures[c]));
-                kind.logs(i, static_cast<Eigen::Index>(c)) = value > 0 ? std::log(value) : none;
+                kind.logs(i, static_cast<Eigen::Index>(c)) = value > 0 ? std::log(value) : no_ratio;
             }
         result.push_back(std::move(kind));
     }
@@ -214,7 +214,7 @@ MeasureTable without_extremes(MeasureTable table, std::vector<std::string>& note
             if (count++ == 0)
                 first = "'" + table.measures[static_cast<std::size_t>(j)].name + "' of '" +
                         table.objects[static_cast<std::size_t>(i)] + "' is " + digits(value);
-            value = none;
+            value = no_ratio;
         }
     if (count > 0)
         notes.push_back("values left out as too large or too small to compute with: " + std::to_string(count) +

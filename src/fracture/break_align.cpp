@@ -24,7 +24,7 @@ std::vector<Point> places_of(const std::vector<RimFrame>& frames) {
 }
 
 /// Normals face each other, sides continue each other: cosines.
-constexpr double facing = 0.5, continued = 0.7;
+constexpr double min_facing = 0.5, continued = 0.7;
 
 }  // namespace
 
@@ -61,7 +61,7 @@ Motion BreakAligner::align(const Motion& start, std::size_t samples, int steps, 
             if (near.index == no_index) continue;
             const Vector3d& normal = a_.fracture.normals[near.index];
             const double against = -normal.dot(n);
-            if (against < facing) continue;
+            if (against < min_facing) continue;
             const double off = normal.dot(a_.fracture.places[near.index] - p), share_off = near.squared / (reach * reach);
             planes.push_back({p, normal, off, (1 - share_off) * (1 - share_off)});
             all += planes.back().weight;
@@ -74,7 +74,7 @@ Motion BreakAligner::align(const Motion& start, std::size_t samples, int steps, 
             if (near.index == no_index) continue;
             const RimFrame& other = a_.frames[near.index];
             if (other.facet != frame.facet || other.side.dot(pose.turn * frame.side) < continued ||
-                other.fracture.dot(pose.turn * frame.fracture) > -facing)
+                other.fracture.dot(pose.turn * frame.fracture) > -min_facing)
                 continue;
             const double weight = std::pow(1 - near.squared / (2.25 * reach * reach), 2);
             rims.push_back({p, other.side, other.side.dot(other.place - p), weight});
@@ -142,7 +142,7 @@ PairCandidate BreakAligner::judge(const Motion& pose, std::size_t samples, doubl
         const PointTree::Near near = fractures_.nearest(point_of(p), last_reach_);
         if (near.index != no_index) {
             const double against = -a_.fracture.normals[near.index].dot(n);
-            if (against > facing) {
+            if (against > min_facing) {
                 const double off = a_.fracture.normals[near.index].dot(p - a_.fracture.places[near.index]),
                              share = off / (close * last_reach_);
                 touching += area * std::exp(-share * share / 2);
@@ -161,7 +161,7 @@ PairCandidate BreakAligner::judge(const Motion& pose, std::size_t samples, doubl
         if (near.index == no_index) continue;
         const RimFrame& other = a_.frames[near.index];
         if (other.facet != frame.facet || other.side.dot(pose.turn * frame.side) < continued ||
-            other.fracture.dot(pose.turn * frame.fracture) > -facing)
+            other.fracture.dot(pose.turn * frame.fracture) > -min_facing)
             continue;
         // Across the side's plane counts, along the rim does not.
         const double step = other.side.dot(p - other.place) / last_reach_;

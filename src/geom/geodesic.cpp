@@ -14,8 +14,8 @@ namespace ostraka {
 
 namespace {
 
-using Traits = CGAL::Surface_mesh_shortest_path_traits<Kernel, Mesh>;
-using ExactSearch = CGAL::Surface_mesh_shortest_path<Traits>;
+using PathTraits = CGAL::Surface_mesh_shortest_path_traits<Kernel, Mesh>;
+using ExactSearch = CGAL::Surface_mesh_shortest_path<PathTraits>;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 double distance(const Point& a, const Point& b) { return std::sqrt(CGAL::squared_distance(a, b)); }
@@ -77,7 +77,7 @@ std::vector<std::pair<Vertex, double>> gates(const Mesh& mesh, const SurfaceNode
 }
 
 /// The node by a face of the patch and its barycentric coordinates there, beginning with the last corner as CGAL does.
-std::pair<Face, Traits::Barycentric_coordinates> place_in(const Mesh& mesh, const SurfacePatch& patch, const SurfaceNode& node,
+std::pair<Face, PathTraits::Barycentric_coordinates> place_in(const Mesh& mesh, const SurfacePatch& patch, const SurfaceNode& node,
                                                           Face face) {
     const auto place = std::lower_bound(patch.faces.begin(), patch.faces.end(), static_cast<Index>(face)) - patch.faces.begin();
     std::array<double, 3> weights{0, 0, 0};
@@ -90,7 +90,7 @@ std::pair<Face, Traits::Barycentric_coordinates> place_in(const Mesh& mesh, cons
             weights[k] = corner[k] == mesh.source(h) ? 1 - node.parameter : corner[k] == mesh.target(h) ? node.parameter : 0;
         }
     }
-    return {Face(static_cast<Index>(place)), Traits::Barycentric_coordinates{{weights[2], weights[0], weights[1]}}};
+    return {Face(static_cast<Index>(place)), PathTraits::Barycentric_coordinates{{weights[2], weights[0], weights[1]}}};
 }
 
 double distance_to_face(const Mesh& mesh, Face face, const Point& p) {

@@ -17,8 +17,8 @@ namespace ostraka {
 
 namespace {
 using Primitive = CGAL::AABB_face_graph_triangle_primitive<Mesh>;
-using Traits = CGAL::AABB_traits<Kernel, Primitive>;
-using AabbTree = CGAL::AABB_tree<Traits>;
+using RayTraits = CGAL::AABB_traits<Kernel, Primitive>;
+using AabbTree = CGAL::AABB_tree<RayTraits>;
 
 /// Goes down the tree until a face that counts is met.
 struct Obstacle {
@@ -30,7 +30,7 @@ struct Obstacle {
     void intersection(const Kernel::Segment_3& segment, const Primitive& face) {
         met = !ignored(face.id()) && tree.traits().do_intersect_object()(segment, face);
     }
-    [[nodiscard]] bool do_intersect(const Kernel::Segment_3& segment, const CGAL::AABB_node<Traits>& node) const {
+    [[nodiscard]] bool do_intersect(const Kernel::Segment_3& segment, const CGAL::AABB_node<RayTraits>& node) const {
         return tree.traits().do_intersect_object()(segment, node.bbox());
     }
 };

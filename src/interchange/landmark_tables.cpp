@@ -147,10 +147,10 @@ LandmarkSet read_tps(const std::string& bytes, const std::string& where, const L
                 from = std::min(line.find_first_of(" \t,", begin), line.size());
                 const std::string_view word = line.substr(begin, from - begin);
                 const auto value = number_of(word);
-                const bool absent = lower(word) == "na" || lower(word) == "nan";
-                if ((!value && !absent) || count == 3)
+                const bool no_value = lower(word) == "na" || lower(word) == "nan";
+                if ((!value && !no_value) || count == 3)
                     fail_input(at, "does not hold three coordinates", "give x, y and z, or NA NA NA for a missing landmark");
-                missing += absent ? 1 : 0;
+                missing += no_value ? 1 : 0;
                 point[count++] = value.value_or(0);
             }
             if (count != 3)

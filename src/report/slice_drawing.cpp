@@ -74,7 +74,7 @@ void draw_slice(Sheet& sheet, const DrawnSlice& drawn, const Placing& placing) {
     }
 }
 
-std::string number_of(const SliceSheet& content, std::size_t place) {
+std::string slice_number(const SliceSheet& content, std::size_t place) {
     const std::size_t number = content.slices[place].number;
     return std::to_string(number > 0 ? number : place + 1);
 }
@@ -132,7 +132,7 @@ void write_slice_sheet(const Path& file, const SliceSheet& content) {
                 const double y = placing({0, content.slices[i].slice->height})[1];
                 sheet.line(margin - 3, y, right + 6, y, guide, 0.5);
                 if (std::abs(y - last) < 9) continue;  // numbers would touch
-                sheet.text(number_of(content, i), right + 9, y + 3, 0, 9, guide);
+                sheet.text(slice_number(content, i), right + 9, y + 3, 0, 9, guide);
                 last = y;
             }
             for (const auto& curve : content.view) sheet.polyline(placing(curve, true), ink, false, 0.8);
@@ -149,7 +149,7 @@ void write_slice_sheet(const Path& file, const SliceSheet& content) {
             sheet.clip({left - gap / 2, upper - gap / 2, left + grid.width + gap / 2, upper + grid.height + gap / 2});
             draw_slice(sheet, drawn, placing);
             sheet.unclip();
-            const std::string number = number_of(content, i);
+            const std::string number = slice_number(content, i);
             sheet.text(number, left, upper + grid.height + 11, 0, 9, guide);
             const double after = left + sheet.width_of(number, 9) + 4, room = grid.width - (after - left);
             sheet.text(sheet.fitted(length_text(drawn.slice->height, content.unit), room, 9), after, upper + grid.height + 11, 0,

@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-struct Moments {
+struct FaceMoments {
     double area = 0;
     Vector3d first = Vector3d::Zero();
     Matrix3d second = Matrix3d::Zero();
@@ -43,8 +43,8 @@ struct Moments {
 };
 
 template <class Faces>
-Moments moments_of(const Mesh& mesh, const Faces& faces, const Vector3d& origin) {
-    Moments moments;
+FaceMoments face_moments(const Mesh& mesh, const Faces& faces, const Vector3d& origin) {
+    FaceMoments moments;
     for (const auto face : faces) moments.add(mesh, Face(face), origin);
     return moments;
 }
@@ -105,12 +105,12 @@ std::vector<ClassQuantity> part_quantities(const ClassTemplate& known, const std
         if (!theirs.annotations.empty()) same = counterparts(overlap_of(known, fitted, parts, *own, theirs));
     }
     const Vector3d origin = eigen(points.front());
-    const Moments whole = moments_of(fitted, fitted.faces(), origin);
-    Moments own_whole;
-    if (!same.empty()) own_whole = moments_of(own->mesh, own->mesh.faces(), origin);
+    const FaceMoments whole = face_moments(fitted, fitted.faces(), origin);
+    FaceMoments own_whole;
+    if (!same.empty()) own_whole = face_moments(own->mesh, own->mesh.faces(), origin);
     struct Part {
         const Annotation* annotation;
-        Moments moments;
+        FaceMoments moments;
         Vector3d from;  ///< centroid of the whole it belongs to
         double size = 1;
     };
@@ -119,8 +119,8 @@ std::vector<ClassQuantity> part_quantities(const ClassTemplate& known, const std
         const auto there = same.find(annotation.id);
         const bool theirs_counts = there != same.end();
         measured[annotation.id] = {&annotation,
-                                   theirs_counts ? moments_of(own->mesh, theirs.find(there->second)->faces, origin)
-                                                 : moments_of(fitted, annotation.faces, origin),
+                                   theirs_counts ? face_moments(own->mesh, theirs.find(there->second)->faces, origin)
+                                                 : face_moments(fitted, annotation.faces, origin),
                                    (theirs_counts ? own_whole : whole).middle(),
                                    std::sqrt((theirs_counts ? own_whole : whole).area)};
     }

@@ -20,8 +20,8 @@ using Eigen::MatrixXd;
 using Thin = Eigen::Matrix<double, Eigen::Dynamic, 3>;  ///< a row a cage point
 
 /// Below this reciprocal condition number the system counts as singular.
-constexpr double singular = 1e-13;
-constexpr double least_regularisation = 1e-10;
+constexpr double min_rcond = 1e-13;
+constexpr double min_regularisation = 1e-10;
 constexpr Eigen::Index rows_of_piece = 1024;
 constexpr std::size_t pieces_of_wave = 16;
 
@@ -267,7 +267,7 @@ void CageSpaceSolver::State::make_factor() {
     regularisation = 0;
     const double mean = cage > 0 ? normal.trace() / static_cast<double>(cage) : 0;
     factor.compute(normal);
-    for (double share = least_regularisation; !factor.found() || !(factor.rcond() > singular); share *= 100) {
+    for (double share = min_regularisation; !factor.found() || !(factor.rcond() > min_rcond); share *= 100) {
         if (share > 1e4)
             throw Error(ErrorKind::failure, "solver", "the system cannot be factorised", "bring weights closer to each other");
         regularisation = mean > 0 ? share * mean : 1.0;

@@ -28,7 +28,7 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
 /// Below this the matrix counts as singular (see SparseCholesky::reciprocal_condition).
 constexpr double singular = 1e-14;
 /// Weight of the rest shape in singular systems, as a share of the mean diagonal entry.
-constexpr double least_regularisation = 1e-9;
+constexpr double first_regularisation = 1e-9;
 
 }  // namespace
 
@@ -115,7 +115,7 @@ bool MeshSpaceSolver::State::factorise() {
     for (const int i : floating.idle) add_to_diagonal(i, mean);
     for (const auto& part : floating.parts) add_to_diagonal(part.front(), pin);
     regularisation = 0;
-    for (double share = least_regularisation; !cholesky.factor(matrix) || cholesky.reciprocal_condition() < singular;
+    for (double share = first_regularisation; !cholesky.factor(matrix) || cholesky.reciprocal_condition() < singular;
          share *= 100) {
         if (share > 1)
             throw Error(ErrorKind::failure, "solver", "the system cannot be factorised", "bring weights closer to each other");

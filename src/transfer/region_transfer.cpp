@@ -76,7 +76,7 @@ RegionTransfer::~RegionTransfer() = default;
 
 namespace {
 
-double area_of(const Mesh& mesh, const std::vector<bool>& selected) {
+double selected_area(const Mesh& mesh, const std::vector<bool>& selected) {
     double sum = 0;
     for (const Face f : mesh.faces())
         if (selected[f]) sum += face_area(mesh, f);
@@ -195,11 +195,11 @@ std::vector<bool> RegionTransfer::fill(const std::vector<Index>& region, const s
         }
     }
     std::vector<bool> selected = std::move(filling.selected);
-    if (!unbounded && (filling.conflicts > 0 || !plausible(area_of(mesh, selected)))) {
+    if (!unbounded && (filling.conflicts > 0 || !plausible(selected_area(mesh, selected)))) {
         score.crossings_resolved = true;
         const auto wound = fill_by_winding(mesh, edges, expected);
         if (wound) selected = *wound;
-        if (!wound || !plausible(area_of(mesh, selected))) {
+        if (!wound || !plausible(selected_area(mesh, selected))) {
             if (!source_search_) source_search_ = std::make_unique<SurfaceSearch>(source_);
             selected = region_by_vote(source_, *source_search_, region, mesh, options_.correspondence);
             score.voted = true;
