@@ -96,7 +96,8 @@ MeasureTable measure_table(const std::vector<std::string>& names, const std::vec
         table.units.push_back(objects[i]->unit);
         rows.push_back(&*objects[i]);
     }
-    table.values.setConstant(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(definitions.list.size()), no_measure);
+    table.values.setConstant(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(definitions.list.size()),
+                             no_measure);
     for (std::size_t j = 0; j < definitions.list.size(); ++j) {
         std::map<std::pair<int, std::string>, std::size_t> kinds;
         for (const ObjectMeasures* row : rows)

@@ -77,8 +77,8 @@ std::vector<std::pair<Vertex, double>> gates(const Mesh& mesh, const SurfaceNode
 }
 
 /// The node by a face of the patch and its barycentric coordinates there, beginning with the last corner as CGAL does.
-std::pair<Face, PathTraits::Barycentric_coordinates> place_in(const Mesh& mesh, const SurfacePatch& patch, const SurfaceNode& node,
-                                                          Face face) {
+std::pair<Face, PathTraits::Barycentric_coordinates> place_in(const Mesh& mesh, const SurfacePatch& patch,
+                                                              const SurfaceNode& node, Face face) {
     const auto place = std::lower_bound(patch.faces.begin(), patch.faces.end(), static_cast<Index>(face)) - patch.faces.begin();
     std::array<double, 3> weights{0, 0, 0};
     const auto corner = corners(mesh, face);
