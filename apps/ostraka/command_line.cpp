@@ -213,18 +213,21 @@ int run_call(Call& call, const Common& common) {
     watch_of_signals = &context.watch;
     std::signal(SIGINT, cancel_on_signal);
     std::signal(SIGTERM, cancel_on_signal);
+    bool shown = false;
     const auto show = [&](const Report& report) {
         const ReportFormat format = common.json || common.show == "json" ? ReportFormat::json
                                     : common.show == "csv"               ? ReportFormat::csv
                                     : common.show == "markdown"          ? ReportFormat::markdown
                                                                          : ReportFormat::table;
-        std::cout << report.to_text(format);
+        const std::string text = report.to_text(format);
+        shown = !text.empty();
+        std::cout << text;
         // Where the report could not be given, nothing is replaced.
         check_standard_output();
     };
     const Report report = call.run(context, show);
     watch_of_signals = nullptr;
-    if (!common.quiet)
+    if (!common.quiet && shown)
         if (const std::string times = report.times(); !times.empty()) std::cerr << "time: " << times << '\n';
     return report.holds() ? done : answer_is_no;
 }

@@ -65,7 +65,7 @@ TEST(CageCommand, BadInput) {
     };
     refused(pot + cage + " --vertices 3", 2, "vertices");
     refused(pot + cage + " --levels 10,10", 2, "twice");
-    refused(pot + cage + " --levels 10,x", 2, "--levels");
+    refused(pot + cage + " --levels 10,x", 2, "levels");
     refused(pot + cage + " --mirror 1,2,3", 2, "six numbers");
     refused(pot + cage + " --mirror 0,0,0,0,0,0", 2, "normal is zero");
     refused(pot + cage + " --detail spout=4", 2, "--annotations");
