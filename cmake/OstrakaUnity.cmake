@@ -2,8 +2,10 @@
 # saves is reading the same headers and making the same templates again for each file. Files that take long on their own, and those
 # with flags of their own, stay alone.
 set(OSTRAKA_UNITY_BATCH 100000 CACHE STRING "Bytes of source a batch")
-set(OSTRAKA_UNITY_ALONE src/axis/skeleton.cpp src/synthetic/shatter.cpp src/io/wrap.cpp src/point_cloud/point_cloud.cpp src/remesh/remesh.cpp
-  src/core/dense.cpp src/point_cloud/point_surface.cpp src/interchange/feature_writer.cpp)
+set(OSTRAKA_UNITY_ALONE src/core/dense.cpp)
+# The largest algorithms of CGAL, in pairs that share most.
+set(OSTRAKA_UNITY_PAIRS "src/axis/skeleton.cpp|src/remesh/remesh.cpp" "src/io/wrap.cpp|src/synthetic/shatter.cpp"
+  "src/point_cloud/point_cloud.cpp|src/point_cloud/point_surface.cpp")
 
 function(ostraka_unity target)
   get_target_property(sources ${target} SOURCES)
@@ -12,6 +14,17 @@ function(ostraka_unity target)
   foreach(source IN LISTS sources)
     file(RELATIVE_PATH name ${CMAKE_CURRENT_SOURCE_DIR} ${source})
     get_source_file_property(own_flags ${source} COMPILE_OPTIONS)
+    set(paired FALSE)
+    foreach(pair IN LISTS OSTRAKA_UNITY_PAIRS)
+      if(pair MATCHES "${name}")
+        string(MAKE_C_IDENTIFIER "${pair}" group)
+        set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group})
+        set(paired TRUE)
+      endif()
+    endforeach()
+    if(paired)
+      continue()
+    endif()
     if(NOT name MATCHES "^src/([a-z_]+)/" OR name IN_LIST OSTRAKA_UNITY_ALONE OR own_flags)
       continue()
     endif()

@@ -1,6 +1,7 @@
 #include "chair.h"
 
 #include "ostraka/axis/axis.h"
+#include "ostraka/core/dense.h"
 #include "ostraka/core/error.h"
 #include "ostraka/geom/eigen.h"
 
@@ -88,7 +89,7 @@ void stretch_arm(Chair& chair) {
     const Vector3d foot = mean_of(rest, joint_of(subject.mesh, support, &subject.part("seat")));
     const Vector3d head = mean_of(rest, joint_of(subject.mesh, support, &arm)), head_now = head + moved(point_of(head));
     const Vector3d was = head - foot, is = head_now - foot;
-    const Eigen::Matrix3d turn = Eigen::Quaterniond::FromTwoVectors(was, is).toRotationMatrix();
+    const Eigen::Matrix3d turn = rotation_between(was, is).toRotationMatrix();
     for (const Index v : vertices_of(subject.mesh, support)) {
         const Vector3d p = eigen(rest[v]), from_foot = p - foot;
         const double along = from_foot.dot(was.normalized()), share = along / was.norm();

@@ -51,6 +51,10 @@ SvdX::SvdX(const Eigen::MatrixXd& matrix, bool full_v) {
     values_ = svd.singularValues();
 }
 
+Eigen::Quaterniond rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+    return Eigen::Quaterniond::FromTwoVectors(from, to);
+}
+
 template <int N>
 Eigen::Matrix<double, N, 1> solve_ldlt(const Eigen::Matrix<double, N, N>& a, const Eigen::Matrix<double, N, 1>& b) {
     return a.ldlt().solve(b);

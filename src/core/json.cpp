@@ -253,3 +253,6 @@ const JsonValue* find_member(const JsonValue& object, std::string_view name) {
 }
 
 }  // namespace ostraka
+
+template class rapidjson::GenericValue<rapidjson::UTF8<>>;
+template class rapidjson::GenericDocument<rapidjson::UTF8<>>;

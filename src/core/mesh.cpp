@@ -285,3 +285,21 @@ std::string mesh_checksum(const Mesh& mesh) {
 }
 
 }  // namespace ostraka
+
+template CGAL::Surface_mesh<ostraka::Point>::Surface_mesh();
+template CGAL::Surface_mesh<ostraka::Point>::Surface_mesh(const CGAL::Surface_mesh<ostraka::Point>&);
+template CGAL::Surface_mesh<ostraka::Point>::Surface_mesh(CGAL::Surface_mesh<ostraka::Point>&&);
+template CGAL::Surface_mesh<ostraka::Point>& CGAL::Surface_mesh<ostraka::Point>::operator=(
+    const CGAL::Surface_mesh<ostraka::Point>&);
+template class CGAL::Properties::Property_container<ostraka::Mesh, ostraka::Vertex>;
+template class CGAL::Properties::Property_container<ostraka::Mesh, ostraka::Halfedge>;
+template class CGAL::Properties::Property_container<ostraka::Mesh, ostraka::Edge>;
+template class CGAL::Properties::Property_container<ostraka::Mesh, ostraka::Face>;
+template class CGAL::Properties::Property_array<ostraka::Mesh::Vertex_connectivity>;
+template class CGAL::Properties::Property_array<ostraka::Mesh::Halfedge_connectivity>;
+template class CGAL::Properties::Property_array<ostraka::Mesh::Face_connectivity>;
+template class CGAL::Properties::Property_array<ostraka::Point>;
+template class std::vector<ostraka::Point>;
+template class std::vector<ostraka::Vertex>;
+template class std::vector<ostraka::Halfedge>;
+template class std::vector<ostraka::Face>;

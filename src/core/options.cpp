@@ -235,6 +235,11 @@ void Option::check(const std::string& where) const {
                 refuse(*this, word, where);
 }
 
+OptionList::OptionList() = default;
+OptionList::~OptionList() = default;
+OptionList::OptionList(OptionList&&) noexcept = default;
+OptionList& OptionList::operator=(OptionList&&) noexcept = default;
+
 Option& OptionList::operator()(std::string name, OptionValue value, std::string help, OptionRule rule, std::string unit) {
     if (find(name) != nullptr) throw std::logic_error("option " + name + " is declared twice");
     Option option{std::move(name), value, std::move(help), std::move(rule), std::move(unit), group_};

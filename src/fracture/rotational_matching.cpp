@@ -1,5 +1,6 @@
 #include "ostraka/fracture/rotational_matching.h"
 #include "ostraka/core/angles.h"
+#include "ostraka/core/dense.h"
 
 #include "rotational_assembly.h"
 
@@ -23,7 +24,7 @@ public:
     TurnDecider(const Mesh& whole, const Vector3d& point, const Vector3d& direction, const std::vector<TurnableSherd>& sherds,
                 const BreakTurnOptions& options)
         : given_(sherds), options_(options) {
-        upright_.turn = Eigen::Quaterniond::FromTwoVectors(direction, Vector3d::UnitZ()).toRotationMatrix();
+        upright_.turn = rotation_between(direction, Vector3d::UnitZ()).toRotationMatrix();
         upright_.shift = -(upright_.turn * point);
         whole_ = moved(whole, upright_);
     }

@@ -1,4 +1,5 @@
 // Annotations -> GLB with EXT_mesh_features and EXT_structural_metadata.
+#include "ostraka/core/dense.h"
 #include "ostraka/interchange/feature_glb.h"
 
 #include "glb.h"
@@ -186,7 +187,7 @@ private:
         const auto metres = converted(1, set_.unit, "m");
         Vector3d up = Vector3d::UnitY();
         if (set_.up) up = eigen(unit_vector({(*set_.up)[0], (*set_.up)[1], (*set_.up)[2]}));
-        const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(up, Vector3d::UnitY());
+        const Eigen::Quaterniond turn = rotation_between(up, Vector3d::UnitY());
         const bool turns = (up - Vector3d::UnitY()).norm() > 1e-12, scales = metres && *metres != 1;
         if (!turns && !scales) return false;
         JsonValue shown(rapidjson::kObjectType), extras(rapidjson::kObjectType);

@@ -1,6 +1,7 @@
 #include "joined_sherds.h"
 
 #include "ostraka/core/angles.h"
+#include "ostraka/core/dense.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/text.h"
 #include "ostraka/geom/eigen.h"
@@ -88,7 +89,7 @@ std::vector<Motion> common_axis(const std::vector<const Fragment*>& sherds, cons
                        "has an axis that leans by " + digits(one.lean, 3) + " degrees against that of all and lies " +
                            digits(one.aside, 3) + " off it",
                        "lay the sherds as they were in the vessel, or leave it out");
-        motions[k].turn = Eigen::Quaterniond::FromTwoVectors(own, direction).toRotationMatrix();
+        motions[k].turn = rotation_between(own, direction).toRotationMatrix();
         motions[k].shift = at[k] + aside - motions[k].turn * at[k];
     }
     const auto heaviest = static_cast<std::size_t>(std::max_element(weights.begin(), weights.end()) - weights.begin());

@@ -3,6 +3,7 @@
 #include "reader.h"
 
 #include "ostraka/core/angles.h"
+#include "ostraka/core/dense.h"
 #include "ostraka/relation/geometric.h"
 
 namespace ostraka::semantic {
@@ -143,7 +144,7 @@ Statement structural_continuity(const ReaderPtr& read, const RelationOptions& to
         for (Vector3d& station : there) station = point + direction * direction.dot(station - point);
         const Vector3d was = then.back() - then.front(), is = there.back() - there.front();
         if (!(was.norm() > 0 && is.norm() > 0)) return;
-        const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(was, is);
+        const Eigen::Quaterniond turn = rotation_between(was, is);
         // Beyond the segment the part goes along with its end.
         std::vector<int> station(static_cast<std::size_t>(shape.cols()), segment->count - 1);
         std::vector<double> share(station.size(), 0);

@@ -27,7 +27,7 @@ Matrix3d turn_to(const Vector3d& a, const Vector3d& d, const Matrix3d& m) {
     Matrix3d best = Matrix3d::Identity();
     double most = -std::numeric_limits<double>::infinity();
     for (const double side : {1.0, -1.0}) {
-        const Matrix3d turn = Eigen::Quaterniond::FromTwoVectors(a, side * d).toRotationMatrix();
+        const Matrix3d turn = rotation_between(a, side * d).toRotationMatrix();
         const Matrix3d turned = turn * m;
         const double along = d.dot(turned * d), c = turned.trace() - along, s = (cross_matrix(d) * turned).trace();
         const double value = along + std::hypot(c, s);

@@ -1,7 +1,7 @@
 // Small dense linear algebra behind plain functions, compiled once. Each is Eigen's algorithm of that name, to the bit.
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include <memory>
 
@@ -76,6 +76,9 @@ private:
     Eigen::MatrixXd u_, v_;
     Eigen::VectorXd values_;
 };
+
+/// The rotation of the smallest angle that turns the direction of `from` into that of `to` (vectors of any length but zero).
+Eigen::Quaterniond rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
 /// Solves A x = b for a symmetric, positive or negative semidefinite A by LDL^T. N: 3, 4, 6 or Eigen::Dynamic.
 template <int N>

@@ -42,3 +42,7 @@ double number_or(const JsonValue& object, std::string_view name, double otherwis
 const JsonValue* find_member(const JsonValue& object, std::string_view name);
 
 }  // namespace ostraka
+
+// Compiled once, with the library.
+extern template class rapidjson::GenericValue<rapidjson::UTF8<>>;
+extern template class rapidjson::GenericDocument<rapidjson::UTF8<>>;

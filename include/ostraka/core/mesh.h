@@ -82,3 +82,22 @@ Halfedge find_halfedge(const Mesh& mesh, Vertex a, Vertex b);
 std::string mesh_checksum(const Mesh& mesh);
 
 }  // namespace ostraka
+
+// Compiled once, with the library.
+extern template CGAL::Surface_mesh<ostraka::Point>::Surface_mesh();
+extern template CGAL::Surface_mesh<ostraka::Point>::Surface_mesh(const CGAL::Surface_mesh<ostraka::Point>&);
+extern template CGAL::Surface_mesh<ostraka::Point>::Surface_mesh(CGAL::Surface_mesh<ostraka::Point>&&);
+extern template CGAL::Surface_mesh<ostraka::Point>& CGAL::Surface_mesh<ostraka::Point>::operator=(
+    const CGAL::Surface_mesh<ostraka::Point>&);
+extern template class CGAL::Properties::Property_container<ostraka::Mesh, ostraka::Vertex>;
+extern template class CGAL::Properties::Property_container<ostraka::Mesh, ostraka::Halfedge>;
+extern template class CGAL::Properties::Property_container<ostraka::Mesh, ostraka::Edge>;
+extern template class CGAL::Properties::Property_container<ostraka::Mesh, ostraka::Face>;
+extern template class CGAL::Properties::Property_array<ostraka::Mesh::Vertex_connectivity>;
+extern template class CGAL::Properties::Property_array<ostraka::Mesh::Halfedge_connectivity>;
+extern template class CGAL::Properties::Property_array<ostraka::Mesh::Face_connectivity>;
+extern template class CGAL::Properties::Property_array<ostraka::Point>;
+extern template class std::vector<ostraka::Point>;
+extern template class std::vector<ostraka::Vertex>;
+extern template class std::vector<ostraka::Halfedge>;
+extern template class std::vector<ostraka::Face>;

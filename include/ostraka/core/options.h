@@ -114,6 +114,11 @@ struct Option {
 
 class OptionList {
 public:
+    OptionList();
+    ~OptionList();
+    OptionList(OptionList&&) noexcept;
+    OptionList& operator=(OptionList&&) noexcept;
+
     Option& operator()(std::string name, OptionValue value, std::string help, OptionRule rule = Anything{},
                        std::string unit = {});
 
