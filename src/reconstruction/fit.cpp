@@ -109,9 +109,11 @@ public:
     const std::vector<VertexMatch>& match(double reach, NonRigidFit& fit) {
         const Stopwatch watch(fit.seconds_matching);
         matches_ = search_.matches(now_, mesh_, labels_, reach, std::cos(options_.angle * pi / 180));
-        if (options_.counterparts == "surface") return matches_;
+        if (options_.counterparts == NonRigidOptions::Counterparts::surface) return matches_;
         VertexAssignmentOptions options = options_.vertices;
-        options.counterpart = options_.counterparts;
+        options.counterpart = options_.counterparts == NonRigidOptions::Counterparts::best
+                                  ? VertexAssignmentOptions::Counterpart::best
+                                  : VertexAssignmentOptions::Counterpart::one_to_one;
         options.reach = reach;
         options.angle = options_.angle;
         search_.assign(now_, mesh_, labels_, options, matches_);
@@ -406,7 +408,7 @@ TemplateFitter::TemplateFitter(TemplateFitter&&) noexcept = default;
 
 NonRigidFit TemplateFitter::fit(double scale, const std::vector<PlacedFragment>& fragments, const NonRigidOptions& options) {
     check_options(options, "fit");
-    if (options.counterparts != "surface" &&
+    if (options.counterparts != NonRigidOptions::Counterparts::surface &&
         !(options.vertices.boundary + options.vertices.distance + options.vertices.outline > 0))
         fail_usage("all three weights of equation 5.1 are zero", "give --distance-weight or another one");
     constexpr double edges = 0.8;  // least smoothing length of a level on the coarse mesh, in its edges
@@ -431,7 +433,7 @@ NonRigidFit TemplateFitter::fit(double scale, const std::vector<PlacedFragment>&
         }
         std::erase_if(guides, [&](const Guide& guide) { return guide.vertex >= coarse.mesh.number_of_vertices(); });
     }
-    if (options.space != "mesh") {
+    if (options.space != NonRigidOptions::Space::mesh) {
         if (s.cage == nullptr) fail_usage("the fit is to go through a cage, and there is none", "give the cage of the template");
         Points rest(3, static_cast<Eigen::Index>(s.cage->cage.number_of_vertices()));
         for (const Vertex v : s.cage->cage.vertices()) rest.col(static_cast<Eigen::Index>(v)) = eigen(s.cage->cage.point(v));
@@ -440,7 +442,7 @@ NonRigidFit TemplateFitter::fit(double scale, const std::vector<PlacedFragment>&
                        s.coarse ? search.labels(s.coarse->mesh, s.coarse->face_origin) : search.labels(s.mesh, {}),
                        std::move(guides), s.diagonal, options);
         through.go_through(s.weights(), rest);
-        level = options.space == "both" ? std::max(1, options.levels - 1) : options.levels;
+        level = options.space == NonRigidOptions::Space::both ? std::max(1, options.levels - 1) : options.levels;
         through.run(0, level, fit);
         fine.start_at(points_of(s.cage->coordinates.vertex, through.cage()));
         if (level == options.levels) {

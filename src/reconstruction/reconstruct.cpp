@@ -522,9 +522,9 @@ private:
 Reconstructor::Reconstructor(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
                              const ReconstructOptions& options, const ShapePrior* prior, const TemplateCage* cage) {
     check_options(options, "fit");
-    if (options.fit.space != "mesh" && cage == nullptr)
+    if (options.fit.space != NonRigidOptions::Space::mesh && cage == nullptr)
         fail_usage("the fit is to go through a cage, and there is none", "give the cage of the template");
-    if (options.fit.space != "mesh" && prior != nullptr)
+    if (options.fit.space != NonRigidOptions::Space::mesh && prior != nullptr)
         fail_usage("a class changes the template's shape, and its cage does not follow",
                    "fit in mesh space, or without the class");
     if (prior != nullptr) prior->check(mesh.number_of_vertices());
