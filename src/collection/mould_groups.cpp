@@ -77,7 +77,9 @@ double knee_epsilon(const Eigen::MatrixXd& d) {
 class Grouping {
 public:
     Grouping(const Eigen::MatrixXd& distances, const GroupOptions& options)
-        : d_(distances), tree_(linkage(distances, options.method == "linkage" ? "average" : "single")) {}
+        : d_(distances),
+          tree_(linkage(distances,
+                        options.method == GroupOptions::Method::linkage ? LinkageMethod::average : LinkageMethod::single)) {}
 
     [[nodiscard]] std::vector<int> at(double epsilon) const { return cut_at(tree_, epsilon); }
 
@@ -122,7 +124,7 @@ double nested_groups(const Eigen::MatrixXd& d, const Eigen::MatrixXd& distances,
     const Eigen::MatrixXd own = part_of(d, heads);
     const Grouping grouping(own, options);
     const auto [epsilon, silhouette] = grouping.best_epsilon();
-    const bool embedded = options.method == "embedding";
+    const bool embedded = options.method == GroupOptions::Method::embedding;
     const bool apart =
         silhouette >= (embedded ? least_in_embedding : least_in_distances) &&
         (!embedded || mean(silhouettes_of_distances(part_of(distances, heads), grouping.at(epsilon))) >= least_in_distances);
@@ -155,7 +157,7 @@ MouldGroups group_heads(const Eigen::MatrixXd& distances, const GroupOptions& op
         groups.coordinates /= between.maxCoeff();
         between /= between.maxCoeff();
     }
-    const Eigen::MatrixXd& d = options.method == "embedding" ? between : distances;
+    const Eigen::MatrixXd& d = options.method == GroupOptions::Method::embedding ? between : distances;
     const Grouping grouping(d, options);
     double number = 0;
     const char* end = options.epsilon.data() + options.epsilon.size();
@@ -172,7 +174,8 @@ MouldGroups group_heads(const Eigen::MatrixXd& distances, const GroupOptions& op
     groups.tree = grouping.tree();
     std::vector<int> labels = grouping.at(groups.epsilon);
     groups.silhouette = mean(silhouettes_of_distances(d, by_size(labels)));
-    groups.clear = groups.silhouette >= (options.method == "embedding" ? least_in_embedding : least_in_distances);
+    groups.clear =
+        groups.silhouette >= (options.method == GroupOptions::Method::embedding ? least_in_embedding : least_in_distances);
     if (options.epsilon == "nested" && groups.clear) {
         std::vector<std::size_t> all(labels.size());
         std::iota(all.begin(), all.end(), std::size_t{0});

@@ -56,8 +56,8 @@ std::vector<Kind> kinds_of(const MeasureTable& table) {
     return result;
 }
 
-std::vector<double> corrected(const std::vector<double>& p, const std::string& correction) {
-    return correction == "by" ? benjamini_yekutieli(p) : benjamini_hochberg(p);
+std::vector<double> corrected(const std::vector<double>& p, ProportionOptions::Correction correction) {
+    return correction == ProportionOptions::Correction::by ? benjamini_yekutieli(p) : benjamini_hochberg(p);
 }
 
 /// Numbers measures that are joined by pairs with the same number.
