@@ -325,7 +325,7 @@ Coarse coarsened(const Mesh& mesh, std::size_t vertices) {
     Coarse coarse{mesh, {}, {}};
     SimplifyOptions options;
     options.vertices = vertices;
-    options.outlines = "ignore";
+    options.outlines = SimplifyOptions::Outlines::ignore;
     const SimplifyResult done = simplify(coarse.mesh, options);
     coarse.vertex_map = done.vertex_map;
     coarse.face_origin.resize(coarse.mesh.number_of_faces());
