@@ -84,7 +84,8 @@ public:
         result_.times.paths = clock.lap();
         const Mesh& mesh = on();
         std::optional<OutlineRounding> rounding;
-        if (!options_.refine && options_.cover == "overlapping" && options_.rounding != "path")
+        if (!options_.refine && options_.cover == TransferOptions::Cover::overlapping &&
+            options_.rounding != TransferOptions::Rounding::path)
             rounding.emplace(source_, set_, target_, chains_, tracer_);
         fill_all(transferred, rounding ? &*rounding : nullptr);
         result_.times.regions = clock.lap();
@@ -247,7 +248,7 @@ private:
                                         result_.refined ? &result_.refined->face_origin : nullptr, score);
             const bool any = std::find(selected[i].begin(), selected[i].end(), true) != selected[i].end();
             if (any && !score.voted && rounding != nullptr)
-                rounding->round(i, selected[i], regions_.target_edge(), options_.rounding == "balanced");
+                rounding->round(i, selected[i], regions_.target_edge(), options_.rounding == TransferOptions::Rounding::balanced);
         }
         if (rounding != nullptr) rounding->round_shared_outlines(selected);
         for (std::size_t i = 0; i < transferred.size(); ++i) {
@@ -348,7 +349,7 @@ TransferResult transfer(const Mesh& source, const AnnotationSet& annotations, co
         const Agreement alignment = compare_alignment(source, target.mesh());
         if (!alignment.problem.empty()) fail_input("transfer", alignment.problem, "or --force if they are meant to differ");
     }
-    if (options.refine && options.cover != "overlapping")
+    if (options.refine && options.cover != TransferOptions::Cover::overlapping)
         fail_usage("a refined target follows the outline exactly", "leave out --cover with --refine");
     return Transfer(source, annotations, target, options).run();
 }

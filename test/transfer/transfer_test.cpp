@@ -70,7 +70,7 @@ TEST(Transfer, OntoItselfIsTheIdentity) {
         const AnnotationSet set = set_of({region(1, mesh, [&](const Point& p) { return p.x() < middle; }), line, points});
         for (const char* metric : {"euclidean", "segment", "combined"}) {
             TransferOptions options;
-            options.metric = metric;
+            set_option(options, "metric", metric);
             const TransferResult result = transfer_to(mesh, set, mesh, options);
             ASSERT_EQ(result.annotations.annotations.size(), 3U) << name;
             EXPECT_EQ(result.annotations.annotations[0].faces, set.annotations[0].faces) << name << " " << metric;
@@ -90,8 +90,8 @@ TEST(Transfer, RegionsKeepTheirAreaAcrossResolutions) {
         for (const char* metric : {"euclidean", "segment", "combined"})
             for (const char* spikes : {"prune", "avoid", "keep"}) {
                 TransferOptions options;
-                options.metric = metric;
-                options.spikes = spikes;
+                set_option(options, "metric", metric);
+                set_option(options, "spikes", spikes);
                 const TransferResult result = transfer_to(*source, set, *target, options);
                 for (const TransferScore& score : result.scores) {
                     EXPECT_EQ(score.outcome, "kept");
@@ -131,9 +131,9 @@ TEST(Transfer, EnclosingHoldsWhatEnclosedLeavesOut) {
     const Mesh source = build_mesh(octahedron_sphere(5)), target = build_mesh(rotated(octahedron_sphere(4), 0.4));
     const AnnotationSet set = set_of({region(1, source, cap)});
     TransferOptions options;
-    options.cover = "enclosing";
+    options.cover = TransferOptions::Cover::enclosing;
     const auto outer = transfer_to(source, set, target, options).annotations.annotations.at(0).faces;
-    options.cover = "enclosed";
+    options.cover = TransferOptions::Cover::enclosed;
     const auto inner = transfer_to(source, set, target, options).annotations.annotations.at(0).faces;
     EXPECT_TRUE(std::includes(outer.begin(), outer.end(), inner.begin(), inner.end()));
     // The true border of the source region lies where its faces end; allow for the height of a source face.
@@ -306,7 +306,7 @@ TEST(Transfer, RoundingPutsLessOnTheWrongSideAndMeetsAreaAndPerimeter) {
     const AnnotationSet set = set_of({region(1, source, cap), region(2, source, band)});
     const auto scores = [&](const char* rounding) {
         TransferOptions options;
-        options.rounding = rounding;
+        set_option(options, "rounding", rounding);
         return transfer_to(source, set, target, options).scores;
     };
     const auto path = scores("path"), area = scores("area"), balanced = scores("balanced");
@@ -329,7 +329,7 @@ TEST(Transfer, RoundingKeepsThePartitionOfThreeRegions) {
     const AnnotationSet set = set_of({region(1, source, third(0)), region(2, source, third(1)), region(3, source, third(2))});
     for (const char* rounding : {"path", "area", "balanced"}) {
         TransferOptions options;
-        options.rounding = rounding;
+        set_option(options, "rounding", rounding);
         std::vector<int> owners(target.number_of_faces(), 0);
         for (const Annotation& annotation : transfer_to(source, set, target, options).annotations.annotations)
             for (const Index f : annotation.faces) ++owners[f];

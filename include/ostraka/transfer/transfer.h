@@ -3,6 +3,7 @@
 
 #include "ostraka/annotation/annotation.h"
 #include "ostraka/core/options.h"
+#include "ostraka/geom/shortest_path.h"
 #include "ostraka/remesh/insert_curves.h"
 #include "ostraka/transfer/correspondence.h"
 
@@ -14,10 +15,10 @@ namespace ostraka {
 
 struct TransferOptions {
     CorrespondenceOptions correspondence;
-    std::string metric = "euclidean";
-    std::string spikes = "prune";
-    std::string rounding = "balanced";
-    std::string cover = "overlapping";
+    PathMetric metric = PathMetric::euclidean;
+    enum class Spikes { prune, avoid, keep } spikes = Spikes::prune;
+    enum class Rounding { path, area, balanced } rounding = Rounding::balanced;
+    enum class Cover { overlapping, enclosing, enclosed } cover = Cover::overlapping;
     bool refine = false;
     bool overlap = true;
     bool force = false;
