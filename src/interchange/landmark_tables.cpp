@@ -20,7 +20,7 @@ std::string at_line(const std::string& where, std::size_t line) { return where +
 struct Columns {
     std::array<std::size_t, 3> position{};
     std::optional<std::size_t> name, id, defined;
-    std::string space;
+    std::optional<AnatomicalSpace> space;
 };
 
 constexpr std::size_t nowhere = static_cast<std::size_t>(-1);
@@ -34,12 +34,13 @@ std::optional<Columns> columns_of(const std::vector<std::string>& header) {
         return nowhere;
     };
     Columns columns;
-    const auto take = [&](const char* a, const char* b, const char* c, const char* space) {
+    const auto take = [&](const char* a, const char* b, const char* c, std::optional<AnatomicalSpace> space) {
         columns.position = {find({a}), find({b}), find({c})};
         columns.space = space;
         return std::find(columns.position.begin(), columns.position.end(), nowhere) == columns.position.end();
     };
-    if (!take("x", "y", "z", "") && !take("l", "p", "s", "LPS") && !take("r", "a", "s", "RAS")) return {};
+    if (!take("x", "y", "z", {}) && !take("l", "p", "s", AnatomicalSpace::lps) && !take("r", "a", "s", AnatomicalSpace::ras))
+        return {};
     if (const std::size_t at = find({"name", "label", "landmark", "tag"}); at != nowhere) columns.name = at;
     if (const std::size_t at = find({"id"}); at != nowhere) columns.id = at;
     if (const std::size_t at = find({"defined"}); at != nowhere) columns.defined = at;
@@ -56,9 +57,9 @@ double coordinate(const CsvRow& row, std::size_t column, const std::string& wher
 
 }  // namespace
 
-std::array<double, 3> in_mesh_space(std::array<double, 3> position, const std::string& file_space,
-                                    const std::string& mesh_space) {
-    if (!file_space.empty() && file_space != mesh_space)
+std::array<double, 3> in_mesh_space(std::array<double, 3> position, std::optional<AnatomicalSpace> file_space,
+                                    AnatomicalSpace mesh_space) {
+    if (file_space && *file_space != mesh_space)
         for (const std::size_t k : {0U, 1U}) position[k] = position[k] == 0 ? 0 : -position[k];
     return position;
 }
@@ -246,7 +247,7 @@ std::string write_tps(const LandmarkSet& set, const std::string& mesh_file) {
 // fcsv: comment lines with the version, the space and the columns, then a row a point.
 LandmarkSet read_fcsv(const std::string& bytes, const std::string& where, const LandmarkFileOptions& options) {
     LandmarkSet set;
-    std::string space;
+    std::optional<AnatomicalSpace> space;
     std::vector<std::string> header;
     std::string body;  // comment lines become blank, so that lines keep their numbers
     for (std::size_t i = 0; i < bytes.size();) {
@@ -257,8 +258,9 @@ LandmarkSet read_fcsv(const std::string& bytes, const std::string& where, const 
             const std::string key = lower(trimmed(line.substr(1, equals == std::string_view::npos ? 0 : equals - 1)));
             const std::string_view value = equals == std::string_view::npos ? "" : trimmed(line.substr(equals + 1));
             if (key == "coordinatesystem") {
-                space = value == "0" || value == "RAS" ? "RAS" : value == "1" || value == "LPS" ? "LPS" : "";
-                if (space.empty())
+                if (value == "0" || value == "RAS") space = AnatomicalSpace::ras;
+                else if (value == "1" || value == "LPS") space = AnatomicalSpace::lps;
+                else
                     fail_input(where, "the coordinate system '" + one_line(value).substr(0, 20) + "' is not known",
                                "use LPS (1) or RAS (0)");
             } else if (key == "columns") {
@@ -271,8 +273,8 @@ LandmarkSet read_fcsv(const std::string& bytes, const std::string& where, const 
         body += '\n';
         i = end + 1;
     }
-    if (space.empty()) {
-        space = "RAS";
+    if (!space) {
+        space = AnatomicalSpace::ras;
         set.notes.emplace_back("the file names no coordinate system: taken for RAS, as old versions wrote");
     }
     if (header.empty())
@@ -294,7 +296,7 @@ LandmarkSet read_fcsv(const std::string& bytes, const std::string& where, const 
 }
 
 std::string write_fcsv(const LandmarkSet& set, const LandmarkFileOptions& options, Notes& notes) {
-    std::string text = "# Markups fiducial file version = 4.11\n# CoordinateSystem = " + options.mesh_space +
+    std::string text = "# Markups fiducial file version = 4.11\n# CoordinateSystem = " + option_text(options, "mesh-space") +
                        "\n# columns = id,x,y,z,ow,ox,oy,oz,vis,sel,lock,label,desc,associatedNodeID\n";
     std::size_t number = 0, changed = 0;
     for (const Landmark& landmark : set.landmarks) {
