@@ -167,7 +167,7 @@ private:
     }
     static DeformOptions settings(const Variant& variant) {
         DeformOptions options;
-        options.details = variant.details;
+        set_option(options, "details", variant.details);
         options.laplacian = variant.laplacian;
         options.handles = options.closeness;  // all vertices are moved by the edit
         options.solve.iterations = variant.iterations;
