@@ -327,7 +327,7 @@ private:
             const double share = shares[score.id / seeds_per_size];
             Sum& sum = sums_[{ladder.kind, pair, share, metric}];
             const Distortions d = distortions(score);
-            if (score.outcome != "kept" || !score.overlap) {
+            if (score.outcome != TransferOutcome::kept || !score.overlap) {
                 ++sum.lost;
                 continue;
             }

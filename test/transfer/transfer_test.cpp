@@ -94,7 +94,7 @@ TEST(Transfer, RegionsKeepTheirAreaAcrossResolutions) {
                 set_option(options, "spikes", spikes);
                 const TransferResult result = transfer_to(*source, set, *target, options);
                 for (const TransferScore& score : result.scores) {
-                    EXPECT_EQ(score.outcome, "kept");
+                    EXPECT_EQ(score.outcome, TransferOutcome::kept);
                     EXPECT_FALSE(score.voted);
                     EXPECT_LT(*score.wrong_side, 0.5 * edge * score.source_length) << metric << " " << spikes;
                     EXPECT_LT(score.hausdorff.value_or(1e9), 2 * edge);
@@ -161,7 +161,7 @@ TEST(Transfer, RegionTooSmallBecomesAPointOrALineAndSaysSo) {
     EXPECT_EQ(result.annotations.annotations[0].tag, "dot");
     EXPECT_FALSE(result.annotations.annotations[0].note.empty());
     EXPECT_EQ(result.annotations.annotations[1].type, AnnotationType::line);
-    EXPECT_EQ(result.scores[1].outcome, "became a line");
+    EXPECT_EQ(result.scores[1].outcome, TransferOutcome::became_line);
 }
 
 TEST(Transfer, ShortLinesBecomePointsAndLostPinsLeaveAStaleValue) {
@@ -174,7 +174,7 @@ TEST(Transfer, ShortLinesBecomePointsAndLostPinsLeaveAStaleValue) {
     const TransferResult result = transfer_to(source, set_of({line}), target);
     ASSERT_EQ(result.annotations.annotations.size(), 1U);
     EXPECT_EQ(result.annotations.annotations[0].type, AnnotationType::point);
-    EXPECT_EQ(result.scores[0].outcome, "became a point");
+    EXPECT_EQ(result.scores[0].outcome, TransferOutcome::became_point);
 
     // A pin on a part that the target does not have.
     const Mesh two = build_mesh(joined(octahedron_sphere(3), moved(octahedron_sphere(2), 1, {5, 0, 0}))),
@@ -202,7 +202,7 @@ TEST(Transfer, RegionWhoseSmallHoleVanishesCoversItsComponent) {
     const Mesh source = build_mesh(octahedron_sphere(5)), target = build_mesh(octahedron_sphere(2));
     const AnnotationSet set = set_of({region(1, source, [](const Point& p) { return p.z() < 0.998; })});
     const TransferResult result = transfer_to(source, set, target);
-    EXPECT_EQ(result.scores[0].outcome, "kept");
+    EXPECT_EQ(result.scores[0].outcome, TransferOutcome::kept);
     EXPECT_EQ(result.annotations.annotations.at(0).faces.size(), target.number_of_faces());
     EXPECT_FALSE(result.scores[0].hausdorff);
 }

@@ -25,12 +25,15 @@ struct TransferOptions {
     void describe(OptionList& visit);
 };
 
+enum class TransferOutcome { kept, became_line, became_point, lost };
+std::string to_string(TransferOutcome outcome);
+
 /// How faithful the transfer of one annotation is.
 struct TransferScore {
     int id = 0;
     std::string tag;
     AnnotationType source_type = AnnotationType::region, target_type = AnnotationType::region;
-    std::string outcome;                          ///< "kept", "became a line", "became a point", "lost"
+    TransferOutcome outcome = TransferOutcome::kept;
     std::string note;                             ///< what else is to be known, in words
     double source_area = 0, target_area = 0;      ///< of regions
     double source_length = 0, target_length = 0;  ///< perimeter of regions, length of lines
