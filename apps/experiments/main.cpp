@@ -16,6 +16,11 @@
 namespace ostraka::experiments {
 namespace {
 
+template <class Number>
+void ranged(CLI::App& command, const char* name, Number& value, const char* text, int least, int most) {
+    command.add_option(name, value, text)->check(CLI::Range(least, most))->capture_default_str();
+}
+
 void declare_transfer_table(CLI::App& command, TableOptions& options) {
     command.add_option("--made", options.made, "made objects to use, or none")->delimiter(',');
     command
@@ -89,7 +94,7 @@ void declare_cages(CLI::App& command, CageTableOptions& options) {
 
 void declare_fixed_proportions(CLI::App& command, FixedProportionsOptions& options) {
     command.add_option("output", options.output, "folder for table and plot")->capture_default_str();
-    command.add_option("--seeds", options.seeds, "populations of each kind")->check(CLI::Range(1, 100000))->capture_default_str();
+    ranged(command, "--seeds", options.seeds, "populations of each kind", 1, 100000);
 }
 
 void declare_pose_search(CLI::App& command, PoseSearchExperiment& options) {
@@ -109,10 +114,8 @@ void declare_pose_search(CLI::App& command, PoseSearchExperiment& options) {
 void declare_breaks(CLI::App& command, BreakExperiment& options) {
     command.add_option("output", options.output, "folder for tables and meshes")->capture_default_str();
     command.add_option("--data", options.data, "folder with the scanned fragments")->capture_default_str();
-    command.add_option("--motions", options.motions, "random ones of all sherds")
-        ->check(CLI::Range(1, 1000))
-        ->capture_default_str();
-    command.add_option("--pots", options.pots, "made vessels of each kind")->check(CLI::Range(1, 1000))->capture_default_str();
+    ranged(command, "--motions", options.motions, "random ones of all sherds", 1, 1000);
+    ranged(command, "--pots", options.pots, "made vessels of each kind", 1, 1000);
 }
 
 void declare_moulds(CLI::App& command, MouldExperimentOptions& options) {
@@ -121,20 +124,16 @@ void declare_moulds(CLI::App& command, MouldExperimentOptions& options) {
         ->delimiter(',')
         ->check(CLI::IsMember({"choices", "wear", "runs", "scans"}));
     command.add_option("--face", options.faces, "mesh files of faces with the same vertices, for scans");
-    command.add_option("--objects", options.objects, "casts of four moulds")->check(CLI::Range(8, 10000))->capture_default_str();
-    command.add_option("--seeds", options.seeds, "populations")->check(CLI::Range(1, 1000))->capture_default_str();
-    command.add_option("--vertices", options.vertices, "of a whole head")
-        ->check(CLI::Range(1500, 1000000))
-        ->capture_default_str();
+    ranged(command, "--objects", options.objects, "casts of four moulds", 8, 10000);
+    ranged(command, "--seeds", options.seeds, "populations", 1, 1000);
+    ranged(command, "--vertices", options.vertices, "of a whole head", 1500, 1000000);
 }
 
 void declare_fragments(CLI::App& command, FragmentExperiment& options) {
     command.add_option("output", options.output, "folder for the table")->capture_default_str();
-    command.add_option("--seeds", options.seeds, "fragments of each kind")->check(CLI::Range(1, 1000))->capture_default_str();
+    ranged(command, "--seeds", options.seeds, "fragments of each kind", 1, 1000);
     command.add_option("--shares", options.shares, "of the surface that fragments have")->delimiter(',');
-    command.add_option("--vertices", options.vertices, "of the template")
-        ->check(CLI::Range(4000, 1000000))
-        ->capture_default_str();
+    ranged(command, "--vertices", options.vertices, "of the template", 4000, 1000000);
     command.add_option("--space", options.space, "of the fit; with another than mesh no class is asked")
         ->check(CLI::IsMember({"mesh", "cage", "both"}))
         ->capture_default_str();
@@ -142,9 +141,7 @@ void declare_fragments(CLI::App& command, FragmentExperiment& options) {
 
 void declare_verdicts(CLI::App& command, FragmentExperiment& options) {
     command.add_option("output", options.output, "folder for the table")->capture_default_str();
-    command.add_option("--pairs", options.pairs, "half of them of one object")
-        ->check(CLI::Range(4, 100000))
-        ->capture_default_str();
+    ranged(command, "--pairs", options.pairs, "half of them of one object", 4, 100000);
     command.add_option("--vertices", options.vertices, "of the template")->check(CLI::Range(4000, 1000000));
     command.add_option("--seed", options.seed, "of members and breaks");
 }
@@ -166,7 +163,7 @@ void declare_class_correspondence(CLI::App& command, ClassCorrespondenceOptions&
     command.add_option("--landmarks", options.landmarks, "vertices of a face, an index a line")->required();
     command.add_option("--body", options.body, "mesh file of a body");
     command.add_option("--target", options.targets, "what moves the body's vertices: 'vertex dx dy dz' a line");
-    command.add_option("--made", options.made, "faces made for the modes")->check(CLI::Range(2, 10000))->capture_default_str();
+    ranged(command, "--made", options.made, "faces made for the modes", 2, 10000);
 }
 
 void declare_semantic(CLI::App& command, SemanticOptions& options) {
