@@ -133,16 +133,10 @@ Axis circle_axis(const std::vector<Point>& points) {
 
 Axis find_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options) {
     check_options(options, "axis");
-    switch (options.method) {
-        case AxisMethod::slices:
-            return slice_axis(mesh, faces, options);
-        case AxisMethod::skeleton:
-            return skeleton_axis(mesh, faces, options);
-        case AxisMethod::principal:
-            return principal_axis(mesh, faces, options);
-        default:
-            return rotation_axis(mesh, faces, options);
-    }
+    if (options.method == AxisMethod::slices) return slice_axis(mesh, faces, options);
+    if (options.method == AxisMethod::skeleton) return skeleton_axis(mesh, faces, options);
+    if (options.method == AxisMethod::principal) return principal_axis(mesh, faces, options);
+    return rotation_axis(mesh, faces, options);
 }
 
 std::string to_string(AxisMethod method) { return option_text(AxisOptions{.method = method}, "method"); }
