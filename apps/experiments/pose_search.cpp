@@ -12,12 +12,11 @@
 #include "ostraka/synthetic/fragments.h"
 #include "ostraka/synthetic/make_mesh.h"
 
-#include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <iostream>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <sstream>
 
 namespace ostraka::experiments {

@@ -7,7 +7,6 @@
 #include "ostraka/geom/with_points.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <set>
 
