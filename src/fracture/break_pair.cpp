@@ -83,8 +83,8 @@ public:
             const Vector3d off = p - target_.places[i];
             const double above = target_.normals[i].dot(off), squared = off.squaredNorm() / (reach_ * reach_);
             if (fracture && i < target_.fractures && squared < 1) {
-                const double facing = -target_.normals[i].dot(pose.turn * normal);
-                if (facing > 0.3) score += area * (1 - squared) * facing;
+                const double against = -target_.normals[i].dot(pose.turn * normal);
+                if (against > 0.3) score += area * (1 - squared) * against;
             }
             if (above < -0.5 * reach_) score -= area * std::min(1.0, -above / reach_ - 0.5);
         };
