@@ -104,7 +104,7 @@ void change(benchmark::State& state, const std::string& what, bool bare) {
     const std::array<const Fragment*, 2> fragments{&fragment_of(10'000, "head joint", 0.4),
                                                    &fragment_of(10'000, "base centre", 0.2)};
     ReconstructOptions options;
-    options.search.search = bare ? "always" : "never";
+    options.search.search = bare ? SearchOptions::Search::always : SearchOptions::Search::never;
     set_threads(2);
     const RelationGraph no_graph;
     Reconstructor kept(ours.mesh, ours.set, no_graph, options);

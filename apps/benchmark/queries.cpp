@@ -2,7 +2,6 @@
 #include "benchmarks.h"
 #include "ostraka/core/parallel.h"
 
-#include <cmath>
 #include <map>
 #include <string>
 

@@ -3,8 +3,6 @@
 
 #include "ostraka/relation/topology.h"
 
-#include <cmath>
-
 namespace ostraka::bench {
 
 namespace {

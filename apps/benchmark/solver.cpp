@@ -10,9 +10,7 @@
 #include <malloc.h>
 
 #include <chrono>
-#include <cmath>
 #include <fstream>
-#include <numbers>
 #include <numeric>
 #include <random>
 #include <set>

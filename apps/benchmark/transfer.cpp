@@ -61,7 +61,7 @@ void build_tree(benchmark::State& state, std::size_t vertices, bool closest) {
 std::string what_is_wrong(const TransferResult& result, bool overlap) {
     for (const TransferScore& score : result.scores) {
         const std::string region = "region " + std::to_string(score.id);
-        if (score.outcome != "kept") return region + " " + score.outcome;
+        if (score.outcome != TransferOutcome::kept) return region + " " + to_string(score.outcome);
         if (distortions(score).area > 0.05) return region + " changed its area by more than 5 %";
         if (overlap && !(score.overlap.value_or(0) > 0.9)) return region + " overlaps its source by less than 0.9";
     }

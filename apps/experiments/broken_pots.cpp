@@ -10,7 +10,6 @@
 
 #include <cmath>
 #include <iostream>
-#include <numbers>
 #include <sstream>
 
 namespace ostraka::experiments {

@@ -74,7 +74,7 @@ void cage_reach(const CageReachOptions& options) {
             const std::string stem = edit_name + '-' + cage_name + '-';
             for (const Way& way : ways) {
                 DeformOptions deforming;
-                deforming.space = way.space;
+                set_option(deforming, "space", way.space);
                 deforming.closeness = way.closeness;
                 deforming.conflicts = false;
                 deforming.solve.iterations = options.iterations;

@@ -8,7 +8,6 @@
 
 #include <cstdio>
 #include <ctime>
-#include <filesystem>
 #include <iostream>
 
 namespace ostraka::experiments {

@@ -154,7 +154,7 @@ class LeaveOneOut {
 public:
     LeaveOneOut(const std::vector<Object>& objects, const ClassMembershipOptions& options) : objects_(objects) {
         for (std::size_t i = 0; i < objects.size(); ++i) families_[objects[i].family].push_back(i);
-        how_.correspondence = "fitted";
+        how_.correspondence = CorrespondenceChoice::fitted;
         how_.fit.tries = options.tries;
         how_.fit.fit.reach = options.reach;
         how_.fit.fit.levels = 5;

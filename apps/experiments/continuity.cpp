@@ -4,8 +4,6 @@
 
 #include "ostraka/geom/eigen.h"
 
-#include <algorithm>
-#include <cmath>
 #include <iostream>
 
 namespace ostraka::experiments {

@@ -16,7 +16,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <iostream>
 #include <numbers>
 #include <optional>
@@ -307,12 +306,12 @@ void verdicts(const FragmentExperiment& options) {
 
 void fragments(const FragmentExperiment& options) {
     const Canon canon = make_canon(options.vertices);
-    const bool in_mesh = options.space == "mesh";
+    ReconstructOptions how;
+    set_option(how.fit, "space", options.space);
+    const bool in_mesh = how.fit.space == NonRigidOptions::Space::mesh;
     const std::optional<ShapePrior> prior = in_mesh ? std::optional(learn_canon(canon)) : std::nullopt;
     const std::optional<TemplateCage> made = in_mesh ? std::nullopt : std::optional(made_cage(canon.statuette.mesh));
     const TemplateCage* cage = made ? &*made : nullptr;
-    ReconstructOptions how;
-    how.fit.space = options.space;
     TextTable table({"deformation", "at", "share", "noise", "erosion", "placed", "angle", "shift", "observed", "missing", "rigid",
                      "missing/rigid", "missing with class", "with class/rigid", "constraint before", "after", "crossings",
                      "seconds"});

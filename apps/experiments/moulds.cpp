@@ -127,7 +127,7 @@ std::vector<Choice> choices() {
 }
 MouldGroups grouped(const Compared& compared, const Choice& choice, int expected) {
     GroupOptions options;
-    options.method = choice.method;
+    set_option(options, "method", choice.method);
     options.epsilon = choice.epsilon;
     options.expected_size = expected;
     return group_heads(mould_distances(compared.matrices, choice.similarity), options);

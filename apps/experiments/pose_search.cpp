@@ -12,12 +12,11 @@
 #include "ostraka/synthetic/fragments.h"
 #include "ostraka/synthetic/make_mesh.h"
 
-#include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <iostream>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <sstream>
 
 namespace ostraka::experiments {
@@ -40,6 +39,16 @@ struct Case {
     std::string name, whole, from;  ///< the whole, and what the piece is broken from
     enum class Kind { same, member, stranger } kind = Kind::same;
 };
+constexpr const char* kind_words[]{"same", "member", "stranger"};
+
+void add_pairs(std::vector<Case>& cases, const std::vector<std::string>& pairs, Case::Kind kind, const std::string& usage) {
+    for (const std::string& pair : pairs) {
+        const auto at = pair.find('=');
+        if (at == std::string::npos)
+            fail_usage(std::string("--") + kind_words[static_cast<int>(kind)] + " is '" + pair + "'", "give " + usage);
+        cases.push_back({pair, pair.substr(0, at), pair.substr(at + 1), kind});
+    }
+}
 
 /// How far a pose is from the truth: degrees, and the way of the piece's middle as per cent of the diagonal.
 struct PoseError {
@@ -57,117 +66,138 @@ PoseError error_of(const Motion& found, const Motion& truth, const Vector3d& mid
     return error;
 }
 
+Vector3d middle_of(const Mesh& mesh) {
+    Vector3d middle = Vector3d::Zero();
+    double area = 0;
+    for (const Face f : mesh.faces()) {
+        const double a = face_area(mesh, f);
+        middle += a * eigen(centroid(mesh, f));
+        area += a;
+    }
+    return middle / area;
+}
+
+struct Count {
+    int all = 0, right = 0, found = 0, decided = 0, decided_right = 0;
+    double seconds = 0;
+};
+
+/// The pieces of one case, laid onto its whole.
+class CaseTrial {
+public:
+    CaseTrial(const Case& one, const PoseSearchExperiment& options, std::ostream& csv)
+        : case_(one),
+          options_(options),
+          csv_(csv),
+          whole_(read_or_make(one.whole, options.vertices, 1)),
+          other_(read_or_make(one.from, options.vertices, 2)),
+          surface_(whole_) {
+        if (one.kind == Case::Kind::stranger) {
+            // As large as the whole, so that its size does not give it away.
+            const double ratio = std::sqrt(surface_area(whole_) / surface_area(other_));
+            for (const Vertex v : other_.vertices()) other_.point(v) = point_of(ratio * eigen(other_.point(v)));
+        }
+        const Stopwatch building;
+        search_.emplace(surface_, options.search);
+        std::cerr << one.name << ": prepared in " << building.seconds().processor << " s\n";
+    }
+
+    /// Nothing is counted where no such piece can be broken off.
+    void lay(double share, double noise, std::uint64_t seed, std::map<std::string, Count>& table) const {
+        const std::string row = case_.name + " | " + format("%g", 100 * share) + " | " + format("%g", 100 * noise);
+        if (const auto piece = broken(share, noise, seed)) judge(*piece, share, noise, seed, table[row]);
+    }
+
+private:
+    [[nodiscard]] std::optional<BrokenPiece> broken(double share, double noise, std::uint64_t seed) const {
+        Random random(seed, 77);
+        const Mesh& source = case_.kind == Case::Kind::same ? whole_ : other_;
+        const Point centre = source.point(Vertex(static_cast<Index>(random.below(source.number_of_vertices()))));
+        BreakOptions breaking;
+        breaking.share = share;
+        breaking.noise = noise;
+        breaking.erosion = options_.erosion;
+        breaking.seed = seed;
+        try {
+            return break_off(source, centre, breaking);
+        } catch (const Error&) {
+            return std::nullopt;
+        }
+    }
+
+    /// Where a piece belongs on the whole.
+    [[nodiscard]] Motion truth_of(const BrokenPiece& piece) const {
+        if (case_.kind != Case::Kind::member) return piece.pose;
+        if (whole_.number_of_vertices() == other_.number_of_vertices() && options_.corresponding) {
+            std::vector<Vector3d> from, to;
+            for (const Vertex v : piece.mesh.vertices()) {
+                from.push_back(eigen(piece.mesh.point(v)));
+                to.push_back(eigen(whole_.point(Vertex(piece.vertices[v]))));
+            }
+            return fit_motion(from, to);
+        }
+        PartAlignmentOptions aligning;
+        aligning.samples = 600;
+        aligning.iterations = 30;
+        aligning.angle = 95;
+        return align_part(piece.mesh, {}, surface_, piece.pose, {}, aligning).pose;
+    }
+
+    void judge(const BrokenPiece& piece, double share, double noise, std::uint64_t seed, Count& count) const {
+        const Vector3d middle = middle_of(piece.mesh);
+        const Motion truth = truth_of(piece);
+        const double diagonal = box_diagonal(whole_);
+        const Stopwatch watch;
+        const PoseSearchResult result = search_->find(piece.mesh);
+        const double seconds = watch.seconds().processor;
+        const PoseCandidate& best = result.candidates.front();
+        const PoseError error = error_of(best.pose, truth, middle, diagonal, result.freedom);
+        const bool member = case_.kind == Case::Kind::member;
+        const bool right =
+            case_.kind != Case::Kind::stranger && error.degrees < (member ? 15 : 5) && error.percent < (member ? 5 : 2);
+        int rank = -1;
+        for (std::size_t c = 0; c < result.candidates.size() && rank < 0; ++c) {
+            const PoseError e = error_of(result.candidates[c].pose, truth, middle, diagonal, {});
+            if (e.degrees < 15 && e.percent < 5) rank = static_cast<int>(c);
+        }
+        ++count.all;
+        count.right += right ? 1 : 0;
+        count.found += rank >= 0 ? 1 : 0;
+        count.decided += result.decided ? 1 : 0;
+        count.decided_right += result.decided && right ? 1 : 0;
+        count.seconds += seconds;
+        csv_ << case_.name << ',' << kind_words[static_cast<int>(case_.kind)] << ',' << share << ',' << noise << ','
+             << options_.erosion << ',' << seed << ',' << error.degrees << ',' << error.percent << ',' << right << ','
+             << (rank >= 0) << ',' << best.score << ',' << best.share << ','
+             << (result.candidates.size() > 1 ? result.candidates[1].score : 0) << ',' << result.margin << ','
+             << result.confidence << ',' << result.decided << ',' << to_string(result.freedom.kind) << ',' << seconds << ','
+             << rank << '\n';
+    }
+
+    const Case& case_;
+    const PoseSearchExperiment& options_;
+    std::ostream& csv_;
+    Mesh whole_, other_;
+    SurfaceSearch surface_;
+    std::optional<PoseSearch> search_;
+};
+
 }  // namespace
 
 void pose_search(const PoseSearchExperiment& options) {
     std::vector<Case> cases;
     for (const std::string& name : options.wholes) cases.push_back({name, name, name, Case::Kind::same});
-    for (const std::string& pair : options.members) {
-        const auto at = pair.find('=');
-        if (at == std::string::npos) fail_usage("--member is '" + pair + "'", "give TEMPLATE=MEMBER");
-        cases.push_back({pair, pair.substr(0, at), pair.substr(at + 1), Case::Kind::member});
-    }
-    for (const std::string& pair : options.strangers) {
-        const auto at = pair.find('=');
-        if (at == std::string::npos) fail_usage("--stranger is '" + pair + "'", "give TEMPLATE=OTHER");
-        cases.push_back({pair, pair.substr(0, at), pair.substr(at + 1), Case::Kind::stranger});
-    }
+    add_pairs(cases, options.members, Case::Kind::member, "TEMPLATE=MEMBER");
+    add_pairs(cases, options.strangers, Case::Kind::stranger, "TEMPLATE=OTHER");
     std::ostringstream csv;
     csv << "case,kind,share,noise,erosion,seed,degrees,percent,right,found,score,share_on,second,margin,confidence,decided,"
-           "freedom,"
-           "seconds,rank\n";
-    struct Count {
-        int all = 0, right = 0, found = 0, decided = 0, decided_right = 0;
-        double seconds = 0;
-    };
+           "freedom,seconds,rank\n";
     std::map<std::string, Count> table;
     for (const Case& one : cases) {
-        const Mesh whole = read_or_make(one.whole, options.vertices, 1);
-        Mesh other = read_or_make(one.from, options.vertices, 2);
-        if (one.kind == Case::Kind::stranger) {
-            // As large as the whole, so that its size does not give it away.
-            const double ratio = std::sqrt(surface_area(whole) / surface_area(other));
-            for (const Vertex v : other.vertices()) other.point(v) = point_of(ratio * eigen(other.point(v)));
-        }
-        const double diagonal = box_diagonal(whole);
-        const SurfaceSearch surface(whole);
-        PoseSearchOptions how = options.search;
-        const Stopwatch building;
-        const PoseSearch search(surface, how);
-        std::cerr << one.name << ": prepared in " << building.seconds().processor << " s\n";
+        const CaseTrial trial(one, options, csv);
         for (const double share : options.shares)
             for (const double noise : options.noises)
-                for (int k = 0; k < options.pieces; ++k) {
-                    const auto seed = static_cast<std::uint64_t>(1 + k);
-                    Random random(seed, 77);
-                    const Mesh& source = one.kind == Case::Kind::same ? whole : other;
-                    const Point centre = source.point(Vertex(static_cast<Index>(random.below(source.number_of_vertices()))));
-                    BreakOptions breaking;
-                    breaking.share = share;
-                    breaking.noise = noise;
-                    breaking.erosion = options.erosion;
-                    breaking.seed = seed;
-                    BrokenPiece piece;
-                    try {
-                        piece = break_off(source, centre, breaking);
-                    } catch (const Error&) {
-                        continue;
-                    }
-                    Vector3d middle = Vector3d::Zero();
-                    double area = 0;
-                    for (const Face f : piece.mesh.faces()) {
-                        const double a = face_area(piece.mesh, f);
-                        middle += a * eigen(centroid(piece.mesh, f));
-                        area += a;
-                    }
-                    middle /= area;
-                    Motion truth = piece.pose;
-                    if (one.kind == Case::Kind::member) {
-                        if (whole.number_of_vertices() == other.number_of_vertices() && options.corresponding) {
-                            std::vector<Vector3d> from, to;
-                            for (const Vertex v : piece.mesh.vertices()) {
-                                from.push_back(eigen(piece.mesh.point(v)));
-                                to.push_back(eigen(whole.point(Vertex(piece.vertices[v]))));
-                            }
-                            truth = fit_motion(from, to);
-                        } else {
-                            PartAlignmentOptions aligning;
-                            aligning.samples = 600;
-                            aligning.iterations = 30;
-                            aligning.angle = 95;
-                            truth = align_part(piece.mesh, {}, surface, truth, {}, aligning).pose;
-                        }
-                    }
-                    const Stopwatch watch;
-                    const PoseSearchResult result = search.find(piece.mesh);
-                    const double seconds = watch.seconds().processor;
-                    const PoseCandidate& best = result.candidates.front();
-                    const PoseError error = error_of(best.pose, truth, middle, diagonal, result.freedom);
-                    const bool right = one.kind != Case::Kind::stranger &&
-                                       error.degrees < (one.kind == Case::Kind::member ? 15 : 5) &&
-                                       error.percent < (one.kind == Case::Kind::member ? 5 : 2);
-                    int rank = -1;
-                    for (std::size_t c = 0; c < result.candidates.size() && rank < 0; ++c) {
-                        const PoseError e = error_of(result.candidates[c].pose, truth, middle, diagonal, {});
-                        if (e.degrees < 15 && e.percent < 5) rank = static_cast<int>(c);
-                    }
-                    Count& count = table[one.name + " | " + format("%g", 100 * share) + " | " + format("%g", 100 * noise)];
-                    ++count.all;
-                    count.right += right ? 1 : 0;
-                    count.found += rank >= 0 ? 1 : 0;
-                    count.decided += result.decided ? 1 : 0;
-                    count.decided_right += result.decided && right ? 1 : 0;
-                    count.seconds += seconds;
-                    csv << one.name << ','
-                        << (one.kind == Case::Kind::same     ? "same"
-                            : one.kind == Case::Kind::member ? "member"
-                                                             : "stranger")
-                        << ',' << share << ',' << noise << ',' << options.erosion << ',' << seed << ',' << error.degrees << ','
-                        << error.percent << ',' << right << ',' << (rank >= 0) << ',' << best.score << ',' << best.share << ','
-                        << (result.candidates.size() > 1 ? result.candidates[1].score : 0) << ',' << result.margin << ','
-                        << result.confidence << ',' << result.decided << ',' << to_string(result.freedom.kind) << ',' << seconds
-                        << ',' << rank << '\n';
-                }
+                for (int k = 0; k < options.pieces; ++k) trial.lay(share, noise, static_cast<std::uint64_t>(1 + k), table);
     }
     std::cout << "| piece of | % of the surface | noise % | pieces | right % | among the candidates % | decided % | of these "
                  "right % | s "

@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <iostream>
 
 namespace ostraka::experiments {
@@ -167,7 +166,7 @@ private:
     }
     static DeformOptions settings(const Variant& variant) {
         DeformOptions options;
-        options.details = variant.details;
+        set_option(options, "details", variant.details);
         options.laplacian = variant.laplacian;
         options.handles = options.closeness;  // all vertices are moved by the edit
         options.solve.iterations = variant.iterations;

@@ -19,7 +19,6 @@
 #include <filesystem>
 #include <iostream>
 #include <numbers>
-#include <numeric>
 #include <sstream>
 
 namespace ostraka::experiments {

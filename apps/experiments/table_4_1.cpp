@@ -54,7 +54,7 @@ public:
         finest_ = read_mesh(options.scan).mesh;
         const std::uint64_t most = *std::max_element(options.sizes.begin(), options.sizes.end());
         RefineOptions refining;
-        refining.scheme = "loop";
+        refining.scheme = RefineOptions::Scheme::loop;
         refining.levels = 1;
         while (finest_.number_of_vertices() < most) refine(finest_, refining);
     }

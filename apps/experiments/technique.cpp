@@ -37,7 +37,7 @@ Outcome outcome_of(const PopulationOptions& options) {
         [&](std::size_t i) {
             const Statuette statuette = generate_statuette(population[i]);
             try {
-                TechniqueObject object{std::to_string(i), population[i].technique,
+                TechniqueObject object{std::to_string(i), option_text(population[i], "technique"),
                                        measure_technique(statuette.mesh, Vector(0, 0, 1))};
                 counts[i] = {object.measures.open_used > 0 ? std::size_t{1} : 0, object.measures.asked,
                              object.measures.slices.size()};
@@ -173,8 +173,8 @@ void technique(const TechniqueExperiment& options) {
     variants[1].population.scan_noise = 0;
     variants[2].population.scan_noise = 0.15;
     variants[3].population.scan_noise = 0.3;
-    variants[4].population.cavity_seen = 1, variants[4].population.interior = "closed";
-    variants[5].population.cavity_seen = 0.2, variants[5].population.interior = "open";
+    variants[4].population.cavity_seen = 1, variants[4].population.interior = PopulationOptions::Interior::closed;
+    variants[5].population.cavity_seen = 0.2, variants[5].population.interior = PopulationOptions::Interior::open;
     variants[6].population.holes = 8;
     TextTable scans(columns("level 3"));
     for (const Variant& variant : variants) {

@@ -107,7 +107,7 @@ public:
         for (const std::string& file : options_.scans) {
             Mesh full = read_mesh(file).mesh;
             RefineOptions refining;
-            refining.scheme = "loop";
+            refining.scheme = RefineOptions::Scheme::loop;
             refining.levels = 1;
             while (full.number_of_vertices() < options_.full) refine(full, refining);
             full = simplified(full, options_.full);
@@ -248,7 +248,7 @@ private:
             const SurfaceSearch search(target);
             for (const std::string rounding : {"path", "area", "balanced"}) {
                 TransferOptions options;
-                options.rounding = rounding;
+                set_option(options, "rounding", rounding);
                 options.overlap = false;
                 const TransferResult there = transfer(source, set, search, options);
                 judge(truth, there.annotations, home + " -> " + name, rounding);
@@ -278,8 +278,9 @@ private:
                 if (!options_.metric.empty() && metric.find(options_.metric) == std::string::npos) continue;
                 TransferOptions options;
                 options.refine = metric == "refine";
-                options.rounding = metric.find("balanced") != std::string::npos ? "balanced" : "path";
-                if (!options.refine) options.metric = metric.substr(0, metric.find(' '));
+                options.rounding = metric.find("balanced") != std::string::npos ? TransferOptions::Rounding::balanced
+                                                                                : TransferOptions::Rounding::path;
+                if (!options.refine) options.metric = path_metric(metric.substr(0, metric.find(' ')));
                 const auto start = std::chrono::steady_clock::now();
                 const TransferResult there = transfer(source, set, search, options);
                 double seconds = there.times.correspondence + there.times.paths + there.times.regions;
@@ -326,7 +327,7 @@ private:
             const double share = shares[score.id / seeds_per_size];
             Sum& sum = sums_[{ladder.kind, pair, share, metric}];
             const Distortions d = distortions(score);
-            if (score.outcome != "kept" || !score.overlap) {
+            if (score.outcome != TransferOutcome::kept || !score.overlap) {
                 ++sum.lost;
                 continue;
             }

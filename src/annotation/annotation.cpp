@@ -30,15 +30,8 @@ const Annotation* AnnotationSet::find(int id) const {
 Annotation* AnnotationSet::find(int id) { return const_cast<Annotation*>(std::as_const(*this).find(id)); }
 
 std::string to_string(AnnotationType type) {
-    switch (type) {
-        case AnnotationType::point:
-            return "point";
-        case AnnotationType::line:
-            return "line";
-        case AnnotationType::region:
-            break;
-    }
-    return "region";
+    static constexpr const char* words[]{"point", "line", "region"};
+    return words[static_cast<std::size_t>(type)];
 }
 
 int free_id(const AnnotationSet& set) { return next_free_id(set.annotations); }

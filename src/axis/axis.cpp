@@ -133,11 +133,13 @@ Axis circle_axis(const std::vector<Point>& points) {
 
 Axis find_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options) {
     check_options(options, "axis");
-    if (options.method == "slices") return slice_axis(mesh, faces, options);
-    if (options.method == "skeleton") return skeleton_axis(mesh, faces, options);
-    if (options.method == "principal") return principal_axis(mesh, faces, options);
+    if (options.method == AxisMethod::slices) return slice_axis(mesh, faces, options);
+    if (options.method == AxisMethod::skeleton) return skeleton_axis(mesh, faces, options);
+    if (options.method == AxisMethod::principal) return principal_axis(mesh, faces, options);
     return rotation_axis(mesh, faces, options);
 }
+
+std::string to_string(AxisMethod method) { return option_text(AxisOptions{.method = method}, "method"); }
 
 std::string to_obj(const Axis& axis) {
     std::string text = "# axis\n";

@@ -8,7 +8,7 @@ namespace ostraka {
 
 namespace {
 
-Axis axis_by(const std::string& method, const Mesh& mesh, std::vector<Index> faces, AxisOptions options) {
+Axis axis_by(AxisMethod method, const Mesh& mesh, std::vector<Index> faces, AxisOptions options) {
     if (faces.empty()) {
         faces.resize(mesh.number_of_faces());
         std::iota(faces.begin(), faces.end(), Index{0});
@@ -20,10 +20,10 @@ Axis axis_by(const std::string& method, const Mesh& mesh, std::vector<Index> fac
 /// An error says that it is the axis to slice along that is missing.
 Axis axis_to_cut_along(const Mesh& mesh, const std::vector<Index>& faces, const CutOptions& options) {
     try {
-        return axis_by(options.direction, mesh, faces, options.axis);
+        return axis_by(*options.direction, mesh, faces, options.axis);
     } catch (const Error& error) {
         if (error.kind() != ErrorKind::input) throw;
-        fail_input("mesh", "no " + options.direction + " axis to slice along: the mesh (or part) " + error.problem(),
+        fail_input("mesh", "no " + to_string(*options.direction) + " axis to slice along: the mesh (or part) " + error.problem(),
                    "repair or simplify it (ostraka mesh), or slice along another --direction, such as up or 0,0,1");
     }
 }
@@ -35,14 +35,14 @@ CutObject cut_object(const Mesh& mesh, const std::vector<Index>& faces, const Cu
     const auto box = bounding_box(mesh);
     Point through((box.xmin() + box.xmax()) / 2, (box.ymin() + box.ymax()) / 2, (box.zmin() + box.zmax()) / 2);
     Vector along = options.up;
-    if (options.direction != "up") {
+    if (options.direction) {
         const Axis axis = axis_to_cut_along(mesh, faces, options);
         if (!axis.found) {
             CutObject none;
-            none.reason = "no " + options.direction + " axis to slice along: " + axis.reason;
+            none.reason = "no " + to_string(*options.direction) + " axis to slice along: " + axis.reason;
             return none;
         }
-        if (options.direction == "skeleton") return cut_across(mesh, axis.lines.at(0), options.places.count, faces);
+        if (options.direction == AxisMethod::skeleton) return cut_across(mesh, axis.lines.at(0), options.places.count, faces);
         along = axis.direction * along < 0 ? -axis.direction : axis.direction;
         through = axis.point;
     }
@@ -79,13 +79,15 @@ std::vector<ComparedAxis> compared_axes(const Mesh& mesh, const std::vector<Inde
     else attempt(regression, [&] { add_line(regression, regression_line(cut.frames[0], centres)); });
     if (!cut.curve.empty()) add_curve("skeleton", cut.curve);
     if (!by_shape) return list;
-    for (const std::string method : {"rotation", "principal", "slices", "skeleton"}) {
-        if (method == "skeleton" && !cut.curve.empty()) continue;
-        attempt(method, [&] {
+    for (const AxisMethod method : {AxisMethod::rotation, AxisMethod::principal, AxisMethod::slices, AxisMethod::skeleton}) {
+        if (method == AxisMethod::skeleton && !cut.curve.empty()) continue;
+        const std::string name = to_string(method);
+        attempt(name, [&] {
             const Axis axis = axis_by(method, mesh, faces, options);
-            if (!axis.found) add_none(method, axis.reason);
-            else if (method == "rotation" || method == "principal") add_line(method, {axis.point, axis.direction});
-            else add_curve(method, axis.lines.at(0));
+            const bool straight = method == AxisMethod::rotation || method == AxisMethod::principal;
+            if (!axis.found) add_none(name, axis.reason);
+            else if (straight) add_line(name, {axis.point, axis.direction});
+            else add_curve(name, axis.lines.at(0));
         });
     }
     return list;

@@ -10,7 +10,6 @@
 #include <CGAL/Side_of_triangle_mesh.h>
 
 #include <cmath>
-#include <cstdio>
 
 namespace ostraka {
 

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 namespace ostraka {
@@ -94,7 +93,7 @@ CageResult make_cage(const Mesh& object, const CageOptions& options, const CageD
         }
         const double tried = alpha;
         alpha *= 2;
-        if (options.genus == "fill" && check_cage(surface, Mesh()).genus > 0) continue;
+        if (options.genus == CageOptions::Genus::fill && check_cage(surface, Mesh()).genus > 0) continue;
         const std::size_t size = surface.number_of_vertices();
         if (mirror) surface = cage::upper_half(surface, *mirror);
         if (surface.number_of_faces() == 0) continue;

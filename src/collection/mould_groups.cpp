@@ -77,7 +77,9 @@ double knee_epsilon(const Eigen::MatrixXd& d) {
 class Grouping {
 public:
     Grouping(const Eigen::MatrixXd& distances, const GroupOptions& options)
-        : d_(distances), tree_(linkage(distances, options.method == "linkage" ? "average" : "single")) {}
+        : d_(distances),
+          tree_(linkage(distances,
+                        options.method == GroupOptions::Method::linkage ? LinkageMethod::average : LinkageMethod::single)) {}
 
     [[nodiscard]] std::vector<int> at(double epsilon) const { return cut_at(tree_, epsilon); }
 
@@ -122,7 +124,7 @@ double nested_groups(const Eigen::MatrixXd& d, const Eigen::MatrixXd& distances,
     const Eigen::MatrixXd own = part_of(d, heads);
     const Grouping grouping(own, options);
     const auto [epsilon, silhouette] = grouping.best_epsilon();
-    const bool embedded = options.method == "embedding";
+    const bool embedded = options.method == GroupOptions::Method::embedding;
     const bool apart =
         silhouette >= (embedded ? least_in_embedding : least_in_distances) &&
         (!embedded || mean(silhouettes_of_distances(part_of(distances, heads), grouping.at(epsilon))) >= least_in_distances);
@@ -143,6 +145,22 @@ double nested_groups(const Eigen::MatrixXd& d, const Eigen::MatrixXd& distances,
     return height;
 }
 
+enum class EpsilonRule { knn, volume, knee, silhouette, nested, number };
+
+/// `value`: where the rule is a number.
+EpsilonRule epsilon_rule(const std::string& word, double& value) {
+    const char* const words[]{"knn", "volume", "knee", "silhouette", "nested"};
+    if (const auto known = std::find(std::begin(words), std::end(words), word); known != std::end(words))
+        return static_cast<EpsilonRule>(known - std::begin(words));
+    double number = 0;
+    const char* end = word.data() + word.size();
+    const auto parsed = std::from_chars(word.data(), end, number);
+    if (parsed.ec != std::errc() || parsed.ptr != end || !(number >= 0))
+        fail_usage("epsilon is '" + word + "'", "give a number from 0 up, or knn, volume, knee, silhouette or nested");
+    value = number;
+    return EpsilonRule::number;
+}
+
 }  // namespace
 
 MouldGroups group_heads(const Eigen::MatrixXd& distances, const GroupOptions& options) {
@@ -155,31 +173,27 @@ MouldGroups group_heads(const Eigen::MatrixXd& distances, const GroupOptions& op
         groups.coordinates /= between.maxCoeff();
         between /= between.maxCoeff();
     }
-    const Eigen::MatrixXd& d = options.method == "embedding" ? between : distances;
+    const Eigen::MatrixXd& d = options.method == GroupOptions::Method::embedding ? between : distances;
     const Grouping grouping(d, options);
-    double number = 0;
-    const char* end = options.epsilon.data() + options.epsilon.size();
-    const auto parsed = std::from_chars(options.epsilon.data(), end, number);
+    const EpsilonRule rule = epsilon_rule(options.epsilon, groups.epsilon);
     const int expected = options.expected_size > 0 ? options.expected_size - 1
                                                    : static_cast<int>(std::lround(std::sqrt(static_cast<double>(d.rows()))));
-    if (parsed.ec == std::errc() && parsed.ptr == end && number >= 0) groups.epsilon = number;
-    else if (options.epsilon == "knn") groups.epsilon = knn_epsilon(d, expected);
-    else if (options.epsilon == "volume") groups.epsilon = volume_epsilon(groups.coordinates, 1);
-    else if (options.epsilon == "knee") groups.epsilon = knee_epsilon(d);
-    else if (options.epsilon == "silhouette" || options.epsilon == "nested") groups.epsilon = grouping.best_epsilon().first;
-    else
-        fail_usage("epsilon is '" + options.epsilon + "'", "give a number from 0 up, or knn, volume, knee, silhouette or nested");
+    if (rule == EpsilonRule::knn) groups.epsilon = knn_epsilon(d, expected);
+    else if (rule == EpsilonRule::volume) groups.epsilon = volume_epsilon(groups.coordinates, 1);
+    else if (rule == EpsilonRule::knee) groups.epsilon = knee_epsilon(d);
+    else if (rule != EpsilonRule::number) groups.epsilon = grouping.best_epsilon().first;
     groups.tree = grouping.tree();
     std::vector<int> labels = grouping.at(groups.epsilon);
     groups.silhouette = mean(silhouettes_of_distances(d, by_size(labels)));
-    groups.clear = groups.silhouette >= (options.method == "embedding" ? least_in_embedding : least_in_distances);
-    if (options.epsilon == "nested" && groups.clear) {
+    groups.clear =
+        groups.silhouette >= (options.method == GroupOptions::Method::embedding ? least_in_embedding : least_in_distances);
+    if (rule == EpsilonRule::nested && groups.clear) {
         std::vector<std::size_t> all(labels.size());
         std::iota(all.begin(), all.end(), std::size_t{0});
         int next = 0;
         groups.epsilon = nested_groups(d, distances, options, all, labels, next);
         groups.silhouette = mean(silhouettes_of_distances(d, labels));
-    } else if ((options.epsilon == "silhouette" || options.epsilon == "nested") && !groups.clear) {
+    } else if ((rule == EpsilonRule::silhouette || rule == EpsilonRule::nested) && !groups.clear) {
         groups.epsilon = grouping.top();
         labels.assign(labels.size(), 0);
     }

@@ -5,7 +5,6 @@
 #include "ostraka/core/progress.h"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 
 namespace ostraka {

@@ -56,8 +56,8 @@ std::vector<Kind> kinds_of(const MeasureTable& table) {
     return result;
 }
 
-std::vector<double> corrected(const std::vector<double>& p, const std::string& correction) {
-    return correction == "by" ? benjamini_yekutieli(p) : benjamini_hochberg(p);
+std::vector<double> corrected(const std::vector<double>& p, ProportionOptions::Correction correction) {
+    return correction == ProportionOptions::Correction::by ? benjamini_yekutieli(p) : benjamini_hochberg(p);
 }
 
 /// Numbers measures that are joined by pairs with the same number.
@@ -225,19 +225,8 @@ MeasureTable without_extremes(MeasureTable table, std::vector<std::string>& note
 }  // namespace
 
 std::string to_string(Fixedness fixedness) {
-    switch (fixedness) {
-        case Fixedness::free:
-            return "free";
-        case Fixedness::with_size:
-            return "with size";
-        case Fixedness::stable:
-            return "stable";
-        case Fixedness::fixed:
-            return "fixed";
-        case Fixedness::unknown:
-            break;
-    }
-    return "unknown";
+    static constexpr const char* words[]{"unknown", "free", "with size", "stable", "fixed"};
+    return words[static_cast<std::size_t>(fixedness)];
 }
 
 std::string not_fixed_because(const RatioRow& ratio, double false_discoveries) {

@@ -13,8 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <numbers>
 #include <optional>
 
 namespace ostraka {

@@ -62,6 +62,83 @@ std::vector<Scored> distinct(std::vector<Scored> list, std::size_t count, const 
     return kept;
 }
 
+/// Scores poses quickly, by a few places of the second side.
+class QuickScore {
+public:
+    QuickScore(const BreakSide& on, const BreakSide& of, double reach)
+        : target_(on, 2 * reach),
+          of_(of),
+          reach_(reach),
+          fractures_(thinned(of.fracture.places.size(), 160)),
+          others_(thinned(of.intact.places.size(), 120)),
+          each_fracture_(fractures_.empty() ? 0 : of.fracture.area / static_cast<double>(fractures_.size())),
+          each_other_(others_.empty() ? 0 : of.intact.area / static_cast<double>(others_.size())) {}
+
+    [[nodiscard]] double operator()(const Motion& pose) const {
+        double score = 0;
+        const auto look = [&](const Vector3d& place, const Vector3d& normal, double area, bool fracture) {
+            const Vector3d p = pose(place);
+            const Index i = target_.grid->near(p);
+            if (i == no_index) return;
+            const Vector3d off = p - target_.places[i];
+            const double above = target_.normals[i].dot(off), squared = off.squaredNorm() / (reach_ * reach_);
+            if (fracture && i < target_.fractures && squared < 1) {
+                const double against = -target_.normals[i].dot(pose.turn * normal);
+                if (against > 0.3) score += area * (1 - squared) * against;
+            }
+            if (above < -0.5 * reach_) score -= area * std::min(1.0, -above / reach_ - 0.5);
+        };
+        for (const std::size_t i : fractures_) look(of_.fracture.places[i], of_.fracture.normals[i], each_fracture_, true);
+        for (const std::size_t i : others_) look(of_.intact.places[i], of_.intact.normals[i], each_other_, false);
+        return score;
+    }
+
+private:
+    QuickTarget target_;
+    const BreakSide& of_;
+    double reach_;
+    std::vector<std::size_t> fractures_, others_;
+    double each_fracture_, each_other_;
+};
+
+/// The best of all poses that lay a frame onto a frame; `tried` counts them.
+std::vector<Scored> best_of_frames(const BreakSide& a, const BreakSide& b, double reach, std::size_t count, std::size_t& tried) {
+    const QuickScore quick_score(a, b, reach);
+    const std::size_t columns = b.frames.size();
+    std::vector<double> scores(a.frames.size() * columns);
+    const double none = -std::numeric_limits<double>::infinity();
+    parallel_for(scores.size(), [&](std::size_t k) {
+        const RimFrame &f = a.frames[k / columns], &g = b.frames[k % columns];
+        scores[k] = f.facet == g.facet ? quick_score(g.onto(f)) : none;
+    });
+    tried = static_cast<std::size_t>(std::count_if(scores.begin(), scores.end(), [&](double s) { return s > none; }));
+    std::vector<std::size_t> order;
+    for (std::size_t k = 0; k < scores.size(); ++k)
+        if (scores[k] > 0) order.push_back(k);
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t x, std::size_t y) { return std::pair(-scores[x], x) < std::pair(-scores[y], y); });
+    if (order.size() > count) order.resize(count);
+    std::vector<Scored> poses;
+    for (const std::size_t k : order) poses.push_back({b.frames[k % columns].onto(a.frames[k / columns]), scores[k]});
+    return poses;
+}
+
+/// How sure the best candidate is, or why it is not.
+void decide(BreakPair& result, const PairOptions& options) {
+    if (result.candidates.empty() || result.candidates.front().contact < options.least_contact) {
+        result.undecided = "no pose brings " + std::to_string(static_cast<int>(std::lround(100 * options.least_contact))) +
+                           " % of the smaller fracture into contact with the other";
+        return;
+    }
+    const PairCandidate& best = result.candidates.front();
+    const double next = result.candidates.size() > 1 ? std::max(0.0, result.candidates[1].score) : 0;
+    const double ahead = best.score > 0 ? std::clamp(1 - next / best.score, 0.0, 1.0) : 0;
+    // Even a half of the fracture in contact, a third ahead, is sure.
+    result.confidence = std::min(1.0, 2 * best.contact) * std::min(1.0, 3 * ahead) * std::max(0.0, 1 - best.penetration);
+    if (result.confidence < options.least_confidence)
+        result.undecided = "the best pose is not far enough ahead of the next, or little of the fracture is in contact";
+}
+
 }  // namespace
 
 BreakPair pair_breaks(const Fragment& a, const Fragment& b, const PairOptions& options) {
@@ -74,49 +151,11 @@ BreakPair pair_breaks(const Fragment& a, const Fragment& b, const PairOptions& o
         side_b(b, radius, options.frames, options.samples);
     result.fracture_a = side_a.fracture.area;
     result.fracture_b = side_b.fracture.area;
-    const QuickTarget target(side_a, 2 * reach);
     Vector3d middle = Vector3d::Zero();
     for (const Vector3d& p : side_b.fracture.places) middle += p / static_cast<double>(side_b.fracture.places.size());
-
-    // All poses that lay a frame onto a frame.
-    const auto fractures = thinned(side_b.fracture.places.size(), 160), others = thinned(side_b.intact.places.size(), 120);
-    const double each_fracture = fractures.empty() ? 0 : side_b.fracture.area / static_cast<double>(fractures.size()),
-                 each_other = others.empty() ? 0 : side_b.intact.area / static_cast<double>(others.size());
-    const auto quick_score = [&](const Motion& pose) {
-        double score = 0;
-        const auto look = [&](const Vector3d& place, const Vector3d& normal, double area, bool fracture) {
-            const Vector3d p = pose(place);
-            const Index i = target.grid->near(p);
-            if (i == no_index) return;
-            const Vector3d off = p - target.places[i];
-            const double above = target.normals[i].dot(off), squared = off.squaredNorm() / (reach * reach);
-            if (fracture && i < target.fractures && squared < 1) {
-                const double facing = -target.normals[i].dot(pose.turn * normal);
-                if (facing > 0.3) score += area * (1 - squared) * facing;
-            }
-            if (above < -0.5 * reach) score -= area * std::min(1.0, -above / reach - 0.5);
-        };
-        for (const std::size_t i : fractures) look(side_b.fracture.places[i], side_b.fracture.normals[i], each_fracture, true);
-        for (const std::size_t i : others) look(side_b.intact.places[i], side_b.intact.normals[i], each_other, false);
-        return score;
-    };
-    const std::size_t columns = side_b.frames.size();
-    std::vector<double> scores(side_a.frames.size() * columns);
-    const double none = -std::numeric_limits<double>::infinity();
-    parallel_for(scores.size(), [&](std::size_t k) {
-        const RimFrame &f = side_a.frames[k / columns], &g = side_b.frames[k % columns];
-        scores[k] = f.facet == g.facet ? quick_score(g.onto(f)) : none;
-    });
-    result.tried = static_cast<std::size_t>(std::count_if(scores.begin(), scores.end(), [&](double s) { return s > none; }));
-    std::vector<std::size_t> order;
-    for (std::size_t k = 0; k < scores.size(); ++k)
-        if (scores[k] > 0) order.push_back(k);
-    std::sort(order.begin(), order.end(),
-              [&](std::size_t x, std::size_t y) { return std::pair(-scores[x], x) < std::pair(-scores[y], y); });
-    if (order.size() > 40 * static_cast<std::size_t>(options.starts)) order.resize(40 * static_cast<std::size_t>(options.starts));
-    std::vector<Scored> poses;
-    for (const std::size_t k : order) poses.push_back({side_b.frames[k % columns].onto(side_a.frames[k / columns]), scores[k]});
-    poses = distinct(poses, static_cast<std::size_t>(options.starts), middle, 0.5 * reach, 6 * pi / 180);
+    const auto starts = static_cast<std::size_t>(options.starts), samples = static_cast<std::size_t>(options.samples);
+    std::vector<Scored> poses =
+        distinct(best_of_frames(side_a, side_b, reach, 40 * starts, result.tried), starts, middle, 0.5 * reach, 6 * pi / 180);
 
     // The best refined: quickly, then to the end.
     const BreakAligner aligner(a.mesh, side_a, side_b, reach, options.last_reach * result.size, options.edges);
@@ -131,11 +170,7 @@ BreakPair pair_breaks(const Fragment& a, const Fragment& b, const PairOptions& o
     std::vector<PairCandidate> candidates(poses.size());
     parallel_for(
         poses.size(),
-        [&](std::size_t i) {
-            candidates[i] = aligner.judge(aligner.align(poses[i].pose, static_cast<std::size_t>(options.samples), 40),
-                                          static_cast<std::size_t>(options.samples), 0.25);
-        },
-        1);
+        [&](std::size_t i) { candidates[i] = aligner.judge(aligner.align(poses[i].pose, samples, 40), samples, 0.25); }, 1);
     std::stable_sort(candidates.begin(), candidates.end(),
                      [](const PairCandidate& x, const PairCandidate& y) { return x.score > y.score; });
     for (const PairCandidate& one : candidates) {
@@ -144,18 +179,7 @@ BreakPair pair_breaks(const Fragment& a, const Fragment& b, const PairOptions& o
                          [&](const PairCandidate& k) { return alike(k.pose, one.pose, middle, reach, 10 * pi / 180); }))
             result.candidates.push_back(one);
     }
-    if (result.candidates.empty() || result.candidates.front().contact < options.least_contact) {
-        result.undecided = "no pose brings " + std::to_string(static_cast<int>(std::lround(100 * options.least_contact))) +
-                           " % of the smaller fracture into contact with the other";
-        return result;
-    }
-    const PairCandidate& best = result.candidates.front();
-    const double next = result.candidates.size() > 1 ? std::max(0.0, result.candidates[1].score) : 0;
-    const double ahead = best.score > 0 ? std::clamp(1 - next / best.score, 0.0, 1.0) : 0;
-    // Even a half of the fracture in contact, a third ahead, is sure.
-    result.confidence = std::min(1.0, 2 * best.contact) * std::min(1.0, 3 * ahead) * std::max(0.0, 1 - best.penetration);
-    if (result.confidence < options.least_confidence)
-        result.undecided = "the best pose is not far enough ahead of the next, or little of the fracture is in contact";
+    decide(result, options);
     return result;
 }
 

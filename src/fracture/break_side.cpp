@@ -4,7 +4,6 @@
 #include "ostraka/core/error.h"
 #include "ostraka/geom/eigen.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace ostraka {

@@ -5,7 +5,6 @@
 #include "ostraka/geom/surface_search.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 

@@ -9,14 +9,8 @@
 namespace ostraka {
 
 std::string to_string(Facet facet) {
-    switch (facet) {
-        case Facet::inner:
-            return "inner";
-        case Facet::fracture:
-            return "fracture";
-        default:
-            return "outer";
-    }
+    static constexpr const char* words[]{"outer", "inner", "fracture"};
+    return words[static_cast<std::size_t>(facet)];
 }
 
 std::vector<Facet> facets_of(const Mesh& mesh, const AnnotationSet& set, Facet other) {

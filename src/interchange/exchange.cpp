@@ -16,19 +16,26 @@ namespace ostraka {
 
 namespace {
 
-std::optional<LandmarkFormat> landmark_format(const std::string& format) {
-    if (format == "landmarks-csv") return LandmarkFormat::csv;
-    if (format == "tps") return LandmarkFormat::tps;
-    if (format == "pp") return LandmarkFormat::pp;
-    if (format == "mrk") return LandmarkFormat::mrk;
-    if (format == "fcsv") return LandmarkFormat::fcsv;
-    return {};
+/// In the order of exchange_formats().
+enum class Format { attributes_csv, landmarks_csv, tps, pp, mrk, fcsv, web, glb, ant, fct };
+
+Format format_named(const std::string& name) {
+    const auto& names = exchange_formats();
+    if (const auto found = std::find(names.begin(), names.end(), name); found != names.end())
+        return static_cast<Format>(found - names.begin());
+    std::string list;
+    for (const auto& known : names) list += (list.empty() ? "" : ", ") + known;
+    fail_usage("the format '" + name + "' is not known", "use one of: " + list);
 }
 
-[[noreturn]] void unknown_format(const std::string& format) {
-    std::string list;
-    for (const auto& name : exchange_formats()) list += (list.empty() ? "" : ", ") + name;
-    fail_usage("the format '" + format + "' is not known", "use one of: " + list);
+std::optional<LandmarkFormat> landmark_format(Format format) {
+    static const std::map<Format, LandmarkFormat> formats{{Format::landmarks_csv, LandmarkFormat::csv},
+                                                          {Format::tps, LandmarkFormat::tps},
+                                                          {Format::pp, LandmarkFormat::pp},
+                                                          {Format::mrk, LandmarkFormat::mrk},
+                                                          {Format::fcsv, LandmarkFormat::fcsv}};
+    const auto found = formats.find(format);
+    return found == formats.end() ? std::nullopt : std::optional(found->second);
 }
 
 /// Adds what was read to a set; an id that is taken is replaced.
@@ -85,7 +92,7 @@ std::string guess_exchange_format(const Path& file, const std::string& bytes) {
     fail_usage("the ending of '" + file.filename().string() + "' tells no format", "say it with --format");
 }
 
-ExportedAnnotations export_annotations(const Mesh& mesh, const AnnotationSet& set, const std::string& format,
+ExportedAnnotations export_annotations(const Mesh& mesh, const AnnotationSet& set, const std::string& named,
                                        const std::string& mesh_file, const Provenance& provenance, const ExportOptions& options) {
     check_options(options, "annotation export");
     check_annotations(set, mesh, mesh_file.empty() ? "annotations" : "annotations of " + mesh_file);
@@ -94,6 +101,7 @@ ExportedAnnotations export_annotations(const Mesh& mesh, const AnnotationSet& se
         return static_cast<std::size_t>(std::count_if(set.annotations.begin(), set.annotations.end(), written));
     };
     result.annotations = set.annotations.size();
+    const Format format = format_named(named);
     if (const auto landmarks = landmark_format(format)) {
         const LandmarkSet places = landmarks_of(mesh, set, *landmarks);
         result.notes = places.notes;
@@ -102,36 +110,35 @@ ExportedAnnotations export_annotations(const Mesh& mesh, const AnnotationSet& se
                    (annotation.type == AnnotationType::line && *landmarks == LandmarkFormat::mrk);
         });
         result.bytes = landmarks_to_text(places, *landmarks, mesh_file, provenance, result.notes, options.landmarks);
-    } else if (format == "attributes-csv") {
+    } else if (format == Format::attributes_csv) {
         result.bytes = attribute_table(set);
-    } else if (format == "web") {
+    } else if (format == Format::web) {
         result.bytes = web_annotations(mesh, set, mesh_file, provenance);
-    } else if (format == "glb") {
+    } else if (format == Format::glb) {
         result.bytes = feature_glb(mesh, set, mesh_file, provenance, result.notes);
-    } else if (format == "ant") {
+    } else if (format == Format::ant) {
         result.bytes = prototype_annotations(mesh, set, result.notes);
-    } else if (format == "fct") {
+    } else if (format == Format::fct) {
         result.annotations = count(has_facet);
         result.bytes = prototype_facets(mesh, set, mesh_file, result.notes);
-    } else {
-        unknown_format(format);
     }
     return result;
 }
 
-PlacedAnnotations import_annotations(const Mesh& mesh, const std::string& bytes, const std::string& format,
+PlacedAnnotations import_annotations(const Mesh& mesh, const std::string& bytes, const std::string& named,
                                      const std::string& where, const AnnotationSet* onto, const ImportOptions& options) {
     check_options(options, "annotation import");
     if (bytes.find_first_not_of(" \t\r\n") == std::string::npos)
         fail_input(where, "is empty", "give a file that holds annotations");
     PlacedAnnotations result;
+    const Format format = format_named(named);
     if (const auto landmarks = landmark_format(format)) {
         const LandmarkSet read = landmarks_from_text(bytes, *landmarks, where, options.landmarks);
         if (read.landmarks.empty() && read.curves.empty())
             fail_input(where, "holds no landmarks" + (read.notes.empty() ? "" : ": " + read.notes.back()),
                        "give a file with places, or the right --format");
         result = place_landmarks(mesh, read, where, options.place);
-    } else if (format == "attributes-csv") {
+    } else if (format == Format::attributes_csv) {
         if (onto == nullptr)
             fail_usage("a table of attributes holds no selections", "give the annotations it was made of with --onto FILE");
         result.set.object_class = onto->object_class;
@@ -141,18 +148,16 @@ PlacedAnnotations import_annotations(const Mesh& mesh, const std::string& bytes,
         result.set.notes = onto->notes;
         const std::size_t changed = apply_attribute_table(bytes, result.set, where);
         result.set.notes.push_back(exchange::counted(changed, "annotation") + " of the table taken over");
-    } else if (format == "web") {
+    } else if (format == Format::web) {
         result = read_web_annotations(bytes, mesh, where, options.place);
-    } else if (format == "glb") {
+    } else if (format == Format::glb) {
         result = read_feature_glb(bytes, mesh, where, options.place);
-    } else if (format == "ant") {
+    } else if (format == Format::ant) {
         result.set = annotations_from_json(parse_json(bytes, where), mesh, where);
-    } else if (format == "fct") {
+    } else if (format == Format::fct) {
         result.set = read_prototype_facets(bytes, mesh, where);
-    } else {
-        unknown_format(format);
     }
-    if (onto != nullptr && format != "attributes-csv") result = added_to(*onto, std::move(result));
+    if (onto != nullptr && format != Format::attributes_csv) result = added_to(*onto, std::move(result));
     check_annotations(result.set, mesh, where);
     return result;
 }

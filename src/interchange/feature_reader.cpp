@@ -13,7 +13,6 @@
 #include "ostraka/measure/measure.h"
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 
 namespace ostraka {

@@ -19,9 +19,10 @@ std::string write_fcsv(const LandmarkSet& set, const LandmarkFileOptions& option
 std::string write_picked_points(const LandmarkSet& set, const std::string& mesh_file, Notes& notes);
 std::string write_markups(const LandmarkSet& set, const LandmarkFileOptions& options, const Provenance& provenance);
 
-/// Turns a position of a file in `file_space` (empty: that of the mesh) into the mesh's: x and y change their sign between LPS
+/// Turns a position of a file in `file_space` (none: that of the mesh) into the mesh's: x and y change their sign between LPS
 /// and RAS.
-std::array<double, 3> in_mesh_space(std::array<double, 3> position, const std::string& file_space, const std::string& mesh_space);
+std::array<double, 3> in_mesh_space(std::array<double, 3> position, std::optional<AnatomicalSpace> file_space,
+                                    AnatomicalSpace mesh_space);
 
 /// Throws Error (input) naming `at` if the place is beyond what can be computed with, as a mesh's would be.
 void check_place(const std::array<double, 3>& position, const std::string& at);

@@ -20,7 +20,7 @@ std::string at_line(const std::string& where, std::size_t line) { return where +
 struct Columns {
     std::array<std::size_t, 3> position{};
     std::optional<std::size_t> name, id, defined;
-    std::string space;
+    std::optional<AnatomicalSpace> space;
 };
 
 constexpr std::size_t nowhere = static_cast<std::size_t>(-1);
@@ -34,12 +34,13 @@ std::optional<Columns> columns_of(const std::vector<std::string>& header) {
         return nowhere;
     };
     Columns columns;
-    const auto take = [&](const char* a, const char* b, const char* c, const char* space) {
+    const auto take = [&](const char* a, const char* b, const char* c, std::optional<AnatomicalSpace> space) {
         columns.position = {find({a}), find({b}), find({c})};
         columns.space = space;
         return std::find(columns.position.begin(), columns.position.end(), nowhere) == columns.position.end();
     };
-    if (!take("x", "y", "z", "") && !take("l", "p", "s", "LPS") && !take("r", "a", "s", "RAS")) return {};
+    if (!take("x", "y", "z", {}) && !take("l", "p", "s", AnatomicalSpace::lps) && !take("r", "a", "s", AnatomicalSpace::ras))
+        return {};
     if (const std::size_t at = find({"name", "label", "landmark", "tag"}); at != nowhere) columns.name = at;
     if (const std::size_t at = find({"id"}); at != nowhere) columns.id = at;
     if (const std::size_t at = find({"defined"}); at != nowhere) columns.defined = at;
@@ -56,9 +57,9 @@ double coordinate(const CsvRow& row, std::size_t column, const std::string& wher
 
 }  // namespace
 
-std::array<double, 3> in_mesh_space(std::array<double, 3> position, const std::string& file_space,
-                                    const std::string& mesh_space) {
-    if (!file_space.empty() && file_space != mesh_space)
+std::array<double, 3> in_mesh_space(std::array<double, 3> position, std::optional<AnatomicalSpace> file_space,
+                                    AnatomicalSpace mesh_space) {
+    if (file_space && *file_space != mesh_space)
         for (const std::size_t k : {0U, 1U}) position[k] = position[k] == 0 ? 0 : -position[k];
     return position;
 }
@@ -120,16 +121,40 @@ std::string write_landmark_table(const LandmarkSet& set) {
     return text;
 }
 
-// tps (Rohlf): LM3=count, one landmark a line, then keywords; a file may hold many specimens.
-LandmarkSet read_tps(const std::string& bytes, const std::string& where, const LandmarkFileOptions& options) {
-    struct Specimen {
-        std::size_t line = 0;
-        std::vector<std::optional<std::array<double, 3>>> points;
-        std::vector<std::size_t> lines;  ///< of the points
-        std::string id, image, comment;
-        double scale = 1;
+namespace {
+
+struct TpsSpecimen {
+    std::vector<std::optional<std::array<double, 3>>> points;
+    std::vector<std::size_t> lines;  ///< of the points
+    std::string id, comment;
+    double scale = 1;
+};
+
+/// Nothing for a landmark that is missing.
+std::optional<std::array<double, 3>> tps_point(std::string_view line, const std::string& at) {
+    std::array<double, 3> point{};
+    std::size_t count = 0, missing = 0, from = 0;
+    const auto refuse = [&] {
+        fail_input(at, "does not hold three coordinates", "give x, y and z, or NA NA NA for a missing landmark");
     };
-    std::vector<Specimen> specimens;
+    while (from < line.size()) {
+        const std::size_t begin = line.find_first_not_of(" \t,", from);
+        if (begin == std::string_view::npos) break;
+        from = std::min(line.find_first_of(" \t,", begin), line.size());
+        const std::string_view word = line.substr(begin, from - begin);
+        const auto value = number_of(word);
+        const bool no_value = lower(word) == "na" || lower(word) == "nan";
+        if ((!value && !no_value) || count == 3) refuse();
+        missing += no_value ? 1 : 0;
+        point[count++] = value.value_or(0);
+    }
+    if (count != 3) refuse();
+    return missing > 0 ? std::nullopt : std::optional(point);
+}
+
+/// LM3=count, one landmark a line, then keywords; a file may hold many specimens.
+std::vector<TpsSpecimen> tps_specimens(const std::string& bytes, const std::string& where) {
+    std::vector<TpsSpecimen> specimens;
     std::size_t expected = 0, number = 0;
     for (std::size_t i = 0; i < bytes.size();) {
         const std::size_t end = std::min(bytes.find('\n', i), bytes.size());
@@ -139,23 +164,7 @@ LandmarkSet read_tps(const std::string& bytes, const std::string& where, const L
         if (line.empty()) continue;
         const std::string at = at_line(where, number);
         if (expected > 0) {
-            std::array<double, 3> point{};
-            std::size_t count = 0, missing = 0, from = 0;
-            while (from < line.size()) {
-                const std::size_t begin = line.find_first_not_of(" \t,", from);
-                if (begin == std::string_view::npos) break;
-                from = std::min(line.find_first_of(" \t,", begin), line.size());
-                const std::string_view word = line.substr(begin, from - begin);
-                const auto value = number_of(word);
-                const bool no_value = lower(word) == "na" || lower(word) == "nan";
-                if ((!value && !no_value) || count == 3)
-                    fail_input(at, "does not hold three coordinates", "give x, y and z, or NA NA NA for a missing landmark");
-                missing += no_value ? 1 : 0;
-                point[count++] = value.value_or(0);
-            }
-            if (count != 3)
-                fail_input(at, "does not hold three coordinates", "give x, y and z, or NA NA NA for a missing landmark");
-            specimens.back().points.push_back(missing > 0 ? std::optional<std::array<double, 3>>() : point);
+            specimens.back().points.push_back(tps_point(line, at));
             specimens.back().lines.push_back(number);
             --expected;
             continue;
@@ -169,14 +178,12 @@ LandmarkSet read_tps(const std::string& bytes, const std::string& where, const L
             const auto count = whole_of(value);
             if (!count || *count < 0 || static_cast<std::size_t>(*count) > bytes.size())
                 fail_input(at, "the count of landmarks is not a number that the file could hold", "mend LM3=");
-            specimens.emplace_back().line = number;
+            specimens.emplace_back();
             expected = static_cast<std::size_t>(*count);
         } else if (specimens.empty()) {
             fail_input(at, "stands before any LM3=", "begin each specimen with LM3=count");
         } else if (key == "id") {
             specimens.back().id = value;
-        } else if (key == "image") {
-            specimens.back().image = value;
         } else if (key == "comment") {
             specimens.back().comment = value;
         } else if (key == "scale") {
@@ -187,40 +194,54 @@ LandmarkSet read_tps(const std::string& bytes, const std::string& where, const L
     }
     if (expected > 0) fail_input(where, counted(expected, "landmark") + " fewer than LM3= says", "the file may be cut off");
     if (specimens.empty()) fail_input(where, "holds no LM3=", "give a tps file of landmarks in three dimensions");
-    const Specimen* chosen = specimens.size() == 1 && options.specimen.empty() ? &specimens.front() : nullptr;
-    for (const Specimen& specimen : specimens)
-        if (chosen == nullptr && !options.specimen.empty() && specimen.id == options.specimen) chosen = &specimen;
-    if (const auto index = whole_of(options.specimen);
-        chosen == nullptr && index && *index >= 1 && static_cast<std::size_t>(*index) <= specimens.size())
-        chosen = &specimens[static_cast<std::size_t>(*index) - 1];
-    if (chosen == nullptr)
-        fail_input(where,
-                   options.specimen.empty() ? "holds " + to_string(specimens.size()) + " specimens"
-                                            : "holds no specimen '" + options.specimen + "'",
-                   "choose one with --specimen, by its ID or its number from 1 to " + to_string(specimens.size()));
+    return specimens;
+}
 
-    LandmarkSet set;
-    // Our own files keep the names in the comment, as the format has no room for them.
+/// The only one, or the one asked for by its ID or number.
+const TpsSpecimen& chosen_specimen(const std::vector<TpsSpecimen>& specimens, const std::string& asked,
+                                   const std::string& where) {
+    if (specimens.size() == 1 && asked.empty()) return specimens.front();
+    for (const TpsSpecimen& specimen : specimens)
+        if (!asked.empty() && specimen.id == asked) return specimen;
+    if (const auto index = whole_of(asked); index && *index >= 1 && static_cast<std::size_t>(*index) <= specimens.size())
+        return specimens[static_cast<std::size_t>(*index) - 1];
+    fail_input(where, asked.empty() ? "holds " + to_string(specimens.size()) + " specimens" : "holds no specimen '" + asked + "'",
+               "choose one with --specimen, by its ID or its number from 1 to " + to_string(specimens.size()));
+}
+
+/// Our own files keep the names in the comment, as the format has no room for them; none for any other comment.
+std::vector<std::string> tps_names(const TpsSpecimen& specimen, const std::string& where) {
     std::vector<std::string> names;
     try {
-        const Json comment = parse_json(chosen->comment.empty() ? "null" : chosen->comment, where);
+        const Json comment = parse_json(specimen.comment.empty() ? "null" : specimen.comment, where);
         if (const JsonValue* list = find_member(comment, "names");
-            list != nullptr && list->IsArray() && list->Size() == chosen->points.size())
+            list != nullptr && list->IsArray() && list->Size() == specimen.points.size())
             for (const auto& name : list->GetArray())
                 names.push_back(name.IsString() ? std::string(name.GetString(), name.GetStringLength()) : std::string());
-    } catch (const Error&) {  // any other comment
+    } catch (const Error&) {
         names.clear();
     }
+    return names;
+}
+
+}  // namespace
+
+// tps (Rohlf).
+LandmarkSet read_tps(const std::string& bytes, const std::string& where, const LandmarkFileOptions& options) {
+    const std::vector<TpsSpecimen> specimens = tps_specimens(bytes, where);
+    const TpsSpecimen& chosen = chosen_specimen(specimens, options.specimen, where);
+    const std::vector<std::string> names = tps_names(chosen, where);
+    LandmarkSet set;
     std::size_t missing = 0;
-    for (std::size_t i = 0; i < chosen->points.size(); ++i) {
-        if (!chosen->points[i]) {
+    for (std::size_t i = 0; i < chosen.points.size(); ++i) {
+        if (!chosen.points[i]) {
             ++missing;
             continue;
         }
         Landmark landmark;
         landmark.name = names.empty() ? to_string(i + 1) : names[i];
-        for (std::size_t k = 0; k < 3; ++k) landmark.position[k] = chosen->scale * (*chosen->points[i])[k];
-        check_place(landmark.position, at_line(where, chosen->lines[i]));
+        for (std::size_t k = 0; k < 3; ++k) landmark.position[k] = chosen.scale * (*chosen.points[i])[k];
+        check_place(landmark.position, at_line(where, chosen.lines[i]));
         set.landmarks.push_back(std::move(landmark));
     }
     if (missing > 0) set.notes.push_back(counted(missing, "missing landmark") + " (NA) left out");
@@ -246,7 +267,7 @@ std::string write_tps(const LandmarkSet& set, const std::string& mesh_file) {
 // fcsv: comment lines with the version, the space and the columns, then a row a point.
 LandmarkSet read_fcsv(const std::string& bytes, const std::string& where, const LandmarkFileOptions& options) {
     LandmarkSet set;
-    std::string space;
+    std::optional<AnatomicalSpace> space;
     std::vector<std::string> header;
     std::string body;  // comment lines become blank, so that lines keep their numbers
     for (std::size_t i = 0; i < bytes.size();) {
@@ -257,8 +278,9 @@ LandmarkSet read_fcsv(const std::string& bytes, const std::string& where, const 
             const std::string key = lower(trimmed(line.substr(1, equals == std::string_view::npos ? 0 : equals - 1)));
             const std::string_view value = equals == std::string_view::npos ? "" : trimmed(line.substr(equals + 1));
             if (key == "coordinatesystem") {
-                space = value == "0" || value == "RAS" ? "RAS" : value == "1" || value == "LPS" ? "LPS" : "";
-                if (space.empty())
+                if (value == "0" || value == "RAS") space = AnatomicalSpace::ras;
+                else if (value == "1" || value == "LPS") space = AnatomicalSpace::lps;
+                else
                     fail_input(where, "the coordinate system '" + one_line(value).substr(0, 20) + "' is not known",
                                "use LPS (1) or RAS (0)");
             } else if (key == "columns") {
@@ -271,8 +293,8 @@ LandmarkSet read_fcsv(const std::string& bytes, const std::string& where, const 
         body += '\n';
         i = end + 1;
     }
-    if (space.empty()) {
-        space = "RAS";
+    if (!space) {
+        space = AnatomicalSpace::ras;
         set.notes.emplace_back("the file names no coordinate system: taken for RAS, as old versions wrote");
     }
     if (header.empty())
@@ -294,7 +316,7 @@ LandmarkSet read_fcsv(const std::string& bytes, const std::string& where, const 
 }
 
 std::string write_fcsv(const LandmarkSet& set, const LandmarkFileOptions& options, Notes& notes) {
-    std::string text = "# Markups fiducial file version = 4.11\n# CoordinateSystem = " + options.mesh_space +
+    std::string text = "# Markups fiducial file version = 4.11\n# CoordinateSystem = " + option_text(options, "mesh-space") +
                        "\n# columns = id,x,y,z,ow,ox,oy,oz,vis,sel,lock,label,desc,associatedNodeID\n";
     std::size_t number = 0, changed = 0;
     for (const Landmark& landmark : set.landmarks) {

@@ -21,9 +21,9 @@ struct Reader {
     std::vector<Landmark> points_of(const JsonValue& markup, const std::string& pointer) {
         std::vector<Landmark> points;
         const std::string stated = text_member(markup, "coordinateSystem");
-        const std::string space = stated.empty() ? "LPS" : stated;
-        if (space != "LPS" && space != "RAS")
-            fail_input(where, "at " + pointer + "/coordinateSystem: '" + one_line(space).substr(0, 20) + "' is not known",
+        const auto space = stated == "RAS" ? AnatomicalSpace::ras : AnatomicalSpace::lps;
+        if (!stated.empty() && stated != "LPS" && stated != "RAS")
+            fail_input(where, "at " + pointer + "/coordinateSystem: '" + one_line(stated).substr(0, 20) + "' is not known",
                        "use LPS or RAS");
         const JsonValue* list = find_member(markup, "controlPoints");
         if (list == nullptr) return points;
@@ -117,7 +117,7 @@ std::string write_markups(const LandmarkSet& set, const LandmarkFileOptions& opt
         JsonValue markup(rapidjson::kObjectType);
         add_member(markup, "type", type, a);
         add_member(markup, "name", name, a);
-        add_member(markup, "coordinateSystem", options.mesh_space, a);
+        add_member(markup, "coordinateSystem", option_text(options, "mesh-space"), a);
         // The schema knows two units; where the mesh has another, none is better than a wrong one.
         if (set.unit == "mm" || set.unit == "um") add_member(markup, "coordinateUnits", set.unit, a);
         add_member(markup, "locked", JsonValue(false), a);

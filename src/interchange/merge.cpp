@@ -61,7 +61,7 @@ private:
     void conflict(const std::string& name, const std::string& base, const std::string& ours, const std::string& theirs) {
         result_.conflicts.push_back({id_, tag_, name, base, ours, theirs});
     }
-    [[nodiscard]] bool theirs_preferred() const { return options_.prefer == "theirs"; }
+    [[nodiscard]] bool theirs_preferred() const { return options_.prefer == MergeOptions::Side::theirs; }
 
     template <class T, class Words>
     T field(const std::string& name, const T& base, const T& ours, const T& theirs, Words&& in_words) {

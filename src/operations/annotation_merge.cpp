@@ -102,7 +102,7 @@ public:
         const std::size_t count = merged.conflicts.size();
         if (settled) {
             report.line(std::to_string(merged.set.annotations.size()) + " annotations" +
-                        (count == 0 ? "" : ", conflicts settled for " + options.prefer));
+                        (count == 0 ? "" : ", conflicts settled for " + option_text(options, "prefer")));
             output.write(merged.set, on, mesh.file());
             return;
         }

@@ -14,7 +14,7 @@ namespace {
 std::string percent(double share) { return std::abs(share) < 1e-11 ? "0" : number(100 * share, 3); }
 
 std::string remarks_on(const TransferScore& score) {
-    std::string remarks = score.outcome == "kept" ? "" : score.outcome;
+    std::string remarks = score.outcome == TransferOutcome::kept ? "" : to_string(score.outcome);
     const auto remark = [&](const std::string& text) { remarks += (remarks.empty() ? "" : "; ") + text; };
     if (score.by_closest_point > 0) remark(std::to_string(score.by_closest_point) + " by closest point");
     if (score.without_place > 0) remark(std::to_string(score.without_place) + " without a place");
@@ -132,10 +132,10 @@ private:
         for (const TransferScore& score : scores) {
             Report::Row row = report.row(table);
             row("id", score.id)("tag", score.tag)("sourceType", to_string(score.source_type))(
-                "targetType", to_string(score.target_type))("outcome", score.outcome);
+                "targetType", to_string(score.target_type))("outcome", to_string(score.outcome));
             if (!score.note.empty()) row("note", score.note);
             const Distortions d = distortions(score);
-            const bool kept = score.outcome == "kept", region = score.source_type == AnnotationType::region,
+            const bool kept = score.outcome == TransferOutcome::kept, region = score.source_type == AnnotationType::region,
                        both = region && score.target_type == AnnotationType::region;
             if (region) {
                 row("sourceArea", score.source_area)("targetArea", score.target_area)("sourcePerimeter", score.source_length)(
@@ -165,7 +165,7 @@ private:
             row("crossingsResolved", score.crossings_resolved)("voted", score.voted);
             row.shown("by ray", std::to_string(score.by_ray) + "/" + std::to_string(score.vertices));
             row.shown("remarks", remarks_on(score));
-            if (score.outcome == "lost" && table == "annotations") report.answer_no();
+            if (score.outcome == TransferOutcome::lost && table == "annotations") report.answer_no();
         }
     }
 

@@ -56,7 +56,7 @@ public:
         for (std::size_t k = 0; k < files.size(); ++k)
             if (const std::string name = Path(files.file(k)).stem().string(); !taken.insert(name).second)
                 fail_usage("two fragments are called '" + name + "'", "rename one of the files");
-        if (class_file && options.fit.space != "mesh")
+        if (class_file && options.fit.space != NonRigidOptions::Space::mesh)
             fail_usage("--class changes the template's shape, and its cage does not follow", "leave --class or --space out");
     }
 
@@ -78,7 +78,7 @@ public:
         }
         used = take_thresholds(options, learnt, [&](const std::string& name) { return thresholds.at(name)->given; });
         std::optional<TemplateCage> cage;
-        if (options.fit.space != "mesh") {
+        if (options.fit.space != NonRigidOptions::Space::mesh) {
             context.record([&] { cage = in_file(known.file(), [&] { return cage_of(*known); }); });
             if (!cage) {
                 report.note("the template has no cage: one of 200 vertices was made around it");

@@ -152,7 +152,7 @@ public:
     }
 
     void run(Context& context, Report& report) override {
-        if (protect) options.outlines = "protect";
+        if (protect) options.outlines = SimplifyOptions::Outlines::protect;
         std::size_t vertices = 0, faces = 0;
         SimplifyResult result = resize(context, report, [&](BoundMesh& bound) {
             SimplifyResult simplified = bound.simplify(options);

@@ -73,9 +73,9 @@ public:
         std::vector<Scene> scenes;
         for (std::size_t k = 0; k < meshes.size(); ++k) scenes.push_back(read(context, k, how));
         if (const std::string map = first_map(); !map.empty()) how.scale = common_scale(scenes, map);
-        if (how.fit == "all" && units_differ(scenes)) {
+        if (how.fit == RenderOptions::Fit::all && units_differ(scenes)) {
             report.note("the objects have different units: each is drawn at a scale of its own");
-            how.fit = "each";
+            how.fit = RenderOptions::Fit::each;
         }
         report.run("readSeconds", reading.seconds());
         const Rendering rendering = render(scenes, how);

@@ -137,7 +137,7 @@ public:
         std::vector<std::vector<std::string>> rows(list.size());
         make_each("statuettes", list.size(), [&](std::size_t i) {
             const std::string name = name_of(i, list.size());
-            rows[i] = {name, list[i].technique};
+            rows[i] = {name, option_text(list[i], "technique")};
             for (const auto& [key, value] : list_options(list[i]))
                 if (key != "technique") rows[i].push_back(value);
             make_one(name, list[i], command, true, [&](const Statuette& made) {
@@ -153,8 +153,8 @@ public:
         for (const auto& row : rows) truth += csv_row(row);
         write_file(folder.in("truth.csv"), truth);
 
-        const auto wheel = static_cast<std::size_t>(
-            std::count_if(list.begin(), list.end(), [](const auto& one) { return one.technique == "wheel"; }));
+        const auto wheel = static_cast<std::size_t>(std::count_if(
+            list.begin(), list.end(), [](const auto& one) { return one.technique == StatuetteParameters::Technique::wheel; }));
         report.value("folder", folder.path().string());
         report.value("objects", list.size());
         report.value("wheel", wheel);

@@ -69,7 +69,7 @@ public:
             choice_table(study, answers, known).write(files.output.path(), "choices", "Groups by every similarity and epsilon");
 
         report.value("similarity", similarity);
-        report.value("method", group.method);
+        report.value("method", option_text(group, "method"));
         report.value("epsilonRule", group.epsilon);
         report.value("epsilon", study.groups.epsilon);
         report.value("featureSize", prepared.options.features.size);
@@ -207,9 +207,9 @@ private:
             for (const char* method : {"linkage", "dbscan", "embedding"}) {
                 for (const char* epsilon : {"0.1", "knn", "volume", "knee", "silhouette", "nested"}) {
                     GroupOptions options = group;
-                    options.method = method;
+                    set_option(options, "method", method);
                     options.epsilon = epsilon;
-                    if (options.epsilon == "volume" && options.method != "embedding") continue;
+                    if (options.epsilon == "volume" && options.method != GroupOptions::Method::embedding) continue;
                     const MouldGroups found = group_heads(distances, options);
                     const int count = *std::max_element(found.labels.begin(), found.labels.end()) + 1;
                     std::vector<TableCell> cells{each,
@@ -246,11 +246,12 @@ private:
         write_plot(files.plot("distances"), map);
 
         Dendrogram tree;
-        tree.title = group.method == "linkage" ? "Average linkage of the distances" : "Single linkage, which DBSCAN goes by";
+        tree.title = group.method == GroupOptions::Method::linkage ? "Average linkage of the distances"
+                                                                   : "Single linkage, which DBSCAN goes by";
         tree.tree = study.groups.tree;
         tree.names = names;
         tree.groups = study.groups.labels;
-        if (group.method != "embedding") {  // whose epsilon is no distance of this tree
+        if (group.method != GroupOptions::Method::embedding) {  // whose epsilon is no distance of this tree
             tree.cut = study.groups.epsilon;
             tree.cut_label = "epsilon " + significant(study.groups.epsilon, 3);
         }

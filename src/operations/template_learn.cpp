@@ -48,7 +48,7 @@ public:
     }
 
     void run(Context& context, Report& report) override {
-        if (given) options.correspondence = "given";
+        if (given) options.correspondence = CorrespondenceChoice::given;
         const ShapeClass learnt = of_landmarks() ? learn_landmarks(context) : learn_meshes(context);
         report.notes(learnt.notes);
         tell(report, learnt);

@@ -48,7 +48,7 @@ public:
     }
 
     void run(Context& context, Report& report) override {
-        if (given) options.correspondence = "given";
+        if (given) options.correspondence = CorrespondenceChoice::given;
         if (is_landmark_file(known.file()))
             fail_input(known.file(), "is a file of landmarks, and a template with a mesh is needed",
                        "classes of landmarks can be learnt and asked, no more");

@@ -16,14 +16,8 @@ namespace ostraka {
 using Eigen::Vector3d;
 
 std::string to_string(Origin origin) {
-    switch (origin) {
-        case Origin::observed:
-            return "observed";
-        case Origin::interpolated:
-            return "interpolated";
-        default:
-            return "hypothesis";
-    }
+    static constexpr const char* words[]{"observed", "interpolated", "hypothesis"};
+    return words[static_cast<std::size_t>(origin)];
 }
 
 namespace {

@@ -95,13 +95,7 @@ public:
                     break;
                 }
             }
-            double squares = 0;
-            for (std::size_t i = 0; i < matches_.size(); ++i) {
-                if (matches_[i].fragment < 0) continue;
-                ++record.matched;
-                squares += (now_.col(static_cast<Eigen::Index>(i)) - matches_[i].place).squaredNorm();
-            }
-            record.residual = record.matched > 0 ? std::sqrt(squares / static_cast<double>(record.matched)) : 0;
+            take_residual(record);
             fit.levels.push_back(record);
         }
     }
@@ -109,9 +103,11 @@ public:
     const std::vector<VertexMatch>& match(double reach, NonRigidFit& fit) {
         const Stopwatch watch(fit.seconds_matching);
         matches_ = search_.matches(now_, mesh_, labels_, reach, std::cos(options_.angle * pi / 180));
-        if (options_.counterparts == "surface") return matches_;
+        if (options_.counterparts == NonRigidOptions::Counterparts::surface) return matches_;
         VertexAssignmentOptions options = options_.vertices;
-        options.counterpart = options_.counterparts;
+        options.counterpart = options_.counterparts == NonRigidOptions::Counterparts::best
+                                  ? VertexAssignmentOptions::Counterpart::best
+                                  : VertexAssignmentOptions::Counterpart::one_to_one;
         options.reach = reach;
         options.angle = options_.angle;
         search_.assign(now_, mesh_, labels_, options, matches_);
@@ -124,55 +120,13 @@ public:
     /// At most 4000 vertices are looked at, evenly over their list.
     void polish(double reach, double smoothing, NonRigidFit& fit) {
         constexpr int most_steps = 12;
-        constexpr double hold = 0.1, shorten = 1e-6, settled = 1e-10;  // weights against matches; share of the diagonal
-        constexpr Eigen::Index rows_at_once = 512;
+        constexpr double settled = 1e-10;  // share of the diagonal
         const Points left = now_;
-        const Eigen::Index count = cage_.cols(), stride = std::max<Eigen::Index>(1, now_.cols() / 4000),
-                           n = (now_.cols() + stride - 1) / stride;
         for (int step = 0; step < most_steps; ++step) {
             match(reach, fit);
             const Stopwatch watch(fit.seconds_solving);
-            Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(3 * count, 3 * count), same = Eigen::MatrixXd::Zero(count, count);
-            Eigen::VectorXd right = Eigen::VectorXd::Zero(3 * count);
-            for (Eigen::Index first = 0; first < n; first += rows_at_once) {
-                const Eigen::Index rows = std::min(rows_at_once, n - first);
-                Eigen::MatrixXd planes = Eigen::MatrixXd::Zero(3 * count, rows), places(count, rows);
-                for (Eigen::Index r = 0; r < rows; ++r) {
-                    const Eigen::Index v = (first + r) * stride;
-                    const auto i = static_cast<std::size_t>(v);
-                    const Vector3d x = now_.col(v);
-                    const double area = std::max(rings_.area[i] / system_.mean_area, 1e-6);
-                    const VertexMatch& one = matches_[i];
-                    double weight = one.fragment < 0 ? hold * area : shorten * area;
-                    Vector3d pull = one.fragment < 0 ? Vector3d(weight * (left.col(v) - x)) : Vector3d::Zero();
-                    for (const Guide& guide : guides_[i]) {
-                        const double share = weight_of(guide, smoothing);
-                        weight += share;
-                        pull += share * (guide.place - x);
-                    }
-                    const auto w = weights_->row(v).transpose();
-                    places.col(r) = std::sqrt(weight) * w;
-                    for (int axis = 0; axis < 3; ++axis) right.segment(axis * count, count) += pull[axis] * w;
-                    if (one.fragment < 0) continue;
-                    const Vector3d plane = search_.normal(one);
-                    const double off = plane.dot(one.place - x);
-                    for (int axis = 0; axis < 3; ++axis) {
-                        planes.col(r).segment(axis * count, count) = std::sqrt(area) * plane[axis] * w;
-                        right.segment(axis * count, count) += area * off * plane[axis] * w;
-                    }
-                }
-                normal.selfadjointView<Eigen::Lower>().rankUpdate(planes);
-                same.selfadjointView<Eigen::Lower>().rankUpdate(places);
-            }
-            for (int axis = 0; axis < 3; ++axis) normal.block(axis * count, axis * count, count, count) += same;
-            normal.diagonal().array() += 1e-12 * normal.diagonal().mean();
-            const Cholesky factor(normal);
-            if (!factor.found()) return;
-            const Eigen::VectorXd change = factor.solve(right);
-            if (!change.allFinite()) return;
-            for (int axis = 0; axis < 3; ++axis) cage_.row(axis) += change.segment(axis * count, count).transpose();
             const Points before = now_;
-            now_ = points_of(*weights_, cage_);
+            if (!step_to_planes(left, smoothing)) return;
             if ((now_ - before).colwise().norm().maxCoeff() < settled * diagonal_) return;
         }
     }
@@ -203,6 +157,70 @@ public:
     }
 
 private:
+    /// False where the system has no solution.
+    bool step_to_planes(const Points& left, double smoothing) {
+        constexpr Eigen::Index rows_at_once = 512;
+        const Eigen::Index count = cage_.cols(), stride = std::max<Eigen::Index>(1, now_.cols() / 4000),
+                           n = (now_.cols() + stride - 1) / stride;
+        Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(3 * count, 3 * count), same = Eigen::MatrixXd::Zero(count, count);
+        Eigen::VectorXd right = Eigen::VectorXd::Zero(3 * count);
+        for (Eigen::Index first = 0; first < n; first += rows_at_once) {
+            const Eigen::Index rows = std::min(rows_at_once, n - first);
+            Eigen::MatrixXd planes = Eigen::MatrixXd::Zero(3 * count, rows), places(count, rows);
+            for (Eigen::Index r = 0; r < rows; ++r)
+                add_plane((first + r) * stride, left, smoothing, planes.col(r), places.col(r), right);
+            normal.selfadjointView<Eigen::Lower>().rankUpdate(planes);
+            same.selfadjointView<Eigen::Lower>().rankUpdate(places);
+        }
+        for (int axis = 0; axis < 3; ++axis) normal.block(axis * count, axis * count, count, count) += same;
+        normal.diagonal().array() += 1e-12 * normal.diagonal().mean();
+        const Cholesky factor(normal);
+        if (!factor.found()) return false;
+        const Eigen::VectorXd change = factor.solve(right);
+        if (!change.allFinite()) return false;
+        for (int axis = 0; axis < 3; ++axis) cage_.row(axis) += change.segment(axis * count, count).transpose();
+        now_ = points_of(*weights_, cage_);
+        return true;
+    }
+
+    /// What a vertex adds to a point-to-plane step: to the plane of its match, and to the place where it is held.
+    void add_plane(Eigen::Index v, const Points& left, double smoothing, Eigen::Ref<Eigen::VectorXd> plane_row,
+                   Eigen::Ref<Eigen::VectorXd> place_row, Eigen::VectorXd& right) const {
+        constexpr double hold = 0.1, shorten = 1e-6;  // weights against matches
+        const Eigen::Index count = cage_.cols();
+        const auto i = static_cast<std::size_t>(v);
+        const Vector3d x = now_.col(v);
+        const double area = std::max(rings_.area[i] / system_.mean_area, 1e-6);
+        const VertexMatch& one = matches_[i];
+        double weight = one.fragment < 0 ? hold * area : shorten * area;
+        Vector3d pull = one.fragment < 0 ? Vector3d(weight * (left.col(v) - x)) : Vector3d::Zero();
+        for (const Guide& guide : guides_[i]) {
+            const double share = weight_of(guide, smoothing);
+            weight += share;
+            pull += share * (guide.place - x);
+        }
+        const auto w = weights_->row(v).transpose();
+        place_row = std::sqrt(weight) * w;
+        for (int axis = 0; axis < 3; ++axis) right.segment(axis * count, count) += pull[axis] * w;
+        if (one.fragment < 0) return;
+        const Vector3d plane = search_.normal(one);
+        const double off = plane.dot(one.place - x);
+        for (int axis = 0; axis < 3; ++axis) {
+            plane_row.segment(axis * count, count) = std::sqrt(area) * plane[axis] * w;
+            right.segment(axis * count, count) += area * off * plane[axis] * w;
+        }
+    }
+
+    void take_residual(NonRigidFit::Level& record) const {
+        double squares = 0;
+        for (std::size_t i = 0; i < matches_.size(); ++i) {
+            if (matches_[i].fragment < 0) continue;
+            ++record.matched;
+            squares += (now_.col(static_cast<Eigen::Index>(i)) - matches_[i].place).squaredNorm();
+        }
+        record.residual = record.matched > 0 ? std::sqrt(squares / static_cast<double>(record.matched)) : 0;
+    }
+
     static double between(const NonRigidOptions& options, int level, double first, double last) {
         return first * std::pow(last / first, options.levels > 1 ? static_cast<double>(level) / (options.levels - 1) : 1);
     }
@@ -323,7 +341,7 @@ Coarse coarsened(const Mesh& mesh, std::size_t vertices) {
     Coarse coarse{mesh, {}, {}};
     SimplifyOptions options;
     options.vertices = vertices;
-    options.outlines = "ignore";
+    options.outlines = SimplifyOptions::Outlines::ignore;
     const SimplifyResult done = simplify(coarse.mesh, options);
     coarse.vertex_map = done.vertex_map;
     coarse.face_origin.resize(coarse.mesh.number_of_faces());
@@ -377,6 +395,49 @@ struct TemplateFitter::State {
         return points;
     }
 
+    /// Over the coarse mesh, or the template where there is none.
+    [[nodiscard]] Fitter smooth_fitter(const MatchSearch& search, const NonRigidOptions& options) {
+        std::vector<Guide> guides = search.guides();
+        if (!coarse) return {fine, search, search.labels(mesh, {}), std::move(guides), diagonal, options};
+        for (Guide& guide : guides) {
+            const Index here = coarse->vertex_map[guide.vertex];
+            if (here != no_index)
+                guide.place += eigen(coarse->mesh.point(Vertex(here))) - eigen(mesh.point(Vertex(guide.vertex)));
+            guide.vertex = here;
+        }
+        std::erase_if(guides, [&](const Guide& guide) { return guide.vertex >= coarse->mesh.number_of_vertices(); });
+        return {*smooth, search, search.labels(coarse->mesh, coarse->face_origin), std::move(guides), diagonal, options};
+    }
+
+    /// Levels through the cage; gives the first one that is left for the template's vertices.
+    int fit_cage(const MatchSearch& search, const NonRigidOptions& options, Fitter& exact, NonRigidFit& fit) {
+        if (cage == nullptr) fail_usage("the fit is to go through a cage, and there is none", "give the cage of the template");
+        Points at_rest(3, static_cast<Eigen::Index>(cage->cage.number_of_vertices()));
+        for (const Vertex v : cage->cage.vertices()) at_rest.col(static_cast<Eigen::Index>(v)) = eigen(cage->cage.point(v));
+        Fitter through = smooth_fitter(search, options);
+        through.go_through(weights(), at_rest);
+        const int level = options.space == NonRigidOptions::Space::both ? std::max(1, options.levels - 1) : options.levels;
+        through.run(0, level, fit);
+        exact.start_at(points_of(cage->coordinates.vertex, through.cage()));
+        if (level == options.levels) {
+            exact.go_through(cage->coordinates.vertex, through.cage());
+            exact.polish(options.last_reach * diagonal, Fitter::smoothing(options, level - 1, diagonal), fit);
+        }
+        return level;
+    }
+
+    /// Levels that are smooth on the coarse mesh; gives the first one that is not.
+    int fit_coarse(const MatchSearch& search, const NonRigidOptions& options, Fitter& exact, NonRigidFit& fit) {
+        constexpr double edges = 0.8;  // least smoothing length, in edges of the coarse mesh
+        int level = 0;
+        while (level < options.levels && Fitter::smoothing(options, level, diagonal) >= edges * edge) ++level;
+        Fitter over = smooth_fitter(search, options);
+        over.run(0, level, fit);
+        const Stopwatch watch(fit.seconds_coarsening);
+        if (level > 0) exact.start_at(follow(over));
+        return level;
+    }
+
     const Mesh& mesh;
     const AnnotationSet& set;
     const TemplateCage* cage;
@@ -406,10 +467,9 @@ TemplateFitter::TemplateFitter(TemplateFitter&&) noexcept = default;
 
 NonRigidFit TemplateFitter::fit(double scale, const std::vector<PlacedFragment>& fragments, const NonRigidOptions& options) {
     check_options(options, "fit");
-    if (options.counterparts != "surface" &&
+    if (options.counterparts != NonRigidOptions::Counterparts::surface &&
         !(options.vertices.boundary + options.vertices.distance + options.vertices.outline > 0))
         fail_usage("all three weights of equation 5.1 are zero", "give --distance-weight or another one");
-    constexpr double edges = 0.8;  // least smoothing length of a level on the coarse mesh, in its edges
     State& s = *state_;
     NonRigidFit fit;
     const MatchSearch search(s.mesh, s.set, fragments, scale, options.outlines);
@@ -419,41 +479,8 @@ NonRigidFit TemplateFitter::fit(double scale, const std::vector<PlacedFragment>&
     }
     Fitter fine(s.fine, search, search.labels(s.mesh, {}), search.guides(), s.diagonal, options);
     int level = 0;
-    std::vector<Guide> guides = search.guides();
-    if (s.coarse) {
-        const Coarse& coarse = *s.coarse;
-        while (level < options.levels && Fitter::smoothing(options, level, s.diagonal) >= edges * s.edge) ++level;
-        for (Guide& guide : guides) {
-            const Index here = coarse.vertex_map[guide.vertex];
-            if (here != no_index)
-                guide.place += eigen(coarse.mesh.point(Vertex(here))) - eigen(s.mesh.point(Vertex(guide.vertex)));
-            guide.vertex = here;
-        }
-        std::erase_if(guides, [&](const Guide& guide) { return guide.vertex >= coarse.mesh.number_of_vertices(); });
-    }
-    if (options.space != "mesh") {
-        if (s.cage == nullptr) fail_usage("the fit is to go through a cage, and there is none", "give the cage of the template");
-        Points rest(3, static_cast<Eigen::Index>(s.cage->cage.number_of_vertices()));
-        for (const Vertex v : s.cage->cage.vertices()) rest.col(static_cast<Eigen::Index>(v)) = eigen(s.cage->cage.point(v));
-        LevelSystem& system = s.coarse ? *s.smooth : s.fine;
-        Fitter through(system, search,
-                       s.coarse ? search.labels(s.coarse->mesh, s.coarse->face_origin) : search.labels(s.mesh, {}),
-                       std::move(guides), s.diagonal, options);
-        through.go_through(s.weights(), rest);
-        level = options.space == "both" ? std::max(1, options.levels - 1) : options.levels;
-        through.run(0, level, fit);
-        fine.start_at(points_of(s.cage->coordinates.vertex, through.cage()));
-        if (level == options.levels) {
-            fine.go_through(s.cage->coordinates.vertex, through.cage());
-            fine.polish(options.last_reach * s.diagonal, Fitter::smoothing(options, level - 1, s.diagonal), fit);
-        }
-    } else if (s.coarse) {
-        Fitter smooth(*s.smooth, search, search.labels(s.coarse->mesh, s.coarse->face_origin), std::move(guides), s.diagonal,
-                      options);
-        smooth.run(0, level, fit);
-        const Stopwatch watch(fit.seconds_coarsening);
-        if (level > 0) fine.start_at(s.follow(smooth));
-    }
+    if (options.space != NonRigidOptions::Space::mesh) level = s.fit_cage(search, options, fine, fit);
+    else if (s.coarse) level = s.fit_coarse(search, options, fine, fit);
     fine.run(level, options.levels, fit);
     fit.matches = fine.match(options.last_reach * s.diagonal, fit);
     // So far all was in the template's unit.

@@ -48,6 +48,7 @@ FragmentFile read_fragment(const Path& file, const FragmentFileOptions& options)
         MeshFile mesh = read_mesh(file);
         fragment.mesh = std::move(mesh.mesh);
     }
+    using FacetSource = FragmentFileOptions::FacetSource;
     bool annotated = false;
     const Path beside = file.parent_path() / (fragment.name + ".ant.json");
     if (result.points && file_exists(beside))
@@ -59,10 +60,10 @@ FragmentFile read_fragment(const Path& file, const FragmentFileOptions& options)
         std::swap(fragment.annotations.annotations, set.annotations);
         fragment.annotations.unit = set.unit;
         const auto& list = fragment.annotations.annotations;
-        annotated = options.facets != "none" && std::any_of(list.begin(), list.end(), names_facets);
+        annotated = options.facets != FacetSource::none && std::any_of(list.begin(), list.end(), names_facets);
     }
-    const bool by_shape =
-        options.facets == "auto" || (options.facets == "either" && !annotated && (result.points || !has_border(fragment.mesh)));
+    const bool by_shape = options.facets == FacetSource::automatic ||
+                          (options.facets == FacetSource::either && !annotated && (result.points || !has_border(fragment.mesh)));
     result.facets_from = annotated && by_shape ? "shape and annotations"
                          : annotated           ? "annotations"
                          : by_shape            ? "shape"

@@ -48,7 +48,7 @@ std::optional<BreakTurns> decide_free_turns(const Mesh& scaled, const std::vecto
         free += open(k) ? 1 : 0;
         breaks += broken(*fragments[k]) ? 1 : 0;
     }
-    if (options.turns == "never" || number.size() < 2 || free == 0 || breaks == 0) return std::nullopt;
+    if (options.turns == BreakTurnOptions::Turns::never || number.size() < 2 || free == 0 || breaks == 0) return std::nullopt;
     std::vector<Index> faces(scaled.number_of_faces());
     std::iota(faces.begin(), faces.end(), Index(0));
     const Axis axis = rotation_axis(scaled, faces);

@@ -1,6 +1,7 @@
 #include "ostraka/reconstruction/reconstruct.h"
 
 #include "fragment_trees.h"
+#include "reconstruction_verdict.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/text.h"
@@ -14,34 +15,6 @@
 #include <cmath>
 
 namespace ostraka {
-
-std::string to_string(ObjectionKind kind) {
-    switch (kind) {
-        case ObjectionKind::placement:
-            return "placement";
-        case ObjectionKind::size:
-            return "size";
-        case ObjectionKind::landmarks:
-            return "landmarks";
-        case ObjectionKind::surface:
-            return "surface";
-        case ObjectionKind::overlap:
-            return "overlap";
-        default:
-            return "constraint";
-    }
-}
-
-std::string to_string(Compatibility compatibility) {
-    switch (compatibility) {
-        case Compatibility::compatible:
-            return "compatible";
-        case Compatibility::incompatible:
-            return "incompatible";
-        default:
-            return "undecided";
-    }
-}
 
 namespace {
 
@@ -66,8 +39,53 @@ bool same(const std::vector<Anchor>& a, const std::vector<Anchor>& b) {
                       [](const Anchor& x, const Anchor& y) { return x.of_part == y.of_part && x.of_whole == y.of_whole; });
 }
 
+/// The share of an annotation's vertices that were observed.
+double observed_share(const Mesh& mesh, const AnnotationSet& set, int id, const std::vector<bool>& seen) {
+    const Annotation* one = set.find(id);
+    std::vector<Index> vertices;
+    if (one != nullptr && one->all)
+        for (const Vertex v : mesh.vertices()) vertices.push_back(v);
+    if (one != nullptr && !one->all) {
+        vertices = one->points;
+        for (const Index f : one->faces)
+            for (const Vertex v : corners(mesh, Face(f))) vertices.push_back(v);
+    }
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    const auto count = std::count_if(vertices.begin(), vertices.end(), [&](Index v) { return seen[v]; });
+    return vertices.empty() ? 0 : static_cast<double>(count) / static_cast<double>(vertices.size());
+}
+
+/// Proportions whose first part was observed better than the second, the other way round.
+RelationGraph with_observed_as_reference(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& stated,
+                                         const std::vector<bool>& seen) {
+    RelationGraph graph;
+    graph.relationships = stated.relationships;
+    const auto observed = [&](int id) { return observed_share(mesh, set, id, seen); };
+    for (Relationship& one : graph.relationships) {
+        const RelationType* type = find_relation_type(one.type);
+        if (!one.is_constraint || type == nullptr || type->name != "proportion" || one.annotations.size() != 2) continue;
+        if (!(observed(one.annotations[0]) > observed(one.annotations[1]))) continue;
+        Json parameters = parse_json(one.constraint.empty() ? "{}" : one.constraint, "constraint");
+        if (!parameters.HasMember("minValue") || !parameters.HasMember("maxValue") || !parameters.HasMember("measure1") ||
+            !parameters.HasMember("measure2"))
+            continue;
+        const double least = parameters["minValue"].IsNumber() ? parameters["minValue"].GetDouble() : 0,
+                     most = parameters["maxValue"].IsNumber() ? parameters["maxValue"].GetDouble() : 0;
+        if (!(least > 0 && most >= least)) continue;
+        parameters["minValue"].SetDouble(1 / most);
+        parameters["maxValue"].SetDouble(1 / least);
+        parameters["measure1"].Swap(parameters["measure2"]);
+        std::swap(one.annotations[0], one.annotations[1]);
+        one.constraint = to_text(parameters);
+    }
+    return graph;
+}
+
+}  // namespace
+
 /// A fragment, and what is known of it already.
-struct Known {
+struct KnownFragment {
     const Fragment* fragment = nullptr;
     std::vector<StatedMatch> stated;
     std::vector<LandmarkPair> pairs;  ///< with the template
@@ -91,11 +109,10 @@ struct Known {
     std::optional<Matched> matched;
 };
 
-}  // namespace
-
-struct Reconstructor::State {
-    State(const Mesh& of, const AnnotationSet& with, const RelationGraph& relations, const ReconstructOptions& how,
-          const ShapePrior* of_class, const TemplateCage* cage)
+/// The template and its fragments, with what is kept of them from one reconstruction to the next.
+struct KnownObject {
+    KnownObject(const Mesh& of, const AnnotationSet& with, const RelationGraph& relations, const ReconstructOptions& how,
+                const ShapePrior* of_class, const TemplateCage* cage)
         : mesh(of),
           set(with),
           graph(relations),
@@ -112,27 +129,16 @@ struct Reconstructor::State {
     PoseSearches searches;
     TemplateFitter fitter;
     std::optional<std::vector<std::pair<Index, Index>>> crossings;  ///< of the template's faces
-    std::vector<Known> fragments;
+    std::vector<KnownFragment> fragments;
 };
 
 namespace {
 
-/// One reconstruction, from the fragments there are.
-class Run {
+/// One reconstruction from the fragments there are, phase by phase.
+class ReconstructionRun {
 public:
-    Run(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph, const ReconstructOptions& options,
-        const ShapePrior* prior, PoseSearches& searches, TemplateFitter& fitter,
-        std::optional<std::vector<std::pair<Index, Index>>>& crossings, std::vector<Known>& known)
-        : mesh_(mesh),
-          set_(set),
-          graph_(graph),
-          options_(options),
-          prior_(prior),
-          searches_(searches),
-          fitter_(fitter),
-          crossings_(crossings),
-          known_(known) {
-        for (const Known& one : known) {
+    explicit ReconstructionRun(KnownObject& known) : known_(known) {
+        for (const KnownFragment& one : known.fragments) {
             fragments_.push_back(one.fragment);
             pairs_.push_back(one.pairs);
         }
@@ -140,30 +146,12 @@ public:
 
     Reconstruction run() {
         timed("placement", [&] { place(); });
-        if (!result_.placement.any()) {
-            result_.undecided = "no fragment could be placed";
-            for (std::size_t k = 0; k < fragments_.size(); ++k)
-                object(ObjectionKind::placement, static_cast<int>(k), -1, 0, result_.placement.fragments[k].problem);
-            return std::move(result_);
+        if (result_.placement.any()) {
+            pose();
+            fit();
+            timed("completion", [&] { finish(); });
         }
-        scaled_ = scaled_by(mesh_, result_.placement.scale);
-        diagonal_ = box_diagonal(scaled_);
-        if (options_.refine) timed("refinement", [&] { refine(); });
-        timed("turns", [&] {
-            result_.turns = decide_free_turns(scaled_, fragments_, result_.searched, result_.placement.fragments, options_.turns);
-        });
-        timed("annotations", [&] { match(); });
-        if (prior_ != nullptr) timed("class", [&] { take_shape_of_class(); });
-        timed("fit", [&] {
-            // The shape of the class is another one each time.
-            result_.fit = prior_ != nullptr ? fit_template(scaled_, set_, placed_, options_.fit)
-                                            : fitter_.fit(result_.placement.scale, placed_, options_.fit);
-        });
-        result_.points = result_.fit.points;
-        timed("observed", [&] { see(); });
-        timed("constraints", [&] { restore(); });
-        timed("completion", [&] { finish(); });
-        judge();
+        judge_reconstruction(result_, pairs_, number_, known_.options);
         return std::move(result_);
     }
 
@@ -176,14 +164,14 @@ private:
     }
 
     void place() {
-        for (const Known& one : known_) result_.notes.push_back(one.notes);
-        result_.placement = place_by_landmarks(pairs_, options_.placement);
+        for (const KnownFragment& one : known_.fragments) result_.notes.push_back(one.notes);
+        result_.placement = place_by_landmarks(pairs_, known_.options.placement);
         for (std::size_t k = 0; k < fragments_.size(); ++k)
             for (const auto& [one, other] : result_.placement.fragments[k].swapped)
                 result_.notes[k].push_back("landmarks '" + one + "' and '" + other +
                                            "' would fit each other's places: are their tags exchanged?");
-        result_.searched =
-            place_by_search(searches_, fragments_, options_.search, result_.placement.scale, result_.placement.fragments);
+        result_.searched = place_by_search(known_.searches, fragments_, known_.options.search, result_.placement.scale,
+                                           result_.placement.fragments);
         for (std::size_t k = 0; k < fragments_.size(); ++k)
             if (result_.searched[k] && result_.searched[k]->decided) ask_landmarks(k);
     }
@@ -191,7 +179,7 @@ private:
     /// What the search of a pose left open is decided by the landmarks there are; those that contradict it are named.
     void ask_landmarks(std::size_t k) {
         constexpr double far_off = 0.1;  // of the template's diagonal
-        const double scale = result_.placement.scale, limit = far_off * scale * box_diagonal(mesh_);
+        const double scale = result_.placement.scale, limit = far_off * scale * box_diagonal(known_.mesh);
         FragmentPlacement& placed = result_.placement.fragments[k];
         if (close_by_landmarks(pairs_[k], scale, limit, *result_.searched[k], placed)) {
             result_.notes[k].push_back("what the search for its pose left open is decided by its landmarks");
@@ -203,6 +191,31 @@ private:
                 result_.notes[k].push_back("landmark '" + pair.name + "' is " + digits(off, 3) +
                                            " off its place on the template: the pose was searched for and contradicts it");
         }
+    }
+
+    /// The fragments where they are on the template, and what is matched there.
+    void pose() {
+        scaled_ = scaled_by(known_.mesh, result_.placement.scale);
+        diagonal_ = box_diagonal(scaled_);
+        if (known_.options.refine) timed("refinement", [&] { refine(); });
+        timed("turns", [&] {
+            result_.turns =
+                decide_free_turns(scaled_, fragments_, result_.searched, result_.placement.fragments, known_.options.turns);
+        });
+        timed("annotations", [&] { match(); });
+        if (known_.prior != nullptr) timed("class", [&] { take_shape_of_class(); });
+    }
+
+    /// The template where the fragments and its constraints have it.
+    void fit() {
+        timed("fit", [&] {
+            // The shape of the class is another one each time.
+            result_.fit = known_.prior != nullptr ? fit_template(scaled_, known_.set, placed_, known_.options.fit)
+                                                  : known_.fitter.fit(result_.placement.scale, placed_, known_.options.fit);
+        });
+        result_.points = result_.fit.points;
+        timed("observed", [&] { see(); });
+        timed("constraints", [&] { restore(); });
     }
 
     void refine() {
@@ -220,12 +233,13 @@ private:
             for (std::size_t i = 0; i < pairs.size(); ++i)
                 if (i < placement.landmarks.size() && placement.landmarks[i].used)
                     anchors.push_back({pairs[i].on_fragment, on_scaled(pairs[i])});
-            std::optional<Known::Refined>& known = known_[k].refined;
+            std::optional<KnownFragment::Refined>& known = known_.fragments[k].refined;
             const double scale = result_.placement.scale;
             if (!known || shaped_ || known->scale != scale || !same(known->start, placement.pose) ||
                 !same(known->anchors, anchors)) {
                 if (!whole) whole.emplace(scaled_);
-                result_.alignment[k] = align_part(fragment.mesh, counts, *whole, placement.pose, anchors, options_.alignment);
+                result_.alignment[k] =
+                    align_part(fragment.mesh, counts, *whole, placement.pose, anchors, known_.options.alignment);
                 if (!shaped_) known = {scale, placement.pose, anchors, result_.alignment[k]};
             } else {
                 result_.alignment[k] = known->alignment;
@@ -249,10 +263,10 @@ private:
     void take_shape_of_class() {
         constexpr int rounds = 2;
         for (int round = 0; round < rounds; ++round) {
-            result_.prior = fit_prior(scaled_, set_, placed_, *prior_, options_.prior);
+            result_.prior = fit_prior(scaled_, known_.set, placed_, *known_.prior, known_.options.prior);
             scaled_ = result_.prior->mesh;
             shaped_ = true;
-            if (!options_.refine || round + 1 == rounds) continue;
+            if (!known_.options.refine || round + 1 == rounds) continue;
             refine();
             match();
         }
@@ -266,10 +280,11 @@ private:
             const FragmentPlacement& placement = result_.placement.fragments[k];
             if (!placement.problem.empty()) continue;
             const Fragment& fragment = *fragments_[k];
-            std::optional<Known::Matched>& known = known_[k].matched;
+            std::optional<KnownFragment::Matched>& known = known_.fragments[k].matched;
             if (!known || shaped_ || known->scale != result_.placement.scale || !same(known->pose, placement.pose)) {
-                result_.annotations[k] = match_annotations(scaled_, set_, fragment.mesh, fragment.annotations, placement.pose,
-                                                           known_[k].stated, options_.annotations);
+                result_.annotations[k] =
+                    match_annotations(scaled_, known_.set, fragment.mesh, fragment.annotations, placement.pose,
+                                      known_.fragments[k].stated, known_.options.annotations);
                 if (!shaped_) known = {result_.placement.scale, placement.pose, result_.annotations[k]};
             } else {
                 result_.annotations[k] = known->matches;
@@ -279,10 +294,10 @@ private:
                                   fragment.facets,
                                   result_.annotations[k],
                                   placement.pose,
-                                  known_[k].trees};
+                                  known_.fragments[k].trees};
             // A landmark that was found to be a wrong one guides nothing.
             std::erase_if(placed.matches, [&](const AnnotationMatch& one) {
-                const Annotation* a = set_.find(one.of_template);
+                const Annotation* a = known_.set.find(one.of_template);
                 return a != nullptr && a->type == AnnotationType::point &&
                        std::any_of(placement.landmarks.begin(), placement.landmarks.end(),
                                    [&](const auto& landmark) { return landmark.name == a->tag && !landmark.used; });
@@ -294,14 +309,14 @@ private:
 
     /// Which vertices were observed: matched within the tolerance.
     void see() {
-        const std::size_t n = mesh_.number_of_vertices();
+        const std::size_t n = known_.mesh.number_of_vertices();
         std::vector<bool> near(n, false);
         result_.distance.assign(n, -1);
         for (std::size_t i = 0; i < n; ++i) {
             VertexMatch& match = result_.fit.matches[i];
             if (match.fragment < 0) continue;
             match.fragment = number_[static_cast<std::size_t>(match.fragment)];
-            near[i] = match.distance <= options_.observed * diagonal_;
+            near[i] = match.distance <= known_.options.observed * diagonal_;
             if (near[i]) result_.distance[i] = match.distance;
         }
         held_ = std::move(near);
@@ -310,8 +325,8 @@ private:
     void finish() {
         Mesh fitted = scaled_;
         for (const Vertex v : fitted.vertices()) fitted.point(v) = result_.points[v];
-        CompleteOptions options = options_.completion;
-        options.tolerance = options_.observed;
+        CompleteOptions options = known_.options.completion;
+        options.tolerance = known_.options.observed;
         result_.object = complete(fitted, placed_, options);
         CompletedObject& object = result_.object;
         result_.joined.assign(fragments_.size(), 0);
@@ -325,8 +340,8 @@ private:
         }
         result_.observed_share = area > 0 ? seen / area : 0;
         for (CompletionNote& note : object.notes) note.fragment = number_[static_cast<std::size_t>(note.fragment)];
-        if (!crossings_) crossings_ = self_intersections(to_soup(mesh_)).pairs;
-        const auto before = shaped_ ? self_intersections(to_soup(scaled_)).pairs : *crossings_,
+        if (!known_.crossings) known_.crossings = self_intersections(to_soup(known_.mesh)).pairs;
+        const auto before = shaped_ ? self_intersections(to_soup(scaled_)).pairs : *known_.crossings,
                    after = self_intersections(to_soup(object.mesh)).pairs;
         result_.crossings = static_cast<std::size_t>(std::count_if(after.begin(), after.end(), [&](const auto& pair) {
             const auto [a, b] = pair;
@@ -337,175 +352,21 @@ private:
         }));
     }
 
-    /// The share of an annotation's vertices that were observed.
-    [[nodiscard]] double observed(int id) const {
-        const Annotation* one = set_.find(id);
-        std::vector<Index> vertices;
-        if (one != nullptr && one->all)
-            for (const Vertex v : mesh_.vertices()) vertices.push_back(v);
-        if (one != nullptr && !one->all) {
-            vertices = one->points;
-            for (const Index f : one->faces)
-                for (const Vertex v : corners(mesh_, Face(f))) vertices.push_back(v);
-        }
-        std::sort(vertices.begin(), vertices.end());
-        vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-        const auto seen = std::count_if(vertices.begin(), vertices.end(), [&](Index v) { return held_[v]; });
-        return vertices.empty() ? 0 : static_cast<double>(seen) / static_cast<double>(vertices.size());
-    }
-
-    /// Proportions whose first part was observed better than the second, the other way round.
-    [[nodiscard]] RelationGraph with_observed_as_reference() const {
-        RelationGraph graph;
-        graph.relationships = graph_.relationships;
-        for (Relationship& one : graph.relationships) {
-            const RelationType* type = find_relation_type(one.type);
-            if (!one.is_constraint || type == nullptr || type->name != "proportion" || one.annotations.size() != 2) continue;
-            if (!(observed(one.annotations[0]) > observed(one.annotations[1]))) continue;
-            Json parameters = parse_json(one.constraint.empty() ? "{}" : one.constraint, "constraint");
-            if (!parameters.HasMember("minValue") || !parameters.HasMember("maxValue") || !parameters.HasMember("measure1") ||
-                !parameters.HasMember("measure2"))
-                continue;
-            const double least = parameters["minValue"].IsNumber() ? parameters["minValue"].GetDouble() : 0,
-                         most = parameters["maxValue"].IsNumber() ? parameters["maxValue"].GetDouble() : 0;
-            if (!(least > 0 && most >= least)) continue;
-            parameters["minValue"].SetDouble(1 / most);
-            parameters["maxValue"].SetDouble(1 / least);
-            parameters["measure1"].Swap(parameters["measure2"]);
-            std::swap(one.annotations[0], one.annotations[1]);
-            one.constraint = to_text(parameters);
-        }
-        return graph;
-    }
-
     void restore() {
-        const bool any = std::any_of(graph_.relationships.begin(), graph_.relationships.end(),
+        const bool any = std::any_of(known_.graph.relationships.begin(), known_.graph.relationships.end(),
                                      [](const Relationship& one) { return one.is_constraint; });
-        if (!any || !options_.restore) return;
+        if (!any || !known_.options.restore) return;
         DeformOptions options;
         options.handles = 1e5;  // what was observed is not given up for a constraint
-        DeformResult restored = restore_constraints(scaled_, set_, with_observed_as_reference(), result_.points, held_, options,
-                                                    {}, "the template's graph");
+        DeformResult restored =
+            restore_constraints(scaled_, known_.set, with_observed_as_reference(known_.mesh, known_.set, known_.graph, held_),
+                                result_.points, held_, options, {}, "the template's graph");
         result_.points = std::move(restored.points);
         result_.constraints = std::move(restored.constraints);
         result_.conflicts = std::move(restored.conflicts);
     }
 
-    /// Sum of squares of the template's landmarks about their mean: what a fragment weighs in the common scale.
-    [[nodiscard]] double weight_of(const std::vector<LandmarkPair>& pairs, const FragmentPlacement& placement,
-                                   bool on_fragment) const {
-        Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-        double count = 0, sum = 0;
-        const auto place = [&](const LandmarkPair& pair) { return on_fragment ? pair.on_fragment : pair.on_template; };
-        const auto used = [&](std::size_t i) { return i >= placement.landmarks.size() || placement.landmarks[i].used; };
-        for (std::size_t i = 0; i < pairs.size(); ++i)
-            if (used(i)) middle += place(pairs[i]), ++count;
-        if (!(count > 0)) return 0;
-        middle /= count;
-        for (std::size_t i = 0; i < pairs.size(); ++i)
-            if (used(i)) sum += (place(pairs[i]) - middle).squaredNorm();
-        return sum;
-    }
-
-    void object(ObjectionKind kind, int fragment, int constraint, double strain, const std::string& text) {
-        result_.strain = std::max(result_.strain, strain);
-        if (kind == ObjectionKind::placement || strain > 1)
-            result_.objections.push_back({kind, fragment, constraint, strain, text});
-    }
-
-    /// A fragment's size against that of the others, and its landmarks against the template's.
-    void judge_fragment(std::size_t k) {
-        const FragmentPlacement& one = result_.placement.fragments[k];
-        const int number = static_cast<int>(k);
-        double sum = 0, weights = 0;
-        for (std::size_t j = 0; j < fragments_.size(); ++j) {
-            const FragmentPlacement& other = result_.placement.fragments[j];
-            if (j == k || !other.problem.empty() || !(other.own_scale > 0)) continue;
-            const double weight = weight_of(pairs_[j], other, false);
-            sum += weight * other.own_scale;
-            weights += weight;
-        }
-        if (weights > 0 && one.own_scale > 0) {
-            const double others = sum / weights,
-                         off = 100 * (std::max(one.own_scale, others) / std::min(one.own_scale, others) - 1);
-            object(ObjectionKind::size, number, -1, off / std::max(options_.scale_tolerance, 1e-9),
-                   "alone it would have the template " + digits(one.own_scale, 4) + " times as large, and the others " +
-                       digits(others, 4) + " times: its size is off by " + digits(off, 3) + " %");
-        }
-        const double count = static_cast<double>(
-            std::count_if(one.landmarks.begin(), one.landmarks.end(), [](const LandmarkResidual& mark) { return mark.used; }));
-        const double spread = count > 0 ? std::sqrt(weight_of(pairs_[k], one, true) / count) : 0;
-        if (spread > 0)
-            object(ObjectionKind::landmarks, number, -1, one.residual / (std::max(options_.residual, 1e-9) * spread),
-                   "its landmarks are " + digits(one.residual, 3) + " off those of the template (root mean square), " +
-                       digits(100 * one.residual / spread, 3) + " % of their spread");
-    }
-
-    void judge() {
-        std::size_t placed = 0;
-        for (std::size_t k = 0; k < fragments_.size(); ++k) {
-            const FragmentPlacement& one = result_.placement.fragments[k];
-            if (!one.problem.empty()) {
-                object(ObjectionKind::placement, static_cast<int>(k), -1, 0, "not placed: " + one.problem);
-                continue;
-            }
-            ++placed;
-            judge_fragment(k);
-        }
-        for (std::size_t i = 0; i < number_.size(); ++i) {
-            const double lying = 100 * result_.object.lying[i], shared = 100 * result_.object.shared[i];
-            const int k = number_[i];
-            object(ObjectionKind::surface, k, -1, (100 - lying) / std::max(100 - options_.lying, 1e-9),
-                   digits(lying, 3) + " % of its outer surface lies on the fitted template, at least " +
-                       digits(options_.lying, 3) +
-                       " %: another shape, a wrong place, or faces that are inside out or of its break");
-            object(ObjectionKind::overlap, k, -1, shared / std::max(options_.overlap, 1e-9),
-                   digits(shared, 3) + " % of its outer surface lies where fragments before it are seen, at most " +
-                       digits(options_.overlap, 3) + " %: two fragments of one object have none in common");
-        }
-        bool tested = false;
-        for (const ConstraintReport& constraint : result_.constraints) {
-            tested = tested || constraint.used;
-            if (!constraint.used) continue;
-            std::string words;
-            double strain = 0;
-            for (const Deviation& d : constraint.deviations) {
-                if (!d.value || !d.tolerance) continue;
-                const double allowed = d.unit == "%" ? std::max(options_.slack, *d.tolerance) : *d.tolerance;
-                strain = std::max(strain, *d.value / std::max(allowed, 1e-12));
-                if (*d.value > allowed)
-                    words += (words.empty() ? "" : "; ") + d.quantity + " " + digits(*d.value, 4) + ", at most " +
-                             digits(allowed, 4) + (d.unit.empty() ? "" : " " + d.unit);
-            }
-            strain = constraint.verdict == Verdict::fails ? strain : std::min(strain, 1.0);
-            object(ObjectionKind::constraint, -1, constraint.id, strain,
-                   constraint.type + " does not hold" + (words.empty() ? "" : ": " + words));
-        }
-        const bool against = std::any_of(result_.objections.begin(), result_.objections.end(),
-                                         [](const Objection& one) { return one.kind != ObjectionKind::placement; });
-        if (against) {
-            result_.verdict = Compatibility::incompatible;
-        } else if (placed < fragments_.size()) {
-            result_.undecided = "not all fragments could be placed";
-        } else if (result_.turns && std::any_of(result_.turns->notes.begin(), result_.turns->notes.end(),
-                                                [](const std::string& note) { return !note.empty(); })) {
-            result_.undecided = "the turns of some fragments about the axis are not decided";
-        } else if (placed == 1 && !tested) {
-            result_.undecided = "one fragment and no constraint: nothing can contradict it";
-        } else {
-            result_.verdict = Compatibility::compatible;
-        }
-    }
-
-    const Mesh& mesh_;
-    const AnnotationSet& set_;
-    const RelationGraph& graph_;
-    const ReconstructOptions& options_;
-    const ShapePrior* prior_;
-    PoseSearches& searches_;
-    TemplateFitter& fitter_;
-    std::optional<std::vector<std::pair<Index, Index>>>& crossings_;
-    std::vector<Known>& known_;
+    KnownObject& known_;
     std::vector<const Fragment*> fragments_;
     std::vector<std::vector<LandmarkPair>> pairs_;  ///< of each fragment
     Mesh scaled_;
@@ -522,43 +383,42 @@ private:
 Reconstructor::Reconstructor(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
                              const ReconstructOptions& options, const ShapePrior* prior, const TemplateCage* cage) {
     check_options(options, "fit");
-    if (options.fit.space != "mesh" && cage == nullptr)
+    if (options.fit.space != NonRigidOptions::Space::mesh && cage == nullptr)
         fail_usage("the fit is to go through a cage, and there is none", "give the cage of the template");
-    if (options.fit.space != "mesh" && prior != nullptr)
+    if (options.fit.space != NonRigidOptions::Space::mesh && prior != nullptr)
         fail_usage("a class changes the template's shape, and its cage does not follow",
                    "fit in mesh space, or without the class");
     if (prior != nullptr) prior->check(mesh.number_of_vertices());
     if (inside_out(mesh)) fail_input("template", "is inside out", "run: ostraka mesh repair");
-    state_ = std::make_unique<State>(mesh, set, graph, options, prior, cage);
+    known_ = std::make_unique<KnownObject>(mesh, set, graph, options, prior, cage);
 }
 Reconstructor::~Reconstructor() = default;
 Reconstructor::Reconstructor(Reconstructor&&) noexcept = default;
 
 void Reconstructor::add(const Fragment& fragment, std::vector<StatedMatch> stated) {
     if (inside_out(fragment.mesh)) fail_input("fragment '" + fragment.name + "'", "is inside out", "run: ostraka mesh repair");
-    Known known;
+    KnownFragment known;
     known.fragment = &fragment;
     known.stated = std::move(stated);
-    known.pairs = common_landmarks(state_->mesh, state_->set, fragment.mesh, fragment.annotations, &known.notes);
+    known.pairs = common_landmarks(known_->mesh, known_->set, fragment.mesh, fragment.annotations, &known.notes);
     known.trees = std::make_shared<FragmentTrees>(fragment.mesh, fragment.facets);
-    state_->fragments.push_back(std::move(known));
+    known_->fragments.push_back(std::move(known));
 }
 
 void Reconstructor::remove(std::size_t position) {
     if (position >= size())
         fail_usage("there is no fragment at position " + std::to_string(position),
                    "give a position below " + std::to_string(size()));
-    state_->fragments.erase(state_->fragments.begin() + static_cast<std::ptrdiff_t>(position));
+    known_->fragments.erase(known_->fragments.begin() + static_cast<std::ptrdiff_t>(position));
 }
 
-std::size_t Reconstructor::size() const { return state_->fragments.size(); }
+std::size_t Reconstructor::size() const { return known_->fragments.size(); }
 
-PoseSearches& Reconstructor::searches() { return state_->searches; }
+PoseSearches& Reconstructor::searches() { return known_->searches; }
 
 Reconstruction Reconstructor::run() {
     if (size() == 0) fail_usage("there is no fragment", "give one or more");
-    State& s = *state_;
-    return Run(s.mesh, s.set, s.graph, s.options, s.prior, s.searches, s.fitter, s.crossings, s.fragments).run();
+    return ReconstructionRun(*known_).run();
 }
 
 Reconstruction reconstruct(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,

@@ -13,97 +13,6 @@ namespace ostraka {
 
 using Eigen::Vector3d;
 
-Patch::Patch(const Mesh& mesh, std::vector<bool> keep, double least) : mesh_(mesh), keep_(std::move(keep)), least_(least) {
-    regularise({mesh.vertices().begin(), mesh.vertices().end()});
-}
-
-std::size_t Patch::size() const { return static_cast<std::size_t>(std::count(keep_.begin(), keep_.end(), true)); }
-
-void Patch::erode(std::vector<Vertex> vertices, int rings) {
-    std::vector<Vertex> touched;
-    for (; rings > 0; --rings) {
-        std::vector<Vertex> next;
-        for (const Vertex v : vertices)
-            for (const Face face : mesh_.faces_around_target(mesh_.halfedge(v))) {
-                if (face == Mesh::null_face() || !keep_[face]) continue;
-                keep_[face] = false;
-                for (const Vertex corner : corners(mesh_, face)) next.push_back(corner);
-            }
-        touched.insert(touched.end(), next.begin(), next.end());
-        vertices = std::move(next);
-    }
-    regularise(std::move(touched));
-}
-
-void Patch::regularise(std::vector<Vertex> stack) {
-    const auto kept = [&](Halfedge h) { return !mesh_.is_border(h) && keep_[mesh_.face(h)]; };
-    // Vertices at which the patch has several fans lose their faces, which may make others such.
-    while (!stack.empty()) {
-        const Vertex v = stack.back();
-        stack.pop_back();
-        if (mesh_.is_isolated(v)) continue;
-        int ends = 0;
-        for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v)))
-            ends += kept(h) && !kept(mesh_.opposite(h)) ? 1 : 0;
-        if (ends < 2) continue;
-        for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
-            if (!kept(h)) continue;
-            keep_[mesh_.face(h)] = false;
-            for (const Vertex other : corners(mesh_, mesh_.face(h)))
-                if (other != v) stack.push_back(other);
-        }
-    }
-    // Pieces that are too small.
-    std::vector<int> piece(keep_.size(), -1);
-    std::vector<double> area;
-    double whole = 0;
-    for (const Face seed : mesh_.faces()) {
-        whole += face_area(mesh_, seed);
-        if (!keep_[seed] || piece[seed] >= 0) continue;
-        const int number = static_cast<int>(area.size());
-        area.push_back(0);
-        std::vector<Face> todo{seed};
-        piece[seed] = number;
-        while (!todo.empty()) {
-            const Face face = todo.back();
-            todo.pop_back();
-            area.back() += face_area(mesh_, face);
-            for (const Halfedge h : mesh_.halfedges_around_face(mesh_.halfedge(face))) {
-                const Halfedge other = mesh_.opposite(h);
-                if (!kept(other) || piece[mesh_.face(other)] >= 0) continue;
-                piece[mesh_.face(other)] = number;
-                todo.push_back(mesh_.face(other));
-            }
-        }
-    }
-    for (const Face face : mesh_.faces())
-        if (keep_[face] && !(area[static_cast<std::size_t>(piece[face])] >= least_ * whole)) keep_[face] = false;
-
-    loops_.clear();
-    std::vector<bool> bordered(area.size(), false);
-    for (const Halfedge h : mesh_.halfedges())
-        if (kept(h) && !kept(mesh_.opposite(h))) bordered[static_cast<std::size_t>(piece[mesh_.face(h)])] = true;
-    closed_.clear();
-    for (const Face face : mesh_.faces()) {
-        if (!keep_[face] || bordered[static_cast<std::size_t>(piece[face])]) continue;
-        bordered[static_cast<std::size_t>(piece[face])] = true;
-        closed_.push_back(face);
-    }
-    std::vector<Vertex> next(mesh_.number_of_vertices(), Mesh::null_vertex());
-    for (const Halfedge h : mesh_.halfedges())
-        if (kept(h) && !kept(mesh_.opposite(h))) next[mesh_.source(h)] = mesh_.target(h);
-    for (const Vertex start : mesh_.vertices()) {
-        if (next[start] == Mesh::null_vertex()) continue;
-        loops_.emplace_back();
-        for (Vertex v = start; next[v] != Mesh::null_vertex();) {
-            loops_.back().push_back(v);
-            const Vertex then = next[v];
-            next[v] = Mesh::null_vertex();
-            v = then;
-        }
-    }
-}
-
 namespace {
 
 /// A patch's border drawn on the surface, loop by loop.
@@ -173,19 +82,24 @@ struct Sides {
     std::vector<Vertex> failed;  ///< of borders that have a region on another side than its longest border has it
 };
 
-Sides part(const InsertedCurves& cut, const Patch& patch, const std::vector<std::optional<SurfaceHit>>& places) {
+constexpr std::size_t no_region = static_cast<std::size_t>(-1);
+
+/// The halfedge of a piece of a curve that was inserted.
+Halfedge curve_halfedge(const InsertedCurves& cut, std::size_t curve, std::size_t i) {
+    const auto& nodes = cut.node_vertex[curve];
+    return find_halfedge(cut.mesh, Vertex(nodes[i]), Vertex(nodes[i + 1]));
+}
+
+/// The region of each face, parted by the curves, and the number of regions.
+std::pair<std::vector<std::size_t>, std::size_t> regions_between(const InsertedCurves& cut) {
     const Mesh& mesh = cut.mesh;
-    constexpr std::size_t none = static_cast<std::size_t>(-1);
     std::vector<bool> fence(mesh.number_of_edges(), false);
-    const auto along = [&](std::size_t l, std::size_t i) {
-        return find_halfedge(mesh, Vertex(cut.node_vertex[l][i]), Vertex(cut.node_vertex[l][i + 1]));
-    };
     for (std::size_t l = 0; l < cut.node_vertex.size(); ++l)
-        for (std::size_t i = 0; i + 1 < cut.node_vertex[l].size(); ++i) fence[mesh.edge(along(l, i))] = true;
-    std::vector<std::size_t> region(mesh.number_of_faces(), none);
+        for (std::size_t i = 0; i + 1 < cut.node_vertex[l].size(); ++i) fence[mesh.edge(curve_halfedge(cut, l, i))] = true;
+    std::vector<std::size_t> region(mesh.number_of_faces(), no_region);
     std::size_t count = 0;
     for (const Face seed : mesh.faces()) {
-        if (region[seed] != none) continue;
+        if (region[seed] != no_region) continue;
         std::vector<Face> stack{seed};
         region[seed] = count;
         while (!stack.empty()) {
@@ -193,25 +107,31 @@ Sides part(const InsertedCurves& cut, const Patch& patch, const std::vector<std:
             stack.pop_back();
             for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(face))) {
                 const Halfedge other = mesh.opposite(h);
-                if (fence[mesh.edge(h)] || mesh.is_border(other) || region[mesh.face(other)] != none) continue;
+                if (fence[mesh.edge(h)] || mesh.is_border(other) || region[mesh.face(other)] != no_region) continue;
                 region[mesh.face(other)] = count;
                 stack.push_back(mesh.face(other));
             }
         }
         ++count;
     }
+    return {std::move(region), count};
+}
+
+Sides part(const InsertedCurves& cut, const Patch& patch, const std::vector<std::optional<SurfaceHit>>& places) {
+    const Mesh& mesh = cut.mesh;
+    const auto [region, count] = regions_between(cut);
     std::vector<bool> left(count, false);
-    std::vector<std::size_t> longest(count, none);
+    std::vector<std::size_t> longest(count, no_region);                  // loop beside each region
     std::vector<std::pair<std::size_t, std::size_t>> on_left, on_right;  // region and loop
     for (std::size_t l = 0; l < cut.node_vertex.size(); ++l)
         for (std::size_t i = 0; i + 1 < cut.node_vertex[l].size(); ++i) {
-            const Halfedge h = along(l, i);
+            const Halfedge h = curve_halfedge(cut, l, i);
             for (const Halfedge half : {h, mesh.opposite(h)}) {
                 if (mesh.is_border(half)) continue;
                 const std::size_t r = region[mesh.face(half)];
                 auto& side = half == h ? on_left : on_right;
                 if (side.empty() || side.back() != std::pair(r, l)) side.emplace_back(r, l);
-                if (longest[r] == none || patch.loops()[l].size() > patch.loops()[longest[r]].size()) longest[r] = l;
+                if (longest[r] == no_region || patch.loops()[l].size() > patch.loops()[longest[r]].size()) longest[r] = l;
             }
         }
     for (const Face face : patch.closed()) {
@@ -231,40 +151,58 @@ Sides part(const InsertedCurves& cut, const Patch& patch, const std::vector<std:
     return sides;
 }
 
-/// Vertices of the surface near the seam shifted by displacements that are harmonic between the seam and those `fixed`.
-/// Gives marks of those vertices.
-std::vector<bool> follow(const Mesh& mesh, const std::vector<bool>& gone, const std::map<Index, Vector3d>& seam, double width,
-                         const std::vector<bool>& frozen, std::vector<Vector3d>& points) {
-    const double edge = mean_edge_length(mesh);
-    const int rings = edge > 0 ? static_cast<int>(std::clamp(std::ceil(width / edge), 1.0, 40.0)) : 1;
-    std::vector<int> ring(mesh.number_of_vertices(), -1);
+/// A surface cut along the seam, without the faces that are `gone`.
+struct CutSurface {
+    const Mesh& mesh;
+    const std::vector<bool>& gone;
+    /// Whether a face beside the edge is left.
+    [[nodiscard]] bool has(Halfedge h) const { return is_left(h) || is_left(mesh.opposite(h)); }
+
+private:
+    [[nodiscard]] bool is_left(Halfedge h) const { return !mesh.is_border(h) && !gone[mesh.face(h)]; }
+};
+
+/// The vertices within so many rings of the seam, but for the seam and those `frozen`; `near` marks all of them.
+std::vector<Vertex> band_around(const CutSurface& surface, const std::map<Index, Vector3d>& seam, int rings,
+                                const std::vector<bool>& frozen, std::vector<bool>& near) {
+    const Mesh& mesh = surface.mesh;
     std::vector<Vertex> front, band;
     for (const auto& [v, place] : seam) {
-        ring[v] = 0;
+        near[v] = true;
         front.emplace_back(v);
     }
-    const auto stays = [&](Halfedge h) { return !mesh.is_border(h) && !gone[mesh.face(h)]; };
-    std::vector<std::vector<Vertex>> around;
     for (int r = 1; r <= rings; ++r) {
         std::vector<Vertex> then;
         for (const Vertex v : front)
             for (const Halfedge h : mesh.halfedges_around_target(mesh.halfedge(v))) {
                 const Vertex other = mesh.source(h);
-                if (ring[other] >= 0 || !(stays(h) || stays(mesh.opposite(h)))) continue;
-                ring[other] = r;
+                if (near[other] || !surface.has(h)) continue;
+                near[other] = true;
                 then.push_back(other);
                 if (!(static_cast<std::size_t>(other) < frozen.size() && frozen[other])) band.push_back(other);
             }
         front = std::move(then);
     }
-    std::vector<Vector3d> shift(mesh.number_of_vertices(), Vector3d::Zero()), next;
+    return band;
+}
+
+/// Vertices of the surface near the seam shifted by displacements that are harmonic between the seam and those `fixed`.
+/// Gives marks of those vertices.
+std::vector<bool> follow(const CutSurface& surface, const std::map<Index, Vector3d>& seam, double width,
+                         const std::vector<bool>& frozen, std::vector<Vector3d>& points) {
+    const Mesh& mesh = surface.mesh;
+    const double edge = mean_edge_length(mesh);
+    const int rings = edge > 0 ? static_cast<int>(std::clamp(std::ceil(width / edge), 1.0, 40.0)) : 1;
+    std::vector<bool> near(points.size(), false);
+    const std::vector<Vertex> band = band_around(surface, seam, rings, frozen, near);
+    std::vector<Vector3d> shift(mesh.number_of_vertices(), Vector3d::Zero()), next(band.size());
     for (const auto& [v, place] : seam) shift[v] = place - points[v];
+    std::vector<std::vector<Vertex>> around;
     for (const Vertex v : band) {
         around.emplace_back();
         for (const Halfedge h : mesh.halfedges_around_target(mesh.halfedge(v)))
-            if (stays(h) || stays(mesh.opposite(h))) around.back().push_back(mesh.source(h));
+            if (surface.has(h)) around.back().push_back(mesh.source(h));
     }
-    next.resize(band.size());
     for (int step = 0; step < 4 * rings; ++step) {
         for (std::size_t i = 0; i < band.size(); ++i) {
             next[i] = Vector3d::Zero();
@@ -273,11 +211,7 @@ std::vector<bool> follow(const Mesh& mesh, const std::vector<bool>& gone, const 
         }
         for (std::size_t i = 0; i < band.size(); ++i) shift[band[i]] = next[i];
     }
-    std::vector<bool> near(points.size(), false);
-    for (std::size_t v = 0; v < points.size(); ++v) {
-        points[v] += shift[v];
-        near[v] = ring[v] >= 0;
-    }
+    for (std::size_t v = 0; v < points.size(); ++v) points[v] += shift[v];
     return near;
 }
 
@@ -362,91 +296,136 @@ std::vector<Vertex> crossings_at_seam(const Mesh& surface, const Stitched& stitc
     return found;
 }
 
-Stitched stitch(const Patch& patch, const InsertedCurves& cut, const Drawing& drawing, const std::vector<bool>& gone,
-                double width, const std::vector<bool>& frozen) {
-    const Mesh& surface = cut.mesh;
-    constexpr Index none = no_index;
-    TriangleSoup soup;
-    const auto add = [&](const Vector3d& p) {
-        soup.points.push_back({p.x(), p.y(), p.z()});
-        return static_cast<Index>(soup.points.size() - 1);
-    };
-    std::vector<Index> of_patch(patch.mesh().number_of_vertices(), none), of_surface(surface.number_of_vertices(), none);
-    for (const Face face : patch.mesh().faces())
-        if (patch.has(face))
-            for (const Vertex v : corners(patch.mesh(), face))
-                if (of_patch[v] == none) of_patch[v] = add(eigen(patch.mesh().point(v)));
+/// Puts the patch and what is left of the surface together along the patch's border.
+class Stitching {
+public:
+    Stitching(const Patch& patch, const InsertedCurves& cut, const Drawing& drawing)
+        : patch_(patch),
+          cut_(cut),
+          drawing_(drawing),
+          of_patch_(patch.mesh().number_of_vertices(), no_index),
+          of_surface_(cut.mesh.number_of_vertices(), no_index) {
+        for (const Face face : patch.mesh().faces())
+            if (patch.has(face))
+                for (const Vertex v : corners(patch.mesh(), face))
+                    if (of_patch_[v] == no_index) of_patch_[v] = add(eigen(patch.mesh().point(v)));
+    }
 
-    Splits splits;
-    std::map<Index, Vector3d> seam;
-    std::map<Index, Vertex> border;  // new vertex -> border vertex of the patch that it is, or after which it comes
-    for (std::size_t l = 0; l < patch.loops().size(); ++l) {
-        const auto& loop = patch.loops()[l];
-        const auto& nodes = cut.node_vertex[l];
-        for (std::size_t i = 0; i < loop.size(); ++i) {
-            const Vertex a = loop[i], b = loop[(i + 1) % loop.size()];
-            const std::size_t begin = drawing.first[l][i], end = drawing.first[l][i + 1];
-            of_surface[nodes[begin]] = of_patch[a];
-            border.emplace(of_patch[a], a);
-            seam.emplace(nodes[begin], eigen(patch.mesh().point(a)));
-            double length = 0;
-            std::vector<double> along{0};
-            for (std::size_t n = begin; n < end; ++n) {
-                length += std::sqrt(CGAL::squared_distance(surface.point(Vertex(nodes[n])), surface.point(Vertex(nodes[n + 1]))));
-                along.push_back(length);
-            }
-            std::vector<Index>& split = splits[{of_patch[a], of_patch[b]}];
-            for (std::size_t n = begin + 1; n < end; ++n) {
-                const double t = along[n - begin] / length;
-                const Vector3d place = (1 - t) * eigen(patch.mesh().point(a)) + t * eigen(patch.mesh().point(b));
-                of_surface[nodes[n]] = add(place);
-                border.emplace(of_surface[nodes[n]], a);
-                seam.emplace(nodes[n], place);
-                split.push_back(of_surface[nodes[n]]);
-            }
+    Stitched stitch(const std::vector<bool>& gone, double width, const std::vector<bool>& frozen) && {
+        for (std::size_t l = 0; l < patch_.loops().size(); ++l)
+            for (std::size_t i = 0; i < patch_.loops()[l].size(); ++i) lay_seam(l, i);
+        result_.joint.patch_faces = patch_.size();
+        add_surface(gone, width, frozen);
+        add_patch();
+        find_doubled_edges();
+        if (result_.failed.empty()) result_.joint.mesh = build_mesh(soup_);
+        return std::move(result_);
+    }
+
+private:
+    Index add(const Vector3d& p) {
+        soup_.points.push_back({p.x(), p.y(), p.z()});
+        return static_cast<Index>(soup_.points.size() - 1);
+    }
+
+    /// An edge of the patch's border, and the nodes that its curve has between its ends: they come to lie on the edge.
+    void lay_seam(std::size_t l, std::size_t i) {
+        const Mesh& surface = cut_.mesh;
+        const auto& loop = patch_.loops()[l];
+        const auto& nodes = cut_.node_vertex[l];
+        const Vertex a = loop[i], b = loop[(i + 1) % loop.size()];
+        const std::size_t begin = drawing_.first[l][i], end = drawing_.first[l][i + 1];
+        of_surface_[nodes[begin]] = of_patch_[a];
+        border_.emplace(of_patch_[a], a);
+        seam_.emplace(nodes[begin], eigen(patch_.mesh().point(a)));
+        double length = 0;
+        std::vector<double> way{0};
+        for (std::size_t n = begin; n < end; ++n) {
+            length += std::sqrt(CGAL::squared_distance(surface.point(Vertex(nodes[n])), surface.point(Vertex(nodes[n + 1]))));
+            way.push_back(length);
+        }
+        std::vector<Index>& split = splits_[{of_patch_[a], of_patch_[b]}];
+        for (std::size_t n = begin + 1; n < end; ++n) {
+            const double t = way[n - begin] / length;
+            const Vector3d place = (1 - t) * eigen(patch_.mesh().point(a)) + t * eigen(patch_.mesh().point(b));
+            of_surface_[nodes[n]] = add(place);
+            border_.emplace(of_surface_[nodes[n]], a);
+            seam_.emplace(nodes[n], place);
+            split.push_back(of_surface_[nodes[n]]);
         }
     }
-    std::vector<Vector3d> points;
-    for (const Vertex v : surface.vertices()) points.push_back(eigen(surface.point(v)));
-    const std::vector<bool> surface_near = follow(surface, gone, seam, width, frozen, points), patch_near = near_border(patch);
 
-    Stitched result;
-    Joint& joint = result.joint;
-    joint.patch_faces = patch.size();
-    for (const Face face : surface.faces()) {
-        if (gone[face]) continue;
-        std::array<Index, 3> triangle{};
-        const auto c = corners(surface, face);
-        for (std::size_t k = 0; k < 3; ++k) {
-            if (of_surface[c[k]] == none) of_surface[c[k]] = add(points[c[k]]);
-            triangle[k] = of_surface[c[k]];
+    void add_surface(const std::vector<bool>& gone, double width, const std::vector<bool>& frozen) {
+        const Mesh& surface = cut_.mesh;
+        std::vector<Vector3d> points;
+        for (const Vertex v : surface.vertices()) points.push_back(eigen(surface.point(v)));
+        const std::vector<bool> near = follow({surface, gone}, seam_, width, frozen, points);
+        for (const Face face : surface.faces()) {
+            if (gone[face]) continue;
+            std::array<Index, 3> triangle{};
+            const auto c = corners(surface, face);
+            for (std::size_t k = 0; k < 3; ++k) {
+                if (of_surface_[c[k]] == no_index) of_surface_[c[k]] = add(points[c[k]]);
+                triangle[k] = of_surface_[c[k]];
+            }
+            soup_.triangles.push_back(triangle);
+            result_.joint.old_face.push_back(cut_.face_origin[face]);
+            result_.joint.patch_face.push_back(no_index);
+            result_.near.push_back(std::any_of(c.begin(), c.end(), [&](Vertex v) { return near[v]; }));
         }
-        soup.triangles.push_back(triangle);
-        joint.old_face.push_back(cut.face_origin[face]);
-        joint.patch_face.push_back(none);
-        result.near.push_back(std::any_of(c.begin(), c.end(), [&](Vertex v) { return surface_near[v]; }));
     }
-    for (const Face face : patch.mesh().faces()) {
-        if (!patch.has(face)) continue;
-        const auto c = corners(patch.mesh(), face);
-        const std::size_t before = soup.triangles.size();
-        cut_triangle({of_patch[c[0]], of_patch[c[1]], of_patch[c[2]]}, splits, soup.triangles);
-        joint.old_face.resize(joint.old_face.size() + soup.triangles.size() - before, none);
-        joint.patch_face.resize(joint.patch_face.size() + soup.triangles.size() - before, face);
-        result.near.resize(soup.triangles.size(), std::any_of(c.begin(), c.end(), [&](Vertex v) { return patch_near[v]; }));
+
+    void add_patch() {
+        const std::vector<bool> near = near_border(patch_);
+        for (const Face face : patch_.mesh().faces()) {
+            if (!patch_.has(face)) continue;
+            const auto c = corners(patch_.mesh(), face);
+            cut_triangle({of_patch_[c[0]], of_patch_[c[1]], of_patch_[c[2]]}, splits_, soup_.triangles);
+            const std::size_t count = soup_.triangles.size();
+            result_.joint.old_face.resize(count, no_index);
+            result_.joint.patch_face.resize(count, face);
+            result_.near.resize(count, std::any_of(c.begin(), c.end(), [&](Vertex v) { return near[v]; }));
+        }
     }
-    std::vector<std::pair<Index, Index>> edges;
-    for (const auto& t : soup.triangles)
-        for (std::size_t k = 0; k < 3; ++k)
-            if (border.contains(t[k]) && border.contains(t[(k + 1) % 3])) edges.emplace_back(t[k], t[(k + 1) % 3]);
-    std::sort(edges.begin(), edges.end());
-    for (auto twice = std::adjacent_find(edges.begin(), edges.end()); twice != edges.end();
-         twice = std::adjacent_find(twice + 1, edges.end())) {
-        result.failed.push_back(border.at(twice->first));
-        result.failed.push_back(border.at(twice->second));
+
+    void find_doubled_edges() {
+        std::vector<std::pair<Index, Index>> edges;
+        for (const auto& t : soup_.triangles)
+            for (std::size_t k = 0; k < 3; ++k)
+                if (border_.contains(t[k]) && border_.contains(t[(k + 1) % 3])) edges.emplace_back(t[k], t[(k + 1) % 3]);
+        std::sort(edges.begin(), edges.end());
+        for (auto twice = std::adjacent_find(edges.begin(), edges.end()); twice != edges.end();
+             twice = std::adjacent_find(twice + 1, edges.end())) {
+            result_.failed.push_back(border_.at(twice->first));
+            result_.failed.push_back(border_.at(twice->second));
+        }
     }
-    if (result.failed.empty()) joint.mesh = build_mesh(soup);
-    return result;
+
+    const Patch& patch_;
+    const InsertedCurves& cut_;
+    const Drawing& drawing_;
+    TriangleSoup soup_;
+    std::vector<Index> of_patch_, of_surface_;  ///< their vertices -> new ones
+    Splits splits_;
+    std::map<Index, Vector3d> seam_;
+    std::map<Index, Vertex> border_;  ///< new vertex -> border vertex of the patch that it is, or after which it comes
+    Stitched result_;
+};
+
+/// Without a joint where there are border vertices that `failed`.
+Stitched attempt_seam(const Mesh& surface, const Patch& patch, const std::vector<std::optional<SurfaceHit>>& places, double width,
+                      const std::vector<bool>& frozen) {
+    Stitched none;
+    const Drawing drawing = draw(surface, patch, places);
+    none.failed = drawing.failed;
+    if (!none.failed.empty()) return none;
+    const InsertedCurves cut = insert_curves(surface, drawing.curves);
+    none.failed = crossed(cut, patch, drawing);
+    if (!none.failed.empty()) return none;
+    const Sides sides = part(cut, patch, places);
+    none.failed = sides.failed;
+    if (!none.failed.empty()) return none;
+    return Stitching(patch, cut, drawing).stitch(sides.left, width, frozen);
 }
 
 }  // namespace
@@ -458,41 +437,23 @@ Joint join_patch(const Mesh& surface, Patch patch, const std::vector<std::option
     std::size_t fewest = 0;
     int crossed_attempts = 0;
     for (int attempt = 0; attempt < most_attempts; ++attempt) {
-        // Where little does not help, more is taken: a ring of a fine mesh is next to nothing.
-        const int rings = 1 << (attempt / 8);
         if (patch.size() == 0) {
             if (crossed_attempts > 0) return best;
             none.problem = attempt == 0 ? "nothing of it lies on the fitted template" : "its border is not simple anywhere";
             return none;
         }
-        const Drawing drawing = draw(surface, patch, places);
-        if (!drawing.failed.empty()) {
-            patch.erode(drawing.failed, rings);
-            continue;
+        Stitched stitched = attempt_seam(surface, patch, places, width, frozen);
+        std::vector<Vertex> failed = std::move(stitched.failed);
+        if (failed.empty()) {
+            if (!patch.loops().empty()) failed = crossings_at_seam(surface, stitched, patch);
+            if (crossed_attempts == 0 || failed.size() < fewest) {
+                fewest = failed.size();
+                best = std::move(stitched.joint);
+            }
+            if (failed.empty() || ++crossed_attempts == most_crossed) return best;
         }
-        const InsertedCurves cut = insert_curves(surface, drawing.curves);
-        if (const std::vector<Vertex> failed = crossed(cut, patch, drawing); !failed.empty()) {
-            patch.erode(failed, rings);
-            continue;
-        }
-        const Sides sides = part(cut, patch, places);
-        if (!sides.failed.empty()) {
-            patch.erode(sides.failed, rings);
-            continue;
-        }
-        Stitched stitched = stitch(patch, cut, drawing, sides.left, width, frozen);
-        if (!stitched.failed.empty()) {
-            patch.erode(stitched.failed, rings);
-            continue;
-        }
-        const std::vector<Vertex> at =
-            patch.loops().empty() ? std::vector<Vertex>() : crossings_at_seam(surface, stitched, patch);
-        if (crossed_attempts == 0 || at.size() < fewest) {
-            fewest = at.size();
-            best = std::move(stitched.joint);
-        }
-        if (at.empty() || ++crossed_attempts == most_crossed) return best;
-        patch.erode(at, rings);
+        // Where little does not help, more is taken: a ring of a fine mesh is next to nothing.
+        patch.erode(std::move(failed), 1 << (attempt / 8));
     }
     if (crossed_attempts > 0) return best;
     none.problem = "its border crosses itself on the template";

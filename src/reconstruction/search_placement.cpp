@@ -20,7 +20,9 @@ std::vector<std::optional<PoseSearchResult>> place_by_search(PoseSearches& searc
     std::vector<std::size_t> wanted;
     bool known = false;
     for (std::size_t k = 0; k < fragments.size(); ++k) {
-        if (options.search == "always" || (options.search == "auto" && few_landmarks(placed[k]))) wanted.push_back(k);
+        if (options.search == SearchOptions::Search::always ||
+            (options.search == SearchOptions::Search::automatic && few_landmarks(placed[k])))
+            wanted.push_back(k);
         else known = known || placed[k].problem.empty();
     }
     if (wanted.empty()) return results;

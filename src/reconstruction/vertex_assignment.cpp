@@ -131,7 +131,7 @@ public:
         const std::size_t n = result.vertices.size();
         result.counterpart.assign(n, no_index);
         result.cost.assign(n, std::numeric_limits<double>::infinity());
-        const bool once = options_.counterpart == "one-to-one";
+        const bool once = options_.counterpart == VertexAssignmentOptions::Counterpart::one_to_one;
         const auto wanted = static_cast<std::size_t>(once ? options_.candidates : 1);
         std::vector<std::vector<std::pair<double, int>>> lists(n);
         parallel_for(

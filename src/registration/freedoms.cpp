@@ -10,45 +10,20 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 std::string to_string(FreedomKind kind) {
-    switch (kind) {
-        case FreedomKind::turn:
-            return "turn";
-        case FreedomKind::shift:
-            return "shift";
-        case FreedomKind::screw:
-            return "screw";
-        case FreedomKind::tube:
-            return "tube";
-        case FreedomKind::ball:
-            return "ball";
-        case FreedomKind::plane:
-            return "plane";
-        case FreedomKind::more:
-            return "more";
-        default:
-            return "none";
-    }
+    static constexpr const char* words[]{"none", "turn", "shift", "screw", "tube", "ball", "plane", "more"};
+    return words[static_cast<std::size_t>(kind)];
 }
 
 std::string Freedom::text() const {
-    switch (kind) {
-        case FreedomKind::turn:
-            return "turn about a line";
-        case FreedomKind::shift:
-            return "shift along a line";
-        case FreedomKind::screw:
-            return "screw along a line";
-        case FreedomKind::tube:
-            return "turn about a line and shift along it";
-        case FreedomKind::ball:
-            return "turn about a point";
-        case FreedomKind::plane:
-            return "shift in a plane and turn about its normal";
-        case FreedomKind::more:
-            return "nearly any motion";
-        default:
-            return "none";
-    }
+    static constexpr const char* words[]{"none",
+                                         "turn about a line",
+                                         "shift along a line",
+                                         "screw along a line",
+                                         "turn about a line and shift along it",
+                                         "turn about a point",
+                                         "shift in a plane and turn about its normal",
+                                         "nearly any motion"};
+    return words[static_cast<std::size_t>(kind)];
 }
 
 namespace {

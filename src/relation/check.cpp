@@ -52,12 +52,39 @@ void conclude(RelationCheck& check, double value, const std::string& quantity, c
     check.verdict = holds ? Verdict::holds : Verdict::fails;
 }
 
+void check_containment(const Mesh& mesh, const std::vector<const Annotation*>& members, RelationCheck& check) {
+    const double share = outside(mesh, *members[1], *members[0]);
+    conclude(check, share, "outside", "%", share == 0);
+    if (share > 0) check.text = "part of the second lies outside of the first";
+}
+
+void check_equal_selections(const Mesh& mesh, const std::vector<const Annotation*>& members, RelationCheck& check) {
+    double share = 0;
+    for (const Annotation* member : members)
+        share = std::max({share, outside(mesh, *member, *members[0]), outside(mesh, *members[0], *member)});
+    conclude(check, share, "not common", "%", share == 0);
+    if (share > 0) check.text = "the selections differ";
+}
+
+using SharedLengths = std::map<std::pair<int, int>, double>;  ///< of adjacent annotations
+
+void check_adjacency(const SharedLengths& adjacent, const std::string& unit, const std::vector<const Annotation*>& members,
+                     RelationCheck& check) {
+    const auto entry = adjacent.find(std::minmax(members[0]->id, members[1]->id));
+    const bool holds = entry != adjacent.end();
+    conclude(check, holds ? entry->second : 0, "shared length", unit, holds);
+    if (holds) return;
+    const bool regions = members[0]->type == AnnotationType::region && members[1]->type == AnnotationType::region;
+    const bool apart = regions && missing(members[0]->faces, members[1]->faces) == members[0]->faces.size();
+    check.text = !regions ? "only regions are adjacent" : apart ? "their outlines share no edge" : "they have faces in common";
+}
+
 }  // namespace
 
 std::vector<RelationCheck> check_relations(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
                                            const RelationOptions& options) {
     check_graph(graph, set, "graph");
-    std::map<std::pair<int, int>, double> adjacent;
+    SharedLengths adjacent;
     const Topology found = topology(mesh, set);
     for (const auto& pair : found.adjacent) {
         const int a = set.annotations[pair.a].id, b = set.annotations[pair.b].id;
@@ -66,38 +93,17 @@ std::vector<RelationCheck> check_relations(const Mesh& mesh, const AnnotationSet
     RelationMeter meter(mesh, set, options);
     std::vector<RelationCheck> checks;
     for (const auto& relationship : graph.relationships) {
-        RelationCheck check;
+        RelationCheck& check = checks.emplace_back();
         check.parameters = relationship.parameters;
         std::vector<const Annotation*> members;
         for (const int id : relationship.annotations) members.push_back(set.find(id));
-        if (relationship.is_constraint || find_relation_type(relationship.type) == nullptr) {
-            check.text =
-                relationship.is_constraint ? "a constraint: the fit of a deformation tells" : "a type of its own: experts tell";
-        } else if (relationship.type == "containment") {
-            const double share = outside(mesh, *members[1], *members[0]);
-            conclude(check, share, "outside", "%", share == 0);
-            if (share > 0) check.text = "part of the second lies outside of the first";
-        } else if (relationship.type == "equal selections") {
-            double share = 0;
-            for (const Annotation* member : members)
-                share = std::max({share, outside(mesh, *member, *members[0]), outside(mesh, *members[0], *member)});
-            conclude(check, share, "not common", "%", share == 0);
-            if (share > 0) check.text = "the selections differ";
-        } else if (relationship.type == "adjacency") {
-            const auto entry = adjacent.find(std::minmax(relationship.annotations[0], relationship.annotations[1]));
-            const bool holds = entry != adjacent.end();
-            conclude(check, holds ? entry->second : 0, "shared length", set.unit, holds);
-            if (!holds) {
-                const bool regions = members[0]->type == AnnotationType::region && members[1]->type == AnnotationType::region;
-                const bool apart = regions && missing(members[0]->faces, members[1]->faces) == members[0]->faces.size();
-                check.text = !regions ? "only regions are adjacent"
-                             : apart  ? "their outlines share no edge"
-                                      : "they have faces in common";
-            }
-        } else {
-            check = meter.measure(relationship);
-        }
-        checks.push_back(std::move(check));
+        const RelationType* type = find_relation_type(relationship.type);
+        if (relationship.is_constraint) check.text = "a constraint: the fit of a deformation tells";
+        else if (type == nullptr) check.text = "a type of its own: experts tell";
+        else if (type->geometric == GeometricRelation::containment) check_containment(mesh, members, check);
+        else if (type->geometric == GeometricRelation::equal_selections) check_equal_selections(mesh, members, check);
+        else if (type->geometric == GeometricRelation::adjacency) check_adjacency(adjacent, set.unit, members, check);
+        else check = meter.measure(relationship);
     }
     return checks;
 }

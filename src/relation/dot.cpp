@@ -59,7 +59,7 @@ std::string graph_to_dot(const RelationGraph& graph, const AnnotationSet& set) {
         const std::string plain = relationship.directed ? "" : ", dir=none";
         const auto& members = relationship.annotations;
         if (members.size() == 2) {
-            const bool tree = relationship.type == "containment";
+            const bool tree = relationship.type == relation_type(GeometricRelation::containment).name;
             text += "  " + node(members[0]) + " -> " + node(members[1]) + " [label=" + label + plain + style +
                     (tree ? "" : ", constraint=false") + "];\n";
             continue;

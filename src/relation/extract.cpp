@@ -37,120 +37,162 @@ std::vector<std::vector<int>> clusters(std::vector<std::pair<double, int>> value
     return groups;
 }
 
+/// Ids of regions that have a face in common, the lower one first.
+std::set<std::pair<int, int>> overlapping_regions(const Mesh& mesh, const AnnotationSet& set, const std::vector<int>& regions) {
+    std::vector<std::vector<int>> at(mesh.number_of_faces());
+    for (const int id : regions)
+        for (const Index f : set.find(id)->faces) at[f].push_back(id);
+    std::sort(at.begin(), at.end());
+    at.erase(std::unique(at.begin(), at.end()), at.end());
+    std::set<std::pair<int, int>> overlapping;
+    for (const auto& list : at)
+        for (const int a : list)
+            for (const int b : list)
+                if (a < b) overlapping.emplace(a, b);
+    return overlapping;
+}
+
+bool is_wanted(GeometricRelation kind, const std::vector<std::string>& types) {
+    return types.empty() || std::find(types.begin(), types.end(), relation_type(kind).name) != types.end();
+}
+
 }  // namespace
 
-std::vector<Relationship> RelationMeter::extract(const std::vector<std::string>& types, int first_id) {
-    State& state = *state_;
-    std::vector<Relationship> found;
-    const auto wanted = [&](const std::string& type) {
-        return types.empty() || std::find(types.begin(), types.end(), type) != types.end();
-    };
-    const auto consider = [&](const std::string& type, std::vector<int> members, const std::string& attribute = {}) {
+/// The candidates of each kind, one after the other; those that hold are kept.
+class RelationCandidates {
+public:
+    RelationCandidates(RelationMeter& meter, const std::vector<std::string>& types, int first_id)
+        : meter_(meter), state_(*meter.state_), set_(state_.set), types_(types), first_id_(first_id) {
+        for (const auto& annotation : set_.annotations) {
+            if (annotation.all) continue;
+            if (annotation.type == AnnotationType::region && state_.part(annotation.id).area() > 0)
+                regions_.push_back(annotation.id);
+            for (const auto& attribute : annotation.attributes)
+                if (attribute.type != AttributeType::semantic) attributes_.insert(attribute.name);
+        }
+        overlapping_ = overlapping_regions(state_.mesh, set_, regions_);
+    }
+
+    std::vector<Relationship> that_hold() {
+        using enum GeometricRelation;
+        if (wanted(co_linearity)) lines();
+        if (wanted(mirror_symmetry))
+            for (const int id : regions_) consider(mirror_symmetry, {id});
+        for (const GeometricRelation kind : {mirror_symmetry, part_similarity})
+            if (wanted(kind))
+                for_pairs_apart([&](int a, int b) {
+                    if (alike(a, b)) consider(kind, {a, b});
+                });
+        for_pairs_apart([&](int a, int b) {
+            for (const GeometricRelation kind : {co_axiality, parallel_axes, perpendicular_axes})
+                if (wanted(kind) && consider(kind, {a, b})) return;
+        });
+        if (wanted(co_planarity)) planes();
+        if (wanted(same_level) && set_.up) levels();
+        if (wanted(equal_attributes)) equal_values();
+        if (wanted(horizontal_support) || wanted(side_contact)) contacts();
+        return std::move(found_);
+    }
+
+private:
+    [[nodiscard]] bool wanted(GeometricRelation kind) const { return is_wanted(kind, types_); }
+
+    bool consider(GeometricRelation kind, std::vector<int> members, const std::string& attribute = {}) {
+        const RelationType& type = relation_type(kind);
         Relationship relationship;
-        relationship.id = first_id + static_cast<int>(found.size());
-        relationship.type = type;
-        relationship.directed = find_relation_type(type)->directed;
+        relationship.id = first_id_ + static_cast<int>(found_.size());
+        relationship.type = type.name;
+        relationship.directed = type.directed;
         relationship.annotations = std::move(members);
         relationship.origin = "extracted";
         relationship.parameters.attribute = attribute;
-        const RelationCheck check = measure(relationship);
+        const RelationCheck check = meter_.measure(relationship);
         if (check.verdict != Verdict::holds) return false;
         relationship.parameters = check.parameters;
-        found.push_back(std::move(relationship));
+        found_.push_back(std::move(relationship));
         return true;
-    };
+    }
 
-    std::vector<int> regions, single_points;
-    std::set<std::string> attributes;
-    for (const auto& annotation : state.set.annotations) {
-        if (annotation.all) continue;
-        Part& part = state.part(annotation.id);
-        if (annotation.type == AnnotationType::region && part.area() > 0) regions.push_back(annotation.id);
-        if (annotation.type == AnnotationType::point && annotation.points.size() == 1) single_points.push_back(annotation.id);
-        if (annotation.type == AnnotationType::point && annotation.points.size() > 2 && wanted("co-linearity"))
-            consider("co-linearity", {annotation.id});
-        for (const auto& attribute : annotation.attributes)
-            if (attribute.type != AttributeType::semantic) attributes.insert(attribute.name);
+    /// A part that holds another one shares its geometry: nothing is said of such pairs.
+    [[nodiscard]] bool apart(int a, int b) const { return overlapping_.count(std::minmax(a, b)) == 0; }
+    template <class Visit>
+    void for_pairs_apart(const Visit& visit) const {
+        for (std::size_t i = 0; i < regions_.size(); ++i)
+            for (std::size_t j = i + 1; j < regions_.size(); ++j)
+                if (apart(regions_[i], regions_[j])) visit(regions_[i], regions_[j]);
     }
-    if (wanted("co-linearity") && single_points.size() <= 40)
-        for (std::size_t i = 0; i < single_points.size(); ++i)
-            for (std::size_t j = i + 1; j < single_points.size(); ++j)
-                for (std::size_t k = j + 1; k < single_points.size(); ++k)
-                    consider("co-linearity", {single_points[i], single_points[j], single_points[k]});
+    [[nodiscard]] bool alike(int a, int b) const {
+        const double x = state_.part(a).area(), y = state_.part(b).area();
+        return std::abs(x - y) <= 2 * state_.options.ratio / 100 * std::max(x, y);
+    }
 
-    const auto pairs = [&](const auto& visit) {
-        for (std::size_t i = 0; i < regions.size(); ++i)
-            for (std::size_t j = i + 1; j < regions.size(); ++j) visit(regions[i], regions[j]);
-    };
-    // A part that holds another one shares its geometry: nothing is said of such pairs.
-    std::set<std::pair<int, int>> overlapping;
-    {
-        std::vector<std::vector<int>> at(state.mesh.number_of_faces());
-        for (const int id : regions)
-            for (const Index f : state.set.find(id)->faces) at[f].push_back(id);
-        std::sort(at.begin(), at.end());
-        at.erase(std::unique(at.begin(), at.end()), at.end());
-        for (const auto& list : at)
-            for (const int a : list)
-                for (const int b : list)
-                    if (a < b) overlapping.emplace(a, b);
+    void lines() {
+        std::vector<int> points;
+        for (const auto& annotation : set_.annotations) {
+            if (annotation.all || annotation.type != AnnotationType::point) continue;
+            if (annotation.points.size() == 1) points.push_back(annotation.id);
+            if (annotation.points.size() > 2) consider(GeometricRelation::co_linearity, {annotation.id});
+        }
+        if (points.size() > 40) return;
+        for (std::size_t i = 0; i < points.size(); ++i)
+            for (std::size_t j = i + 1; j < points.size(); ++j)
+                for (std::size_t k = j + 1; k < points.size(); ++k)
+                    consider(GeometricRelation::co_linearity, {points[i], points[j], points[k]});
     }
-    const auto apart = [&](int a, int b) { return overlapping.count(std::minmax(a, b)) == 0; };
-    const auto alike = [&](int a, int b) {
-        const double x = state.part(a).area(), y = state.part(b).area();
-        return std::abs(x - y) <= 2 * state.options.ratio / 100 * std::max(x, y);
-    };
-    if (wanted("mirror symmetry")) {
-        for (const int id : regions) consider("mirror symmetry", {id});
-        pairs([&](int a, int b) {
-            if (apart(a, b) && alike(a, b)) consider("mirror symmetry", {a, b});
-        });
-    }
-    if (wanted("part similarity"))
-        pairs([&](int a, int b) {
-            if (apart(a, b) && alike(a, b)) consider("part similarity", {a, b});
-        });
-    pairs([&](int a, int b) {
-        if (!apart(a, b)) return;
-        if (wanted("co-axiality") && consider("co-axiality", {a, b})) return;
-        if (wanted("parallel axes") && consider("parallel axes", {a, b})) return;
-        if (wanted("perpendicular axes")) consider("perpendicular axes", {a, b});
-    });
-    if (wanted("co-planarity")) {
-        // Parts that are flat themselves: thinner than a tenth of their width.
+
+    /// Of parts that are flat themselves: thinner than a tenth of their width.
+    void planes() {
         std::vector<int> flat;
-        for (const int id : regions) {
-            const Cloud::Plane plane = state.part(id).cloud().plane();
+        for (const int id : regions_) {
+            const Cloud::Plane plane = state_.part(id).cloud().plane();
             if (plane.rms < 0.1 * plane.spread) flat.push_back(id);
         }
         for (std::size_t i = 0; i < flat.size(); ++i)
             for (std::size_t j = i + 1; j < flat.size(); ++j)
-                if (apart(flat[i], flat[j])) consider("co-planarity", {flat[i], flat[j]});
+                if (apart(flat[i], flat[j])) consider(GeometricRelation::co_planarity, {flat[i], flat[j]});
     }
-    if (wanted("same level") && state.set.up) {
-        const Vector3d up = eigen(unit_vector({(*state.set.up)[0], (*state.set.up)[1], (*state.set.up)[2]}));
+
+    void levels() {
+        const Vector3d up = eigen(unit_vector({(*set_.up)[0], (*set_.up)[1], (*set_.up)[2]}));
         std::vector<std::pair<double, int>> heights;
-        for (const int id : regions) heights.emplace_back(up.dot(state.part(id).centroid()), id);
-        for (auto& group : clusters(std::move(heights), state.options.distance * state.diagonal))
-            consider("same level", std::move(group));
+        for (const int id : regions_) heights.emplace_back(up.dot(state_.part(id).centroid()), id);
+        for (auto& group : clusters(std::move(heights), state_.options.distance * state_.diagonal))
+            consider(GeometricRelation::same_level, std::move(group));
     }
-    if (wanted("equal attributes"))
-        for (const auto& name : attributes) {
+
+    void equal_values() {
+        for (const auto& name : attributes_) {
             std::vector<std::pair<double, int>> values;
-            for (const auto& annotation : state.set.annotations)
-                if (const auto value = state.attribute(annotation.id, name); value && *value > 0)
+            for (const auto& annotation : set_.annotations)
+                if (const auto value = state_.attribute(annotation.id, name); value && *value > 0)
                     values.emplace_back(std::log(*value), annotation.id);
-            for (auto& group : clusters(std::move(values), -std::log1p(-std::min(0.999, state.options.ratio / 100))))
-                consider("equal attributes", std::move(group), name);
+            for (auto& group : clusters(std::move(values), -std::log1p(-std::min(0.999, state_.options.ratio / 100))))
+                consider(GeometricRelation::equal_attributes, std::move(group), name);
         }
-    if (wanted("horizontal support") || wanted("side contact"))
-        for (const auto& [pair, contact] : state.all_contacts()) {
-            if (wanted("horizontal support") && (consider("horizontal support", {pair.first, pair.second}) ||
-                                                 consider("horizontal support", {pair.second, pair.first})))
-                continue;
-            if (wanted("side contact")) consider("side contact", {pair.first, pair.second});
+    }
+
+    void contacts() {
+        constexpr auto support = GeometricRelation::horizontal_support, side = GeometricRelation::side_contact;
+        for (const auto& [pair, contact] : state_.all_contacts()) {
+            const auto& [a, b] = pair;
+            if (wanted(support) && (consider(support, {a, b}) || consider(support, {b, a}))) continue;
+            if (wanted(side)) consider(side, {a, b});
         }
-    return found;
+    }
+
+    RelationMeter& meter_;
+    RelationMeter::State& state_;
+    const AnnotationSet& set_;
+    const std::vector<std::string>& types_;
+    int first_id_;
+    std::vector<int> regions_;
+    std::set<std::string> attributes_;
+    std::set<std::pair<int, int>> overlapping_;
+    std::vector<Relationship> found_;
+};
+
+std::vector<Relationship> RelationMeter::extract(const std::vector<std::string>& types, int first_id) {
+    return RelationCandidates(*this, types, first_id).that_hold();
 }
 
 std::vector<std::string> geometric_types(const std::vector<std::string>& names) {
@@ -188,8 +230,9 @@ ExtractedRelations extract_relations(const Mesh& mesh, const AnnotationSet& set,
     for (Relationship& relationship : relationships_of(found, set, 0))
         if (wanted(relationship.type)) add(std::move(relationship));
     result.order = std::move(found.order);
-    for (const char* type : {"same level", "horizontal support", "side contact"})
-        if (!set.up && wanted(type)) result.not_looked_for.emplace_back(type);
+    using enum GeometricRelation;
+    for (const GeometricRelation kind : {same_level, horizontal_support, side_contact})
+        if (!set.up && is_wanted(kind, types)) result.not_looked_for.push_back(relation_type(kind).name);
     for (Relationship& relationship : RelationMeter(mesh, set, options).extract(types, 0)) add(std::move(relationship));
     return result;
 }

@@ -14,14 +14,22 @@ namespace ostraka {
 
 const std::vector<RelationType>& relation_types() {
     static const std::vector<RelationType> types = [] {
+        using enum GeometricRelation;
         std::vector<RelationType> list{
-            {"containment", 2, 2, true, true},        {"equal selections", 2, 0, true, false},
-            {"adjacency", 2, 2, true, false},         {"mirror symmetry", 1, 2, true, false},
-            {"co-axiality", 2, 0, true, false},       {"co-linearity", 1, 0, true, false},
-            {"co-planarity", 1, 0, true, false},      {"same level", 2, 0, true, false},
-            {"parallel axes", 2, 0, true, false},     {"perpendicular axes", 2, 2, true, false},
-            {"horizontal support", 2, 2, true, true}, {"side contact", 2, 2, true, false},
-            {"part similarity", 2, 0, true, false},   {"equal attributes", 2, 0, true, false},
+            {"containment", 2, 2, containment, true},
+            {"equal selections", 2, 0, equal_selections},
+            {"adjacency", 2, 2, adjacency},
+            {"mirror symmetry", 1, 2, mirror_symmetry, false, {"distance"}},
+            {"co-axiality", 2, 0, co_axiality, false, {"angle", "distance"}},
+            {"co-linearity", 1, 0, co_linearity, false, {"distance"}},
+            {"co-planarity", 1, 0, co_planarity, false, {"distance"}},
+            {"same level", 2, 0, same_level, false, {"height"}},
+            {"parallel axes", 2, 0, parallel_axes, false, {"angle"}},
+            {"perpendicular axes", 2, 2, perpendicular_axes, false, {"angle"}},
+            {"horizontal support", 2, 2, horizontal_support, true, {"tilt", "height"}},
+            {"side contact", 2, 2, side_contact, false, {"tilt"}},
+            {"part similarity", 2, 0, part_similarity, false, {"area", "shape"}},
+            {"equal attributes", 2, 0, equal_attributes, false, {"difference"}},
         };
         // Low-level constraints of the thesis's solver (section 4.2) and the high-level ones of chapter 5.
         for (const char* name : {"closeness",
@@ -57,11 +65,13 @@ const std::vector<RelationType>& relation_types() {
                                  "same measure",
                                  "structural continuity",
                                  "proportion"})
-            list.push_back({name, 1, 0, false, false});
+            list.push_back({name, 1, 0, std::nullopt});
         return list;
     }();
     return types;
 }
+
+const RelationType& relation_type(GeometricRelation kind) { return relation_types().at(static_cast<std::size_t>(kind)); }
 
 namespace {
 
@@ -171,7 +181,7 @@ void check_relationship(const Relationship& relationship, const AnnotationSet& s
     if (parameters.up) check_direction(*parameters.up, "up", place);
     for (const auto& part : {parameters.plane, parameters.axis})
         if (part && !finite(part->point)) fail_input(place, "has a point that is not finite", "give three finite numbers");
-    if (relationship.type == "equal attributes" && parameters.attribute.empty())
+    if (relationship.type == relation_type(GeometricRelation::equal_attributes).name && parameters.attribute.empty())
         fail_input(place, "does not say which attribute is equal", "name it in parameters.attribute");
 }
 

@@ -2,8 +2,6 @@
 #include "ostraka/core/error.h"
 #include "ostraka/relation/graph.h"
 
-#include <cmath>
-
 namespace ostraka {
 
 namespace {

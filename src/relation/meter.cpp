@@ -17,11 +17,6 @@ double angle_between(const Vector3d& a, const Vector3d& b) { return std::atan2(a
 
 double off_line(const Vector3d& p, const PartAxis& line) { return (p - line.point).cross(line.direction).norm(); }
 
-/// Why a relationship cannot be told; not an error: other relationships can.
-struct Unknown {
-    std::string text;
-};
-
 const PartAxis& axis_of(Part& part) {
     const PartAxis& axis = part.axis();
     if (!axis.found) throw Unknown{"'" + part.annotation().tag + "' has no axis: " + axis.reason};
@@ -35,33 +30,77 @@ Vector3d up_of(const AnnotationSet& set, const Relationship& relationship) {
     return unit;
 }
 
-/// The measured quantities of one relationship with the tolerances that apply.
-class Findings {
-public:
-    Findings(const Relationship& relationship, RelationParameters& parameters) : stated_(relationship), parameters_(parameters) {
-        parameters_.deviations.clear();
-    }
-    void add(const std::string& quantity, double value, double tolerance, const std::string& unit) {
-        for (const auto& deviation : stated_.parameters.deviations)
-            if (deviation.quantity == quantity && deviation.tolerance) tolerance = *deviation.tolerance;
-        parameters_.deviations.push_back({quantity, value, tolerance, unit});
-        holds_ = holds_ && value <= tolerance;
-    }
-    [[nodiscard]] bool holds() const { return holds_; }
+/// Throws Unknown for a part without anything.
+std::vector<Part*> parts_of(const std::vector<int>& ids, const std::function<Part&(int)>& part) {
+    std::vector<Part*> parts;
+    for (const int id : ids) parts.push_back(&part(id));
+    for (Part* one : parts)
+        if (one->cloud().points.empty()) throw Unknown{"'" + one->annotation().tag + "' is empty"};
+    return parts;
+}
 
-private:
-    const Relationship& stated_;
-    RelationParameters& parameters_;
-    bool holds_ = true;
-};
-
-void measure_mirror(const std::vector<Part*>& parts, double tolerance, const std::string& unit, Findings& findings,
-                    RelationParameters& parameters) {
+void measure_mirror(const std::vector<Part*>& parts, Findings& findings) {
     for (Part* part : parts)
         if (part->samples().empty()) throw Unknown{"only regions with area have mirror images"};
     const Mirror mirror = find_mirror(*parts.front(), *parts.back());
-    findings.add("distance", mirror.rms, tolerance, unit);
-    parameters.plane = PointAndDirection{array_of(mirror.point), array_of(mirror.normal)};
+    findings.add_length("distance", mirror.rms);
+    findings.parameters.plane = PointAndDirection{array_of(mirror.point), array_of(mirror.normal)};
+}
+
+void measure_axes(const std::vector<Part*>& parts, GeometricRelation kind, Findings& findings) {
+    double angle = 0, distance = 0;
+    for (Part* a : parts)
+        for (Part* b : parts) {
+            if (a == b) continue;
+            const double between = angle_between(axis_of(*a).direction, axis_of(*b).direction);
+            angle = std::max(angle, kind == GeometricRelation::perpendicular_axes ? 90 - between : between);
+            distance = std::max(distance, off_line(b->centroid(), axis_of(*a)));
+        }
+    findings.add_angle(angle);
+    if (kind != GeometricRelation::co_axiality) return;
+    findings.add_length("distance", distance);
+    const PartAxis& first = axis_of(*parts.front());
+    findings.parameters.axis = PointAndDirection{array_of(first.point), array_of(first.direction)};
+}
+
+/// Of a plane, or of points on a line.
+void measure_flatness(const std::vector<Part*>& parts, bool on_line, Findings& findings) {
+    Cloud all;
+    for (Part* part : parts) {
+        if (on_line && part->annotation().type != AnnotationType::point) throw Unknown{"only points are co-linear"};
+        all.points.insert(all.points.end(), part->cloud().points.begin(), part->cloud().points.end());
+        all.weights.insert(all.weights.end(), part->cloud().weights.begin(), part->cloud().weights.end());
+    }
+    const std::size_t least = on_line ? 3 : 4;
+    if (all.points.size() < least) throw Unknown{"fewer than " + std::to_string(least) + " points always are"};
+    const Cloud::Plane plane = all.plane();
+    findings.add_length("distance", on_line ? std::hypot(plane.rms, plane.spread) : plane.rms);
+    if (!on_line) findings.parameters.plane = PointAndDirection{array_of(plane.point), array_of(plane.normal)};
+}
+
+void measure_level(const std::vector<Part*>& parts, const Vector3d& up, Findings& findings) {
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    for (Part* part : parts) {
+        const double height = up.dot(part->centroid());
+        least = std::min(least, height), most = std::max(most, height);
+    }
+    findings.add_length("height", most - least);
+    findings.parameters.up = array_of(up);
+}
+
+void measure_contact(const Cloud* contact, const std::vector<Part*>& parts, bool support, const Vector3d& up,
+                     Findings& findings) {
+    if (contact == nullptr) throw Unknown{"the parts do not touch"};
+    const Cloud::Plane plane = contact->plane();
+    if (!(plane.spread > 1.3 * plane.rms)) throw Unknown{"the contact has no plane"};
+    const double tilt = angle_between(plane.normal, up);
+    findings.parameters.plane = PointAndDirection{array_of(plane.point), array_of(plane.normal)};
+    findings.parameters.up = array_of(up);
+    if (!support) return findings.add_tilt(90 - tilt);
+    findings.add_tilt(tilt);
+    const double at = up.dot(plane.point);
+    const double wrong = std::max(up.dot(parts[0]->centroid()) - at, at - up.dot(parts[1]->centroid()));
+    findings.add_height_below_0(std::max(0.0, wrong));
 }
 
 /// Largest relative difference of the values from their mean, per cent.
@@ -79,6 +118,17 @@ double shape_difference(Part& a, Part& b) {
     return size > 0 ? 100 * difference / size : 0;
 }
 
+void measure_similarity(const std::vector<Part*>& parts, Findings& findings) {
+    std::vector<double> areas;
+    double shape = 0;
+    for (Part* part : parts) {
+        areas.push_back(part->area());
+        shape = std::max(shape, shape_difference(*parts.front(), *part));
+    }
+    findings.add_ratio("area", spread_percent(areas));
+    findings.add_ratio("shape", shape);
+}
+
 }  // namespace
 
 Axis axis_of_part(const Mesh& mesh, const Annotation& annotation) {
@@ -94,16 +144,21 @@ Axis axis_of_part(const Mesh& mesh, const Annotation& annotation) {
 }
 
 std::vector<std::string> measured_quantities(const std::string& type) {
-    static const std::map<std::string, std::vector<std::string>> quantities{
-        {"mirror symmetry", {"distance"}},    {"co-axiality", {"angle", "distance"}},
-        {"co-linearity", {"distance"}},       {"co-planarity", {"distance"}},
-        {"same level", {"height"}},           {"parallel axes", {"angle"}},
-        {"perpendicular axes", {"angle"}},    {"horizontal support", {"tilt", "height"}},
-        {"side contact", {"tilt"}},           {"part similarity", {"area", "shape"}},
-        {"equal attributes", {"difference"}},
-    };
-    const auto entry = quantities.find(type);
-    return entry == quantities.end() ? std::vector<std::string>() : entry->second;
+    const RelationType* known = find_relation_type(type);
+    return known == nullptr ? std::vector<std::string>() : known->quantities;
+}
+
+detail::Findings::Findings(const Relationship& as_stated, const RelationOptions& options, double diagonal,
+                           const std::string& unit, RelationParameters& of)
+    : stated(as_stated), parameters(of), options_(options), diagonal_(diagonal), unit_(unit) {
+    parameters.deviations.clear();
+}
+
+void detail::Findings::add(const std::string& quantity, double value, double tolerance, const std::string& unit) {
+    for (const auto& deviation : stated.parameters.deviations)
+        if (deviation.quantity == quantity && deviation.tolerance) tolerance = *deviation.tolerance;
+    parameters.deviations.push_back({quantity, value, tolerance, unit});
+    holds_ = holds_ && value <= tolerance;
 }
 
 Part& RelationMeter::State::part(int id) {
@@ -166,123 +221,62 @@ std::optional<double> RelationMeter::State::attribute(int id, const std::string&
     return {};
 }
 
+std::vector<double> RelationMeter::State::values(const Relationship& stated) const {
+    const std::string& name = stated.parameters.attribute;
+    std::vector<double> list;
+    for (const int id : stated.annotations) {
+        const auto value = attribute(id, name);
+        if (!value) throw Unknown{"annotation " + std::to_string(id) + " has no number '" + name + "'"};
+        list.push_back(*value);
+    }
+    return list;
+}
+
 RelationMeter::RelationMeter(const Mesh& mesh, const AnnotationSet& set, const RelationOptions& options)
     : state_(new State{mesh, set, options, box_diagonal(mesh), {}, {}}) {
     check_options(options, "relation");
 }
 RelationMeter::~RelationMeter() = default;
 
-namespace {
-
-void measure_axes(const std::vector<Part*>& parts, const std::string& type, const RelationOptions& options, double length,
-                  const std::string& unit, Findings& findings, RelationParameters& parameters) {
-    double angle = 0, distance = 0;
-    for (Part* a : parts)
-        for (Part* b : parts) {
-            if (a == b) continue;
-            const double between = angle_between(axis_of(*a).direction, axis_of(*b).direction);
-            angle = std::max(angle, type == "perpendicular axes" ? 90 - between : between);
-            distance = std::max(distance, off_line(b->centroid(), axis_of(*a)));
+void RelationMeter::State::measure(GeometricRelation kind, Findings& findings) {
+    using enum GeometricRelation;
+    const Relationship& stated = findings.stated;
+    const std::vector<Part*> members = parts_of(stated.annotations, [&](int id) -> Part& { return part(id); });
+    switch (kind) {
+        case mirror_symmetry:
+            return measure_mirror(members, findings);
+        case co_axiality:
+        case parallel_axes:
+        case perpendicular_axes:
+            return measure_axes(members, kind, findings);
+        case co_linearity:
+        case co_planarity:
+            return measure_flatness(members, kind == co_linearity, findings);
+        case same_level:
+            return measure_level(members, up_of(set, stated), findings);
+        case part_similarity:
+            return measure_similarity(members, findings);
+        case equal_attributes:
+            return findings.add_ratio("difference", spread_percent(values(stated)));
+        default: {
+            const Vector3d up = up_of(set, stated);
+            measure_contact(contact(stated.annotations[0], stated.annotations[1]), members, kind == horizontal_support, up,
+                            findings);
         }
-    findings.add("angle", angle, options.angle, "degree");
-    if (type != "co-axiality") return;
-    findings.add("distance", distance, length, unit);
-    const PartAxis& first = axis_of(*parts.front());
-    parameters.axis = PointAndDirection{array_of(first.point), array_of(first.direction)};
-}
-
-void measure_contact(const Cloud* contact, const std::vector<Part*>& parts, const std::string& type, const Vector3d& up,
-                     const RelationOptions& options, const std::string& unit, Findings& findings,
-                     RelationParameters& parameters) {
-    if (contact == nullptr) throw Unknown{"the parts do not touch"};
-    const Cloud::Plane plane = contact->plane();
-    if (!(plane.spread > 1.3 * plane.rms)) throw Unknown{"the contact has no plane"};
-    const double tilt = angle_between(plane.normal, up);
-    parameters.plane = PointAndDirection{array_of(plane.point), array_of(plane.normal)};
-    if (type == "side contact") {
-        findings.add("tilt", 90 - tilt, options.tilt, "degree");
-        return;
     }
-    findings.add("tilt", tilt, options.tilt, "degree");
-    const double at = up.dot(plane.point);
-    const double wrong = std::max(up.dot(parts[0]->centroid()) - at, at - up.dot(parts[1]->centroid()));
-    findings.add("height", std::max(0.0, wrong), 0, unit);
 }
-
-}  // namespace
 
 RelationCheck RelationMeter::measure(const Relationship& relationship) {
-    State& state = *state_;
     RelationCheck check;
     check.parameters = relationship.parameters;
-    const std::string &type = relationship.type, &unit = state.set.unit;
-    const double length = state.options.distance * state.diagonal;
-    const auto quantities = measured_quantities(type);
-    if (quantities.empty()) {
+    const RelationType* type = find_relation_type(relationship.type);
+    if (type == nullptr || type->quantities.empty()) {
         check.text = "cannot be measured";
         return check;
     }
-    std::vector<Part*> parts;
-    for (const int id : relationship.annotations) parts.push_back(&state.part(id));
-    Findings findings(relationship, check.parameters);
+    Findings findings(relationship, state_->options, state_->diagonal, state_->set.unit, check.parameters);
     try {
-        for (Part* part : parts)
-            if (part->cloud().points.empty()) throw Unknown{"'" + part->annotation().tag + "' is empty"};
-        if (type == "mirror symmetry") {
-            measure_mirror(parts, length, unit, findings, check.parameters);
-        } else if (type == "co-axiality" || type == "parallel axes" || type == "perpendicular axes") {
-            measure_axes(parts, type, state.options, length, unit, findings, check.parameters);
-        } else if (type == "co-linearity" || type == "co-planarity") {
-            Cloud all;
-            for (Part* part : parts) {
-                if (type == "co-linearity" && part->annotation().type != AnnotationType::point)
-                    throw Unknown{"only points are co-linear"};
-                all.points.insert(all.points.end(), part->cloud().points.begin(), part->cloud().points.end());
-                all.weights.insert(all.weights.end(), part->cloud().weights.begin(), part->cloud().weights.end());
-            }
-            const std::size_t least = type == "co-linearity" ? 3 : 4;
-            if (all.points.size() < least) throw Unknown{"fewer than " + std::to_string(least) + " points always are"};
-            const Cloud::Plane plane = all.plane();
-            if (type == "co-planarity") {
-                findings.add("distance", plane.rms, length, unit);
-                check.parameters.plane = PointAndDirection{array_of(plane.point), array_of(plane.normal)};
-            } else {
-                findings.add("distance", std::hypot(plane.rms, plane.spread), length, unit);
-            }
-        } else if (type == "same level") {
-            const Vector3d up = up_of(state.set, relationship);
-            double least = std::numeric_limits<double>::infinity(), most = -least;
-            for (Part* part : parts) {
-                const double height = up.dot(part->centroid());
-                least = std::min(least, height), most = std::max(most, height);
-            }
-            findings.add("height", most - least, length, unit);
-            check.parameters.up = array_of(up);
-        } else if (type == "part similarity") {
-            std::vector<double> areas;
-            double shape = 0;
-            for (Part* part : parts) {
-                areas.push_back(part->area());
-                shape = std::max(shape, shape_difference(*parts.front(), *part));
-            }
-            findings.add("area", spread_percent(areas), state.options.ratio, "%");
-            findings.add("shape", shape, state.options.ratio, "%");
-        } else if (type == "equal attributes") {
-            std::vector<double> values;
-            for (const int id : relationship.annotations) {
-                const auto value = state.attribute(id, relationship.parameters.attribute);
-                if (!value)
-                    throw Unknown{"annotation " + std::to_string(id) + " has no number '" + relationship.parameters.attribute +
-                                  "'"};
-                values.push_back(*value);
-            }
-            findings.add("difference", spread_percent(values), state.options.ratio, "%");
-        } else {
-            const Vector3d up = up_of(state.set, relationship);
-            measure_contact(state.contact(relationship.annotations[0], relationship.annotations[1]), parts, type, up,
-                            state.options, unit, findings, check.parameters);
-            check.parameters.up = array_of(up);
-        }
+        state_->measure(*type->geometric, findings);
     } catch (const Unknown& unknown) {
         check.parameters = relationship.parameters;
         check.text = unknown.text;

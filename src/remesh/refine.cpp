@@ -29,7 +29,7 @@ void check_request(const Mesh& mesh, const RefineOptions& options) {
         if (mesh.next(mesh.next(mesh.next(mesh.halfedge(f)))) != mesh.halfedge(f))
             fail_input("face " + std::to_string(Index(f)), "is not a triangle");
     if (options.levels > 0) {
-        if (options.scheme == "longest-edge")
+        if (options.scheme == RefineOptions::Scheme::longest_edge)
             fail_usage("levels mean nothing to the scheme longest-edge", "give --vertices, or the scheme midpoint or loop");
         std::uint64_t edges = mesh.number_of_edges(), faces = mesh.number_of_faces();
         for (int level = 0; level < options.levels; ++level) {
@@ -56,10 +56,10 @@ RefineResult refine(Mesh& mesh, const RefineOptions& options) {
     result.edge_origin.resize(mesh.number_of_edges());
     std::iota(result.face_origin.begin(), result.face_origin.end(), Index{0});
     std::iota(result.edge_origin.begin(), result.edge_origin.end(), Index{0});
-    const bool smooth = options.scheme == "loop";
+    const bool smooth = options.scheme == RefineOptions::Scheme::loop;
     for (int level = 0; level < options.levels; ++level) cut_into_four(mesh, smooth, result);
     if (options.vertices > 0) {
-        if (options.scheme != "longest-edge")
+        if (options.scheme != RefineOptions::Scheme::longest_edge)
             while (mesh.number_of_vertices() + mesh.number_of_edges() <= options.vertices) cut_into_four(mesh, smooth, result);
         halve_longest_edges(mesh, options.vertices, result);
     }

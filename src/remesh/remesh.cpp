@@ -111,7 +111,7 @@ RemeshResult remesh(const Mesh& mesh, const RemeshOptions& options) {
     } else if (result.remeshed < options.vertices) {
         RefineOptions more;
         more.vertices = options.vertices;
-        more.scheme = "longest-edge";
+        more.scheme = RefineOptions::Scheme::longest_edge;
         refine(result.mesh, more);
     }
     result.reached = result.mesh.number_of_vertices() == options.vertices;

@@ -29,9 +29,9 @@ public:
           visitor_(visitor),
           frame_(make_frame(mesh)),
           marks_(std::move(marks)),
-          rules_(mesh, marks_, options.outlines == "protect"),
-          metric_(options.method == "qem" ? make_quadric_metric(mesh, frame_, marks_, options)
-                                          : make_lindstrom_turk_metric(frame_)),
+          rules_(mesh, marks_, options.outlines == SimplifyOptions::Outlines::protect),
+          metric_(options.method == SimplifyOptions::Method::qem ? make_quadric_metric(mesh, frame_, marks_, options)
+                                                                 : make_lindstrom_turk_metric(frame_)),
           heap_(mesh.number_of_edges()),
           parent_(mesh.number_of_vertices()),
           remaining_(mesh.number_of_vertices()) {
@@ -39,7 +39,7 @@ public:
     }
 
     void run(std::size_t wanted, SimplifyResult& result) {
-        const bool can_break = options_.outlines == "follow" && rules_.any_marks();
+        const bool can_break = options_.outlines == SimplifyOptions::Outlines::follow && rules_.any_marks();
         std::vector<Stage> stages{{options_.max_normal_change, true, true}, {90, false, true}};
         if (can_break) stages.insert(stages.end(), {{options_.max_normal_change, true, false}, {90, false, false}});
         Progress progress("simplify", remaining_ - std::min(remaining_, wanted));
@@ -257,8 +257,10 @@ SimplifyResult simplify(Mesh& mesh, const SimplifyOptions& options, const Marked
                        " asked for",
                    "use: ostraka mesh refine");
     Marks marks{marked.edges, marked.vertices};
-    if (marks.edges.empty() || options.outlines == "ignore") marks.edges.assign(mesh.number_of_edges(), false);
-    if (marks.vertices.empty() || options.outlines == "ignore") marks.vertices.assign(mesh.number_of_vertices(), false);
+    if (marks.edges.empty() || options.outlines == SimplifyOptions::Outlines::ignore)
+        marks.edges.assign(mesh.number_of_edges(), false);
+    if (marks.vertices.empty() || options.outlines == SimplifyOptions::Outlines::ignore)
+        marks.vertices.assign(mesh.number_of_vertices(), false);
 
     const std::size_t face_count = mesh.number_of_faces();
     {

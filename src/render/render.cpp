@@ -115,7 +115,7 @@ std::array<double, 2> extent_of(const Scene& scene, const Surface& surface, cons
 }
 
 std::vector<Plan> plan_panes(const std::vector<Scene>& scenes, const RenderOptions& options) {
-    const bool six = options.views == "six";
+    const bool six = options.views == RenderOptions::Views::six;
     const std::vector<View> views = six ? standard_views() : std::vector<View>{parse_view(options.view)};
     std::vector<Plan> plans;
     for (std::size_t scene = 0; scene < scenes.size(); ++scene)
@@ -177,7 +177,8 @@ Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options)
     Rendering rendering;
     const auto start = std::chrono::steady_clock::now();
     std::vector<std::unique_ptr<Surface>> surfaces;
-    for (const Scene& scene : scenes) surfaces.push_back(std::make_unique<Surface>(scene, options.shading == "smooth"));
+    for (const Scene& scene : scenes)
+        surfaces.push_back(std::make_unique<Surface>(scene, options.shading == RenderOptions::Shading::smooth));
     rendering.build_seconds = seconds_since(start);
 
     // The sheet: panes in columns and rows, each with a strip for a scale bar and a caption; a column at the right.
@@ -193,12 +194,12 @@ Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options)
                                   show && any_values ? options.scale : std::nullopt, 0.3 * size.width, size.height - 2 * edge,
                                   style);
     const double side_left = size.width - side.width() - (side.width() > 0 ? edge / 2 : 0);
-    const bool six = options.views == "six";
+    const bool six = options.views == RenderOptions::Views::six;
     const double strip = options.no_scale_bar ? 0 : detail::bar_strip * style.size, caption = any_caption ? 30 * style.size : 0;
     std::vector<std::array<double, 2>> extents;
     for (const Plan& plan : plans)
         extents.push_back(extent_of(scenes[plan.pane.scene], *surfaces[plan.pane.scene], plan.view, up));
-    const std::size_t columns = column_count(extents, six, scenes.size(), options.fit == "all",
+    const std::size_t columns = column_count(extents, six, scenes.size(), options.fit == RenderOptions::Fit::all,
                                              {side_left, static_cast<double>(size.height), strip + caption});
     const std::size_t rows = (plans.size() + columns - 1) / columns;
     const double cell_width = side_left / static_cast<double>(columns), cell_height = size.height / static_cast<double>(rows);
@@ -212,12 +213,12 @@ Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options)
         const auto& points = scenes[pane.scene].mesh.points;
         plans[i].camera = detail::fit_camera(
             surface.used_points().size(), [&](std::size_t k) { return surface.to_local(points[surface.used_points()[k]]); },
-            plans[i].view, up, pane.width, pane.height, options.projection == "perspective");
+            plans[i].view, up, pane.width, pane.height, options.projection == RenderOptions::Projection::perspective);
     }
-    share_scale(plans, surfaces, options.fit == "all");
+    share_scale(plans, surfaces, options.fit == RenderOptions::Fit::all);
 
     detail::Shading shading;
-    shading.smooth = options.shading == "smooth";
+    shading.smooth = options.shading == RenderOptions::Shading::smooth;
     shading.crease_cosine = std::cos(options.crease * pi / 180);
     shading.ambient_occlusion = options.ambient_occlusion;
     shading.samples = options.samples;
@@ -227,7 +228,7 @@ Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options)
     const double drawn_size = plans.size() > 2 ? 0.75 * style.size : style.size;
     detail::Style small = style;
     small.size = drawn_size;
-    const bool every_bar = options.fit == "each" && scenes.size() > 1;
+    const bool every_bar = options.fit == RenderOptions::Fit::each && scenes.size() > 1;
     for (Plan& plan : plans) {
         Pane& pane = plan.pane;
         const Scene& scene = scenes[pane.scene];

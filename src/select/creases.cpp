@@ -265,7 +265,7 @@ std::vector<Crease> find_creases(const Mesh& mesh, const CreaseOptions& options)
     std::vector<Crease> creases;
     std::vector<Index> place(mesh.number_of_vertices(), no_index);
     for (const bool ridge : {true, false}) {
-        if (options.kind != "both" && (options.kind == "ridge") != ridge) continue;
+        if (options.kind == (ridge ? CreaseOptions::Kind::hollow : CreaseOptions::Kind::ridge)) continue;
         std::vector<double> strength(response.values.size());
         for (std::size_t i = 0; i < strength.size(); ++i) strength[i] = (ridge ? 1 : -1) * response.values[i];
         std::vector<bool> seen(strength.size(), false);

@@ -1,6 +1,5 @@
 #include "crossing.h"
 
-#include <map>
 #include <set>
 #include <unordered_map>
 

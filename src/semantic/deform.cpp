@@ -7,7 +7,6 @@
 #include "ostraka/geom/with_points.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <set>
 
@@ -177,9 +176,9 @@ private:
                 lowered_.push_back(std::move(constraint));
                 owner_.push_back(i);
             }
-            if (statements_[i].prepare && outcome.passes == 0 && options_.space == "mesh")
+            if (statements_[i].prepare && outcome.passes == 0 && options_.space == DeformOptions::Space::mesh)
                 statements_[i].prepare(now, outcome.points);
-            if (statements_[i].support && options_.space == "mesh")  // a cage is stiff by itself
+            if (statements_[i].support && options_.space == DeformOptions::Space::mesh)  // a cage is stiff by itself
                 for (auto& constraint : statements_[i].support(edited, now)) support_.push_back(std::move(constraint));
         }
         if (lowered_.empty()) return false;
@@ -188,7 +187,7 @@ private:
                         "are Green coordinates, which serve unconstrained deformation only: constraints are solved without their "
                         "normal term",
                         "use mean value coordinates, or a graph without constraints");
-        if (options_.space == "mesh") solve_mesh(outcome);
+        if (options_.space == DeformOptions::Space::mesh) solve_mesh(outcome);
         else solve_cage(outcome);
         if (!outcome.summary.usable)
             throw Error(ErrorKind::failure, where_, "the constraints have no usable solution: " + outcome.summary.text(),
@@ -231,7 +230,7 @@ private:
                 for (const Vertex n : space_.mesh.vertices_around_target(space_.mesh.halfedge(v)))
                     ids.push_back(static_cast<int>(n.idx()));
                 list.push_back(make_constraint("LaplacianDisplacement", ids, options_.laplacian, {},
-                                               options_.details == "rest" ? rest_ : edited_));
+                                               options_.details == DeformOptions::Details::rest ? rest_ : edited_));
             }
         const bool any_hard = std::any_of(owner_.begin(), owner_.end(), [&](std::size_t i) { return statements_[i].hard; });
         auto all = take(std::move(list));
@@ -275,7 +274,7 @@ private:
         }
         // What the cage tends to between constraints; else its points fly off for little.
         Points shape = rest;
-        shape.rightCols(c) = options_.details == "rest" ? rest_cage : edited_cage;
+        shape.rightCols(c) = options_.details == DeformOptions::Details::rest ? rest_cage : edited_cage;
         if (options_.laplacian > 0)
             for (const Vertex v : space_.cage->vertices()) {
                 if (space_.cage->is_isolated(v)) continue;
@@ -327,7 +326,7 @@ private:
             auto list = outcome.residuals[i].of_low_level;
             std::sort(list.begin(), list.end());
             report.distance = outcome.residuals[i].distance;
-            if (report.hard && options_.space == "cage" && report.verdict != Verdict::holds)
+            if (report.hard && options_.space == DeformOptions::Space::cage && report.verdict != Verdict::holds)
                 report.text += (report.text.empty() ? "" : "; ") + std::string("this cage brings it no nearer than ") +
                                std::to_string(report.distance) + (space_.set.unit.empty() ? "" : " ") + space_.set.unit +
                                " at its worst point";
@@ -386,7 +385,7 @@ DeformResult deform(const HandleSpace& space, const RelationGraph& graph, const 
                     const DeformOptions& options, const RelationOptions& tolerances, const std::string& graph_name) {
     check_options(options, "deform");
     check_options(tolerances, "deform");
-    if (options.space == "cage" && space.cage == nullptr)
+    if (options.space == DeformOptions::Space::cage && space.cage == nullptr)
         throw Error(ErrorKind::usage, "space", "is the cage's, and there is none",
                     "give --cage and --weights, or use --space mesh");
     return Deformer(space, graph, options, tolerances, edit_name, graph_name).follow(edit);
@@ -397,7 +396,8 @@ DeformResult restore_constraints(const Mesh& mesh, const AnnotationSet& set, con
                                  const RelationOptions& tolerances, const std::string& graph_name) {
     check_options(options, "deform");
     check_options(tolerances, "deform");
-    if (options.space == "cage") fail_usage("there is no cage here", "solve over the mesh's points: space mesh");
+    if (options.space == DeformOptions::Space::cage)
+        fail_usage("there is no cage here", "solve over the mesh's points: space mesh");
     if (points.size() != mesh.number_of_vertices() || held.size() != points.size())
         fail_usage("positions are given for " + std::to_string(points.size()) + " vertices and flags for " +
                        std::to_string(held.size()) + ", and the mesh has " + std::to_string(mesh.number_of_vertices()),

@@ -12,14 +12,8 @@
 namespace ostraka {
 
 std::string to_string(Membership membership) {
-    switch (membership) {
-        case Membership::member:
-            return "member";
-        case Membership::other:
-            return "other";
-        default:
-            return "undecided";
-    }
+    static constexpr const char* words[]{"member", "other", "undecided"};
+    return words[static_cast<std::size_t>(membership)];
 }
 
 namespace {

@@ -41,8 +41,8 @@ Propagated propagate(const ClassTemplate& known, const WholeObject& member, cons
     }
     TransferResult carried = transfer(fitted, result.on_template, SurfaceSearch(member.mesh), options.transfer);
     for (const TransferScore& score : carried.scores)
-        if (score.outcome != "kept" || !score.note.empty())
-            result.notes.push_back("annotation " + std::to_string(score.id) + " (" + score.tag + ") " + score.outcome +
+        if (score.outcome != TransferOutcome::kept || !score.note.empty())
+            result.notes.push_back("annotation " + std::to_string(score.id) + " (" + score.tag + ") " + to_string(score.outcome) +
                                    (score.note.empty() ? "" : ": " + score.note));
     result.on_member = std::move(carried.annotations);
     result.lost = known.set.annotations.size() - std::min(known.set.annotations.size(), result.on_member->annotations.size());

@@ -12,20 +12,8 @@
 namespace ostraka {
 
 std::string to_string(QuantityKind kind) {
-    switch (kind) {
-        case QuantityKind::proportion:
-            return "proportion";
-        case QuantityKind::constraint:
-            return "constraint";
-        case QuantityKind::relation:
-            return "relation";
-        case QuantityKind::part:
-            return "part";
-        case QuantityKind::attribute:
-            return "attribute";
-        default:
-            return "geometry";
-    }
+    static constexpr const char* words[]{"proportion", "constraint", "relation", "part", "attribute", "geometry"};
+    return words[static_cast<std::size_t>(kind)];
 }
 
 QuantityKind quantity_kind(const std::string& word) {

@@ -57,9 +57,9 @@ public:
             if (annotation.type == AnnotationType::region && !annotation.all && !annotation.faces.empty() &&
                 annotation.faces.size() < known.mesh.number_of_faces())
                 parts_.push_back(&annotation);
-        if (options.by == "modes" && learnt.modes.variances.empty())
+        if (options.by == SampleOptions::Way::modes && learnt.modes.variances.empty())
             fail_input("class", "has no modes of variation", "learn it from two or more members that differ, or draw --by edits");
-        if (options.by == "edits" && parts_.empty())
+        if (options.by == SampleOptions::Way::edits && parts_.empty())
             fail_input("template", "has no region that is a part of it, which could be edited",
                        "annotate parts, or draw --by modes");
     }
@@ -72,7 +72,7 @@ public:
         while (result.samples.size() < static_cast<std::size_t>(options_.count) && result.tried < most) {
             Random random(options_.seed, result.tried++);
             ClassSample sample;
-            Landmarks shape = options_.by == "modes" ? by_modes(random, sample) : by_edits(random, sample);
+            Landmarks shape = options_.by == SampleOptions::Way::modes ? by_modes(random, sample) : by_edits(random, sample);
             if (!keep(shape, sample, result)) continue;
             shapes.push_back(landmarks_of(sample.points));
             result.samples.push_back(std::move(sample));

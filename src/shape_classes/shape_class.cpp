@@ -19,9 +19,10 @@ const LearntRange* ShapeClass::find(const std::string& key) const {
     return nullptr;
 }
 
-MemberFit fit_as_told(const ClassTemplate& known, const WholeObject& member, const std::string& correspondence,
+MemberFit fit_as_told(const ClassTemplate& known, const WholeObject& member, CorrespondenceChoice correspondence,
                       const MemberFitOptions& options) {
-    if (correspondence == "given" || (correspondence == "auto" && in_correspondence(known.mesh, member.mesh)))
+    if (correspondence == CorrespondenceChoice::given ||
+        (correspondence == CorrespondenceChoice::automatic && in_correspondence(known.mesh, member.mesh)))
         return member_in_correspondence(known.mesh, member);
     return fit_member(known.mesh, known.set, member, options);
 }

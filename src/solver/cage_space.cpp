@@ -37,6 +37,29 @@ struct Group {
 
 enum class Treatment { constant, group, rows };
 
+/// Some rows of a constraint.
+struct Slice {
+    std::size_t constraint;
+    Eigen::Index first, count;
+};
+/// Slices that are summed at once, all with one treatment; of a group, one alone.
+using Piece = std::vector<Slice>;
+
+Eigen::Index rows_in(const Piece& piece) {
+    Eigen::Index rows = 0;
+    for (const Slice& slice : piece) rows += slice.count;
+    return rows;
+}
+
+/// Over the rows of a piece: M^T M; M^T r0 and M^T q of a group, or the first w M^T (p - r0) of constant ones.
+struct Sum {
+    MatrixXd m_m;
+    Thin first, second;
+    double objective = 0;
+};
+
+using Constraints = std::span<const std::unique_ptr<Constraint>>;
+
 }  // namespace
 
 struct CageSpaceSolver::State {
@@ -46,7 +69,7 @@ struct CageSpaceSolver::State {
     Points rest_points;      ///< of the shape, all of it; not constrained: zero
     Eigen::Index cage = 0;
     std::vector<Treatment> treatment;
-    std::vector<std::size_t> group_of;        ///< constraint -> group
+    std::vector<std::size_t> place_of;        ///< constraint -> its place among the groups, or in `moving`
     std::vector<Eigen::RowVectorXd> mean_of;  ///< mean row of weights of centred constraints
 
     bool formed = false, factored = false;
@@ -74,7 +97,17 @@ struct CageSpaceSolver::State {
         c.rows_of(rest_points, rows);
         return rows;
     }
-    void form(std::span<const std::unique_ptr<Constraint>> constraints);
+    void form(Constraints constraints);
+    void choose_treatments(Constraints constraints);
+    [[nodiscard]] std::vector<Piece> pieces_of(Constraints constraints) const;
+    void take_means(Constraints constraints);
+    void clear_sums();
+    /// Gives its rows at rest.
+    [[nodiscard]] Points start_group(Group& group, const Constraint& c) const;
+    [[nodiscard]] Sum sum_of(Constraints constraints, const Piece& piece, const std::vector<Points>& group_rows);
+    /// `rows` of M; observed ones become zero. Rows that are projected one by one are kept.
+    void sum_slice(const Constraint& c, const Slice& slice, const std::vector<Points>& group_rows, CageWeights& rows, Sum& sum);
+    void add(const Sum& sum, std::size_t constraint);
     void add_constant(const Constraint& c, std::size_t i, double by_weight);
     void make_factor();
 };
@@ -95,15 +128,10 @@ void CageSpaceSolver::State::weight_rows(const Constraint& c, std::size_t i, Eig
     }
 }
 
-void CageSpaceSolver::State::form(std::span<const std::unique_ptr<Constraint>> constraints) {
-    struct Slice {
-        std::size_t constraint;
-        Eigen::Index first, count;
-    };
-    std::vector<std::vector<Slice>> pieces;
-    mean_of.assign(constraints.size(), {});
+void CageSpaceSolver::State::choose_treatments(Constraints constraints) {
+    constexpr Eigen::Index rows_of_block = 128;
     treatment.assign(constraints.size(), Treatment::rows);
-    group_of.assign(constraints.size(), 0);
+    place_of.assign(constraints.size(), 0);
     groups.clear();
     moving.clear();
     first_row.assign(1, 0);
@@ -113,23 +141,27 @@ void CageSpaceSolver::State::form(std::span<const std::unique_ptr<Constraint>> c
         if (c.constant()) treatment[i] = Treatment::constant;
         else if (c.by_moments() && c.map().rows > cage / 2) {
             treatment[i] = Treatment::group;
-            group_of[i] = groups.size();
+            place_of[i] = groups.size();
             groups.emplace_back().constraint = i;
         } else {
-            constexpr Eigen::Index rows_of_block = 128;
+            place_of[i] = moving.size();
             moving.push_back(i);
             first_row.push_back(first_row.back() + c.map().rows);
             if (first_row.back() - first_row[blocks.back()] >= rows_of_block) blocks.push_back(moving.size());
         }
+    }
+    if (blocks.back() != moving.size()) blocks.push_back(moving.size());
+}
+
+std::vector<Piece> CageSpaceSolver::State::pieces_of(Constraints constraints) const {
+    std::vector<Piece> pieces;
+    for (std::size_t i = 0; i < constraints.size(); ++i) {
         const bool joins =
             !pieces.empty() && treatment[i] != Treatment::group && treatment[pieces.back().front().constraint] == treatment[i];
-        Eigen::Index size = rows_of_piece;
-        if (joins) {
-            size = 0;
-            for (const Slice& slice : pieces.back()) size += slice.count;
-        }
-        for (Eigen::Index first = 0; first < c.map().rows; first += rows_of_piece) {
-            const Eigen::Index count = std::min(rows_of_piece, c.map().rows - first);
+        Eigen::Index size = joins ? rows_in(pieces.back()) : rows_of_piece;
+        const Eigen::Index rows = constraints[i]->map().rows;
+        for (Eigen::Index first = 0; first < rows; first += rows_of_piece) {
+            const Eigen::Index count = std::min(rows_of_piece, rows - first);
             if (size + count > rows_of_piece) {
                 pieces.emplace_back();
                 size = 0;
@@ -138,7 +170,11 @@ void CageSpaceSolver::State::form(std::span<const std::unique_ptr<Constraint>> c
             size += count;
         }
     }
-    if (blocks.back() != moving.size()) blocks.push_back(moving.size());
+    return pieces;
+}
+
+void CageSpaceSolver::State::take_means(Constraints constraints) {
+    mean_of.assign(constraints.size(), {});
     parallel_for(
         constraints.size(),
         [&](std::size_t i) {
@@ -149,7 +185,9 @@ void CageSpaceSolver::State::form(std::span<const std::unique_ptr<Constraint>> c
             mean_of[i] = sum / static_cast<double>(c.map().direct);
         },
         16);
+}
 
+void CageSpaceSolver::State::clear_sums() {
     normal.setZero(cage, cage);
     constant_normal.setZero(cage, cage);
     constant_right.setZero(cage, 3);
@@ -157,99 +195,100 @@ void CageSpaceSolver::State::form(std::span<const std::unique_ptr<Constraint>> c
     stride = solver::padded(cage);
     m.setZero(first_row.back(), stride);
     r0.resize(3, first_row.back());
-    std::vector<std::size_t> place(constraints.size(), 0);
-    for (std::size_t k = 0; k < moving.size(); ++k) place[moving[k]] = k;
-    std::vector<Points> group_rows(groups.size());
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-        Group& group = groups[g];
-        const Constraint& c = *constraints[group.constraint];
-        group_rows[g] = rest_rows(c);
-        group.m_m.setZero(cage, cage);
-        group.m_r0.setZero(cage, 3);
-        group.m_q.setZero(cage, 3);
-        group.r0_r0 = group_rows[g] * group_rows[g].transpose();
-        group.r0_q = group.q_q = Matrix3d::Zero();
-        if (c.reference().cols() > 0) {
-            group.r0_q = group_rows[g] * c.reference().transpose();
-            group.q_q = c.reference() * c.reference().transpose();
-        }
-    }
-    struct Sum {
-        MatrixXd m_m;
-        Thin first, second;
-        double objective = 0;
-    };
-    // Pieces in waves, so that their sums need little memory; added up in their order.
-    for (std::size_t wave = 0; wave < pieces.size(); wave += pieces_of_wave) {
-        const std::size_t count = std::min(pieces_of_wave, pieces.size() - wave);
-        std::vector<Sum> sums(count);
-        parallel_for(
-            count,
-            [&](std::size_t k) {
-                const auto& piece = pieces[wave + k];
-                Sum& sum = sums[k];
-                sum.first.setZero(cage, 3);
-                sum.second.setZero(cage, 3);
-                Eigen::Index total = 0;
-                for (const Slice& slice : piece) total += slice.count;
-                CageWeights stacked(total, cage), rows;
-                Eigen::Index at = 0;
-                for (const Slice& slice : piece) {
-                    const std::size_t i = slice.constraint;
-                    const Constraint& c = *constraints[i];
-                    weight_rows(c, i, slice.first, slice.count, rows);
-                    double scale = 1;
-                    if (treatment[i] == Treatment::group) {
-                        const Points& own = group_rows[group_of[i]];
-                        sum.first += rows.transpose() * own.middleCols(slice.first, slice.count).transpose();
-                        if (c.reference().cols() > 0)
-                            sum.second += rows.transpose() * c.reference().middleCols(slice.first, slice.count).transpose();
-                    } else {
-                        scale = std::sqrt(c.weight());
-                        const Points own = rest_rows(c);
-                        if (treatment[i] == Treatment::constant) {
-                            Points wanted(3, own.cols());
-                            c.project(own, wanted);
-                            const Points gap = (wanted - own).middleCols(slice.first, slice.count);
-                            sum.first += c.weight() * (rows.transpose() * gap.transpose());
-                            sum.objective += c.weight() * gap.squaredNorm();
-                        } else {
-                            const Eigen::Index to = first_row[place[i]] + slice.first;
-                            m.block(to, 0, slice.count, cage) = rows;
-                            r0.middleCols(to, slice.count) = own.middleCols(slice.first, slice.count);
-                            const Eigen::Index weighing = c.map().rows - c.map().observed - slice.first;
-                            if (weighing < slice.count)
-                                rows.bottomRows(slice.count - std::max<Eigen::Index>(weighing, 0)).setZero();
-                        }
-                    }
-                    stacked.middleRows(at, slice.count) = scale * rows;
-                    at += slice.count;
-                }
-                sum.m_m.setZero(cage, cage);
-                sum.m_m.selfadjointView<Eigen::Lower>().rankUpdate(stacked.transpose());
-            },
-            1);
-        for (std::size_t k = 0; k < count; ++k) {
-            const std::size_t i = pieces[wave + k].front().constraint;
-            const MatrixXd full = sums[k].m_m.selfadjointView<Eigen::Lower>();
-            if (treatment[i] == Treatment::group) {
-                Group& group = groups[group_of[i]];
-                group.m_m += full;
-                group.m_r0 += sums[k].first;
-                group.m_q += sums[k].second;
-            } else {
-                normal += full;
-                if (treatment[i] == Treatment::constant) {
-                    constant_normal += full;
-                    constant_right += sums[k].first;
-                    constant_objective += sums[k].objective;
-                }
-            }
-        }
-    }
-    for (const Group& group : groups) normal += constraints[group.constraint]->weight() * group.m_m;
     parts.assign(blocks.size() - 1, Thin());
     part_objective.assign(parts.size(), 0.0);
+}
+
+Points CageSpaceSolver::State::start_group(Group& group, const Constraint& c) const {
+    Points rows = rest_rows(c);
+    group.m_m.setZero(cage, cage);
+    group.m_r0.setZero(cage, 3);
+    group.m_q.setZero(cage, 3);
+    group.r0_r0 = rows * rows.transpose();
+    group.r0_q = group.q_q = Matrix3d::Zero();
+    if (c.reference().cols() > 0) {
+        group.r0_q = rows * c.reference().transpose();
+        group.q_q = c.reference() * c.reference().transpose();
+    }
+    return rows;
+}
+
+void CageSpaceSolver::State::sum_slice(const Constraint& c, const Slice& slice, const std::vector<Points>& group_rows,
+                                       CageWeights& rows, Sum& sum) {
+    const std::size_t i = slice.constraint;
+    if (treatment[i] == Treatment::group) {
+        const Points& own = group_rows[place_of[i]];
+        sum.first += rows.transpose() * own.middleCols(slice.first, slice.count).transpose();
+        if (c.reference().cols() > 0)
+            sum.second += rows.transpose() * c.reference().middleCols(slice.first, slice.count).transpose();
+        return;
+    }
+    const Points own = rest_rows(c);
+    if (treatment[i] == Treatment::constant) {
+        Points wanted(3, own.cols());
+        c.project(own, wanted);
+        const Points gap = (wanted - own).middleCols(slice.first, slice.count);
+        sum.first += c.weight() * (rows.transpose() * gap.transpose());
+        sum.objective += c.weight() * gap.squaredNorm();
+        return;
+    }
+    const Eigen::Index to = first_row[place_of[i]] + slice.first;
+    m.block(to, 0, slice.count, cage) = rows;
+    r0.middleCols(to, slice.count) = own.middleCols(slice.first, slice.count);
+    const Eigen::Index weighing = c.map().rows - c.map().observed - slice.first;
+    if (weighing < slice.count) rows.bottomRows(slice.count - std::max<Eigen::Index>(weighing, 0)).setZero();
+}
+
+Sum CageSpaceSolver::State::sum_of(Constraints constraints, const Piece& piece, const std::vector<Points>& group_rows) {
+    Sum sum;
+    sum.first.setZero(cage, 3);
+    sum.second.setZero(cage, 3);
+    CageWeights stacked(rows_in(piece), cage), rows;
+    Eigen::Index at = 0;
+    for (const Slice& slice : piece) {
+        const Constraint& c = *constraints[slice.constraint];
+        weight_rows(c, slice.constraint, slice.first, slice.count, rows);
+        sum_slice(c, slice, group_rows, rows, sum);
+        const double scale = treatment[slice.constraint] == Treatment::group ? 1 : std::sqrt(c.weight());
+        stacked.middleRows(at, slice.count) = scale * rows;
+        at += slice.count;
+    }
+    sum.m_m.setZero(cage, cage);
+    sum.m_m.selfadjointView<Eigen::Lower>().rankUpdate(stacked.transpose());
+    return sum;
+}
+
+void CageSpaceSolver::State::add(const Sum& sum, std::size_t constraint) {
+    const MatrixXd full = sum.m_m.selfadjointView<Eigen::Lower>();
+    if (treatment[constraint] == Treatment::group) {
+        Group& group = groups[place_of[constraint]];
+        group.m_m += full;
+        group.m_r0 += sum.first;
+        group.m_q += sum.second;
+        return;
+    }
+    normal += full;
+    if (treatment[constraint] != Treatment::constant) return;
+    constant_normal += full;
+    constant_right += sum.first;
+    constant_objective += sum.objective;
+}
+
+void CageSpaceSolver::State::form(Constraints constraints) {
+    choose_treatments(constraints);
+    take_means(constraints);
+    clear_sums();
+    std::vector<Points> group_rows;
+    for (Group& group : groups) group_rows.push_back(start_group(group, *constraints[group.constraint]));
+    // Pieces in waves, so that their sums need little memory; added up in their order.
+    const std::vector<Piece> pieces = pieces_of(constraints);
+    for (std::size_t wave = 0; wave < pieces.size(); wave += pieces_of_wave) {
+        std::vector<Sum> sums(std::min(pieces_of_wave, pieces.size() - wave));
+        parallel_for(
+            sums.size(), [&](std::size_t k) { sums[k] = sum_of(constraints, pieces[wave + k], group_rows); }, 1);
+        for (std::size_t k = 0; k < sums.size(); ++k) add(sums[k], pieces[wave + k].front().constraint);
+    }
+    for (const Group& group : groups) normal += constraints[group.constraint]->weight() * group.m_m;
     formed = true;
 }
 
@@ -406,7 +445,7 @@ void CageSpaceSolver::weight_changed(std::size_t constraint, double before) {
     const Constraint& c = *constraints_[constraint];
     const double change = c.weight() - before;
     if (s.treatment[constraint] == Treatment::group) {
-        s.normal += change * s.groups[s.group_of[constraint]].m_m;
+        s.normal += change * s.groups[s.place_of[constraint]].m_m;
         return;
     }
     if (c.map().rows > rows_of_piece) {  // as much work as forming all of it

@@ -1,7 +1,6 @@
 #include "ostraka/solver/hard.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace ostraka {
 

@@ -29,17 +29,9 @@ private:
 }  // namespace
 
 std::string_view describe(StopReason reason) {
-    switch (reason) {
-        case StopReason::converged:
-            return "no point moves any more";
-        case StopReason::residual:
-            return "the residual wanted is reached";
-        case StopReason::iterations:
-            return "the iterations allowed are used up";
-        case StopReason::stalled:
-            return "the objective does not fall any further";
-    }
-    return "";
+    static constexpr const char* words[]{"no point moves any more", "the residual wanted is reached",
+                                         "the iterations allowed are used up", "the objective does not fall any further"};
+    return words[static_cast<std::size_t>(reason)];
 }
 
 std::string SolveSummary::text() const {

@@ -120,7 +120,7 @@ ClusterCount propose_cluster_count(const Eigen::MatrixXd& samples, const Cluster
             result.by_gap = result.rows[k].clusters;
             break;
         }
-    result.proposed = options.criterion == "gap" ? result.by_gap : result.by_silhouette;
+    result.proposed = options.criterion == ClusterCountOptions::Criterion::gap ? result.by_gap : result.by_silhouette;
     return result;
 }
 

@@ -135,11 +135,9 @@ double volume_epsilon(const Eigen::MatrixXd& samples, int minimum) {
     return std::exp((log_volume + std::log(minimum) + std::lgamma(d / 2 + 1) - std::log(n) - d / 2 * std::log(pi)) / d);
 }
 
-Linkage average_linkage(const Eigen::MatrixXd& distances) { return linkage(distances, "average"); }
+Linkage average_linkage(const Eigen::MatrixXd& distances) { return linkage(distances, LinkageMethod::average); }
 
-Linkage linkage(const Eigen::MatrixXd& distances, const std::string& method) {
-    if (method != "average" && method != "single" && method != "complete")
-        fail_usage("the linkage is '" + method + "'", "use average, single or complete");
+Linkage linkage(const Eigen::MatrixXd& distances, LinkageMethod method) {
     require_symmetric(distances, true, "linkage");
     const Eigen::Index n = distances.rows();
     Eigen::MatrixXd between = (distances + distances.transpose()) / 2;
@@ -174,9 +172,9 @@ Linkage linkage(const Eigen::MatrixXd& distances, const std::string& method) {
         for (Eigen::Index j = 0; j < n; ++j) {
             if (j == a || j == b || gone[static_cast<std::size_t>(j)]) continue;
             const double da = between(a, j), db = between(b, j);
-            between(a, j) = between(j, a) = method == "single"     ? std::min(da, db)
-                                            : method == "complete" ? std::max(da, db)
-                                                                   : (na * da + nb * db) / (na + nb);
+            between(a, j) = between(j, a) = method == LinkageMethod::single     ? std::min(da, db)
+                                            : method == LinkageMethod::complete ? std::max(da, db)
+                                                                                : (na * da + nb * db) / (na + nb);
         }
         sizes[static_cast<std::size_t>(a)] += nb;
         gone[static_cast<std::size_t>(b)] = true;

@@ -6,7 +6,6 @@
 #include "ostraka/core/parallel.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace ostraka::shapes {
 

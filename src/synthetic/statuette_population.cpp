@@ -45,6 +45,8 @@ StatuetteLevel statuette_level(int level) {
 }
 
 std::vector<StatuetteParameters> draw_population(const PopulationOptions& options) {
+    using Asked = PopulationOptions::Interior;
+    using Interior = StatuetteParameters::Interior;
     check_options(options, "population of statuettes");
     const StatuetteLevel level = statuette_level(options.level);
     std::vector<StatuetteParameters> list(static_cast<std::size_t>(options.objects));
@@ -52,7 +54,7 @@ std::vector<StatuetteParameters> draw_population(const PopulationOptions& option
         Draws draw(options.seed, i);
         StatuetteParameters& one = list[i];
         const bool wheel = i % 2 == 0;
-        one.technique = wheel ? "wheel" : "hand";
+        one.technique = wheel ? StatuetteParameters::Technique::wheel : StatuetteParameters::Technique::hand;
         const TechniqueLevel& medians = wheel ? level.wheel : level.hand;
         one.height = draw.around(200, options.size_spread);
         one.base_diameter = draw.around(58, options.size_spread);
@@ -69,15 +71,14 @@ std::vector<StatuetteParameters> draw_population(const PopulationOptions& option
         one.wall = wheel || hollow < 0.5 ? wall : 0;
         one.grooves = wheel ? 0.25 * grooves : 0;
         one.cavity_seen = options.cavity_seen + (1 - options.cavity_seen) * draw.share();
-        const bool open = draw.share() < 0.5;
-        one.interior = options.interior == "mixed" ? (open ? "open" : "closed") : options.interior;
+        const bool may_be_open = draw.share() < 0.5;
+        const bool open = options.interior == Asked::mixed ? may_be_open : options.interior == Asked::open;
+        one.interior = open ? Interior::open : Interior::closed;
         one.scan_noise = options.scan_noise;
         one.holes = draw.among(options.holes + 1);
         one.hole_radius = 3 + 3 * draw.share();
-        const char* poses[] = {"forward", "offering", "raised", "down"};
-        const char* hats[] = {"cone", "cap", "none"};
-        one.pose = poses[draw.among(4)];
-        one.hat = hats[draw.among(3)];
+        one.pose = static_cast<StatuetteParameters::Pose>(draw.among(4));
+        one.hat = static_cast<StatuetteParameters::Hat>(draw.among(3));
         one.beard = draw.share() < 0.5;
         one.seed = options.seed * 1000003 + i;
         one.vertices = options.vertices;

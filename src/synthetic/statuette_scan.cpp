@@ -172,7 +172,7 @@ Statuette generate_statuette(const StatuetteParameters& parameters) {
     add_noise(statuette.mesh, parameters.scan_noise, parameters.seed);
 
     std::vector<bool> missing(statuette.mesh.number_of_faces(), false);
-    if (parameters.wall > 0 && parameters.interior == "open") {
+    if (parameters.wall > 0 && parameters.interior == StatuetteParameters::Interior::open) {
         const auto inside = static_cast<std::int32_t>(object->parts.size()) - 1;
         miss_interior(missing, statuette.mesh, statuette.face_labels, inside, body);
     }

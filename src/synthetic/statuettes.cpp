@@ -142,12 +142,14 @@ std::vector<Vector2d> cavity_profile(const StatuetteParameters& p, const Statuet
 
 }  // namespace
 
-Arm::Arm(const StatuetteParameters& p, const StatuetteBody& body, double side) : side_(side), bare_(p.pose != "offering") {
-    static const std::map<std::string, std::vector<Vector3d>> poses{
-        {"forward", {{0, 0, 0}, {0.10, 0.22, -0.22}, {0.45, 0.24, -0.32}, {0.85, 0.14, -0.20}}},
-        {"offering", {{0, 0, 0}, {0.08, 0.22, -0.26}, {0.42, 0.10, -0.38}, {0.74, -0.27, -0.30}}},
-        {"raised", {{0, 0, 0}, {0.08, 0.34, -0.04}, {0.12, 0.58, 0.20}, {0.12, 0.66, 0.56}}},
-        {"down", {{0, 0, 0}, {0.02, 0.24, -0.20}, {0.06, 0.34, -0.58}, {0.12, 0.34, -0.95}}}};
+Arm::Arm(const StatuetteParameters& p, const StatuetteBody& body, double side)
+    : side_(side), bare_(p.pose != StatuetteParameters::Pose::offering) {
+    using Pose = StatuetteParameters::Pose;
+    static const std::map<Pose, std::vector<Vector3d>> poses{
+        {Pose::forward, {{0, 0, 0}, {0.10, 0.22, -0.22}, {0.45, 0.24, -0.32}, {0.85, 0.14, -0.20}}},
+        {Pose::offering, {{0, 0, 0}, {0.08, 0.22, -0.26}, {0.42, 0.10, -0.38}, {0.74, -0.27, -0.30}}},
+        {Pose::raised, {{0, 0, 0}, {0.08, 0.34, -0.04}, {0.12, 0.58, 0.20}, {0.12, 0.66, 0.56}}},
+        {Pose::down, {{0, 0, 0}, {0.02, 0.24, -0.20}, {0.06, 0.34, -0.58}, {0.12, 0.34, -0.95}}}};
     const StatuetteFrame& frame = body.frame;
     const double height = 0.855 * frame.joint_height, thick = 0.40 * frame.tube_radius;
     const Vector2d centre = body.outside->centre(height);
@@ -201,12 +203,13 @@ double Arm::outside_length() const {
 namespace {
 
 void add_head(MadeObject& object, const StatuetteParameters& p, const StatuetteBody& body, int head) {
+    using Hat = StatuetteParameters::Hat;
     const double h = p.head_height, joint = body.frame.joint_height;
     const Vector2d c = body.outside->centre(joint);
     const auto at = [&](double x, double y, double z) { return Vector3d(c.x() + x * h, c.y() + y * h, joint + z * h); };
     // The joint lies a neck radius below the head's height, so that the top is somewhat less than h above it.
     const double top = (p.height - joint) / h;
-    const double skull_top = p.hat == "none" ? top : p.hat == "cap" ? top - 0.07 : 0.72;
+    const double skull_top = p.hat == Hat::none ? top : p.hat == Hat::cap ? top - 0.07 : 0.72;
     const double skull = 0.5 * (skull_top - 0.04);
     add_member(object, make_ellipsoid({at(0.02, 0, 0.04 + skull), Matrix3d::Identity()}, {0.33 * h, 0.29 * h, skull * h}), head,
                0.1 * h);
@@ -223,15 +226,15 @@ void add_head(MadeObject& object, const StatuetteParameters& p, const StatuetteB
     if (p.beard)
         add_member(object, make_tube({{at(0.26, 0, eyes - 0.26), 0.09 * h}, {at(0.34, 0, eyes - 0.36), 0.055 * h}}), head,
                    0.1 * h);
-    if (p.hat == "none") return;
+    if (p.hat == Hat::none) return;
     const int hat = add_part(object, "hat", {90, 110, 150});
     // The lathe's profile ends on the axis at the topmost point.
     const std::vector<Vector2d> cone{
         {0, 0},         {0.30, 0.01}, {0.345, 0.05}, {0.31, 0.12}, {0.20, 0.55 * (top - 0.60)}, {0.10, 0.85 * (top - 0.60)},
         {0, top - 0.60}};
     const std::vector<Vector2d> cap{{0, 0}, {0.29, 0.02}, {0.365, 0.07}, {0.35, 0.14}, {0.24, 0.21}, {0, 0.24}};
-    std::vector<Vector2d> profile = p.hat == "cone" ? cone : cap;
-    const double rise = p.hat == "cone" ? 0.60 : top - 0.24;
+    std::vector<Vector2d> profile = p.hat == Hat::cone ? cone : cap;
+    const double rise = p.hat == Hat::cone ? 0.60 : top - 0.24;
     for (Vector2d& point : profile) point *= h;
     add_member(object, make_lathe({at(0, 0, rise), Matrix3d::Identity()}, profile), hat, 0.05 * h);
 }
@@ -241,10 +244,11 @@ void add_head(MadeObject& object, const StatuetteParameters& p, const StatuetteB
 std::unique_ptr<MadeObject> build_statuette(const StatuetteParameters& p, const StatuetteBody& body) {
     const StatuetteFrame& frame = body.frame;
     auto object = std::make_unique<MadeObject>();
-    object->name = p.technique + "-made statuette";
+    object->name = option_text(p, "technique") + "-made statuette";
     object->object_class = "votive statuette";
     object->description = "tubular body on a flared base, head, two arms";
-    object->genus = p.pose == "offering" ? 1 : 0;
+    const bool offering = p.pose == StatuetteParameters::Pose::offering;
+    object->genus = offering ? 1 : 0;
     object->minimum_vertices = 4000;
     object->thinnest = 4;
     const int tube = add_part(*object, "body", {196, 140, 96}), base = add_part(*object, "base", {150, 104, 74});
@@ -261,7 +265,7 @@ std::unique_ptr<MadeObject> build_statuette(const StatuetteParameters& p, const 
                0.6 * r);
     add_head(*object, p, body, head);
     for (const Arm& arm : body_arms(p, body)) add_member(*object, make_tube(arm.beads), arm.side() < 0 ? right : left, 0.2 * r);
-    if (p.pose == "offering") {
+    if (offering) {
         const auto arms = body_arms(p, body);
         const Vector3d between = 0.5 * (arms[0].beads.back().centre + arms[1].beads.back().centre);
         const double gap = (arms[0].beads.back().centre - arms[1].beads.back().centre).norm();

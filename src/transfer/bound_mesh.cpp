@@ -75,7 +75,7 @@ SimplifyResult BoundMesh::simplify(const SimplifyOptions& options) {
     AnnotationTable table = attach();
     std::optional<AnnotationMerger> merger;
     if (annotations) merger.emplace(mesh, table);
-    const MarkedParts parts = marked(table, options.outlines == "protect");
+    const MarkedParts parts = marked(table, options.outlines == SimplifyOptions::Outlines::protect);
     SimplifyResult result = ostraka::simplify(mesh, options, parts, merger ? &*merger : nullptr);
     detach(table, result.vertex_map);
     return result;

@@ -10,7 +10,7 @@ ChainTracer::ChainTracer(const Mesh& source, const SurfaceSearch& target, const 
       search_(target),
       target_(target.mesh()),
       options_(options),
-      metric_(path_metric(options.metric)),
+      metric_(options.metric),
       paths_(target.mesh()) {}
 
 void ChainTracer::match(std::vector<Index> vertices) {
@@ -147,7 +147,7 @@ TracedChain ChainTracer::trace_edges(const Chain& chain, TransferScore& score) {
     if (at.empty()) return traced;
     traced.walk.push_back(places[at.front()].vertex);
     std::vector<bool> used;
-    if (options_.spikes == "avoid") used.assign(target_.number_of_vertices(), false);
+    if (options_.spikes == TransferOptions::Spikes::avoid) used.assign(target_.number_of_vertices(), false);
     const std::size_t steps = chain.closed ? at.size() : at.size() - 1;
     for (std::size_t k = 0; k < steps; ++k) {
         const std::size_t i = at[k], j = at[(k + 1) % at.size()];
@@ -180,7 +180,7 @@ TracedChain ChainTracer::trace_edges(const Chain& chain, TransferScore& score) {
         }
     }
     if (chain.closed && traced.walk.size() > 1 && traced.walk.front() == traced.walk.back()) traced.walk.pop_back();
-    traced.path = options_.spikes == "keep" ? traced.walk : prune_spikes(traced.walk, chain.closed);
+    traced.path = options_.spikes == TransferOptions::Spikes::keep ? traced.walk : prune_spikes(traced.walk, chain.closed);
     return traced;
 }
 

@@ -19,7 +19,7 @@ Correspondence at(CorrespondenceKind kind, const SurfaceHit& hit, const Point& f
     result.kind = kind;
     result.place = hit;
     result.place.distance = std::sqrt(CGAL::squared_distance(hit.point, from));
-    const Point& reference = options.vertex == "source" ? from : hit.point;
+    const Point& reference = options.vertex == CorrespondenceOptions::Corner::source ? from : hit.point;
     double best = std::numeric_limits<double>::infinity();
     for (const Vertex v : corners(target, Face(hit.face))) {
         const double distance = CGAL::squared_distance(target.point(v), reference);

@@ -205,7 +205,7 @@ std::vector<bool> RegionTransfer::fill(const std::vector<Index>& region, const s
             score.voted = true;
         }
     }
-    if (options_.cover != "overlapping") cover(selected, chains, score);
+    if (options_.cover != TransferOptions::Cover::overlapping) cover(selected, chains, score);
     return selected;
 }
 
@@ -250,7 +250,7 @@ void RegionTransfer::cover(std::vector<bool>& selected, const std::vector<Chain>
         for (const Face f : piece) selected[f] = inside > outside;
     }
     for (std::size_t f = 0; f < crossed.size(); ++f)
-        if (crossed[f]) selected[f] = options_.cover == "enclosing";
+        if (crossed[f]) selected[f] = options_.cover == TransferOptions::Cover::enclosing;
 }
 
 std::function<bool(const SurfaceHit&)> RegionTransfer::membership(const std::vector<Index>& faces, const Mesh& mesh,

@@ -37,7 +37,7 @@ std::vector<Survival> smallest_resolutions(const Mesh& mesh, const AnnotationSet
             if (!survivals[i].end.empty()) continue;
             const TransferScore& score = result.scores[i];
             char text[64];
-            if (score.outcome != "kept") survivals[i].end = score.outcome;
+            if (score.outcome != TransferOutcome::kept) survivals[i].end = to_string(score.outcome);
             else if (!score.note.empty()) survivals[i].end = score.note;
             else if (score.source_type == AnnotationType::region && distortions(score).area > options.area_error) {
                 std::snprintf(text, sizeof text, "area off by %.3g %%", 100 * distortions(score).area);

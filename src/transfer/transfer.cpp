@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <memory>
 #include <set>
 
@@ -84,7 +83,8 @@ public:
         result_.times.paths = clock.lap();
         const Mesh& mesh = on();
         std::optional<OutlineRounding> rounding;
-        if (!options_.refine && options_.cover == "overlapping" && options_.rounding != "path")
+        if (!options_.refine && options_.cover == TransferOptions::Cover::overlapping &&
+            options_.rounding != TransferOptions::Rounding::path)
             rounding.emplace(source_, set_, target_, chains_, tracer_);
         fill_all(transferred, rounding ? &*rounding : nullptr);
         result_.times.regions = clock.lap();
@@ -100,7 +100,8 @@ public:
         result_.annotations.unit = set_.unit;
         result_.annotations.up = set_.up;
         for (std::size_t i = 0; i < transferred.size(); ++i)
-            if (result_.scores[i].outcome != "lost") result_.annotations.annotations.push_back(std::move(transferred[i]));
+            if (result_.scores[i].outcome != TransferOutcome::lost)
+                result_.annotations.annotations.push_back(std::move(transferred[i]));
         refresh_measures(mesh, result_.annotations);
         attributes.keep_old_values(result_.annotations);
         return std::move(result_);
@@ -140,7 +141,6 @@ private:
         to.type = score.source_type = from.type;
         to.all = from.all;
         to.note = from.note;
-        score.outcome = "kept";
         std::set<Index> vertices(from.points.begin(), from.points.end());
         for (const Chain& chain : chains_[index_of(score)]) vertices.insert(chain.vertices.begin(), chain.vertices.end());
         score.vertices = vertices.size();
@@ -247,7 +247,7 @@ private:
                                         result_.refined ? &result_.refined->face_origin : nullptr, score);
             const bool any = std::find(selected[i].begin(), selected[i].end(), true) != selected[i].end();
             if (any && !score.voted && rounding != nullptr)
-                rounding->round(i, selected[i], regions_.target_edge(), options_.rounding == "balanced");
+                rounding->round(i, selected[i], regions_.target_edge(), options_.rounding == TransferOptions::Rounding::balanced);
         }
         if (rounding != nullptr) rounding->round_shared_outlines(selected);
         for (std::size_t i = 0; i < transferred.size(); ++i) {
@@ -263,7 +263,7 @@ private:
             if (!chain.walk.empty()) to.points.push_back(chain.walk.front());
         if (to.points.empty()) return;
         to.type = AnnotationType::point;
-        result_.scores[i].outcome = "became a point";
+        result_.scores[i].outcome = TransferOutcome::became_point;
         add_note(to.note, "was a line, too short for this mesh");
     }
 
@@ -283,15 +283,15 @@ private:
         if (line.size() >= 2) {
             to.type = AnnotationType::line;
             to.polylines = {line};
-            score.outcome = "became a line";
+            score.outcome = TransferOutcome::became_line;
         } else if (line.size() == 1) {
             to.type = AnnotationType::point;
             to.points = line;
-            score.outcome = "became a point";
+            score.outcome = TransferOutcome::became_point;
         } else {
-            score.outcome = "lost";
+            score.outcome = TransferOutcome::lost;
         }
-        if (score.outcome != "lost") add_note(to.note, "was a region, too small for this mesh");
+        if (score.outcome != TransferOutcome::lost) add_note(to.note, "was a region, too small for this mesh");
     }
 
     void score(const Annotation& from, Annotation& to, TransferScore& score);
@@ -311,12 +311,14 @@ private:
 
 void Transfer::score(const Annotation& from, Annotation& to, TransferScore& score) {
     score.target_type = to.type;
-    if (score.outcome == "kept" && to.points.empty() && to.polylines.empty() && to.faces.empty()) score.outcome = "lost";
+    if (score.outcome == TransferOutcome::kept && to.points.empty() && to.polylines.empty() && to.faces.empty())
+        score.outcome = TransferOutcome::lost;
     const Segments a = segments_of(source_, from), b = segments_of(on(), to);
     score.source_length = length_of(a);
     score.target_length = length_of(b);
     if (a.empty() == b.empty()) score.hausdorff = hausdorff_distance(a, b);
-    else if (score.outcome == "kept") add_note(score.note, b.empty() ? "its outline vanished" : "it got an outline");
+    else if (score.outcome == TransferOutcome::kept)
+        add_note(score.note, b.empty() ? "its outline vanished" : "it got an outline");
     if (from.type != AnnotationType::region) {
         if (from.type == AnnotationType::point && to.points.size() > std::set<Index>(to.points.begin(), to.points.end()).size())
             add_note(score.note, "several points fell on one vertex");
@@ -348,9 +350,14 @@ TransferResult transfer(const Mesh& source, const AnnotationSet& annotations, co
         const Agreement alignment = compare_alignment(source, target.mesh());
         if (!alignment.problem.empty()) fail_input("transfer", alignment.problem, "or --force if they are meant to differ");
     }
-    if (options.refine && options.cover != "overlapping")
+    if (options.refine && options.cover != TransferOptions::Cover::overlapping)
         fail_usage("a refined target follows the outline exactly", "leave out --cover with --refine");
     return Transfer(source, annotations, target, options).run();
+}
+
+std::string to_string(TransferOutcome outcome) {
+    static constexpr const char* words[]{"kept", "became a line", "became a point", "lost"};
+    return words[static_cast<std::size_t>(outcome)];
 }
 
 void TransferOptions::describe(OptionList& visit) {

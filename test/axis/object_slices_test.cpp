@@ -24,7 +24,7 @@ TEST(ObjectSlices, HeightsAreOverTheLowestPlaceAlongTheAxis) {
     CutOptions options;
     options.places.count = 5;
     options.up = {0, 1, 1};
-    for (const char* direction : {"principal", "rotation"}) {
+    for (const AxisMethod direction : {AxisMethod::principal, AxisMethod::rotation}) {
         options.direction = direction;
         const CutObject cut = cut_object(lying(), {}, options);
         ASSERT_EQ(cut.slices.size(), 5U) << cut.reason;
@@ -33,10 +33,10 @@ TEST(ObjectSlices, HeightsAreOverTheLowestPlaceAlongTheAxis) {
         EXPECT_NEAR(cut.highest, 6, 1e-3);
         EXPECT_NEAR(cut.slices[2].height, 3, 1e-3);
     }
-    options.direction = "up";
+    options.direction.reset();
     options.up = {0, 0, -1};
     EXPECT_NEAR(cut_object(lying(), {}, options).highest, 2, 1e-9);
-    options.direction = "skeleton";
+    options.direction = AxisMethod::skeleton;
     const CutObject bent = cut_object(lying(), {}, options);
     EXPECT_FALSE(bent.parallel);
     EXPECT_EQ(bent.slices.size(), 5U);
@@ -45,7 +45,7 @@ TEST(ObjectSlices, HeightsAreOverTheLowestPlaceAlongTheAxis) {
 
 TEST(ObjectSlices, WhatHasNoSuchAxisSaysWhy) {
     CutOptions options;
-    options.direction = "principal";
+    options.direction = AxisMethod::principal;
     const CutObject none = cut_object(build_mesh(octahedron_sphere(3)), {}, options);
     EXPECT_TRUE(none.slices.empty());
     EXPECT_NE(none.reason.find("no principal axis to slice along"), std::string::npos) << none.reason;

@@ -100,7 +100,7 @@ TEST(Cage, MoreVerticesWhereTheyAreWanted) {
 TEST(Cage, FollowsOrFillsHoles) {
     const MadeMesh torus = make_mesh(made_object("torus"), {.vertices = 2000});
     EXPECT_EQ(check_cage(make_cage(torus.mesh, {.vertices = 80}).cage, torus.mesh).genus, 1);
-    const CageResult filled = make_cage(torus.mesh, {.vertices = 80, .genus = "fill"});
+    const CageResult filled = make_cage(torus.mesh, {.vertices = 80, .genus = CageOptions::Genus::fill});
     EXPECT_EQ(check_cage(filled.cage, torus.mesh).genus, 0);
     EXPECT_TRUE(check_cage(filled.cage, torus.mesh).valid());
 }

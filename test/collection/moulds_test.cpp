@@ -41,7 +41,7 @@ TEST(MouldGroups, EveryMethodFindsWhatStandsOut) {
     const std::vector<int> sizes{7, 5, 4};
     for (const char* method : {"linkage", "dbscan", "embedding"}) {
         GroupOptions options;
-        options.method = method;
+        set_option(options, "method", method);
         const MouldGroups groups = group_heads(blocks(sizes), options);
         EXPECT_EQ(groups.labels, labels_of(sizes)) << method;
         EXPECT_TRUE(groups.clear);

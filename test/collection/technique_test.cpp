@@ -62,7 +62,7 @@ TEST(Technique, AnOffCentreCavityHasTheVariationOfTheFormula) {
 
 TEST(Technique, NothingChangesWithScalePlaceAndTurn) {
     StatuetteParameters p = fine();
-    p.technique = "hand";
+    p.technique = StatuetteParameters::Technique::hand;
     p.wall = 5;
     p.ovality = 0.03;
     p.sway = 0.05;
@@ -88,7 +88,7 @@ TEST(Technique, OpenAndHoledBodiesAreMeasuredAsFarAsTheyGo) {
     p.ovality = 0.04;
     p.vertices = 8000;
     const double whole = measure_technique(generate_statuette(p).mesh, up).value("roundness mean");
-    p.interior = "open";
+    p.interior = StatuetteParameters::Interior::open;
     p.cavity_seen = 0.3;
     p.holes = 6;
     p.hole_radius = 6;
@@ -114,7 +114,7 @@ TEST(Technique, OpenAndHoledBodiesAreMeasuredAsFarAsTheyGo) {
 
 TEST(Technique, ArmsBesideTheBodyAreLeftOut) {
     StatuetteParameters p = fine();
-    p.pose = "down";
+    p.pose = StatuetteParameters::Pose::down;
     p.arm_length = 120;  // hands reach far down into the lower two fifths
     const TechniqueMeasures m = measure_technique(generate_statuette(p).mesh, up);
     EXPECT_LT(m.value("roundness mean"), 0.002);

@@ -17,12 +17,13 @@ int main() try {
 
     const TransferResult result = transfer(source.mesh, annotations, SurfaceSearch(target.mesh));
     for (const TransferScore& score : result.scores)
-        std::cout << score.tag << ": " << score.outcome << ", area " << score.source_area << " -> " << score.target_area << '\n';
+        std::cout << score.tag << ": " << to_string(score.outcome) << ", area " << score.source_area << " -> "
+                  << score.target_area << '\n';
 
     const std::vector<Finding> findings = examine(target.mesh, result.annotations);
     const bool sound = std::none_of(findings.begin(), findings.end(), [](const Finding& finding) { return finding.defect; });
     const bool kept = std::all_of(result.scores.begin(), result.scores.end(),
-                                  [](const TransferScore& score) { return score.outcome == "kept"; });
+                                  [](const TransferScore& score) { return score.outcome == ostraka::TransferOutcome::kept; });
     return sound && kept && result.scores.size() == object.parts.size() ? 0 : 1;
 } catch (const ostraka::Error& error) {
     std::cerr << error.what() << '\n';

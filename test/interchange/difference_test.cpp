@@ -155,7 +155,7 @@ TEST(Merge, OneSidedChangesAreTakenWhole) {
         const AnnotationSet a = edited(base, mesh, seed);
         for (const char* prefer : {"none", "ours", "theirs"}) {
             MergeOptions options;
-            options.prefer = prefer;
+            set_option(options, "prefer", prefer);
             const MergedAnnotations ours = merge_annotations(base, a, base, options),
                                     theirs = merge_annotations(base, base, a, options),
                                     both = merge_annotations(base, a, a, options);
@@ -180,7 +180,7 @@ TEST(Merge, ConflictsAreTheSameFromBothSides) {
         with_conflicts += one.empty() ? 0 : 1;
         // A preferred side of a merge without conflicts changes nothing.
         MergeOptions ours;
-        ours.prefer = "ours";
+        ours.prefer = MergeOptions::Side::ours;
         if (one.empty()) {
             EXPECT_EQ(as_file(merge_annotations(base, a, b, ours).set, mesh), as_file(merge_annotations(base, a, b).set, mesh));
         }
@@ -224,7 +224,7 @@ TEST(Merge, NamesEachKindOfConflict) {
                                         gone + " removed by one, changed by the other", "900 both added"}));
     EXPECT_FALSE(merged.settled({}));
     MergeOptions options;
-    options.prefer = "theirs";
+    options.prefer = MergeOptions::Side::theirs;
     const MergedAnnotations settled = merge_annotations(base, ours, theirs, options);
     EXPECT_TRUE(settled.settled(options));
     const Annotation* lid = settled.set.find(find(ours, "crown").id);

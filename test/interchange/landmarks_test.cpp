@@ -93,7 +93,7 @@ TEST(Landmarks, SpacesAreTurned) {
     set.landmarks = {{"a", {1, 2, 3}, {}}};
     for (const LandmarkFormat format : {LandmarkFormat::mrk, LandmarkFormat::fcsv}) {
         LandmarkFileOptions ras;
-        ras.mesh_space = "RAS";
+        ras.mesh_space = AnatomicalSpace::ras;
         EXPECT_EQ(landmarks_from_text(written(set, format, ras), format, "f").landmarks[0].position,
                   (std::array<double, 3>{-1, -2, 3}));
         EXPECT_EQ(landmarks_from_text(written(set, format, ras), format, "f", ras).landmarks[0].position,

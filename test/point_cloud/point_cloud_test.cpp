@@ -165,9 +165,10 @@ TEST(FragmentFile, AnnotationsOverrideTheShape) {
     const Scratch scratch;
     const test::MadeSherd sherd = test::made_sherd(1, 2, 0, 1);
     write_mesh(scratch / "sherd.ply", sherd.mesh);
+    using FacetSource = FragmentFileOptions::FacetSource;
     FragmentFileOptions options;
     EXPECT_EQ(read_fragment(scratch / "sherd.ply", options).facets_from, "shape") << "closed, not annotated";
-    options.facets = "none";
+    options.facets = FacetSource::none;
     EXPECT_EQ(read_fragment(scratch / "sherd.ply", options).fragment.facets.size(), 0U);
     // A tenth of the faces are called a fracture, whatever they are.
     AnnotationSet set;
@@ -176,10 +177,10 @@ TEST(FragmentFile, AnnotationsOverrideTheShape) {
     for (Index f = 0; f < sherd.facets.size(); f += 10) stated.faces.push_back(f);
     set.annotations.push_back(stated);
     write_annotations(scratch / "sherd.ant.json", set, sherd.mesh, "sherd.ply", {});
-    options.facets = "either";
+    options.facets = FacetSource::either;
     const FragmentFile either = read_fragment(scratch / "sherd.ply", options);
     EXPECT_EQ(either.facets_from, "annotations");
-    options.facets = "auto";
+    options.facets = FacetSource::automatic;
     const FragmentFile both = read_fragment(scratch / "sherd.ply", options);
     EXPECT_EQ(both.facets_from, "shape and annotations");
     for (std::size_t f = 0; f < sherd.facets.size(); ++f) {
@@ -194,11 +195,10 @@ TEST(FragmentFile, AnnotationsOverrideTheShape) {
     const FragmentFile whole = read_fragment(scratch / "sherd.ply", options);
     EXPECT_EQ(whole.facets_from, "shape and annotations");
     EXPECT_EQ(whole.fragment.facets, std::vector<Facet>(sherd.facets.size(), Facet::fracture));
-    options.facets = "annotated";
+    options.facets = FacetSource::annotated;
     std::filesystem::remove(scratch / "sherd.ant.json");
     EXPECT_EQ(read_fragment(scratch / "sherd.ply", options).facets_from, "nowhere");
-    options.facets = "guess";
-    EXPECT_THROW(read_fragment(scratch / "sherd.ply", options), Error);
+    EXPECT_THROW(set_option(options, "facets", "guess"), Error);
 }
 
 }  // namespace

@@ -51,7 +51,7 @@ protected:
     }
     [[nodiscard]] static NonRigidOptions in(const std::string& space) {
         NonRigidOptions options;
-        options.space = space;
+        set_option(options, "space", space);
         return options;
     }
     Mesh mesh, whole;
@@ -108,7 +108,7 @@ TEST_F(CageFit, FragmentsOfTheObjectThroughTheCage) {
     options.share = 0.5;
     const Cut one = cut(whole, landmarks, Point(0, 0, 1.9), options);
     ReconstructOptions how;
-    how.fit.space = "cage";
+    how.fit.space = NonRigidOptions::Space::cage;
     const Reconstruction result = reconstruct(mesh, landmarks, {}, {&one.fragment}, how, {}, nullptr, &cage);
     ASSERT_TRUE(result.placement.any());
     EXPECT_NEAR(result.observed_share, 0.5, 0.08);
@@ -128,7 +128,7 @@ TEST_F(CageFit, RefusesWhatIsNoCageOfTheTemplate) {
     }
     EXPECT_THROW((void)TemplateFitter(mesh, set).fit(1, placed(whole), in("cage")), Error);
     ReconstructOptions how;
-    how.fit.space = "both";
+    how.fit.space = NonRigidOptions::Space::both;
     const RelationGraph graph;
     EXPECT_THROW(Reconstructor(mesh, set, graph, how), Error);
     const TemplateCage green{cage.cage, compute_coordinates("green", cage.cage, mesh)};

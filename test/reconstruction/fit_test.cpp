@@ -108,7 +108,7 @@ TEST(Fit, PartsGoToTheirCounterpartsByPlaceOrByEquation51) {
     one.fragment.annotations.annotations.push_back(part);
     for (const std::string counterparts : {"surface", "best", "one-to-one"}) {
         ReconstructOptions how;
-        how.fit.counterparts = counterparts;
+        set_option(how.fit, "counterparts", counterparts);
         const Reconstruction result = reconstruct(mesh, set, {}, {&one.fragment}, how);
         ASSERT_TRUE(result.placement.any());
         std::vector<bool> seen(mesh.number_of_vertices(), false);
@@ -160,7 +160,7 @@ TEST(Fit, WithoutLandmarksItCannotDecide) {
     Cut one = cut(mesh, set, Point(0, 0, 1.8), {});
     one.fragment.annotations.annotations.clear();
     ReconstructOptions never;
-    never.search.search = "never";
+    never.search.search = SearchOptions::Search::never;
     const Reconstruction result = reconstruct(mesh, set, {}, {&one.fragment}, never);
     EXPECT_EQ(result.verdict, Compatibility::undecided);
     EXPECT_NE(result.undecided, "");

@@ -98,7 +98,7 @@ protected:
         list.push_back(std::move(fragment));
         NonRigidOptions options;
         options.outlines = outlines;
-        options.counterparts = counterparts;
+        set_option(options, "counterparts", counterparts);
         result.points = fit_template(mesh, set, list, options).points;
         return result;
     }

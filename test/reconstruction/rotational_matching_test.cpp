@@ -207,7 +207,7 @@ TEST(FreeTurns, OnlyWhereASearchLeftThemOpen) {
     EXPECT_FALSE(decide_free_turns(pot.whole, fragments, searched, placed)) << "nothing is open";
     for (auto& one : searched) one->freedom.kind = FreedomKind::turn;
     BreakTurnOptions never;
-    never.turns = "never";
+    never.turns = BreakTurnOptions::Turns::never;
     EXPECT_FALSE(decide_free_turns(pot.whole, fragments, searched, placed, never));
     placed[1].problem = "lost";
     const auto turns = decide_free_turns(pot.whole, fragments, searched, placed);

@@ -71,11 +71,11 @@ TEST(SearchPlacement, IsAskedOnlyWhereItShould) {
     SearchOptions options;
     double scale = 1;
     auto placed = without_landmarks(1);
-    options.search = "never";
+    options.search = SearchOptions::Search::never;
     EXPECT_FALSE(place_by_search(mesh, {&one.fragment}, options, scale, placed)[0].has_value());
     EXPECT_EQ(placed[0].problem, "has 0 landmarks");
     // A mirror image, say, has landmarks enough: another pose would be no answer.
-    options.search = "auto";
+    options.search = SearchOptions::Search::automatic;
     placed[0].landmarks.resize(4);
     EXPECT_FALSE(place_by_search(mesh, {&one.fragment}, options, scale, placed)[0].has_value());
     placed[0].landmarks.clear();

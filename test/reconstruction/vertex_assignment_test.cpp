@@ -116,7 +116,7 @@ TEST(VertexAssignment, OneToOneIsTheLeastSumOfAllPermutations) {
     const Mesh a = plate(6, 6, 0), b = plate(7, 6, 0.2);
     const Annotation ours = region(a, 1.9, 4.1, 1.9, 3.1), theirs = region(b, 1.9, 4.2, 1.9, 4.1);
     VertexAssignmentOptions options;
-    options.counterpart = "one-to-one";
+    options.counterpart = VertexAssignmentOptions::Counterpart::one_to_one;
     options.candidates = 1000;
     options.unassigned = 10;
     const Full full = full_costs(a, ours, b, theirs, {}, options);
@@ -144,7 +144,7 @@ TEST(VertexAssignment, NobodyIsTakenTwiceAndTheRestStaysFree) {
     const Mesh a = plate(20, 20, 0), b = plate(9, 9, 0.1);
     const Annotation ours = region(a, 1, 8, 1, 8), theirs = region(b, 2, 6, 2, 6);
     VertexAssignmentOptions options;
-    options.counterpart = "one-to-one";
+    options.counterpart = VertexAssignmentOptions::Counterpart::one_to_one;
     const VertexAssignment found = assign_vertices(a, ours, b, theirs, {}, options);
     std::multiset<Index> used(found.counterpart.begin(), found.counterpart.end());
     EXPECT_GT(used.count(no_index), 0U);
@@ -226,7 +226,7 @@ TEST(VertexAssignment, TheSameForAnyNumberOfThreads) {
     const int before = threads();
     for (const std::string mode : {"best", "one-to-one"}) {
         VertexAssignmentOptions options;
-        options.counterpart = mode;
+        set_option(options, "counterpart", mode);
         set_threads(1);
         const VertexAssignment one = assign_vertices(a, ours, b, theirs, {}, options);
         set_threads(4);

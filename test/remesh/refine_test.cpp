@@ -25,7 +25,7 @@ TEST_P(EveryScheme, ReachesTheNumberAndKeepsTopologyAndShape) {
         const Mesh original = mesh;
         RefineOptions options;
         options.vertices = soup.points.size() * 9 + 5;
-        options.scheme = GetParam();
+        set_option(options, "scheme", GetParam());
         const RefineResult result = refine(mesh, options);
         EXPECT_EQ(mesh.number_of_vertices(), options.vertices);
         EXPECT_TRUE(is_sound(mesh));
@@ -65,7 +65,7 @@ TEST_P(EveryScheme, PropertiesAndPolylinesAreCarried) {
             line.push_back(mesh.target(*std::next(CGAL::halfedges_around_source(Vertex(line.back()), mesh).begin(), 1)));
         RefineOptions options;
         options.vertices = soup.points.size() * 6;
-        options.scheme = GetParam();
+        set_option(options, "scheme", GetParam());
         const RefineResult result = refine(mesh, options);
         for (const Face f : mesh.faces()) ASSERT_EQ(label[f], result.face_origin[f] % 13);
         for (const Edge e : mesh.edges())
@@ -94,7 +94,7 @@ TEST_P(EveryScheme, SmallestMeshes) {
             Mesh mesh = build_mesh(soup);
             RefineOptions options;
             options.vertices = wanted;
-            options.scheme = GetParam();
+            set_option(options, "scheme", GetParam());
             refine(mesh, options);
             EXPECT_EQ(mesh.number_of_vertices(), wanted);
             EXPECT_TRUE(is_sound(mesh));
@@ -106,7 +106,7 @@ TEST_P(EveryScheme, TheSameTwice) {
     Mesh first = build_mesh(torus(48, 24)), second = first;
     RefineOptions options;
     options.vertices = 20000;
-    options.scheme = GetParam();
+    set_option(options, "scheme", GetParam());
     refine(first, options);
     refine(second, options);
     EXPECT_EQ(mesh_checksum(first), mesh_checksum(second));
@@ -134,7 +134,7 @@ TEST(Refine, LoopSmooths) {
     Mesh mesh = build_mesh(octahedron_sphere(0));
     RefineOptions options;
     options.levels = 5;
-    options.scheme = "loop";
+    options.scheme = RefineOptions::Scheme::loop;
     refine(mesh, options);
     double least = 1;
     for (const Edge e : mesh.edges()) {
@@ -149,7 +149,7 @@ TEST(Refine, LoopKeepsPlanes) {
     Mesh mesh = build_mesh(grid(6, 5, false, false, [](double u, double v) { return std::array<double, 3>{u, v, 2}; }));
     RefineOptions options;
     options.levels = 2;
-    options.scheme = "loop";
+    options.scheme = RefineOptions::Scheme::loop;
     refine(mesh, options);
     for (const Vertex v : mesh.vertices()) ASSERT_NEAR(mesh.point(v).z(), 2, 1e-12);
 }
@@ -171,7 +171,7 @@ TEST(Refine, HalvingKeepsAnglesBounded) {
     const double before = smallest_angle(mesh);
     RefineOptions options;
     options.vertices = 20000;
-    options.scheme = "longest-edge";
+    options.scheme = RefineOptions::Scheme::longest_edge;
     refine(mesh, options);
     EXPECT_GE(smallest_angle(mesh), 0.5 * before * (1 - 1e-9));
 }
@@ -195,8 +195,8 @@ TEST(Refine, WrongRequests) {
     EXPECT_EQ(kind_of([](RefineOptions& o) { o.vertices = 10; }), usage);
     EXPECT_EQ(kind_of([](RefineOptions& o) { o.levels = 13; }), usage);
     EXPECT_EQ(kind_of([](RefineOptions& o) { o.levels = 12; }), usage);  // too many edges for 32 bits
-    EXPECT_EQ(kind_of([](RefineOptions& o) { o.levels = 1, o.scheme = "longest-edge"; }), usage);
-    EXPECT_EQ(kind_of([](RefineOptions& o) { o.levels = 1, o.scheme = "butterfly"; }), usage);
+    EXPECT_EQ(kind_of([](RefineOptions& o) { o.levels = 1, o.scheme = RefineOptions::Scheme::longest_edge; }), usage);
+    EXPECT_EQ(kind_of([](RefineOptions& o) { set_option(o, "scheme", "butterfly"); }), usage);
     Mesh empty;
     RefineOptions options;
     options.levels = 1;
@@ -205,6 +205,6 @@ TEST(Refine, WrongRequests) {
     Mesh point = build_mesh({{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}, {{0, 1, 2}}});
     options.levels = 0;
     options.vertices = 10;
-    options.scheme = "longest-edge";
+    options.scheme = RefineOptions::Scheme::longest_edge;
     EXPECT_THROW(refine(point, options), Error);
 }

@@ -44,7 +44,7 @@ TEST_P(EveryMesh, KeepsTopologyAndReachesTheNumber) {
         const std::size_t before = mesh.number_of_faces();
         SimplifyOptions options;
         options.vertices = soup.points.size() / 4;
-        options.method = GetParam();
+        set_option(options, "method", GetParam());
         const SimplifyResult result = simplify(mesh, options);
         EXPECT_TRUE(result.reached) << result.stop_reason;
         EXPECT_EQ(mesh.number_of_vertices(), options.vertices);
@@ -74,7 +74,7 @@ TEST_P(EveryMesh, NeighboursStayNeighboursOrMerge) {
         const Mesh original = mesh;
         SimplifyOptions options;
         options.vertices = soup.points.size() / 10;
-        options.method = GetParam();
+        set_option(options, "method", GetParam());
         const SimplifyResult result = simplify(mesh, options);
         for (const Edge e : original.edges()) {
             const Vertex a(result.vertex_map[original.vertex(e, 0)]), b(result.vertex_map[original.vertex(e, 1)]);
@@ -96,8 +96,8 @@ TEST_P(EveryMesh, LabelsFollowWithTheirTopology) {
             for (const Face f : mesh.faces()) area[label[f]] += face_area(mesh, f);
             SimplifyOptions options;
             options.vertices = soup.points.size() / 3;
-            options.outlines = outlines;
-            options.method = GetParam();
+            set_option(options, "outlines", outlines);
+            set_option(options, "method", GetParam());
             const SimplifyResult result = simplify(mesh, options, marked);
             EXPECT_TRUE(result.reached) << result.stop_reason;
             EXPECT_FALSE(result.outlines_broken);
@@ -125,8 +125,8 @@ TEST_P(EveryMesh, ProtectedOutlinesStayToTheBit) {
         marked.vertices[7] = true;
         SimplifyOptions options;
         options.vertices = soup.points.size() / 3;
-        options.outlines = "protect";
-        options.method = GetParam();
+        options.outlines = SimplifyOptions::Outlines::protect;
+        set_option(options, "method", GetParam());
         const SimplifyResult result = simplify(mesh, options, marked);
         EXPECT_EQ(mesh.point(Vertex(result.vertex_map[7])), original.point(Vertex(7)));
         for (const Edge e : original.edges()) {
@@ -146,7 +146,7 @@ TEST_P(EveryMesh, TheSameTwice) {
         Mesh first = build_mesh(soup), second = build_mesh(soup);
         SimplifyOptions options;
         options.vertices = soup.points.size() / 5;
-        options.method = GetParam();
+        set_option(options, "method", GetParam());
         simplify(first, options);
         simplify(second, options);
         EXPECT_EQ(mesh_checksum(first), mesh_checksum(second));

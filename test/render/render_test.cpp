@@ -33,7 +33,7 @@ TEST(Render, SilhouetteOfASphereIsADisc) {
 
 TEST(Render, PerspectiveShowsTheTangentCone) {
     RenderOptions options = bare();
-    options.projection = "perspective";
+    options.projection = RenderOptions::Projection::perspective;
     const Rendering rendering = render({test::sphere(64)}, options);
     // The scale at the centre is f / d; the silhouette's radius is f / sqrt(d^2 - 1) for a unit sphere and fills the margin.
     const double scale = rendering.panes[0].pixels_per_unit, focal = 150 / std::tan(15 * std::numbers::pi / 180),
@@ -105,7 +105,7 @@ TEST(Render, ViewsShowTheSidesTheyName) {
         const std::uint32_t pixel = 0xFF000000U | std::uint32_t{c.red} << 16 | std::uint32_t{c.green} << 8 | c.blue;
         EXPECT_EQ(render({scene}, options).picture.at(150, 150), pixel) << names[side];
     }
-    options.views = "six";
+    options.views = RenderOptions::Views::six;
     options.size = "300x200";
     EXPECT_EQ(render({scene}, options).panes.size(), 6U);
 }
@@ -199,7 +199,7 @@ TEST(Render, DegenerateObjects) {
     for (const char* view : {"left", "top", "iso"})  // the first two edge on
         for (const char* projection : {"orthographic", "perspective"}) {
             options.view = view;
-            options.projection = projection;
+            set_option(options, "projection", projection);
             EXPECT_NO_THROW(render({triangle}, options));
         }
     Scene collapsed = triangle;
@@ -258,11 +258,11 @@ TEST(Render, SeveralObjectsShareTheirScale) {
     Rendering rendering = render({small, large}, options);
     ASSERT_EQ(rendering.panes.size(), 2U);
     EXPECT_DOUBLE_EQ(rendering.panes[0].pixels_per_unit, rendering.panes[1].pixels_per_unit);
-    options.fit = "each";
+    options.fit = RenderOptions::Fit::each;
     rendering = render({small, large}, options);
     EXPECT_NEAR(rendering.panes[0].pixels_per_unit, 2 * rendering.panes[1].pixels_per_unit, 1e-6);
-    options.fit = "all";
-    options.projection = "perspective";
+    options.fit = RenderOptions::Fit::all;
+    options.projection = RenderOptions::Projection::perspective;
     rendering = render({small, large}, options);
     EXPECT_NEAR(rendering.panes[0].pixels_per_unit, rendering.panes[1].pixels_per_unit, 1e-9);
 }

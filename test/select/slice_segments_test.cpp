@@ -51,7 +51,7 @@ TEST(SliceSegments, ProposesTheKindsThatAreThereAndFindsTheirBands) {
     const Mesh mesh = lofted(three_parts, 60, 1201, 36);
     for (const char* criterion : {"silhouette", "gap"}) {
         SliceSegmentOptions options;
-        options.count.criterion = criterion;
+        set_option(options.count, "criterion", criterion);
         const SliceSegments found = segment_by_slices(mesh, Vector(0, 0, 1), options);
         EXPECT_EQ(found.count.proposed, 2) << criterion;
         ASSERT_EQ(found.segments.size(), 3U) << criterion;

@@ -133,7 +133,7 @@ TEST(Deform, ThroughTheCageItComesAsNearAsTheCageCan) {
     RelationGraph graph;
     graph.relationships.push_back(constraint(0, "same level", {7, 8, 9, 10, 11}, "{}", 10));
     DeformOptions options;
-    options.space = "cage";
+    options.space = DeformOptions::Space::cage;
     const DeformResult result =
         deform(object.handles(), graph,
                edit(R"({"select": {"annotation": "spout", "threshold": 0.15}, "translate": [0, 0, 12]})"), "e", options);
@@ -158,7 +158,7 @@ TEST(Deform, SurroundingsAreDistortedLessThanInTheThesis) {
         RelationGraph graph;
         graph.relationships.push_back(constraint(0, "same level", flowers, parameters));
         DeformOptions options;
-        options.details = details;
+        set_option(options, "details", details);
         options.closeness = closeness;
         const DeformResult result = deform(object.handles(), graph, edit(steps), "e", options);
         EXPECT_TRUE(result.acceptable);
@@ -190,7 +190,7 @@ TEST(Deform, SeatedFeaturesAreRigidAndLevelThroughTheCageToo) {
     for (const auto& [space, bend] : {std::pair{"mesh", true}, {"cage", true}, {"mesh", false}}) {
         graph.relationships[0].constraint = bend ? R"({"shapes": "seat"})" : R"({"shapes": "seat", "bend": 0})";
         DeformOptions options;
-        options.space = space;
+        set_option(options, "space", space);
         const DeformResult result = deform(object.handles(), graph, edit(steps), "e", options);
         EXPECT_TRUE(result.acceptable);
         EXPECT_LT(*result.constraints[0].deviations[0].value, 1e-9 * diagonal);

@@ -373,7 +373,7 @@ TEST(Deform, ThroughACageNothingFliesApart) {
     RelationGraph graph;
     graph.relationships.push_back(constraint(0, "structural continuity", {4, 7}, R"({"hard": true})"));
     DeformOptions options;
-    options.space = "cage";
+    options.space = DeformOptions::Space::cage;
     const DeformResult result = deform(
         object.handles(), graph,
         edit(R"({"select": {"annotation": "left arm"}, "stretch": {"direction": [1, 0, 0], "factor": 1.3}})"), "e", options);

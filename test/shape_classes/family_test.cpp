@@ -414,12 +414,12 @@ TEST(ClassSample, EditsAndBadInput) {
     const ShapeClass learnt = class_of(known, usual(known));
     SampleOptions options;
     options.count = 2;
-    options.by = "edits";
+    options.by = SampleOptions::Way::edits;
     options.edit = 0.02;
     const Sampling sampling = sample_class(learnt, known.known(), options);
     EXPECT_GT(sampling.tried, 0U);
     for (const ClassSample& sample : sampling.samples) EXPECT_FALSE(sample.edits.empty());
-    options.by = "modes";
+    options.by = SampleOptions::Way::modes;
     EXPECT_THROW(static_cast<void>(sample_class(class_of(known, one_alone(known)), known.known(), options)), Error);
 }
 

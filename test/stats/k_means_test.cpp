@@ -179,7 +179,8 @@ TEST(ClusterCount, GapTellsThatThereAreNoClusters) {
     Random random(2);
     Eigen::MatrixXd samples(200, 2);
     for (Eigen::Index i = 0; i < 200; ++i) samples.row(i) << random.uniform(), random.uniform();
-    const ClusterCount found = propose_cluster_count(samples, {.most = 6, .criterion = "gap", .references = 20});
+    const ClusterCount found =
+        propose_cluster_count(samples, {.most = 6, .criterion = ClusterCountOptions::Criterion::gap, .references = 20});
     EXPECT_EQ(found.proposed, 1);
     EXPECT_GT(found.by_silhouette, 1) << "which the silhouette cannot";
 }
@@ -188,9 +189,10 @@ TEST(ClusterCount, OfFewAndIdenticalSamples) {
     EXPECT_EQ(propose_cluster_count(Eigen::MatrixXd::Constant(5, 2, 1.0)).proposed, 1);
     EXPECT_EQ(propose_cluster_count(column({3})).proposed, 1);
     EXPECT_EQ(propose_cluster_count(column({3, 4})).rows.size(), 1u) << "a sample each is no clustering";
-    for (const char* criterion : {"silhouette", "gap"})
-        EXPECT_EQ(propose_cluster_count(column({3, 3, 3, 8, 8, 8}), {.criterion = criterion}).proposed, 2) << criterion;
-    EXPECT_THROW(propose_cluster_count(column({3, 4}), {.criterion = "elbow"}), Error);
+    for (const auto criterion : {ClusterCountOptions::Criterion::silhouette, ClusterCountOptions::Criterion::gap})
+        EXPECT_EQ(propose_cluster_count(column({3, 3, 3, 8, 8, 8}), {.criterion = criterion}).proposed, 2);
+    ClusterCountOptions options;
+    EXPECT_THROW(set_option(options, "criterion", "elbow"), Error);
 }
 
 }  // namespace

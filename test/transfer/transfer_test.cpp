@@ -70,7 +70,7 @@ TEST(Transfer, OntoItselfIsTheIdentity) {
         const AnnotationSet set = set_of({region(1, mesh, [&](const Point& p) { return p.x() < middle; }), line, points});
         for (const char* metric : {"euclidean", "segment", "combined"}) {
             TransferOptions options;
-            options.metric = metric;
+            set_option(options, "metric", metric);
             const TransferResult result = transfer_to(mesh, set, mesh, options);
             ASSERT_EQ(result.annotations.annotations.size(), 3U) << name;
             EXPECT_EQ(result.annotations.annotations[0].faces, set.annotations[0].faces) << name << " " << metric;
@@ -90,11 +90,11 @@ TEST(Transfer, RegionsKeepTheirAreaAcrossResolutions) {
         for (const char* metric : {"euclidean", "segment", "combined"})
             for (const char* spikes : {"prune", "avoid", "keep"}) {
                 TransferOptions options;
-                options.metric = metric;
-                options.spikes = spikes;
+                set_option(options, "metric", metric);
+                set_option(options, "spikes", spikes);
                 const TransferResult result = transfer_to(*source, set, *target, options);
                 for (const TransferScore& score : result.scores) {
-                    EXPECT_EQ(score.outcome, "kept");
+                    EXPECT_EQ(score.outcome, TransferOutcome::kept);
                     EXPECT_FALSE(score.voted);
                     EXPECT_LT(*score.wrong_side, 0.5 * edge * score.source_length) << metric << " " << spikes;
                     EXPECT_LT(score.hausdorff.value_or(1e9), 2 * edge);
@@ -131,9 +131,9 @@ TEST(Transfer, EnclosingHoldsWhatEnclosedLeavesOut) {
     const Mesh source = build_mesh(octahedron_sphere(5)), target = build_mesh(rotated(octahedron_sphere(4), 0.4));
     const AnnotationSet set = set_of({region(1, source, cap)});
     TransferOptions options;
-    options.cover = "enclosing";
+    options.cover = TransferOptions::Cover::enclosing;
     const auto outer = transfer_to(source, set, target, options).annotations.annotations.at(0).faces;
-    options.cover = "enclosed";
+    options.cover = TransferOptions::Cover::enclosed;
     const auto inner = transfer_to(source, set, target, options).annotations.annotations.at(0).faces;
     EXPECT_TRUE(std::includes(outer.begin(), outer.end(), inner.begin(), inner.end()));
     // The true border of the source region lies where its faces end; allow for the height of a source face.
@@ -161,7 +161,7 @@ TEST(Transfer, RegionTooSmallBecomesAPointOrALineAndSaysSo) {
     EXPECT_EQ(result.annotations.annotations[0].tag, "dot");
     EXPECT_FALSE(result.annotations.annotations[0].note.empty());
     EXPECT_EQ(result.annotations.annotations[1].type, AnnotationType::line);
-    EXPECT_EQ(result.scores[1].outcome, "became a line");
+    EXPECT_EQ(result.scores[1].outcome, TransferOutcome::became_line);
 }
 
 TEST(Transfer, ShortLinesBecomePointsAndLostPinsLeaveAStaleValue) {
@@ -174,7 +174,7 @@ TEST(Transfer, ShortLinesBecomePointsAndLostPinsLeaveAStaleValue) {
     const TransferResult result = transfer_to(source, set_of({line}), target);
     ASSERT_EQ(result.annotations.annotations.size(), 1U);
     EXPECT_EQ(result.annotations.annotations[0].type, AnnotationType::point);
-    EXPECT_EQ(result.scores[0].outcome, "became a point");
+    EXPECT_EQ(result.scores[0].outcome, TransferOutcome::became_point);
 
     // A pin on a part that the target does not have.
     const Mesh two = build_mesh(joined(octahedron_sphere(3), moved(octahedron_sphere(2), 1, {5, 0, 0}))),
@@ -202,7 +202,7 @@ TEST(Transfer, RegionWhoseSmallHoleVanishesCoversItsComponent) {
     const Mesh source = build_mesh(octahedron_sphere(5)), target = build_mesh(octahedron_sphere(2));
     const AnnotationSet set = set_of({region(1, source, [](const Point& p) { return p.z() < 0.998; })});
     const TransferResult result = transfer_to(source, set, target);
-    EXPECT_EQ(result.scores[0].outcome, "kept");
+    EXPECT_EQ(result.scores[0].outcome, TransferOutcome::kept);
     EXPECT_EQ(result.annotations.annotations.at(0).faces.size(), target.number_of_faces());
     EXPECT_FALSE(result.scores[0].hausdorff);
 }
@@ -306,7 +306,7 @@ TEST(Transfer, RoundingPutsLessOnTheWrongSideAndMeetsAreaAndPerimeter) {
     const AnnotationSet set = set_of({region(1, source, cap), region(2, source, band)});
     const auto scores = [&](const char* rounding) {
         TransferOptions options;
-        options.rounding = rounding;
+        set_option(options, "rounding", rounding);
         return transfer_to(source, set, target, options).scores;
     };
     const auto path = scores("path"), area = scores("area"), balanced = scores("balanced");
@@ -329,7 +329,7 @@ TEST(Transfer, RoundingKeepsThePartitionOfThreeRegions) {
     const AnnotationSet set = set_of({region(1, source, third(0)), region(2, source, third(1)), region(3, source, third(2))});
     for (const char* rounding : {"path", "area", "balanced"}) {
         TransferOptions options;
-        options.rounding = rounding;
+        set_option(options, "rounding", rounding);
         std::vector<int> owners(target.number_of_faces(), 0);
         for (const Annotation& annotation : transfer_to(source, set, target, options).annotations.annotations)
             for (const Index f : annotation.faces) ++owners[f];

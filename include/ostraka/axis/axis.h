@@ -9,8 +9,11 @@
 
 namespace ostraka {
 
+enum class AxisMethod { rotation, slices, skeleton, principal };
+std::string to_string(AxisMethod method);
+
 struct AxisOptions {
-    std::string method = "rotation";
+    AxisMethod method = AxisMethod::rotation;
     double tolerance = 0.02;
     double least_quality = 0.7;
     int slices = 24;

@@ -7,9 +7,9 @@
 namespace ostraka {
 
 struct CutOptions {
-    /// "up": across `up`; else a method of `find_axis`: "principal" or "rotation", across that axis, which points upwards as far
-    /// as it does at all; or "skeleton", across its curve.
-    std::string direction = "up";
+    /// None: across `up`; else across the axis that this method finds, which points upwards as far as it does at all, or across
+    /// the curve of the skeleton.
+    std::optional<AxisMethod> direction;
     Vector up{0, 0, 1};
     SlicePlaces places;  ///< across a curve its count alone
     AxisOptions axis;

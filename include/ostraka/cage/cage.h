@@ -15,7 +15,7 @@ struct CageOptions {
     std::uint64_t vertices = 200;  ///< wanted number of vertices, a cage of several levels has it on the finest
     double alpha = 0;        ///< openings narrower than this share of the diagonal are closed; 0: chosen and doubled at need
     double offset = 0.0167;  ///< distance of the wrap from the mesh, as a share of the diagonal
-    std::string genus = "follow";  ///< handles and holes through the object: "follow" or "fill"
+    enum class Genus { follow, fill } genus = Genus::follow;  ///< handles and holes through the object
 
     void describe(OptionList& visit);
 };

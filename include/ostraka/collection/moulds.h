@@ -82,7 +82,7 @@ std::vector<std::string> mould_similarities();
 Eigen::MatrixXd mould_distances(const MouldMatrices& matrices, const std::string& similarity);
 
 struct GroupOptions {
-    std::string method = "linkage";
+    enum class Method { linkage, dbscan, embedding } method = Method::linkage;
     std::string epsilon = "nested";
     int expected_size = 0;  ///< heads of one mould that are expected, for knn; 0: the square root of the number of heads
     int dimensions = 3;     ///< of the embedding

@@ -14,7 +14,7 @@ namespace ostraka {
 
 struct ProportionOptions {
     double false_discoveries = 0.05;
-    std::string correction = "bh";
+    enum class Correction { bh, by } correction = Correction::bh;  ///< Benjamini and Hochberg, and Yekutieli
     int permutations = 4999;
     double range = 0.9;
     double confidence = 0.95;

@@ -160,6 +160,18 @@ std::vector<std::pair<std::string, std::string>> list_options(const Options& opt
     return options_of(options).values();
 }
 
+/// The value of one option as text: of a choice its word.
+template <class Options>
+std::string option_text(const Options& options, const std::string& name) {
+    return options_of(options).find(name)->text();
+}
+
+/// Sets one option from a word. Throws Error (usage) as Option::set.
+template <class Options>
+void set_option(Options& options, const std::string& name, const std::string& word) {
+    options_of(options).find(name)->set(std::vector{word});
+}
+
 /// The same as one text: equal for equal options.
 template <class Options>
 std::string options_text(const Options& options) {

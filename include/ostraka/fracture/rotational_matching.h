@@ -10,13 +10,13 @@
 namespace ostraka {
 
 struct BreakTurnOptions {
-    std::string turns = "auto";     ///< "auto": where they are open; "never"
-    int frames = 200;               ///< places along the rim of each sherd's fracture
-    int samples = 2000;             ///< points on each fracture
-    int candidates = 16;            ///< turns of a pair that are refined
-    int beam = 64;                  ///< assemblies that are followed
-    double hold = 0.5;              ///< weight of the place on the template against the breaks
-    double least_confidence = 0.5;  ///< of a joint; below it is not decided
+    enum class Turns { automatic, never } turns = Turns::automatic;  ///< decided where they are open
+    int frames = 200;                                                ///< places along the rim of each sherd's fracture
+    int samples = 2000;                                              ///< points on each fracture
+    int candidates = 16;                                             ///< turns of a pair that are refined
+    int beam = 64;                                                   ///< assemblies that are followed
+    double hold = 0.5;                                               ///< weight of the place on the template against the breaks
+    double least_confidence = 0.5;                                   ///< of a joint; below it is not decided
 
     void describe(OptionList& visit);
 };

@@ -31,7 +31,7 @@ struct Conflict {
 };
 
 struct MergeOptions {
-    std::string prefer = "none";
+    enum class Side { none, ours, theirs } prefer = Side::none;
     bool merge_faces = false;
     bool renumber = false;
 
@@ -42,7 +42,9 @@ struct MergedAnnotations {
     AnnotationSet set;                ///< with ours in place of each conflict, unless theirs is preferred
     std::vector<Conflict> conflicts;  ///< also where a preference settled them
     std::vector<std::string> notes;   ///< ids given anew, regions merged face by face
-    [[nodiscard]] bool settled(const MergeOptions& options) const { return conflicts.empty() || options.prefer != "none"; }
+    [[nodiscard]] bool settled(const MergeOptions& options) const {
+        return conflicts.empty() || options.prefer != MergeOptions::Side::none;
+    }
 };
 
 /// Three-way merge by id, field by field: what only one side changed is taken, what both changed alike as well; the rest is a

@@ -37,8 +37,11 @@ enum class LandmarkFormat {
     fcsv  ///< 3D Slicer's older table of points
 };
 
+/// Where x and y grow: to the left and to the back, or to the right and to the front.
+enum class AnatomicalSpace { lps, ras };
+
 struct LandmarkFileOptions {
-    std::string mesh_space = "LPS";
+    AnatomicalSpace mesh_space = AnatomicalSpace::lps;
     std::string specimen;
 
     void describe(OptionList& visit);

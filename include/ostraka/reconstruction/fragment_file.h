@@ -9,7 +9,8 @@
 namespace ostraka {
 
 struct FragmentFileOptions {
-    std::string facets = "either";  ///< where facets come from
+    enum class FacetSource { either, annotated, automatic, none };
+    FacetSource facets = FacetSource::either;
     FacetOptions finding;
     CloudOptions cloud;
 

@@ -75,6 +75,8 @@ struct Reconstruction {
     std::map<std::string, double> seconds;  ///< by phase
 };
 
+struct KnownObject;
+
 /// Fragments of one object on its template, which come and go. What depends on the template alone (its simplified mesh, linear
 /// systems with their symbolic factorisation, what poses are searched with) or on it and one fragment (common landmarks, poses
 /// that were searched, search trees) is made once; what depends on the common scale as well (refined poses, matches of
@@ -106,8 +108,7 @@ public:
     Reconstruction run();
 
 private:
-    struct State;
-    std::unique_ptr<State> state_;
+    std::unique_ptr<KnownObject> known_;
 };
 
 /// With a `prior`, the template takes the most probable shape of its class before it is deformed freely, and the fragments are

@@ -13,7 +13,8 @@
 namespace ostraka {
 
 struct SearchOptions {
-    std::string search = "auto";  ///< "auto": where a fragment has fewer than three landmarks; "always"; "never"
+    enum class Search { automatic, always, never };
+    Search search = Search::automatic;  ///< where a fragment has fewer than three landmarks
     PoseSearchOptions poses;
 
     void describe(OptionList& visit);

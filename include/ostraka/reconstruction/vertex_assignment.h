@@ -11,14 +11,16 @@
 namespace ostraka {
 
 struct VertexAssignmentOptions {
-    std::string counterpart = "best";  ///< best: each template vertex its best one; one-to-one: each fragment vertex once at most
-    double boundary = 1;               ///< weight of the cost of vertices on an outline against vertices inside
-    double distance = 1;               ///< weight of the distance
-    double outline = 1;                ///< weight of the positions along the outline
-    double reach = 0;                  ///< farthest counterpart, in the meshes' unit; 0: any
-    double angle = 180;                ///< of the normals of counterparts, degrees
-    int candidates = 12;               ///< one-to-one: counterparts tried for each vertex
-    double unassigned = 1;             ///< one-to-one: cost of a vertex without one, as a share of the weights' sum
+    enum class Counterpart { best, one_to_one };
+    Counterpart counterpart =
+        Counterpart::best;  ///< each template vertex its best one; one to one: each fragment vertex once at most
+    double boundary = 1;    ///< weight of the cost of vertices on an outline against vertices inside
+    double distance = 1;    ///< weight of the distance
+    double outline = 1;     ///< weight of the positions along the outline
+    double reach = 0;       ///< farthest counterpart, in the meshes' unit; 0: any
+    double angle = 180;     ///< of the normals of counterparts, degrees
+    int candidates = 12;    ///< one-to-one: counterparts tried for each vertex
+    double unassigned = 1;  ///< one-to-one: cost of a vertex without one, as a share of the weights' sum
 
     void describe(OptionList& visit);
 };

@@ -26,6 +26,7 @@ public:
     std::vector<Relationship> extract(const std::vector<std::string>& types, int first_id);
 
 private:
+    friend class RelationCandidates;
     struct State;
     std::unique_ptr<State> state_;
 };

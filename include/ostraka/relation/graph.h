@@ -6,15 +6,35 @@
 
 namespace ostraka {
 
+/// What geometry tells of annotations.
+enum class GeometricRelation {
+    containment,
+    equal_selections,
+    adjacency,
+    mirror_symmetry,
+    co_axiality,
+    co_linearity,
+    co_planarity,
+    same_level,
+    parallel_axes,
+    perpendicular_axes,
+    horizontal_support,
+    side_contact,
+    part_similarity,
+    equal_attributes
+};
+
 /// What the toolkit knows of a type of relationship by its name.
 struct RelationType {
     std::string name;
-    std::size_t least, most;  ///< members; most = 0: any number
-    bool geometric;           ///< measured on the mesh; otherwise a constraint of the thesis, stated only
-    bool directed;            ///< of a geometric type: the first annotation is the subject
+    std::size_t least, most;                     ///< members; most = 0: any number
+    std::optional<GeometricRelation> geometric;  ///< told by the mesh; none: a constraint of the thesis, stated only
+    bool directed = false;                       ///< of a geometric type: the first annotation is the subject
+    std::vector<std::string> quantities = {};    ///< that RelationMeter measures
 };
-/// All of them, geometric ones first.
+/// All of them: the geometric ones in the order of GeometricRelation, then the others.
 const std::vector<RelationType>& relation_types();
+const RelationType& relation_type(GeometricRelation kind);
 /// The type of that name, capital letters or not; nullptr if there is none: experts may have types of their own.
 const RelationType* find_relation_type(const std::string& name);
 /// The known name nearest to `name` in spelling.

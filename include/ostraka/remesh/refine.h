@@ -14,7 +14,7 @@ namespace ostraka {
 struct RefineOptions {
     std::uint64_t vertices = 0;  ///< wanted number of vertices, or 0
     int levels = 0;              ///< number of uniform subdivisions, or 0
-    std::string scheme = "midpoint";
+    enum class Scheme { midpoint, loop, longest_edge } scheme = Scheme::midpoint;
 
     void describe(OptionList& visit);
 };
@@ -29,7 +29,7 @@ struct RefineResult {
 };
 
 /// Splits edges until the wanted number of vertices, or after the wanted levels, is reached; exactly one of the two must be
-/// given. Old vertices keep their index, and their place unless the scheme is "loop". Values in property maps of types Index,
+/// given. Old vertices keep their index, and their place unless the scheme is loop. Values in property maps of types Index,
 /// int, bool, double, float and std::uint8_t are carried along: halves of edges and parts of faces take the values of what they
 /// were cut from; new vertices, and edges inside old faces, the map's default. Linear in the size of the result, but for sorting
 /// by length. Deterministic. Throws Error (usage) if the mesh has more vertices than wanted, no edges to split, or the result

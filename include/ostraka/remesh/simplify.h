@@ -11,12 +11,12 @@
 namespace ostraka {
 
 struct SimplifyOptions {
-    std::uint64_t vertices = 0;       ///< wanted number of vertices
-    std::string method = "qem";       ///< what a collapse costs and where its vertex goes
-    std::string outlines = "follow";  ///< what happens to the marked edges
-    double max_normal_change = 60;    ///< degrees a face may turn in one collapse, as long as the number can be reached so
-    double outline_weight = 1;        ///< weight of the distance to marked edges, relative to the distance to faces (qem only)
-    double border_weight = 1;         ///< weight of the distance to border edges (qem only)
+    std::uint64_t vertices = 0;                                      ///< wanted number of vertices
+    enum class Method { qem, lindstrom_turk } method = Method::qem;  ///< what a collapse costs and where its vertex goes
+    enum class Outlines { follow, protect, ignore } outlines = Outlines::follow;  ///< what happens to the marked edges
+    double max_normal_change = 60;  ///< degrees a face may turn in one collapse, as long as the number can be reached so
+    double outline_weight = 1;      ///< weight of the distance to marked edges, relative to the distance to faces (qem only)
+    double border_weight = 1;       ///< weight of the distance to border edges (qem only)
 
     void describe(OptionList& visit);
 };

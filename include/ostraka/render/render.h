@@ -15,12 +15,12 @@ namespace ostraka {
 struct RenderOptions {
     std::string size = "1200x900";
     std::string view = "30,20";
-    std::string views;
+    enum class Views { one, six } views = Views::one;
     std::string up = "auto";
-    std::string projection = "orthographic";
+    enum class Projection { orthographic, perspective } projection = Projection::orthographic;
     double zoom = 1;
-    std::string fit = "all";
-    std::string shading = "smooth";
+    enum class Fit { all, each } fit = Fit::all;  ///< several objects: all at one scale, or each as large as fits
+    enum class Shading { smooth, flat } shading = Shading::smooth;
     double crease = 40;
     int ambient_occlusion = 0;
     int samples = 8;

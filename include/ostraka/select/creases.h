@@ -11,7 +11,7 @@
 namespace ostraka {
 
 struct CreaseOptions {
-    std::string kind = "both";
+    enum class Kind { ridge, hollow, both } kind = Kind::both;
     double scale = 0.01;
     double wide = 3;
     double weak = 3;

@@ -9,11 +9,11 @@
 namespace ostraka {
 
 struct DeformOptions {
-    std::string space = "mesh";      ///< where constraints are solved: the mesh's points, or the cage's
-    std::string details = "edited";  ///< what the surface tends to between constraints
-    double closeness = 0.001;        ///< weight of the edited positions, on every vertex
-    double laplacian = 2;            ///< weight of the Laplacian displacements, on every vertex (mesh space)
-    double handles = 100;            ///< weight of the handles that the edit moves, and of the joints that parts stretch from
+    enum class Space { mesh, cage } space = Space::mesh;            ///< where constraints are solved: the points of which
+    enum class Details { edited, rest } details = Details::edited;  ///< what the surface tends to between constraints
+    double closeness = 0.001;                                       ///< weight of the edited positions, on every vertex
+    double laplacian = 2;  ///< weight of the Laplacian displacements, on every vertex (mesh space)
+    double handles = 100;  ///< weight of the handles that the edit moves, and of the joints that parts stretch from
     SolveOptions solve;
     int rounds = 100;   ///< of the loop that enforces hard constraints
     int passes = 5;     ///< in which constraints on the axes and measures of other parts follow those

@@ -8,7 +8,7 @@ namespace ostraka {
 
 struct ClassifyOptions {
     MemberFitOptions fit;
-    std::string correspondence = "auto";
+    CorrespondenceChoice correspondence = CorrespondenceChoice::automatic;
     bool attributes = false;
     double close = 0.05;
 

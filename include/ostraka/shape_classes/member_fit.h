@@ -49,6 +49,9 @@ struct FitResiduals {
     [[nodiscard]] double off() const { return 0.5 * (unmatched + unexplained); }
 };
 
+/// Whether an object whose triangles are the template's is taken as it is: where it has them, always, or never.
+enum class CorrespondenceChoice { automatic, given, fitted };
+
 struct MemberFit {
     std::vector<Point> points;  ///< of the template's vertices, where the object is
     double scale = 1;           ///< of the template

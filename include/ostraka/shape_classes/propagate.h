@@ -8,7 +8,7 @@ namespace ostraka {
 
 struct PropagateOptions {
     MemberFitOptions fit;
-    std::string correspondence = "auto";
+    CorrespondenceChoice correspondence = CorrespondenceChoice::automatic;
     TransferOptions transfer;
     PropagateOptions() {
         transfer.correspondence.max_distance = 0.05;

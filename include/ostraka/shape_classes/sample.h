@@ -9,7 +9,7 @@ namespace ostraka {
 struct SampleOptions {
     int count = 10;
     std::uint64_t seed = 1;
-    std::string by = "modes";
+    enum class Way { modes, edits } by = Way::modes;
     double spread = 1;
     double edit = 0.2;
     int attempts = 20;

@@ -11,7 +11,7 @@ namespace ostraka {
 struct LearnOptions {
     MemberFitOptions fit;
     ModeOptions modes;
-    std::string correspondence = "auto";
+    CorrespondenceChoice correspondence = CorrespondenceChoice::automatic;
     double reject = 0.05;
     double resolution = 0.02;
 
@@ -58,7 +58,7 @@ struct ShapeClass {
 };
 
 /// Whether the template is laid onto `member` as it is or by a fit.
-MemberFit fit_as_told(const ClassTemplate& known, const WholeObject& member, const std::string& correspondence,
+MemberFit fit_as_told(const ClassTemplate& known, const WholeObject& member, CorrespondenceChoice correspondence,
                       const MemberFitOptions& options);
 
 struct LearntMember {

@@ -41,9 +41,10 @@ struct Linkage {
 };
 
 /// Average linkage (UPGMA, Sokal and Michener 1958) by chains of nearest neighbours (Murtagh 1983): quadratic in the number of
-/// samples. `method` may also be "single" or "complete". Throws as above.
+/// samples. `method`: by the mean, the least or the largest distance between members. Throws as above.
+enum class LinkageMethod { average, single, complete };
 Linkage average_linkage(const Eigen::MatrixXd& distances);
-Linkage linkage(const Eigen::MatrixXd& distances, const std::string& method);
+Linkage linkage(const Eigen::MatrixXd& distances, LinkageMethod method);
 
 /// Labels of the clusters that merges up to `height` make, numbered by their first samples.
 std::vector<int> cut_at(const Linkage& tree, double height);

@@ -43,7 +43,7 @@ std::vector<double> silhouettes_of_distances(const Eigen::MatrixXd& distances, c
 
 struct ClusterCountOptions {
     int most = 10;
-    std::string criterion = "silhouette";
+    enum class Criterion { silhouette, gap } criterion = Criterion::silhouette;
     int references = 50;
     KMeansOptions k_means = {};  ///< its number of clusters is not used
     void describe(OptionList& visit);

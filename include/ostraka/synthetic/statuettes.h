@@ -15,7 +15,7 @@ namespace ostraka {
 /// One statuette. Lengths are millimetres; z points up, the base stands at z = 0, the face looks along +x. "Tube" is the body
 /// between base and shoulders; its radius is 0.33 base diameters.
 struct StatuetteParameters {
-    std::string technique = "wheel";  ///< "wheel" or "hand"
+    enum class Technique { wheel, hand } technique = Technique::wheel;
     double height = 200, base_diameter = 58, arm_length = 82, head_height = 44;
     double ovality = 0;        ///< the tube's radius is r (1 + ovality cos 2(a - direction)): its longest is along `direction`
     double ovality_drift = 0;  ///< degrees by which the direction turns from the base to the shoulders
@@ -26,12 +26,15 @@ struct StatuetteParameters {
     double wall_noise = 0;     ///< root mean square of the thickness's waves, relative to the wall
     double off_centre = 0;     ///< of the cavity, relative to the wall
     double cavity_seen = 1;    ///< share of the cavity's depth that the scanner saw
-    std::string interior = "closed";  ///< where the scanner's sight ends: "closed" by a flat wall, or "open": the mesh ends there
-    double scan_noise = 0;            ///< standard deviation of each vertex along its normal, mm
-    int holes = 0;                    ///< patches of the body that the scan misses
-    double hole_radius = 5;           ///< mm
-    std::string pose = "forward";     ///< of the arms: "forward", "offering" (the hands hold a bowl), "raised", "down"
-    std::string hat = "cone";         ///< "cone", "cap" or "none"
+    enum class Interior {
+        closed,
+        open
+    } interior = Interior::closed;  ///< where the scanner's sight ends: a flat wall, or nothing
+    double scan_noise = 0;          ///< standard deviation of each vertex along its normal, mm
+    int holes = 0;                  ///< patches of the body that the scan misses
+    double hole_radius = 5;         ///< mm
+    enum class Pose { forward, offering, raised, down } pose = Pose::forward;  ///< of the arms; offering: the hands hold a bowl
+    enum class Hat { cone, cap, none } hat = Hat::cone;
     bool beard = false;
     std::uint64_t seed = 1;  ///< of the waves' phases, the noise, the holes and the mesh's lattice
     std::uint64_t vertices = 10000;
@@ -84,7 +87,7 @@ struct PopulationOptions {
     std::uint64_t seed = 1;
     std::uint64_t vertices = 10000;
     double scan_noise = 0.05;
-    std::string interior = "mixed";
+    enum class Interior { mixed, closed, open } interior = Interior::mixed;
     double cavity_seen = 0.35;
     int holes = 0;
     double size_spread = 0.07;

@@ -17,7 +17,7 @@ public:
     /// `annotated`: annotations of the mesh, if it has any.
     explicit BoundMesh(MeshFile file, std::optional<AnnotationSet> annotated = {});
 
-    /// Outlines of regions, poly-lines and points are marked as what means something, and with `options.outlines` "protect" the
+    /// Outlines of regions, poly-lines and points are marked as what means something, and with `options.outlines` protect the
     /// pins of measures too. Throws as ostraka::simplify.
     SimplifyResult simplify(const SimplifyOptions& options);
     /// New vertices get the mean of the colours and texture coordinates of the two they lie between, and the label of one. Throws

@@ -13,7 +13,7 @@ namespace ostraka {
 struct CorrespondenceOptions {
     double max_distance = 0.02;  ///< share of the target's box diagonal
     double max_angle = 90;       ///< degrees between the normals of vertex and target face
-    std::string vertex = "projection";
+    enum class Corner { projection, source } vertex = Corner::projection;  ///< of the face: nearest to which of the two
     void describe(OptionList& visit);
 };
 

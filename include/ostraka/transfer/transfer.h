@@ -3,6 +3,7 @@
 
 #include "ostraka/annotation/annotation.h"
 #include "ostraka/core/options.h"
+#include "ostraka/geom/shortest_path.h"
 #include "ostraka/remesh/insert_curves.h"
 #include "ostraka/transfer/correspondence.h"
 
@@ -14,22 +15,25 @@ namespace ostraka {
 
 struct TransferOptions {
     CorrespondenceOptions correspondence;
-    std::string metric = "euclidean";
-    std::string spikes = "prune";
-    std::string rounding = "balanced";
-    std::string cover = "overlapping";
+    PathMetric metric = PathMetric::euclidean;
+    enum class Spikes { prune, avoid, keep } spikes = Spikes::prune;
+    enum class Rounding { path, area, balanced } rounding = Rounding::balanced;
+    enum class Cover { overlapping, enclosing, enclosed } cover = Cover::overlapping;
     bool refine = false;
     bool overlap = true;
     bool force = false;
     void describe(OptionList& visit);
 };
 
+enum class TransferOutcome { kept, became_line, became_point, lost };
+std::string to_string(TransferOutcome outcome);
+
 /// How faithful the transfer of one annotation is.
 struct TransferScore {
     int id = 0;
     std::string tag;
     AnnotationType source_type = AnnotationType::region, target_type = AnnotationType::region;
-    std::string outcome;                          ///< "kept", "became a line", "became a point", "lost"
+    TransferOutcome outcome = TransferOutcome::kept;
     std::string note;                             ///< what else is to be known, in words
     double source_area = 0, target_area = 0;      ///< of regions
     double source_length = 0, target_length = 0;  ///< perimeter of regions, length of lines

@@ -1,0 +1,49 @@
+// A part of a surface whose borders are simple loops.
+#pragma once
+
+#include "ostraka/core/mesh.h"
+
+#include <vector>
+
+namespace ostraka {
+
+/// Faces of a mesh whose borders are simple loops.
+class Patch {
+public:
+    /// Of the faces marked, pieces with at least the share `least` of the mesh's area. The mesh outlives it.
+    Patch(const Mesh& mesh, std::vector<bool> keep, double least);
+
+    [[nodiscard]] const Mesh& mesh() const { return mesh_; }
+    [[nodiscard]] bool has(Index face) const { return keep_[face]; }
+    [[nodiscard]] std::size_t size() const;  ///< faces
+    /// Border loops as vertices, with the patch to the left.
+    [[nodiscard]] const std::vector<std::vector<Vertex>>& loops() const { return loops_; }
+    /// A face of each piece that has no border.
+    [[nodiscard]] const std::vector<Face>& closed() const { return closed_; }
+    /// Takes away all faces at these vertices, and so on for as many rings.
+    void erode(std::vector<Vertex> vertices, int rings);
+
+private:
+    /// Connected ones of faces that are kept.
+    struct Pieces {
+        std::vector<int> of_face;  ///< -1: none
+        std::vector<double> area;
+    };
+    [[nodiscard]] bool keeps(Halfedge h) const;
+    [[nodiscard]] bool is_border(Halfedge h) const { return keeps(h) && !keeps(mesh_.opposite(h)); }
+    /// `stack`: vertices whose faces may be in several fans.
+    void regularise(std::vector<Vertex> stack);
+    /// Vertices at which the patch has several fans lose their faces, which may make others such.
+    void open_fans(std::vector<Vertex> stack);
+    Pieces drop_small_pieces();
+    void find_closed(const Pieces& pieces);
+    void find_loops();
+
+    const Mesh& mesh_;
+    std::vector<bool> keep_;
+    double least_;
+    std::vector<std::vector<Vertex>> loops_;
+    std::vector<Face> closed_;
+};
+
+}  // namespace ostraka

@@ -1,0 +1,162 @@
+#include "reconstruction_verdict.h"
+
+#include "ostraka/core/text.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ostraka {
+
+std::string to_string(ObjectionKind kind) {
+    static constexpr const char* names[]{"placement", "size", "landmarks", "surface", "overlap", "constraint"};
+    return names[static_cast<std::size_t>(kind)];
+}
+
+std::string to_string(Compatibility compatibility) {
+    static constexpr const char* names[]{"compatible", "incompatible", "undecided"};
+    return names[static_cast<std::size_t>(compatibility)];
+}
+
+namespace {
+
+/// Sum of squares of the template's landmarks about their mean: what a fragment weighs in the common scale.
+double weight_of(const std::vector<LandmarkPair>& pairs, const FragmentPlacement& placement, bool on_fragment) {
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    double count = 0, sum = 0;
+    const auto place = [&](const LandmarkPair& pair) { return on_fragment ? pair.on_fragment : pair.on_template; };
+    const auto used = [&](std::size_t i) { return i >= placement.landmarks.size() || placement.landmarks[i].used; };
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+        if (used(i)) middle += place(pairs[i]), ++count;
+    if (!(count > 0)) return 0;
+    middle /= count;
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+        if (used(i)) sum += (place(pairs[i]) - middle).squaredNorm();
+    return sum;
+}
+
+/// Weighs what speaks against the fragments of one reconstruction.
+class Judge {
+public:
+    Judge(Reconstruction& result, const std::vector<std::vector<LandmarkPair>>& pairs, const std::vector<int>& placed,
+          const ReconstructOptions& options)
+        : result_(result), pairs_(pairs), placed_(placed), options_(options) {}
+
+    void judge() {
+        if (!result_.placement.any()) {
+            result_.undecided = "no fragment could be placed";
+            for (std::size_t k = 0; k < pairs_.size(); ++k)
+                objection(ObjectionKind::placement, static_cast<int>(k), -1, 0, result_.placement.fragments[k].problem);
+            return;
+        }
+        std::size_t placed = 0;
+        for (std::size_t k = 0; k < pairs_.size(); ++k) {
+            const FragmentPlacement& one = result_.placement.fragments[k];
+            if (!one.problem.empty()) {
+                objection(ObjectionKind::placement, static_cast<int>(k), -1, 0, "not placed: " + one.problem);
+                continue;
+            }
+            ++placed;
+            judge_fragment(k);
+        }
+
+        for (std::size_t i = 0; i < placed_.size(); ++i) judge_surface(i);
+        bool tested = false;
+        for (const ConstraintReport& constraint : result_.constraints) {
+            if (!constraint.used) continue;
+            tested = true;
+            judge_constraint(constraint);
+        }
+        const bool against = std::any_of(result_.objections.begin(), result_.objections.end(),
+                                         [](const Objection& one) { return one.kind != ObjectionKind::placement; });
+        if (against) {
+            result_.verdict = Compatibility::incompatible;
+        } else if (placed < pairs_.size()) {
+            result_.undecided = "not all fragments could be placed";
+        } else if (result_.turns && std::any_of(result_.turns->notes.begin(), result_.turns->notes.end(),
+                                                [](const std::string& note) { return !note.empty(); })) {
+            result_.undecided = "the turns of some fragments about the axis are not decided";
+        } else if (placed == 1 && !tested) {
+            result_.undecided = "one fragment and no constraint: nothing can contradict it";
+        } else {
+            result_.verdict = Compatibility::compatible;
+        }
+    }
+
+private:
+    void objection(ObjectionKind kind, int fragment, int constraint, double strain, const std::string& text) {
+        result_.strain = std::max(result_.strain, strain);
+        if (kind == ObjectionKind::placement || strain > 1)
+            result_.objections.push_back({kind, fragment, constraint, strain, text});
+    }
+
+    /// A fragment's size against that of the others, and its landmarks against the template's.
+    void judge_fragment(std::size_t k) {
+        const FragmentPlacement& one = result_.placement.fragments[k];
+        const int number = static_cast<int>(k);
+        double sum = 0, weights = 0;
+        for (std::size_t j = 0; j < pairs_.size(); ++j) {
+            const FragmentPlacement& other = result_.placement.fragments[j];
+            if (j == k || !other.problem.empty() || !(other.own_scale > 0)) continue;
+            const double weight = weight_of(pairs_[j], other, false);
+            sum += weight * other.own_scale;
+            weights += weight;
+        }
+        if (weights > 0 && one.own_scale > 0) {
+            const double others = sum / weights,
+                         off = 100 * (std::max(one.own_scale, others) / std::min(one.own_scale, others) - 1);
+            objection(ObjectionKind::size, number, -1, off / std::max(options_.scale_tolerance, 1e-9),
+                      "alone it would have the template " + digits(one.own_scale, 4) + " times as large, and the others " +
+                          digits(others, 4) + " times: its size is off by " + digits(off, 3) + " %");
+        }
+        const double count = static_cast<double>(
+            std::count_if(one.landmarks.begin(), one.landmarks.end(), [](const LandmarkResidual& mark) { return mark.used; }));
+        const double spread = count > 0 ? std::sqrt(weight_of(pairs_[k], one, true) / count) : 0;
+        if (spread > 0)
+            objection(ObjectionKind::landmarks, number, -1, one.residual / (std::max(options_.residual, 1e-9) * spread),
+                      "its landmarks are " + digits(one.residual, 3) + " off those of the template (root mean square), " +
+                          digits(100 * one.residual / spread, 3) + " % of their spread");
+    }
+
+    /// Whether a fragment lies on the template, and where no other one does.
+    void judge_surface(std::size_t i) {
+        const double lying = 100 * result_.object.lying[i], shared = 100 * result_.object.shared[i];
+        const int k = placed_[i];
+        objection(ObjectionKind::surface, k, -1, (100 - lying) / std::max(100 - options_.lying, 1e-9),
+                  digits(lying, 3) + " % of its outer surface lies on the fitted template, at least " +
+                      digits(options_.lying, 3) +
+                      " %: another shape, a wrong place, or faces that are inside out or of its break");
+        objection(ObjectionKind::overlap, k, -1, shared / std::max(options_.overlap, 1e-9),
+                  digits(shared, 3) + " % of its outer surface lies where fragments before it are seen, at most " +
+                      digits(options_.overlap, 3) + " %: two fragments of one object have none in common");
+    }
+
+    void judge_constraint(const ConstraintReport& constraint) {
+        std::string words;
+        double strain = 0;
+        for (const Deviation& d : constraint.deviations) {
+            if (!d.value || !d.tolerance) continue;
+            const double allowed = d.unit == "%" ? std::max(options_.slack, *d.tolerance) : *d.tolerance;
+            strain = std::max(strain, *d.value / std::max(allowed, 1e-12));
+            if (*d.value > allowed)
+                words += (words.empty() ? "" : "; ") + d.quantity + " " + digits(*d.value, 4) + ", at most " +
+                         digits(allowed, 4) + (d.unit.empty() ? "" : " " + d.unit);
+        }
+        strain = constraint.verdict == Verdict::fails ? strain : std::min(strain, 1.0);
+        objection(ObjectionKind::constraint, -1, constraint.id, strain,
+                  constraint.type + " does not hold" + (words.empty() ? "" : ": " + words));
+    }
+
+    Reconstruction& result_;
+    const std::vector<std::vector<LandmarkPair>>& pairs_;
+    const std::vector<int>& placed_;
+    const ReconstructOptions& options_;
+};
+
+}  // namespace
+
+void judge_reconstruction(Reconstruction& result, const std::vector<std::vector<LandmarkPair>>& pairs,
+                          const std::vector<int>& placed, const ReconstructOptions& options) {
+    Judge(result, pairs, placed, options).judge();
+}
+
+}  // namespace ostraka
