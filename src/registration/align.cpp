@@ -5,42 +5,26 @@
 #include "ostraka/core/error.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/plane_motion.h"
-
-#include <CGAL/Orthogonal_k_neighbor_search.h>
-#include <CGAL/Search_traits_3.h>
-#include <CGAL/Search_traits_adapter.h>
-#include <CGAL/property_map.h>
+#include "ostraka/geom/point_tree.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace ostraka {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-namespace {
-using PlaceOf = CGAL::Pointer_property_map<Point>::const_type;
-using Traits = CGAL::Search_traits_adapter<std::size_t, PlaceOf, CGAL::Search_traits_3<Kernel>>;
-using Search = CGAL::Orthogonal_k_neighbor_search<Traits>;
-}  // namespace
-
 struct AlignSurface::State {
-    std::vector<Point> places;  ///< of the vertices
-    std::vector<Vector3d> points, normals;
+    std::vector<Vector3d> points, normals;  ///< of the vertices
     std::vector<bool> border;
     std::vector<Vector3d> sample_points, sample_normals;
     double size = 0;
     Vector3d centre = Vector3d::Zero();
     Matrix3d axes = Matrix3d::Identity();
-    std::unique_ptr<Search::Tree> tree;
-    std::unique_ptr<Search::Distance> distance;
+    PointTree tree;
 
-    [[nodiscard]] std::size_t nearest(const Vector3d& p) const {
-        const Search search(*tree, point_of(p), 1, 0, true, *distance);
-        return search.begin()->first;
-    }
+    [[nodiscard]] std::size_t nearest(const Vector3d& p) const { return tree.nearest(point_of(p)).index; }
 };
 
 AlignSurface::AlignSurface(const Mesh& mesh, int samples) : state_(std::make_unique<State>()) {
@@ -50,11 +34,12 @@ AlignSurface::AlignSurface(const Mesh& mesh, int samples) : state_(std::make_uni
     if (samples < 1)
         fail_usage("a surface is to be laid onto another by " + std::to_string(samples) + " points", "take at least one");
     s.size = std::sqrt(area);
+    std::vector<Point> places;
     for (const Vertex v : mesh.vertices()) {
         if (mesh.is_isolated(v)) continue;
         const Vector3d normal = eigen(vertex_normal(mesh, v));
         if (normal.isZero()) continue;
-        s.places.push_back(mesh.point(v));
+        places.push_back(mesh.point(v));
         s.points.push_back(eigen(mesh.point(v)));
         s.normals.push_back(normal);
         s.border.push_back(mesh.is_border(v));
@@ -76,12 +61,7 @@ AlignSurface::AlignSurface(const Mesh& mesh, int samples) : state_(std::make_uni
     for (const Vector3d& p : s.sample_points) second += (p - s.centre) * (p - s.centre).transpose();
     s.axes = SymmetricEigen3(second).eigenvectors();
     if (s.axes.determinant() < 0) s.axes.col(0) *= -1;
-    std::vector<std::size_t> all(s.places.size());
-    std::iota(all.begin(), all.end(), std::size_t{0});
-    const Traits traits{PlaceOf(s.places.data())};
-    s.tree = std::make_unique<Search::Tree>(all.begin(), all.end(), Search::Tree::Splitter(), traits);
-    s.tree->build();
-    s.distance = std::make_unique<Search::Distance>(PlaceOf(s.places.data()));
+    s.tree = PointTree(places);
 }
 
 AlignSurface::~AlignSurface() = default;
