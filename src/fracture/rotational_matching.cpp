@@ -8,6 +8,7 @@
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
 #include "ostraka/geom/eigen.h"
+#include "ostraka/stats/summary.h"
 
 #include <algorithm>
 #include <cmath>
@@ -69,8 +70,7 @@ private:
             }
         }
         if (walls.empty()) return;
-        std::nth_element(walls.begin(), walls.begin() + static_cast<std::ptrdiff_t>(walls.size() / 2), walls.end());
-        wall_ = result_.wall = walls[walls.size() / 2];
+        wall_ = result_.wall = upper_median(std::move(walls));
     }
 
     void meet_all() {

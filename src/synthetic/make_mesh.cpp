@@ -2,10 +2,10 @@
 
 #include "evening.h"
 #include "lattice.h"
-#include "random.h"
 
 #include "ostraka/core/disjoint_sets.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/stats/random.h"
 
 #include <algorithm>
 #include <map>
@@ -122,7 +122,7 @@ MadeMesh make_mesh(const MadeObject& object, const MakeOptions& options) {
         const double edge = std::sqrt(area(even) / static_cast<double>(even.points.size()) * 2 / std::sqrt(3.0));
         parallel_for(even.points.size(), [&](std::size_t v) {
             const Vector3d normal = object.sample(even.points[v]).gradient.normalized();
-            even.points[v] += options.noise * edge * (2 * shapes::random_share(options.seed, 1000 + v) - 1) * normal;
+            even.points[v] += options.noise * edge * (2 * random_share(options.seed, 1000 + v) - 1) * normal;
         });
     }
     TriangleSoup soup;
