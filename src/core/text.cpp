@@ -47,19 +47,6 @@ std::string digits(double value, int significant) {
     return buffer.data();
 }
 
-std::string with_markup_escaped(std::string_view json) {
-    std::string text;
-    text.reserve(json.size());
-    // Outside of strings JSON has none of these characters.
-    for (const char c : json) {
-        if (c == '<') text += "\\u003C";
-        else if (c == '>') text += "\\u003E";
-        else if (c == '&') text += "\\u0026";
-        else text += c;
-    }
-    return text;
-}
-
 std::string_view trimmed(std::string_view text) {
     const std::size_t begin = text.find_first_not_of(" \t\r\n");
     if (begin == std::string_view::npos) return {};

@@ -1,5 +1,7 @@
 #include "text.h"
 
+#include "ostraka/core/markup.h"
+
 #include <cmath>
 
 namespace ostraka::exchange {

@@ -1,6 +1,7 @@
 #include "ostraka/io/glb.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/markup.h"
 #include "ostraka/core/provenance.h"
 #include "ostraka/core/text.h"
 

@@ -22,9 +22,6 @@ bool is_control(char32_t code);
 /// The text with `instead` for each control character.
 std::string without_controls(std::string_view text, std::string_view instead);
 
-/// JSON with escapes for < > &: it may stand inside an HTML page without ending its script.
-std::string with_markup_escaped(std::string_view json);
-
 /// The shortest digits that read back to the same double.
 std::string digits(double value);
 /// At most so many significant digits, for people.
