@@ -115,7 +115,7 @@ private:
         for (std::size_t i = 0; i < from.sample_points.size(); ++i) {
             const Vector3d p = there(from.sample_points[i]), n = there.turn * from.sample_normals[i];
             const std::size_t v = to.nearest(p);
-            if (to.border[v] || n.dot(to.normals[v]) < cosine_) continue;
+            if (v == no_index || to.border[v] || n.dot(to.normals[v]) < cosine_) continue;  // none: the pose is not finite
             // Lengths and planes are compared where the second surface is.
             if (forward) {
                 pairs_.list.push_back({p, to.points[v], to.normals[v], (p - to.points[v]).squaredNorm()});
