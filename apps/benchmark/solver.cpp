@@ -5,6 +5,7 @@
 #include "ostraka/coords/coordinates.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/solver/solve.h"
+#include "ostraka/stats/random.h"
 #include "ostraka/synthetic/make_mesh.h"
 
 #include <malloc.h>
@@ -12,7 +13,6 @@
 #include <chrono>
 #include <fstream>
 #include <numeric>
-#include <random>
 #include <set>
 
 namespace ostraka::bench {
@@ -197,11 +197,11 @@ void same_level(benchmark::State& state, int window) {
 
 /// Smooth weights of a cage: a made-up, well-conditioned stand-in, since the time does not depend on their values.
 CageWeights some_weights(const Points& rest, Points& cage) {
-    std::mt19937 random(3);
+    Random random(3);
     const Eigen::Vector3d low = rest.rowwise().minCoeff(), size = rest.rowwise().maxCoeff() - low;
     cage.resize(3, cage_size);
     for (Eigen::Index j = 0; j < cage_size; ++j)
-        for (int k = 0; k < 3; ++k) cage(k, j) = low[k] + size[k] * (1.4 * static_cast<double>(random()) / 4294967296.0 - 0.2);
+        for (int k = 0; k < 3; ++k) cage(k, j) = low[k] + size[k] * random.uniform(-0.2, 1.2);
     CageWeights weights(rest.cols(), cage_size);
     for (Eigen::Index i = 0; i < rest.cols(); ++i) {
         weights.row(i) =

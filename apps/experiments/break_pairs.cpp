@@ -7,10 +7,8 @@
 #include "ostraka/core/json.h"
 #include "ostraka/fracture/break_pair.h"
 #include "ostraka/geom/eigen.h"
+#include "ostraka/geom/point_tree.h"
 #include "ostraka/reconstruction/fragment_file.h"
-
-#include <CGAL/Orthogonal_k_neighbor_search.h>
-#include <CGAL/Search_traits_3.h>
 
 #include <cmath>
 #include <cstdlib>
@@ -24,8 +22,6 @@ namespace ostraka::experiments {
 using Eigen::Vector3d;
 
 namespace {
-
-using Search = CGAL::Orthogonal_k_neighbor_search<CGAL::Search_traits_3<Kernel>>;
 
 /// One point, the mean, for each cell of a grid that begins half a cell below the lowest corner.
 std::vector<Point> thinned(const std::vector<Point>& points, double cell) {
@@ -46,9 +42,9 @@ std::vector<Point> thinned(const std::vector<Point>& points, double cell) {
 }
 
 std::vector<double> distances(const std::vector<Point>& from, const std::vector<Point>& to) {
-    Search::Tree tree(to.begin(), to.end());
+    const PointTree tree(to);
     std::vector<double> result;
-    for (const Point& p : from) result.push_back(std::sqrt(Search(tree, p, 1).begin()->second));
+    for (const Point& p : from) result.push_back(std::sqrt(tree.nearest(p).squared));
     return result;
 }
 

@@ -11,6 +11,7 @@
 #include "ostraka/remesh/simplify.h"
 #include "ostraka/shape_classes/classify.h"
 #include "ostraka/stats/scores.h"
+#include "ostraka/stats/summary.h"
 
 #include <algorithm>
 #include <array>
@@ -190,8 +191,7 @@ public:
                     csv << std::flush;
                 }
             }
-        std::sort(seconds.begin(), seconds.end());
-        std::cout << seconds.size() << " fits, " << format("%.2f", seconds[seconds.size() / 2]) << " s each (median)\n";
+        std::cout << seconds.size() << " fits, " << format("%.2f", upper_median(seconds)) << " s each (median)\n";
     }
 
     /// Every object asked of classes that do not know it; with `shared` the classes moderate each other's deviations.

@@ -13,6 +13,7 @@
 #include "ostraka/report/table.h"
 #include "ostraka/stats/random.h"
 #include "ostraka/stats/scores.h"
+#include "ostraka/stats/summary.h"
 #include "ostraka/synthetic/head_casts.h"
 
 #include <algorithm>
@@ -83,8 +84,7 @@ Compared compare(const Heads& heads, const std::function<bool(std::size_t)>& cho
         },
         1);
     CompareOptions options;
-    std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2), sizes.end());
-    options.features.size = sizes[sizes.size() / 2];
+    options.features.size = upper_median(sizes);
 
     Compared result;
     std::vector<std::optional<PreparedHead>> ready(list.size());

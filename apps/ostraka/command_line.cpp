@@ -1,6 +1,7 @@
 // The only file that knows CLI11.
 #include "command_line.h"
 
+#include "ostraka/core/nearest_name.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
 #include "ostraka/operations/pages.h"

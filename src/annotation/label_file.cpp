@@ -3,6 +3,7 @@
 #include "region_order.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/text.h"
 
 #include <algorithm>
 #include <charconv>
@@ -11,12 +12,6 @@
 namespace ostraka {
 
 namespace {
-
-std::string_view trimmed(std::string_view text) {
-    const auto first = text.find_first_not_of(" \t\r");
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
 
 std::int32_t parse_label(std::string_view text, const std::string& where) {
     std::int32_t label = 0;

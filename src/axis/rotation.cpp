@@ -4,6 +4,7 @@
 #include "ostraka/core/angles.h"
 #include "ostraka/core/dense.h"
 #include "ostraka/core/error.h"
+#include "ostraka/stats/summary.h"
 
 #include <random>
 
@@ -118,11 +119,9 @@ double score(const std::vector<Sample>& samples, std::size_t step, const Line& a
 /// Iteratively reweighted least squares with Cauchy's weights.
 Line reweighted(const std::vector<Sample>& samples, Line axis, int rounds) {
     for (int round = 0; round < rounds; ++round) {
-        std::vector<double> sines(samples.size()), sorted;
+        std::vector<double> sines(samples.size());
         for (std::size_t i = 0; i < samples.size(); ++i) sines[i] = std::abs(sine(samples[i], axis));
-        sorted = sines;
-        std::nth_element(sorted.begin(), sorted.begin() + static_cast<long>(sorted.size() / 2), sorted.end());
-        const double sigma = std::max(1.4826 * sorted[sorted.size() / 2], 0.01);
+        const double sigma = std::max(1.4826 * upper_median(sines), 0.01);
         Complex complex;
         for (std::size_t i = 0; i < samples.size(); ++i)
             complex.add(samples[i], samples[i].weight / (1 + std::pow(sines[i] / sigma, 2)));
@@ -206,8 +205,7 @@ private:
                 // Start at the median: a handle must not pull the circle away.
                 std::vector<double> radii;
                 for (const std::size_t i : bin.members) radii.push_back(radius[i]);
-                std::nth_element(radii.begin(), radii.begin() + static_cast<long>(radii.size() / 2), radii.end());
-                bin.radius = radii[radii.size() / 2];
+                bin.radius = upper_median(std::move(radii));
             } else {
                 bin.weight = bin.height = bin.radius = bin.hh = bin.hr = 0;
                 for (const std::size_t i : bin.members) {
@@ -228,8 +226,7 @@ private:
             }
         }
         if (errors.empty()) return;
-        std::nth_element(errors.begin(), errors.begin() + static_cast<long>(errors.size() / 2), errors.end());
-        sigma = std::max(1.4826 * errors[errors.size() / 2], 1e-6);
+        sigma = std::max(1.4826 * upper_median(std::move(errors)), 1e-6);
         for (std::size_t i = 0; i < error.size(); ++i) {
             const double t = error[i] / (4.685 * sigma);  // Tukey's biweight
             robust[i] = std::abs(t) < 1 ? std::pow(1 - t * t, 2) : 0;
@@ -319,8 +316,7 @@ double sphere_error(const std::vector<Sample>& samples, const Profile& profile) 
     if (!x.allFinite() || !(square > 0)) return std::numeric_limits<double>::infinity();
     std::vector<double> errors;
     each([&](const Sample& s) { errors.push_back(std::abs((s.p - x.head<3>()).norm() - std::sqrt(square))); });
-    std::nth_element(errors.begin(), errors.begin() + static_cast<long>(errors.size() / 2), errors.end());
-    return 1.4826 * errors[errors.size() / 2];
+    return 1.4826 * upper_median(std::move(errors));
 }
 
 }  // namespace

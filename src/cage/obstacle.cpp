@@ -1,10 +1,9 @@
+#include "ostraka/core/disjoint_sets.h"
 #include "shrink.h"
 
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
 #include <CGAL/AABB_triangle_primitive.h>
-
-#include <numeric>
 
 namespace ostraka::cage {
 
@@ -20,22 +19,17 @@ struct Obstacle::Tree {
 
 Obstacle::Obstacle(const TriangleSoup& soup) : tree_(new Tree) {
     const auto at = [&](Index v) { return Point(soup.points[v][0], soup.points[v][1], soup.points[v][2]); };
-    std::vector<Index> parent(soup.points.size());
-    std::iota(parent.begin(), parent.end(), 0);
-    const auto root = [&](Index v) {
-        while (parent[v] != v) v = parent[v] = parent[parent[v]];
-        return v;
-    };
+    DisjointSets sets(soup.points.size());
     std::vector<bool> used(soup.points.size(), false);
     for (const auto& [a, b, c] : soup.triangles) {
-        parent[root(b)] = root(a);
-        parent[root(c)] = root(a);
+        sets.unite_into(a, b);
+        sets.unite_into(a, c);
         used[a] = used[b] = used[c] = true;
         // One without area is a part of its neighbours' edges, or a piece whose point stands for it.
         if (!CGAL::collinear(at(a), at(b), at(c))) tree_->triangles.emplace_back(at(a), at(b), at(c));
     }
-    for (Index v = 0; v < parent.size(); ++v)
-        if (used[v] && root(v) == v) pieces_.push_back(at(v));
+    for (Index v = 0; v < sets.size(); ++v)
+        if (used[v] && sets.find(v) == v) pieces_.push_back(at(v));
     tree_->search.insert(tree_->triangles.begin(), tree_->triangles.end());
     tree_->search.build();
 }

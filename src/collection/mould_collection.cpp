@@ -5,6 +5,7 @@
 #include "ostraka/core/text.h"
 #include "ostraka/geom/submesh.h"
 #include "ostraka/io/mesh_file.h"
+#include "ostraka/stats/summary.h"
 
 #include <algorithm>
 #include <cmath>
@@ -68,10 +69,9 @@ FeatureSet from_json(const JsonValue& value) {
 }
 
 /// The median of the sizes, to the nearest power of 1.1.
-double common_size(std::vector<double> sizes) {
+double common_size(const std::vector<double>& sizes) {
     if (sizes.empty()) return 0;
-    std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2), sizes.end());
-    return std::pow(1.1, std::round(std::log(sizes[sizes.size() / 2]) / std::log(1.1)));
+    return std::pow(1.1, std::round(std::log(upper_median(sizes)) / std::log(1.1)));
 }
 
 /// A head of another order of size than the others is most likely in another unit.

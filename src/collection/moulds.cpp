@@ -3,6 +3,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/stats/summary.h"
 
 #include <algorithm>
 #include <set>
@@ -142,8 +143,7 @@ Eigen::MatrixXd of_lengths(const Eigen::MatrixXd& lengths) {
         for (Eigen::Index j = 0; j < i; ++j) list.push_back(lengths(i, j));
     Eigen::MatrixXd d = Eigen::MatrixXd::Zero(lengths.rows(), lengths.cols());
     if (list.empty()) return d;
-    std::nth_element(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(list.size() / 2), list.end());
-    const double median = list[list.size() / 2];
+    const double median = upper_median(std::move(list));
     for (Eigen::Index i = 0; i < d.rows(); ++i)
         for (Eigen::Index j = 0; j < d.cols(); ++j)
             if (i != j && lengths(i, j) > 0) d(i, j) = lengths(i, j) / (lengths(i, j) + median);

@@ -1,5 +1,6 @@
 #include "ostraka/collection/proportions.h"
 
+#include "ostraka/core/disjoint_sets.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
@@ -9,7 +10,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 
 namespace ostraka {
 
@@ -62,13 +62,10 @@ std::vector<double> corrected(const std::vector<double>& p, ProportionOptions::C
 
 /// Numbers measures that are joined by pairs with the same number.
 std::vector<int> components(std::size_t count, const std::vector<Pair>& joined) {
-    std::vector<int> group(count);
-    std::iota(group.begin(), group.end(), 0);
-    for (const Pair& pair : joined) {
-        const int from = group[static_cast<std::size_t>(pair.b)], to = group[static_cast<std::size_t>(pair.a)];
-        for (int& g : group)
-            if (g == from) g = to;
-    }
+    DisjointSets sets(count);
+    for (const Pair& pair : joined) sets.unite_into(static_cast<std::size_t>(pair.a), static_cast<std::size_t>(pair.b));
+    std::vector<int> group;
+    for (std::size_t i = 0; i < count; ++i) group.push_back(static_cast<int>(sets.find(i)));
     return group;
 }
 

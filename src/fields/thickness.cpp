@@ -5,6 +5,7 @@
 #include "ostraka/core/parallel.h"
 #include "ostraka/geom/neighbourhood.h"
 #include "ostraka/geom/surface_search.h"
+#include "ostraka/stats/summary.h"
 
 #include <algorithm>
 #include <cmath>
@@ -56,10 +57,7 @@ std::vector<Vector> smooth_normals(const Mesh& mesh, double radius) {
 
 /// Weighted mean of the lengths within one standard deviation of their median (Shapira, Shamir and Cohen-Or 2008, section 3).
 double robust_mean(const std::vector<double>& lengths, const std::vector<double>& weights) {
-    std::vector<double> sorted = lengths;
-    const std::size_t middle = sorted.size() / 2;
-    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(middle), sorted.end());
-    const double median = sorted[middle];
+    const double median = upper_median(lengths);
     double mean = 0, square = 0;
     for (const double x : lengths) mean += x / static_cast<double>(lengths.size());
     for (const double x : lengths) square += (x - mean) * (x - mean) / static_cast<double>(lengths.size());

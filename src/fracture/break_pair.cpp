@@ -4,6 +4,7 @@
 #include "break_align.h"
 #include "break_side.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
 
 #include <algorithm>
 #include <cmath>

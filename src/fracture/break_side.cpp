@@ -2,6 +2,7 @@
 
 #include "facet_evidence.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
 #include "ostraka/geom/eigen.h"
 
 #include <cmath>

@@ -3,6 +3,7 @@
 #include "ostraka/core/angles.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/geom/surface_search.h"
+#include "ostraka/stats/summary.h"
 
 #include <algorithm>
 #include <cmath>
@@ -95,9 +96,8 @@ Walls walls_under(const Mesh& mesh, const std::vector<Vector>& normals, std::siz
                 }
             }
             if (2 * ways.size() < count) return;
-            std::nth_element(ways.begin(), ways.begin() + static_cast<std::ptrdiff_t>(ways.size() / 2), ways.end());
-            walls.depth[f] = ways[ways.size() / 2];
             walls.opposite[f] = opposite / static_cast<double>(ways.size());
+            walls.depth[f] = upper_median(std::move(ways));
         },
         64);
     return walls;

@@ -1,5 +1,6 @@
 // Parts of a surface between sharp convex edges.
 #include "facet_evidence.h"
+#include "ostraka/core/disjoint_sets.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,19 +12,6 @@
 namespace ostraka {
 
 namespace {
-
-class Sets {
-public:
-    explicit Sets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), std::size_t{0}); }
-    std::size_t find(std::size_t i) {
-        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-        return i;
-    }
-    void join(std::size_t from, std::size_t into) { parent_[from] = into; }
-
-private:
-    std::vector<std::size_t> parent_;
-};
 
 struct Boundary {
     double length = 0, turn = 0;  ///< turn: integral along it
@@ -45,7 +33,7 @@ std::vector<std::size_t> convex_parts(const Mesh& mesh, const std::vector<double
     };
     // Patches: small, so that a gap in an edge joins little.
     constexpr double patch = 0.002;
-    Sets sets(n);
+    DisjointSets sets(n);
     std::vector<double> size = areas;
     for (const std::size_t e : order) {
         const auto [f, g] = sides(e);
@@ -53,7 +41,7 @@ std::vector<std::size_t> convex_parts(const Mesh& mesh, const std::vector<double
         std::size_t a = sets.find(f), b = sets.find(g);
         if (a == b || size[a] + size[b] > patch * total) continue;
         if (b < a) std::swap(a, b);
-        sets.join(b, a);
+        sets.unite_into(a, b);
         size[a] += size[b];
     }
     std::vector<std::map<std::size_t, Boundary>> around(n);
@@ -94,7 +82,7 @@ std::vector<std::size_t> convex_parts(const Mesh& mesh, const std::vector<double
             continue;
         std::size_t keep = pair.a, gone = pair.b;
         if (around[keep].size() < around[gone].size()) std::swap(keep, gone);
-        sets.join(gone, keep);
+        sets.unite_into(keep, gone);
         size[keep] += size[gone];
         around[keep].erase(gone);
         around[gone].erase(keep);

@@ -4,14 +4,15 @@
 
 #include "rotational_assembly.h"
 
+#include "ostraka/core/disjoint_sets.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
 #include "ostraka/geom/eigen.h"
+#include "ostraka/stats/summary.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace ostraka {
 
@@ -70,8 +71,7 @@ private:
             }
         }
         if (walls.empty()) return;
-        std::nth_element(walls.begin(), walls.begin() + static_cast<std::ptrdiff_t>(walls.size() / 2), walls.end());
-        wall_ = result_.wall = walls[walls.size() / 2];
+        wall_ = result_.wall = upper_median(std::move(walls));
     }
 
     void meet_all() {
@@ -126,23 +126,13 @@ private:
                 list.emplace_back(pair.value(turn), joint);
             }
         std::stable_sort(list.begin(), list.end(), [](const auto& x, const auto& y) { return x.first > y.first; });
-        std::vector<int> tree(n);
-        std::iota(tree.begin(), tree.end(), 0);
-        const auto merge = [](std::vector<int>& groups, int to, int from) {
-            for (int& one : groups)
-                if (one == from) one = to;
-        };
-        int anchor = -1;
+        DisjointSets groups(n);
+        const auto anchor = std::find(fixed.begin(), fixed.end(), true);
         for (std::size_t k = 0; k < n; ++k)
-            if (fixed[k]) {
-                if (anchor >= 0) merge(tree, tree[static_cast<std::size_t>(anchor)], tree[k]);
-                else anchor = static_cast<int>(k);
-            }
-        result_.group = tree;
+            if (fixed[k]) groups.unite(static_cast<std::size_t>(anchor - fixed.begin()), k);
+        DisjointSets tree = groups;
         for (auto& [value, joint] : list) {
-            const int a = tree[static_cast<std::size_t>(joint.first)], b = tree[static_cast<std::size_t>(joint.second)];
-            joint.carries = a != b;
-            if (joint.carries) merge(tree, a, b);
+            joint.carries = tree.unite(static_cast<std::size_t>(joint.first), static_cast<std::size_t>(joint.second));
             result_.joints.push_back(joint);
         }
         std::stable_sort(result_.joints.begin(), result_.joints.end(),
@@ -150,11 +140,8 @@ private:
         for (BreakJoint& joint : result_.joints)
             if (joint.carries) decide(joint, fixed);
         for (const BreakJoint& joint : result_.joints)
-            if (joint.decided) {
-                const int a = result_.group[static_cast<std::size_t>(joint.first)],
-                          b = result_.group[static_cast<std::size_t>(joint.second)];
-                merge(result_.group, std::min(a, b), std::max(a, b));
-            }
+            if (joint.decided) groups.unite(static_cast<std::size_t>(joint.first), static_cast<std::size_t>(joint.second));
+        for (std::size_t k = 0; k < n; ++k) result_.group.push_back(static_cast<int>(groups.find(k)));
     }
 
     /// All that hangs on the second sherd, turned against all else.

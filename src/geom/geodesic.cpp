@@ -121,8 +121,8 @@ std::vector<double> geodesic_distances(const Mesh& mesh, const std::vector<Index
     if (start.empty()) return result;
     std::vector<Index> faces;
     if (std::isfinite(limit)) {
-        const NearPoints near(places, limit);
-        faces = grow_faces(mesh, start, [&](Face face) { return near(mesh, face); });
+        const PointTree near(places);
+        faces = grow_faces(mesh, start, [&](Face face) { return may_hold_near(mesh, face, near, limit); });
     } else {
         faces = grow_faces(mesh, start, [](Face) { return true; });
     }

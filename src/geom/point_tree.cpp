@@ -1,110 +1,153 @@
 #include "ostraka/geom/point_tree.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
 namespace ostraka {
 
-/// Points in the order of a balanced k-d tree: the median of a range splits it along its box's longest side.
+/// Points in the order of a balanced k-d tree: the median of a range splits it along its box's longest side. Ranges are numbered
+/// as in a heap: the halves of range r are 2 r and 2 r + 1.
 struct PointTree::Tree {
     static constexpr std::size_t leaf = 12;
-    std::vector<std::array<double, 3>> places;
+    using Place = std::array<double, 3>;
+    struct Box {
+        Place low, high;
+        /// Squared distance from the nearest place of the box, rounded as distances are: no point of the box is nearer.
+        [[nodiscard]] double nearest(const Place& place) const {
+            Place gap;
+            for (std::size_t k = 0; k < 3; ++k) gap[k] = std::max({low[k] - place[k], place[k] - high[k], 0.0});
+            return squared_length(gap);
+        }
+        [[nodiscard]] double farthest(const Place& place) const {
+            Place reach;
+            for (std::size_t k = 0; k < 3; ++k) reach[k] = std::max(high[k] - place[k], place[k] - low[k]);
+            return squared_length(reach);
+        }
+    };
+    std::vector<Place> places;  ///< in the order of the tree
     std::vector<Index> order;
-    std::vector<std::uint8_t> axis;  ///< of the split at the middle of each inner range, stored at the middle
+    std::vector<Box> boxes;  ///< of the ranges, from 1
 
-    void build(std::size_t begin, std::size_t end) {
-        if (end - begin <= leaf) return;
-        std::array<double, 3> low, high;
-        low.fill(std::numeric_limits<double>::infinity());
-        high.fill(-std::numeric_limits<double>::infinity());
-        for (std::size_t i = begin; i < end; ++i)
-            for (std::size_t k = 0; k < 3; ++k) {
-                low[k] = std::min(low[k], places[order[i]][k]);
-                high[k] = std::max(high[k], places[order[i]][k]);
-            }
-        std::size_t longest = 0;
-        for (std::size_t k = 1; k < 3; ++k)
-            if (high[k] - low[k] > high[longest] - low[longest]) longest = k;
-        const std::size_t middle = begin + (end - begin) / 2;
-        std::nth_element(order.begin() + static_cast<std::ptrdiff_t>(begin), order.begin() + static_cast<std::ptrdiff_t>(middle),
-                         order.begin() + static_cast<std::ptrdiff_t>(end),
-                         [&](Index a, Index b) { return std::pair(places[a][longest], a) < std::pair(places[b][longest], b); });
-        axis[middle] = static_cast<std::uint8_t>(longest);
-        build(begin, middle);
-        build(middle + 1, end);
+    static Place place_of(const Point& p) { return {p.x(), p.y(), p.z()}; }
+    static double squared_length(const Place& v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; }
+    [[nodiscard]] double squared_distance(std::size_t i, const Place& place) const {
+        return squared_length({places[i][0] - place[0], places[i][1] - place[1], places[i][2] - place[2]});
     }
 
-    /// Calls visit(index, squared distance) for points nearer than the limit, which visit may lower.
+    void build(const std::vector<Place>& given, std::size_t range, std::size_t begin, std::size_t end) {
+        if (boxes.size() <= range) boxes.resize(2 * range);
+        Box& box = boxes[range];
+        box.low.fill(std::numeric_limits<double>::infinity());
+        box.high.fill(-std::numeric_limits<double>::infinity());
+        for (std::size_t i = begin; i < end; ++i)
+            for (std::size_t k = 0; k < 3; ++k) {
+                box.low[k] = std::min(box.low[k], given[order[i]][k]);
+                box.high[k] = std::max(box.high[k], given[order[i]][k]);
+            }
+        if (end - begin <= leaf) return;
+        std::size_t longest = 0;
+        for (std::size_t k = 1; k < 3; ++k)
+            if (box.high[k] - box.low[k] > box.high[longest] - box.low[longest]) longest = k;
+        const std::size_t middle = begin + (end - begin) / 2;
+        std::nth_element(order.data() + begin, order.data() + middle, order.data() + end,
+                         [&](Index a, Index b) { return std::pair(given[a][longest], a) < std::pair(given[b][longest], b); });
+        build(given, 2 * range, begin, middle);
+        build(given, 2 * range + 1, middle, end);
+    }
+
+    /// Calls visit(index, squared distance, limit) for points within the limit, which visit may lower.
     template <class Visit>
-    void walk(const std::array<double, 3>& place, double& limit, Visit&& visit, std::size_t begin, std::size_t end) const {
-        const auto look = [&](std::size_t i) {
-            const auto& p = places[order[i]];
-            const double x = p[0] - place[0], y = p[1] - place[1], z = p[2] - place[2], squared = x * x + y * y + z * z;
-            if (squared <= limit) visit(order[i], squared);
+    void walk(const Point& from, double limit, Visit&& visit) const {
+        const Place place = place_of(from);
+        const auto into = [&](const auto& self, std::size_t range, std::size_t begin, std::size_t end) -> void {
+            if (end - begin <= leaf) {
+                for (std::size_t i = begin; i < end; ++i)
+                    if (const double squared = squared_distance(i, place); squared <= limit) visit(order[i], squared, limit);
+                return;
+            }
+            const std::size_t middle = begin + (end - begin) / 2, lower = 2 * range, upper = lower + 1;
+            const double below = boxes[lower].nearest(place), above = boxes[upper].nearest(place);
+            const bool first = below <= above;
+            if (first && below <= limit) self(self, lower, begin, middle);
+            if (above <= limit) self(self, upper, middle, end);
+            if (!first && below <= limit) self(self, lower, begin, middle);
         };
+        into(into, 1, 0, order.size());
+    }
+
+    /// Raises `most` to the greatest squared distance of a range.
+    void walk_far(const Place& place, double& most, std::size_t range, std::size_t begin, std::size_t end) const {
         if (end - begin <= leaf) {
-            for (std::size_t i = begin; i < end; ++i) look(i);
+            for (std::size_t i = begin; i < end; ++i) most = std::max(most, squared_distance(i, place));
             return;
         }
-        const std::size_t middle = begin + (end - begin) / 2, k = axis[middle];
-        const double side = place[k] - places[order[middle]][k];
-        if (side < 0) walk(place, limit, visit, begin, middle);
-        else walk(place, limit, visit, middle + 1, end);
-        if (side * side > limit) return;
-        look(middle);
-        if (side < 0) walk(place, limit, visit, middle + 1, end);
-        else walk(place, limit, visit, begin, middle);
+        const std::size_t middle = begin + (end - begin) / 2, lower = 2 * range, upper = lower + 1;
+        const double below = boxes[lower].farthest(place), above = boxes[upper].farthest(place);
+        const bool first = below >= above;
+        if (first && below > most) walk_far(place, most, lower, begin, middle);
+        if (above > most) walk_far(place, most, upper, middle, end);
+        if (!first && below > most) walk_far(place, most, lower, begin, middle);
     }
 };
 
 PointTree::PointTree(const std::vector<Point>& points) : tree_(std::make_unique<Tree>()) {
-    for (const Point& p : points) tree_->places.push_back({p.x(), p.y(), p.z()});
-    tree_->order.resize(points.size());
-    std::iota(tree_->order.begin(), tree_->order.end(), Index{0});
-    tree_->axis.assign(points.size(), 0);
-    tree_->build(0, points.size());
+    Tree& tree = *tree_;
+    std::vector<Tree::Place> given;
+    given.reserve(points.size());
+    for (const Point& p : points) given.push_back(Tree::place_of(p));
+    tree.order.resize(points.size());
+    std::iota(tree.order.begin(), tree.order.end(), Index{0});
+    tree.build(given, 1, 0, points.size());
+    tree.places.reserve(points.size());
+    for (const Index i : tree.order) tree.places.push_back(given[i]);
 }
 PointTree::~PointTree() = default;
 PointTree::PointTree(PointTree&&) noexcept = default;
+PointTree& PointTree::operator=(PointTree&&) noexcept = default;
+
+std::size_t PointTree::size() const { return tree_->order.size(); }
 
 PointTree::Near PointTree::nearest(const Point& place, double reach) const {
     Near near;
-    double limit = reach * reach;
-    const auto visit = [&](Index i, double squared) {
-        if (squared == limit && near.index != no_index && i > near.index) return;
-        if (squared >= reach * reach) return;
-        limit = squared;
+    tree_->walk(place, reach * reach, [&](Index i, double squared, double& limit) {
+        if (squared == near.squared && i > near.index) return;
         near = {i, squared};
-    };
-    tree_->walk({place.x(), place.y(), place.z()}, limit, visit, 0, tree_->order.size());
+        limit = squared;
+    });
     return near;
+}
+
+std::vector<PointTree::Near> PointTree::neighbours(const Point& place, std::size_t count) const {
+    const auto before = [](const Near& a, const Near& b) {
+        return std::pair(a.squared, a.index) < std::pair(b.squared, b.index);
+    };
+    std::vector<Near> nearest;  // a heap, the farthest in front
+    if (count == 0) return nearest;
+    tree_->walk(place, std::numeric_limits<double>::infinity(), [&](Index i, double squared, double& limit) {
+        nearest.push_back({i, squared});
+        std::push_heap(nearest.begin(), nearest.end(), before);
+        if (nearest.size() > count) {
+            std::pop_heap(nearest.begin(), nearest.end(), before);
+            nearest.pop_back();
+        }
+        if (nearest.size() == count) limit = nearest.front().squared;
+    });
+    std::sort_heap(nearest.begin(), nearest.end(), before);
+    return nearest;
 }
 
 void PointTree::within(const Point& place, double reach, std::vector<Index>& found) const {
     found.clear();
-    double limit = reach * reach;
-    const auto visit = [&](Index i, double squared) {
-        if (squared < limit) found.push_back(i);
-    };
-    tree_->walk({place.x(), place.y(), place.z()}, limit, visit, 0, tree_->order.size());
+    tree_->walk(place, reach * reach, [&](Index i, double, double&) { found.push_back(i); });
     std::sort(found.begin(), found.end());
 }
 
-double PointTree::neighbour_distance(const Point& place, std::size_t count) const {
-    std::vector<double> nearest;  // a heap, the farthest in front
-    double limit = std::numeric_limits<double>::infinity();
-    const auto visit = [&](Index, double squared) {
-        nearest.push_back(squared);
-        std::push_heap(nearest.begin(), nearest.end());
-        if (nearest.size() > count) {
-            std::pop_heap(nearest.begin(), nearest.end());
-            nearest.pop_back();
-        }
-        if (nearest.size() == count) limit = nearest.front();
-    };
-    tree_->walk({place.x(), place.y(), place.z()}, limit, visit, 0, tree_->order.size());
-    return nearest.empty() ? 0 : std::sqrt(nearest.front());
+double PointTree::farthest_squared(const Point& place) const {
+    double most = 0;
+    tree_->walk_far(Tree::place_of(place), most, 1, 0, size());
+    return most;
 }
 
 }  // namespace ostraka

@@ -1,8 +1,5 @@
 #include "surface_patch.h"
 
-#include <CGAL/Orthogonal_k_neighbor_search.h>
-#include <CGAL/Search_traits_3.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -25,24 +22,11 @@ std::vector<Index> grow_faces(const Mesh& mesh, const std::vector<Face>& start, 
     return faces;
 }
 
-struct NearPoints::Tree {
-    using Traits = CGAL::Search_traits_3<Kernel>;
-    using Search = CGAL::Orthogonal_k_neighbor_search<Traits>;
-    Search::Tree tree;
-    double limit;
-};
-
-NearPoints::NearPoints(std::vector<Point> points, double limit) : tree_(new Tree{{points.begin(), points.end()}, limit}) {
-    tree_->tree.build();
-}
-NearPoints::~NearPoints() { delete tree_; }
-
-bool NearPoints::operator()(const Mesh& mesh, Face face) const {
+bool may_hold_near(const Mesh& mesh, Face face, const PointTree& points, double limit) {
     const Point middle = centroid(mesh, face);
     double size = 0;
     for (const Vertex v : corners(mesh, face)) size = std::max(size, CGAL::squared_distance(mesh.point(v), middle));
-    const Tree::Search search(tree_->tree, middle, 1);
-    return std::sqrt(search.begin()->second) <= (tree_->limit + std::sqrt(size)) * (1 + 1e-12);
+    return std::sqrt(points.nearest(middle).squared) <= (limit + std::sqrt(size)) * (1 + 1e-12);
 }
 
 SurfacePatch cut_out(const Mesh& mesh, std::vector<Index> faces, const Point& origin) {

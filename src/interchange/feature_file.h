@@ -1,7 +1,7 @@
 // The features that a GLB file holds: what they select in its own primitives, and the rows of their table.
 #pragma once
 
-#include "glb.h"
+#include "ostraka/io/glb.h"
 
 #include <array>
 #include <map>

@@ -2,7 +2,6 @@
 #include "ostraka/core/dense.h"
 #include "ostraka/interchange/feature_glb.h"
 
-#include "glb.h"
 #include "landmark_formats.h"
 #include "text.h"
 
@@ -10,6 +9,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/limits.h"
 #include "ostraka/geom/eigen.h"
+#include "ostraka/io/glb.h"
 #include "ostraka/vocabulary/text_match.h"
 
 #include <Eigen/Geometry>
@@ -28,12 +28,6 @@ using Eigen::Vector3d;
 using glb::append;
 
 constexpr std::size_t exact_in_float = std::size_t{1} << 24;
-
-/// Colours of vertices are linear in glTF (section 3.7.2.1), ours are sRGB (IEC 61966-2-1).
-std::uint16_t linear_channel(int value) {
-    const double s = value / 255.0;
-    return static_cast<std::uint16_t>(std::lround(65535 * (s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4))));
-}
 
 /// What a primitive's vertices are: places of the mesh with the feature of each set.
 struct Corners {
@@ -100,7 +94,7 @@ public:
             notes_.push_back(counted(static_cast<std::size_t>(empty), "annotation") +
                              " without elements: in the table, but nowhere on the mesh");
         if (rounded_) notes_.emplace_back("GLB holds coordinates in single precision; they were rounded");
-        return builder_.finish(where_);
+        return builder_.finish(where_, "simplify the mesh");
     }
 
 private:
@@ -239,7 +233,7 @@ private:
                 high[static_cast<std::size_t>(k)] = std::max(high[static_cast<std::size_t>(k)], narrow);
                 append(positions, narrow);
             }
-            for (const int part : corners_.colours[i]) append(colours, linear_channel(part));
+            for (const int part : corners_.colours[i]) append(colours, glb::linear_channel(static_cast<std::size_t>(part)));
             append(colours, std::uint16_t{65535});
             append(origins, static_cast<float>(corners_.vertices[i]));
         }
@@ -427,7 +421,7 @@ private:
     std::string where_;
     Json native_;
     std::vector<std::string>& notes_;
-    glb::Builder builder_;
+    glb::Builder builder_{8, true};
     JsonValue properties_{rapidjson::kObjectType}, columns_{rapidjson::kObjectType};
     bool rounded_ = false;
 };

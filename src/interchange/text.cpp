@@ -1,5 +1,7 @@
 #include "text.h"
 
+#include "ostraka/core/markup.h"
+
 #include <cmath>
 
 namespace ostraka::exchange {
@@ -21,19 +23,7 @@ bool has_control(std::string_view text) { return without_controls(text, "") != t
 
 std::string one_line(std::string_view text) { return without_controls(text, " "); }
 
-std::string json_text(const JsonValue& value) {
-    const std::string plain = to_text(value);
-    std::string text;
-    text.reserve(plain.size());
-    // Outside of strings JSON has none of these characters.
-    for (const char c : plain) {
-        if (c == '<') text += "\\u003C";
-        else if (c == '>') text += "\\u003E";
-        else if (c == '&') text += "\\u0026";
-        else text += c;
-    }
-    return text;
-}
+std::string json_text(const JsonValue& value) { return with_markup_escaped(to_text(value)); }
 
 std::string text_member(const JsonValue& object, std::string_view name) {
     const JsonValue* value = find_member(object, name);

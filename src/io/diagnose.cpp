@@ -16,7 +16,7 @@ namespace {
 
 /// Component of each triangle (by shared vertices, in the order of their lowest vertices) and their counts.
 std::vector<Index> find_components(const TriangleSoup& soup, MeshDiagnosis& diagnosis) {
-    detail::DisjointSets sets(soup.points.size());
+    DisjointSets sets(soup.points.size());
     std::vector<std::uint8_t> used(soup.points.size(), 0), named(soup.points.size(), 0);
     for (const auto& t : soup.triangles) {
         for (const Index v : t) named[v] = 1;
@@ -129,7 +129,7 @@ void examine_edges(const TriangleSoup& soup, const SoupEdges& edges, const std::
 }
 
 /// Border edges joined at the fans of triangles they belong to: two at every fan where all edges are manifold.
-void examine_border(const TriangleSoup& soup, const SoupEdges& edges, detail::DisjointSets& fans, MeshDiagnosis& diagnosis) {
+void examine_border(const TriangleSoup& soup, const SoupEdges& edges, DisjointSets& fans, MeshDiagnosis& diagnosis) {
     struct BorderEdge {
         Index halfedge, first_fan, second_fan;
         bool used = false;
@@ -205,7 +205,7 @@ void examine_border(const TriangleSoup& soup, const SoupEdges& edges, detail::Di
                      [](const BorderLoop& a, const BorderLoop& b) { return a.length > b.length; });
 }
 
-void examine_vertices(const TriangleSoup& soup, detail::DisjointSets& fans, const std::vector<Index>& component,
+void examine_vertices(const TriangleSoup& soup, DisjointSets& fans, const std::vector<Index>& component,
                       MeshDiagnosis& diagnosis) {
     std::vector<std::uint8_t> fan_count(soup.points.size(), 0);
     for (Index c = 0; c < 3 * soup.triangles.size(); ++c) {
@@ -325,7 +325,7 @@ MeshDiagnosis diagnose(const TriangleSoup& soup, const DiagnoseOptions& options)
         const SoupEdges edges = detail::group_edges(soup);
         lap("edges");
         examine_edges(soup, edges, component, diagnosis);
-        detail::DisjointSets fans = detail::fans_of_corners(soup, edges);
+        DisjointSets fans = detail::fans_of_corners(soup, edges);
         examine_vertices(soup, fans, component, diagnosis);
         examine_border(soup, edges, fans, diagnosis);
     }

@@ -1,5 +1,6 @@
 #include "formats.h"
 #include "ostraka/core/error.h"
+#include "ostraka/io/ply.h"
 #include "ply_rows.h"
 
 #include <algorithm>
@@ -100,6 +101,36 @@ public:
             soup_.notes.push_back(std::to_string(bad_texture_) +
                                   " texture coordinates are missing or not finite and were set to 0");
         return std::move(soup_);
+    }
+
+    std::vector<std::array<double, 3>> vectors(const std::array<std::string, 3>& names) {
+        std::vector<std::array<double, 3>> result;
+        for (const PlyElement& element : header_.elements) {
+            check_size(element);
+            if (element.name != "vertex") {
+                skip_element(element);
+                continue;
+            }
+            std::vector<std::size_t> axis(element.properties.size(), 3);
+            for (std::size_t k = 0; k < 3; ++k) {
+                const auto found = std::find_if(element.properties.begin(), element.properties.end(), [&](const PlyProperty& p) {
+                    return p.name == names[k] && !p.is_list && is_real(p.type);
+                });
+                if (found == element.properties.end()) return {};
+                axis[static_cast<std::size_t>(found - element.properties.begin())] = k;
+            }
+            result.resize(element.count);
+            for (std::size_t i = 0; i < element.count; ++i) {
+                rows_.begin(element, i);
+                for (std::size_t k = 0; k < axis.size(); ++k) {
+                    if (axis[k] < 3) result[i][axis[k]] = rows_.value(element.properties[k].type);
+                    else skip_property(element.properties[k]);
+                }
+                rows_.end(element, i);
+            }
+            break;
+        }
+        return result;
     }
 
 private:
@@ -303,21 +334,33 @@ private:
     std::size_t vertex_count_ = 0, wrapped_ = 0, bad_ = 0, bad_texture_ = 0;
 };
 
+/// read(body) of a file in any of the three formats.
+template <class Read>
+auto read_body(const std::string& bytes, const std::string& file, Read&& read) {
+    const PlyHeader header = read_ply_header(bytes, file);
+    const auto with = [&](auto rows) { return read(PlyBody(std::move(rows), header, file)); };
+    constexpr bool little = std::endian::native == std::endian::little;
+    if (header.format == PlyFormat::ascii) return with(AsciiRows(bytes, header.size, file));
+    if ((header.format == PlyFormat::little_endian) == little) return with(BinaryRows<false>(bytes, header.size, file));
+    return with(BinaryRows<true>(bytes, header.size, file));
+}
+
 }  // namespace
 
 bool looks_like_ply(std::string_view bytes) { return bytes.starts_with("ply\n") || bytes.starts_with("ply\r"); }
 
 PolygonSoup read_ply(const std::string& bytes, const std::string& file) {
-    const PlyHeader header = read_ply_header(bytes, file);
-    switch (header.format) {
-        case PlyFormat::ascii:
-            return PlyBody(AsciiRows(bytes, header.size, file), header, file).read();
-        case PlyFormat::little_endian:
-            return PlyBody(BinaryRows<std::endian::native != std::endian::little>(bytes, header.size, file), header, file).read();
-        case PlyFormat::big_endian:
-            break;
-    }
-    return PlyBody(BinaryRows<std::endian::native != std::endian::big>(bytes, header.size, file), header, file).read();
+    return read_body(bytes, file, [](auto body) { return body.read(); });
 }
 
 }  // namespace ostraka::io
+
+namespace ostraka {
+
+std::vector<std::array<double, 3>> read_ply_vectors(const Path& file, const std::array<std::string, 3>& names) {
+    const std::string bytes = read_file(file);
+    if (!io::looks_like_ply(bytes)) return {};
+    return io::read_body(bytes, file.string(), [&](auto body) { return body.vectors(names); });
+}
+
+}  // namespace ostraka

@@ -1,11 +1,11 @@
 // The soup under repair: bookkeeping, merging of points, triangles that cannot stay, components.
 #include "ostraka/core/error.h"
+#include "ostraka/geom/point_tree.h"
 #include "repair_parts.h"
 #include "soup_geometry.h"
 
 #include <cmath>
 #include <numeric>
-#include <unordered_map>
 
 namespace ostraka::detail {
 
@@ -128,45 +128,22 @@ std::vector<std::uint8_t> vertices_of_open_components(const TriangleSoup& soup) 
 }
 
 /// For each point the point it is merged into: the first one met (in index order) within the distance that was itself kept.
-/// Cells of the distance's size are searched with their neighbours.
 std::vector<Index> merge_near(const std::vector<std::array<double, 3>>& points, const std::vector<std::uint8_t>& candidate,
                               double distance) {
-    struct Cell {
-        long long x, y, z;
-        bool operator==(const Cell&) const = default;
-    };
-    struct Hash {
-        std::size_t operator()(const Cell& c) const {
-            auto h = static_cast<std::uint64_t>(c.x) * 0x9E3779B97F4A7C15ull;
-            h = (h ^ (h >> 31) ^ static_cast<std::uint64_t>(c.y)) * 0xBF58476D1CE4E5B9ull;
-            h = (h ^ (h >> 29) ^ static_cast<std::uint64_t>(c.z)) * 0x94D049BB133111EBull;
-            return h ^ (h >> 32);
-        }
-    };
-    std::vector<Index> into(points.size());
+    std::vector<Index> into(points.size()), chosen, near;
     std::iota(into.begin(), into.end(), Index{0});
-    std::array<double, 3> low = points.empty() ? std::array<double, 3>{} : points[0];
-    for (const auto& p : points)
-        for (std::size_t k = 0; k < 3; ++k) low[k] = std::min(low[k], p[k]);
-    std::unordered_map<Cell, std::vector<Index>, Hash> cells;
-    for (Index v = 0; v < points.size(); ++v) {
-        if (candidate[v] == 0) continue;
-        const auto coordinate = [&](std::size_t k) {
-            return static_cast<long long>(std::min((points[v][k] - low[k]) / distance, 1e18));
-        };
-        const Cell cell{coordinate(0), coordinate(1), coordinate(2)};
-        Index best = no_index;
-        for (long long i = 0; i < 27; ++i) {
-            const auto found = cells.find({cell.x + i / 9 - 1, cell.y + i / 3 % 3 - 1, cell.z + i % 3 - 1});
-            if (found == cells.end()) continue;
-            for (const Index other : found->second) {
-                const double dx = points[v][0] - points[other][0], dy = points[v][1] - points[other][1],
-                             dz = points[v][2] - points[other][2];
-                if (dx * dx + dy * dy + dz * dz <= distance * distance) best = std::min(best, other);
-            }
+    std::vector<Point> places;
+    for (Index v = 0; v < points.size(); ++v)
+        if (candidate[v] != 0) {
+            chosen.push_back(v);
+            places.emplace_back(points[v][0], points[v][1], points[v][2]);
         }
-        if (best == no_index) cells[cell].push_back(v);
-        else into[v] = best;
+    const PointTree tree(places);
+    for (Index i = 0; i < chosen.size(); ++i) {
+        if (into[chosen[i]] != chosen[i]) continue;
+        tree.within(places[i], distance, near);
+        for (const Index other : near)
+            if (other > i && into[chosen[other]] == chosen[other]) into[chosen[other]] = chosen[i];
     }
     return into;
 }

@@ -75,8 +75,6 @@ void check_soup(const TriangleSoup& soup) {
                            "mend or remove that vertex, or scale the object");
 }
 
-DisjointSets::DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), Index{0}); }
-
 DisjointSets fans_of_corners(const TriangleSoup& soup, const SoupEdges& edges) {
     DisjointSets fans(3 * soup.triangles.size());
     for (std::size_t e = 0; e < edges.count(); ++e) {

@@ -1,6 +1,7 @@
 // Edges of a triangle soup, found without promising anything of its topology. Private to the module.
 #pragma once
 
+#include "ostraka/core/disjoint_sets.h"
 #include "ostraka/core/mesh.h"
 
 #include <vector>
@@ -34,28 +35,6 @@ std::vector<Index> same_place(const std::vector<std::array<double, 3>>& points);
 /// Throws Error (input) if a triangle names a vertex that does not exist, a coordinate is not finite or beyond 1e100, or
 /// there are more elements than indices.
 void check_soup(const TriangleSoup& soup);
-
-/// Disjoint sets; the root is always the smallest member, so that results do not depend on the order of unions.
-class DisjointSets {
-public:
-    explicit DisjointSets(std::size_t count);
-    Index find(Index i) {
-        while (parent_[i] != i) {
-            parent_[i] = parent_[parent_[i]];
-            i = parent_[i];
-        }
-        return i;
-    }
-    void unite(Index a, Index b) {
-        a = find(a);
-        b = find(b);
-        if (a < b) parent_[b] = a;
-        else parent_[a] = b;
-    }
-
-private:
-    std::vector<Index> parent_;
-};
 
 /// Sets of corners (3 t + k) that lie in one fan of triangles around their vertex: corners of triangles that meet at an
 /// edge, whatever its valence.

@@ -1,129 +1,13 @@
 #include "formats.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/json.h"
-#include "ostraka/core/provenance.h"
+#include "ostraka/io/glb.h"
 #include "text_writer.h"
-
-#include <rapidjson/stringbuffer.h>
-#include <rapidjson/writer.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace ostraka::io {
-
-namespace {
-
-// Constants of glTF 2.0 (Khronos, sections 3.6, 3.7, 5.1, 5.11).
-constexpr int float_component = 5126, ushort_component = 5123, uint_component = 5125;
-constexpr int array_buffer = 34962, element_array_buffer = 34963, triangles_mode = 4;
-constexpr std::uint32_t glb_magic = 0x46546C67, json_chunk = 0x4E4F534A, binary_chunk = 0x004E4942;
-
-/// Colours of vertices are linear in glTF (section 3.7.2.1), in our files they are sRGB (IEC 61966-2-1).
-std::uint16_t linear_channel(std::uint8_t value) {
-    static const auto table = [] {
-        std::array<std::uint16_t, 256> values{};
-        for (std::size_t i = 0; i < values.size(); ++i) {
-            const double s = static_cast<double>(i) / 255;
-            const double linear = s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
-            values[i] = static_cast<std::uint16_t>(std::lround(65535 * linear));
-        }
-        return values;
-    }();
-    return table[value];
-}
-
-class GlbDocument {
-public:
-    explicit GlbDocument(const WriteOptions& options) {
-        document_.SetObject();
-        JsonValue asset(rapidjson::kObjectType);
-        add_member(asset, "version", "2.0", allocator());
-        add_member(asset, "generator", "ostraka " + version(), allocator());
-        if (!options.comment.empty()) {
-            JsonValue extras(rapidjson::kObjectType);
-            add_member(extras, "provenance", one_line(options.comment), allocator());
-            add_member(asset, "extras", std::move(extras), allocator());
-        }
-        add_member(document_, "asset", std::move(asset), allocator());
-    }
-    JsonAllocator& allocator() { return document_.GetAllocator(); }
-
-    /// A new buffer view of `size` bytes with one accessor over it; returns the accessor, to which min and max may be added.
-    JsonValue& add_accessor(std::size_t size, int target, int component, std::size_t count, const char* type) {
-        JsonValue view(rapidjson::kObjectType);
-        add_member(view, "buffer", JsonValue(0), allocator());
-        add_member(view, "byteOffset", JsonValue(static_cast<std::uint64_t>(offset_)), allocator());
-        add_member(view, "byteLength", JsonValue(static_cast<std::uint64_t>(size)), allocator());
-        add_member(view, "target", JsonValue(target), allocator());
-        JsonValue accessor(rapidjson::kObjectType);
-        add_member(accessor, "bufferView", JsonValue(views_.Size()), allocator());
-        add_member(accessor, "componentType", JsonValue(component), allocator());
-        add_member(accessor, "count", JsonValue(static_cast<std::uint64_t>(count)), allocator());
-        add_member(accessor, "type", type, allocator());
-        views_.PushBack(view, allocator());
-        accessors_.PushBack(accessor, allocator());
-        offset_ += size;
-        return accessors_[accessors_.Size() - 1];
-    }
-    int last_accessor() const { return static_cast<int>(accessors_.Size()) - 1; }
-    std::size_t buffer_size() const { return offset_; }
-
-    /// The JSON chunk: one mesh of one primitive with the attributes given, under one node.
-    std::string finish(JsonValue attributes, int indices, bool translucent) {
-        auto& a = allocator();
-        JsonValue primitive(rapidjson::kObjectType);
-        add_member(primitive, "attributes", std::move(attributes), a);
-        add_member(primitive, "indices", JsonValue(indices), a);
-        add_member(primitive, "mode", JsonValue(triangles_mode), a);
-        add_member(primitive, "material", JsonValue(0), a);
-        JsonValue mesh(rapidjson::kObjectType), node(rapidjson::kObjectType), scene(rapidjson::kObjectType),
-            buffer(rapidjson::kObjectType);
-        add_member(mesh, "primitives", in_list(std::move(primitive)), a);
-        add_member(node, "mesh", JsonValue(0), a);
-        add_member(scene, "nodes", in_list(JsonValue(0)), a);
-        add_member(buffer, "byteLength", JsonValue(static_cast<std::uint64_t>(offset_)), a);
-        JsonValue surface(rapidjson::kObjectType), material(rapidjson::kObjectType);
-        add_member(surface, "metallicFactor", JsonValue(0), a);
-        add_member(surface, "roughnessFactor", JsonValue(1), a);
-        add_member(material, "pbrMetallicRoughness", std::move(surface), a);
-        if (translucent) add_member(material, "alphaMode", "BLEND", a);
-        add_member(material, "doubleSided", JsonValue(true), a);
-        add_member(document_, "scene", JsonValue(0), a);
-        add_member(document_, "scenes", in_list(std::move(scene)), a);
-        add_member(document_, "nodes", in_list(std::move(node)), a);
-        add_member(document_, "meshes", in_list(std::move(mesh)), a);
-        add_member(document_, "materials", in_list(std::move(material)), a);
-        add_member(document_, "accessors", std::move(accessors_), a);
-        add_member(document_, "bufferViews", std::move(views_), a);
-        add_member(document_, "buffers", in_list(std::move(buffer)), a);
-        rapidjson::StringBuffer text;
-        rapidjson::Writer<rapidjson::StringBuffer> json(text);
-        document_.Accept(json);
-        std::string chunk(text.GetString(), text.GetSize());
-        chunk.resize((chunk.size() + 3) / 4 * 4, ' ');
-        return chunk;
-    }
-
-private:
-    JsonValue in_list(JsonValue value) {
-        JsonValue list(rapidjson::kArrayType);
-        list.PushBack(value, allocator());
-        return list;
-    }
-    Json document_;
-    JsonValue views_{rapidjson::kArrayType}, accessors_{rapidjson::kArrayType};
-    std::size_t offset_ = 0;
-};
-
-void check_size(const Path& file, std::size_t bytes) {
-    if (bytes > std::numeric_limits<std::uint32_t>::max())
-        throw Error(ErrorKind::failure, file.string(), "would exceed the four gigabytes of a GLB file",
-                    "write PLY, or simplify the mesh");
-}
-
-}  // namespace
 
 Notes write_glb(const Path& file, const TriangleSoup& soup, const MeshExtras& extras, const WriteOptions& options) {
     if (soup.triangles.empty())
@@ -134,7 +18,8 @@ Notes write_glb(const Path& file, const TriangleSoup& soup, const MeshExtras& ex
     const bool coloured = face_coloured || !extras.vertex_colours.empty();
     const bool split = corner_texture || face_coloured;
     const std::size_t corner_count = 3 * soup.triangles.size(), count = split ? corner_count : soup.points.size();
-    check_size(file, count * 28 + corner_count * 4);
+    constexpr const char* too_large = "write PLY, or simplify the mesh";
+    glb::check_size(count * 28 + corner_count * 4, file.string(), too_large);
     const auto vertex_of = [&](std::size_t i) { return split ? soup.triangles[i / 3][i % 3] : static_cast<Index>(i); };
     const auto colour_of = [&](std::size_t i) -> const Colour& {
         return face_coloured ? extras.face_colours[i / 3] : extras.vertex_colours[vertex_of(i)];
@@ -158,44 +43,66 @@ Notes write_glb(const Path& file, const TriangleSoup& soup, const MeshExtras& ex
     if (coloured)
         for (std::size_t i = 0; i < count && !translucent; ++i) translucent = colour_of(i)[3] != 255;
 
-    GlbDocument document(options);
-    auto& allocator = document.allocator();
-    JsonValue attributes(rapidjson::kObjectType);
-    JsonValue& positions = document.add_accessor(12 * count, array_buffer, float_component, count, "VEC3");
-    for (const auto& [name, bound] : {std::pair{"min", low}, std::pair{"max", high}}) {
+    glb::Builder builder;
+    auto& allocator = builder.allocator();
+    Json& root = builder.document();
+    const auto in_list = [&](JsonValue value) {
         JsonValue list(rapidjson::kArrayType);
-        for (const float x : bound) list.PushBack(static_cast<double>(x), allocator);
-        add_member(positions, name, std::move(list), allocator);
+        list.PushBack(value, allocator);
+        return list;
+    };
+    if (!options.comment.empty()) {
+        JsonValue extras_of_asset(rapidjson::kObjectType);
+        add_member(extras_of_asset, "provenance", one_line(options.comment), allocator);
+        add_member(root["asset"], "extras", std::move(extras_of_asset), allocator);
     }
-    add_member(attributes, "POSITION", JsonValue(document.last_accessor()), allocator);
+    JsonValue attributes(rapidjson::kObjectType), primitive(rapidjson::kObjectType), mesh(rapidjson::kObjectType),
+        node(rapidjson::kObjectType), scene(rapidjson::kObjectType), surface(rapidjson::kObjectType),
+        material(rapidjson::kObjectType), least(rapidjson::kArrayType), most(rapidjson::kArrayType);
+    for (const float x : low) least.PushBack(static_cast<double>(x), allocator);
+    for (const float x : high) most.PushBack(static_cast<double>(x), allocator);
+    add_member(attributes, "POSITION",
+               JsonValue(builder.announce_accessor(12 * count, glb::array_buffer, glb::single, count, "VEC3", &least, &most)),
+               allocator);
     if (coloured) {
-        add_member(document.add_accessor(8 * count, array_buffer, ushort_component, count, "VEC4"), "normalized", JsonValue(true),
-                   allocator);
-        add_member(attributes, "COLOR_0", JsonValue(document.last_accessor()), allocator);
+        const int colours = builder.announce_accessor(8 * count, glb::array_buffer, glb::short_word, count, "VEC4");
+        builder.mark_normalised(colours);
+        add_member(attributes, "COLOR_0", JsonValue(colours), allocator);
     }
-    if (textured) {
-        document.add_accessor(8 * count, array_buffer, float_component, count, "VEC2");
-        add_member(attributes, "TEXCOORD_0", JsonValue(document.last_accessor()), allocator);
-    }
-    document.add_accessor(4 * corner_count, element_array_buffer, uint_component, corner_count, "SCALAR");
-    const std::string json = document.finish(std::move(attributes), document.last_accessor(), translucent);
-    const std::size_t total = 12 + 8 + json.size() + 8 + document.buffer_size();
-    check_size(file, total);
+    if (textured)
+        add_member(attributes, "TEXCOORD_0",
+                   JsonValue(builder.announce_accessor(8 * count, glb::array_buffer, glb::single, count, "VEC2")), allocator);
+    add_member(primitive, "attributes", std::move(attributes), allocator);
+    add_member(
+        primitive, "indices",
+        JsonValue(builder.announce_accessor(4 * corner_count, glb::element_array_buffer, glb::word, corner_count, "SCALAR")),
+        allocator);
+    add_member(primitive, "mode", JsonValue(glb::triangles_mode), allocator);
+    add_member(primitive, "material", JsonValue(0), allocator);
+    add_member(mesh, "primitives", in_list(std::move(primitive)), allocator);
+    add_member(node, "mesh", JsonValue(0), allocator);
+    add_member(scene, "nodes", in_list(JsonValue(0)), allocator);
+    add_member(surface, "metallicFactor", JsonValue(0), allocator);
+    add_member(surface, "roughnessFactor", JsonValue(1), allocator);
+    add_member(material, "pbrMetallicRoughness", std::move(surface), allocator);
+    if (translucent) add_member(material, "alphaMode", "BLEND", allocator);
+    add_member(material, "doubleSided", JsonValue(true), allocator);
+    add_member(root, "scene", JsonValue(0), allocator);
+    add_member(root, "scenes", in_list(std::move(scene)), allocator);
+    add_member(root, "nodes", in_list(std::move(node)), allocator);
+    add_member(root, "meshes", in_list(std::move(mesh)), allocator);
+    add_member(root, "materials", in_list(std::move(material)), allocator);
+    const std::string head = builder.head(file.string(), too_large);
 
     TextWriter writer(file);
-    for (const std::uint32_t word :
-         {glb_magic, 2U, static_cast<std::uint32_t>(total), static_cast<std::uint32_t>(json.size()), json_chunk})
-        writer.bytes(word);
-    writer.text(json);
-    writer.bytes(static_cast<std::uint32_t>(document.buffer_size()));
-    writer.bytes(binary_chunk);
+    writer.text(head);
     for (std::size_t i = 0; i < count; ++i) {
         for (const double x : soup.points[vertex_of(i)]) writer.bytes(static_cast<float>(x));
         writer.flush_if_full();
     }
     for (std::size_t i = 0; coloured && i < count; ++i) {
         const Colour& colour = colour_of(i);
-        for (std::size_t k = 0; k < 3; ++k) writer.bytes(linear_channel(colour[k]));
+        for (std::size_t k = 0; k < 3; ++k) writer.bytes(glb::linear_channel(colour[k]));
         writer.bytes(static_cast<std::uint16_t>(257 * colour[3]));
         writer.flush_if_full();
     }

@@ -1,5 +1,7 @@
 #include "ostraka/operation/operation.h"
 
+#include "ostraka/core/nearest_name.h"
+
 #include <algorithm>
 #include <stdexcept>
 #include <tuple>
@@ -588,26 +590,6 @@ JsonValue Call::declaration(JsonAllocator& allocator) const {
     add_member(object, "arguments", std::move(orders), allocator);
     add_member(object, "result", parameters_.report.to_schema(allocator), allocator);
     return object;
-}
-
-std::string nearest_name(const std::string& name, const std::vector<std::string>& names) {
-    std::string best;
-    std::size_t fewest = std::max<std::size_t>(2, name.size() / 3) + 1;
-    for (const std::string& candidate : names) {
-        std::vector<std::size_t> row(candidate.size() + 1);
-        for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
-        for (std::size_t i = 1; i <= name.size(); ++i) {
-            std::size_t diagonal = row[0];
-            row[0] = i;
-            for (std::size_t j = 1; j < row.size(); ++j) {
-                const std::size_t changed = diagonal + (name[i - 1] == candidate[j - 1] ? 0 : 1);
-                diagonal = row[j];
-                row[j] = std::min({changed, row[j] + 1, row[j - 1] + 1});
-            }
-        }
-        if (row.back() < fewest) fewest = row.back(), best = candidate;
-    }
-    return best;
 }
 
 }  // namespace ostraka

@@ -87,12 +87,6 @@ JsonValue object_schema(const std::vector<Field>& fields, JsonAllocator& allocat
     return schema;
 }
 
-/// Columns on a terminal, not bytes: continuation bytes of UTF-8 take no room.
-std::size_t width(const std::string& text) {
-    std::size_t count = 0;
-    for (const char c : text) count += (static_cast<unsigned char>(c) & 0xC0) != 0x80;
-    return count;
-}
 bool is_number(const std::string& text) {
     return !text.empty() && (std::isdigit(static_cast<unsigned char>(text.front())) != 0 || text.front() == '-') &&
            text.find_first_of("0123456789") != std::string::npos;
@@ -399,46 +393,27 @@ std::string Report::to_text(ReportFormat format) const {
     return text;
 }
 
-std::string plain_table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& raw_rows) {
-    std::vector<std::vector<std::string>> rows = raw_rows;
-    for (auto& row : rows)
-        for (auto& cell : row) cell = printable(cell, std::string::npos);
-    // Nothing is cut; a cell that is wider than this pushes the rest of its own row aside only.
-    constexpr std::size_t widest = 100;
-    std::vector<std::size_t> widths(header.size());
-    for (std::size_t c = 0; c < header.size(); ++c) {
-        widths[c] = width(header[c]);
-        for (const auto& row : rows) widths[c] = std::max(widths[c], c < row.size() ? std::min(width(row[c]), widest) : 0);
+std::string plain_table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows) {
+    std::vector<std::vector<std::string>> all{header};
+    for (const auto& row : rows) {
+        all.push_back(row);
+        all.back().resize(header.size());
+        for (auto& cell : all.back()) cell = printable(cell, std::string::npos);
     }
-    std::string text;
-    const auto line = [&](const std::vector<std::string>& cells, bool is_header) {
-        std::string out;
-        for (std::size_t c = 0; c < header.size(); ++c) {
-            const std::string cell = c < cells.size() ? cells[c] : "";
-            const std::string gap(widths[c] - std::min(widths[c], width(cell)), ' ');
-            bool right = is_number(cell);
-            if (is_header) {
-                right = !rows.empty();
-                for (const auto& row : rows)
-                    right = right && (c >= row.size() || row[c].empty() || row[c] == "-" || is_number(row[c]));
-            }
-            out += right ? gap + cell : cell + gap;
-            if (c + 1 < header.size()) out += "  ";
-        }
-        out.erase(out.find_last_not_of(' ') + 1);
-        text += out + "\n";
-    };
-    line(header, true);
-    for (const auto& row : rows) line(row, false);
-    return text;
+    const auto counts = [](const std::string& cell) { return cell.empty() || cell == "-" || is_number(cell); };
+    return aligned_rows(all, [&](std::size_t row, std::size_t column) {
+        if (row > 0) return is_number(all[row][column]);
+        return all.size() > 1 &&
+               std::all_of(all.begin() + 1, all.end(), [&](const auto& cells) { return counts(cells[column]); });
+    });
 }
 
 std::string plain_values(const std::vector<std::pair<std::string, std::string>>& rows) {
     std::size_t widest = 0;
-    for (const auto& [name, value] : rows) widest = std::max(widest, width(name));
+    for (const auto& [name, value] : rows) widest = std::max(widest, shown_width(name));
     std::string text;
     for (const auto& [name, value] : rows)
-        text += name + std::string(widest - width(name) + 2, ' ') + printable(value, std::string::npos) + "\n";
+        text += name + std::string(widest - shown_width(name) + 2, ' ') + printable(value, std::string::npos) + "\n";
     return text;
 }
 

@@ -1,6 +1,8 @@
 // The one table of operations. A line here, and a file of the operation's name, is all that a new one needs.
 #include "ostraka/operations/table.h"
 
+#include "ostraka/core/nearest_name.h"
+
 #include <algorithm>
 
 namespace ostraka {

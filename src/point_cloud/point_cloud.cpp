@@ -1,6 +1,7 @@
 #include "ostraka/point_cloud/point_cloud.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
 #include "ostraka/geom/point_tree.h"
 
 #include <CGAL/jet_estimate_normals.h>
@@ -17,7 +18,8 @@ double point_spacing(const std::vector<Point>& points) {
     if (points.size() <= sixth) fail_input("points", "there are only " + std::to_string(points.size()), "give more");
     const PointTree tree(points);
     std::vector<double> distance(points.size());
-    parallel_for(points.size(), [&](std::size_t i) { distance[i] = tree.neighbour_distance(points[i], sixth + 1); });
+    parallel_for(points.size(),
+                 [&](std::size_t i) { distance[i] = std::sqrt(tree.neighbours(points[i], sixth + 1).back().squared); });
     double sum = 0;
     for (const double d : distance) sum += d;
     return sum / static_cast<double>(points.size());

@@ -2,13 +2,11 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/limits.h"
 #include "ostraka/io/mesh_file.h"
+#include "ostraka/io/ply.h"
 #include "ostraka/point_cloud/point_cloud.h"
 
-#include <bit>
 #include <charconv>
 #include <cmath>
-#include <cstring>
-#include <sstream>
 
 namespace ostraka {
 
@@ -67,90 +65,6 @@ PointCloud read_text(const Path& file) {
     return cloud;
 }
 
-std::size_t bytes_of(const std::string& type) {
-    if (type == "char" || type == "uchar" || type == "int8" || type == "uint8") return 1;
-    if (type == "short" || type == "ushort" || type == "int16" || type == "uint16") return 2;
-    if (type == "int" || type == "uint" || type == "float" || type == "int32" || type == "uint32" || type == "float32") return 4;
-    if (type == "double" || type == "float64") return 8;
-    return 0;
-}
-
-/// The properties nx, ny, nz of the vertices of a PLY file whose points are read already, so that its syntax is known to be
-/// sound; empty where it has none, or they are not plain numbers of the first element.
-std::vector<Vector> ply_normals(const std::string& bytes, std::size_t count) {
-    const std::size_t mark = bytes.find("end_header");
-    if (mark == std::string::npos) return {};
-    std::istringstream header(bytes.substr(0, mark));
-    std::string word, format, element, line;
-    std::vector<std::pair<std::string, std::string>> properties;  // type, name
-    int elements = 0;
-    while (std::getline(header, line)) {
-        std::istringstream words(line);
-        if (!(words >> word)) continue;
-        if (word == "format") words >> format;
-        if (word == "element" && ++elements == 1 && words >> element && element != "vertex") return {};
-        if (word == "property" && elements == 1) {
-            std::string type, name;
-            words >> type >> name;
-            properties.emplace_back(type, name);
-        }
-    }
-    std::array<std::size_t, 3> column{}, offset{};
-    std::array<bool, 3> real8{};
-    std::size_t stride = 0;
-    int found = 0;
-    for (std::size_t i = 0; i < properties.size(); ++i) {
-        const std::size_t size = bytes_of(properties[i].first);
-        if (size == 0) return {};  // a list
-        for (std::size_t k = 0; k < 3; ++k)
-            if (properties[i].second == std::array{"nx", "ny", "nz"}.at(k)) {
-                const bool real = properties[i].first.starts_with("float") || properties[i].first == "double";
-                if (!real) return {};
-                column[k] = i, offset[k] = stride, real8[k] = size == 8, ++found;
-            }
-        stride += size;
-    }
-    if (found != 3) return {};
-    std::size_t at = bytes.find('\n', mark);
-    if (at == std::string::npos) return {};
-    ++at;
-    std::vector<Vector> normals;
-    normals.reserve(count);
-    if (format == "ascii") {
-        const char *here = bytes.data() + at, *end = bytes.data() + bytes.size();
-        std::vector<double> row(properties.size());
-        for (std::size_t i = 0; i < count; ++i) {
-            for (double& value : row) {
-                while (here < end && std::isspace(static_cast<unsigned char>(*here)) != 0) ++here;
-                const auto [next, error] = std::from_chars(here, end, value);
-                if (error != std::errc()) return {};
-                here = next;
-            }
-            normals.emplace_back(row[column[0]], row[column[1]], row[column[2]]);
-        }
-        return normals;
-    }
-    if (bytes.size() - at < count * stride) return {};
-    const bool swap = (format == "binary_big_endian") != (std::endian::native == std::endian::big);
-    for (std::size_t i = 0; i < count; ++i, at += stride) {
-        std::array<double, 3> n{};
-        for (std::size_t k = 0; k < 3; ++k) {
-            std::array<char, 8> raw{};
-            const std::size_t size = real8[k] ? 8 : 4;
-            for (std::size_t b = 0; b < size; ++b) raw[b] = bytes[at + offset[k] + (swap ? size - 1 - b : b)];
-            if (real8[k]) {
-                std::memcpy(&n[k], raw.data(), 8);
-            } else {
-                float value = 0;
-                std::memcpy(&value, raw.data(), 4);
-                n[k] = value;
-            }
-        }
-        normals.emplace_back(n[0], n[1], n[2]);
-    }
-    return normals;
-}
-
 }  // namespace
 
 std::optional<PointCloud> read_point_cloud(const Path& file) {
@@ -163,7 +77,8 @@ std::optional<PointCloud> read_point_cloud(const Path& file) {
         if (soup.polygon_count() > 0) return std::nullopt;
         for (const auto& p : soup.points) cloud.points.emplace_back(p[0], p[1], p[2]);
         cloud.notes = std::move(soup.notes);
-        if (kind == ".ply") cloud.normals = ply_normals(read_file(file), cloud.points.size());
+        if (kind == ".ply")
+            for (const auto& n : read_ply_vectors(file, {"nx", "ny", "nz"})) cloud.normals.emplace_back(n[0], n[1], n[2]);
     }
     if (cloud.points.empty()) fail_input(file.string(), "has neither faces nor points", "export it again");
     for (std::size_t i = 0; i < cloud.points.size(); ++i)

@@ -1,5 +1,6 @@
 #include "ostraka/reconstruction/search_placement.h"
 #include "ostraka/core/angles.h"
+#include "ostraka/stats/summary.h"
 
 #include <algorithm>
 #include <cmath>
@@ -37,8 +38,7 @@ std::vector<std::optional<PoseSearchResult>> place_by_search(PoseSearches& searc
         std::vector<double> scales;
         for (const std::size_t k : wanted)
             if (results[k] && results[k]->decided) scales.push_back(results[k]->candidates.front().scale);
-        std::sort(scales.begin(), scales.end());
-        if (!scales.empty()) scale = scales[scales.size() / 2];
+        if (!scales.empty()) scale = upper_median(scales);
         if (most > least && !scales.empty()) {
             const auto alone = results;
             all(scale, scale);

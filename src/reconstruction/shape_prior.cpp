@@ -8,6 +8,7 @@
 #include "ostraka/core/parallel.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/submesh.h"
+#include "ostraka/stats/summary.h"
 
 #include <algorithm>
 #include <array>
@@ -174,9 +175,8 @@ private:
         // Who is off by far more than most does not count (Tukey's biweight).
         std::vector<double> sizes;
         for (const Residual& one : matches) sizes.push_back(std::abs(one.off));
-        const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-        std::nth_element(sizes.begin(), middle, sizes.end());
-        const double least_error = 1e-4 * diagonal_, limit = 4.685 * std::max(1.4826 * *middle, least_error);
+        const double least_error = 1e-4 * diagonal_,
+                     limit = 4.685 * std::max(1.4826 * upper_median(std::move(sizes)), least_error);
         double weight = 0;
         for (Residual& one : matches) {
             const double t = one.off / limit;

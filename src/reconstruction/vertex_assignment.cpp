@@ -7,11 +7,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/geom/eigen.h"
-
-#include <CGAL/Orthogonal_k_neighbor_search.h>
-#include <CGAL/Search_traits_3.h>
-#include <CGAL/Search_traits_adapter.h>
-#include <CGAL/property_map.h>
+#include "ostraka/geom/point_tree.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,11 +17,6 @@
 namespace ostraka {
 
 namespace {
-
-using Named = std::pair<Point, int>;
-using Traits = CGAL::Search_traits_adapter<Named, CGAL::First_of_pair_property_map<Named>, CGAL::Search_traits_3<Kernel>>;
-using Neighbours = CGAL::Orthogonal_k_neighbor_search<Traits>;
-using Tree = Neighbours::Tree;
 
 /// The vertices of a part, which of them are on an outline, and where.
 struct Part {
@@ -116,11 +107,10 @@ public:
           options_(options),
           least_cosine_(std::cos(options.angle * pi / 180)) {
         for (const bool outer : {false, true}) {
-            std::vector<Named> named;
+            std::vector<Point> places;
             for (const int j : outer ? theirs_.outer : theirs_.inner)
-                named.emplace_back(theirs_.places[static_cast<std::size_t>(j)], j);
-            trees_[outer ? 1 : 0].insert(named.begin(), named.end());
-            if (!named.empty()) trees_[outer ? 1 : 0].build();
+                places.push_back(theirs_.places[static_cast<std::size_t>(j)]);
+            trees_[outer ? 1 : 0] = PointTree(places);
         }
         find_scales();
     }
@@ -188,11 +178,9 @@ private:
             [&](std::size_t i) {
                 nearest[i] = std::numeric_limits<double>::infinity();
                 farthest[i] = 0;
-                for (const Tree& tree : trees_) {
-                    if (tree.empty()) continue;
-                    nearest[i] = std::min(nearest[i], std::sqrt(Neighbours(tree, ours_.places[i], 1).begin()->second));
-                    farthest[i] =
-                        std::max(farthest[i], std::sqrt(Neighbours(tree, ours_.places[i], 1, 0, false).begin()->second));
+                for (const PointTree& tree : trees_) {
+                    nearest[i] = std::min(nearest[i], std::sqrt(tree.nearest(ours_.places[i]).squared));
+                    farthest[i] = std::max(farthest[i], std::sqrt(tree.farthest_squared(ours_.places[i])));
                 }
             },
             64);
@@ -230,13 +218,10 @@ private:
             }
             for (std::size_t count = std::min(wanted + 4, group.size());; count = std::min(4 * count, group.size())) {
                 std::vector<std::pair<double, int>> found;
-                double farthest = 0;
-                const Neighbours search(trees_[kind], ours_.places[static_cast<std::size_t>(i)], static_cast<unsigned>(count));
-                for (const auto& [named, squared] : search) {
-                    farthest = std::max(farthest, squared);
-                    if (allowed(i, named.second)) found.emplace_back(cost(i, named.second), named.second);
-                }
-                const bool beyond = options_.reach > 0 && farthest > options_.reach * options_.reach;
+                const auto near = trees_[kind].neighbours(ours_.places[static_cast<std::size_t>(i)], count);
+                for (const PointTree::Near& one : near)
+                    if (const int j = group[one.index]; allowed(i, j)) found.emplace_back(cost(i, j), j);
+                const bool beyond = options_.reach > 0 && near.back().squared > options_.reach * options_.reach;
                 if (found.size() < wanted && count < group.size() && !beyond) continue;
                 list.insert(list.end(), found.begin(), found.end());
                 break;
@@ -250,7 +235,7 @@ private:
     Part ours_, theirs_;
     const VertexAssignmentOptions& options_;
     double least_cosine_;
-    std::array<Tree, 2> trees_;  ///< of the fragment's vertices inside, and on outlines
+    std::array<PointTree, 2> trees_;  ///< of the fragment's vertices inside, and on outlines
     Scale distance_, boundary_, outline_;
 };
 

@@ -2,45 +2,30 @@
 #include "ostraka/core/angles.h"
 #include "ostraka/core/dense.h"
 
+#include "trimmed_registration.h"
+
 #include "ostraka/core/error.h"
 #include "ostraka/geom/eigen.h"
-#include "ostraka/geom/plane_motion.h"
-
-#include <CGAL/Orthogonal_k_neighbor_search.h>
-#include <CGAL/Search_traits_3.h>
-#include <CGAL/Search_traits_adapter.h>
-#include <CGAL/property_map.h>
+#include "ostraka/geom/point_tree.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace ostraka {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-namespace {
-using PlaceOf = CGAL::Pointer_property_map<Point>::const_type;
-using Traits = CGAL::Search_traits_adapter<std::size_t, PlaceOf, CGAL::Search_traits_3<Kernel>>;
-using Search = CGAL::Orthogonal_k_neighbor_search<Traits>;
-}  // namespace
-
 struct AlignSurface::State {
-    std::vector<Point> places;  ///< of the vertices
-    std::vector<Vector3d> points, normals;
+    std::vector<Vector3d> points, normals;  ///< of the vertices
     std::vector<bool> border;
     std::vector<Vector3d> sample_points, sample_normals;
     double size = 0;
     Vector3d centre = Vector3d::Zero();
     Matrix3d axes = Matrix3d::Identity();
-    std::unique_ptr<Search::Tree> tree;
-    std::unique_ptr<Search::Distance> distance;
+    PointTree tree;
 
-    [[nodiscard]] std::size_t nearest(const Vector3d& p) const {
-        const Search search(*tree, point_of(p), 1, 0, true, *distance);
-        return search.begin()->first;
-    }
+    [[nodiscard]] std::size_t nearest(const Vector3d& p) const { return tree.nearest(point_of(p)).index; }
 };
 
 AlignSurface::AlignSurface(const Mesh& mesh, int samples) : state_(std::make_unique<State>()) {
@@ -50,11 +35,12 @@ AlignSurface::AlignSurface(const Mesh& mesh, int samples) : state_(std::make_uni
     if (samples < 1)
         fail_usage("a surface is to be laid onto another by " + std::to_string(samples) + " points", "take at least one");
     s.size = std::sqrt(area);
+    std::vector<Point> places;
     for (const Vertex v : mesh.vertices()) {
         if (mesh.is_isolated(v)) continue;
         const Vector3d normal = eigen(vertex_normal(mesh, v));
         if (normal.isZero()) continue;
-        s.places.push_back(mesh.point(v));
+        places.push_back(mesh.point(v));
         s.points.push_back(eigen(mesh.point(v)));
         s.normals.push_back(normal);
         s.border.push_back(mesh.is_border(v));
@@ -76,12 +62,7 @@ AlignSurface::AlignSurface(const Mesh& mesh, int samples) : state_(std::make_uni
     for (const Vector3d& p : s.sample_points) second += (p - s.centre) * (p - s.centre).transpose();
     s.axes = SymmetricEigen3(second).eigenvectors();
     if (s.axes.determinant() < 0) s.axes.col(0) *= -1;
-    std::vector<std::size_t> all(s.places.size());
-    std::iota(all.begin(), all.end(), std::size_t{0});
-    const Traits traits{PlaceOf(s.places.data())};
-    s.tree = std::make_unique<Search::Tree>(all.begin(), all.end(), Search::Tree::Splitter(), traits);
-    s.tree->build();
-    s.distance = std::make_unique<Search::Distance>(PlaceOf(s.places.data()));
+    s.tree = PointTree(places);
 }
 
 AlignSurface::~AlignSurface() = default;
@@ -101,61 +82,32 @@ std::vector<Motion> principal_starts(const AlignSurface& a, const AlignSurface& 
 
 namespace {
 
-/// A sample of one surface and the plane at its partner, both where the second surface is.
-struct Pair {
-    Vector3d point, place, normal;  ///< the moved point is that of the first surface if `forward`
-    double squared;
-    bool forward;
-};
-
 class Aligner {
 public:
     Aligner(const AlignSurface& a, const AlignSurface& b, const AlignOptions& options)
         : a_(a.state()), b_(b.state()), options_(options), cosine_(std::cos(options.angle * pi / 180)) {}
 
     Alignment run(const Motion& start) {
-        // The pairs change from step to step, so that the distance may rise for a while: the best pose met is kept.
-        constexpr int patience = 4;
-        Alignment result;
-        Motion motion = start;
-        double least = measure(motion);
-        result.motion = motion;
-        result.overlap = overlap_;
-        for (int since = 0; result.iterations < options_.iterations && since < patience && pairs_.size() >= 6;
-             ++result.iterations) {
-            motion = step(motion);
-            const double now = measure(motion);
-            since = now < least * (1 - 1e-3) ? 0 : since + 1;
-            if (now < least) least = now, result.motion = motion, result.overlap = overlap_;
-            result.settled = since >= patience;
-        }
-        result.distance = least / (0.5 * (a_.size + b_.size));
-        return result;
+        const detail::Registration found = detail::register_from(
+            start, options_.iterations, 1e-3, pairs_, [&](const Motion& motion) { return measure(motion); },
+            [&](const Motion& motion) { return step(motion); });
+        return {found.pose, found.fit.residual / (0.5 * (a_.size + b_.size)), found.fit.overlap, found.iterations, found.settled};
     }
 
 private:
     /// Pairs under a motion, trimmed; their root mean square.
-    double measure(const Motion& motion) {
-        pairs_.clear();
+    detail::PoseFit measure(const Motion& motion) {
+        pairs_.list.clear();
         const Motion back = motion.inverse();
         collect(a_, b_, motion, back, true);
         collect(b_, a_, back, motion, false);
-        const std::size_t all = a_.sample_points.size() + b_.sample_points.size();
-        overlap_ = static_cast<double>(pairs_.size()) / static_cast<double>(all);
-        // Trimmed against all samples: a pose in which few points find a partner is no better for it.
-        const auto wanted = std::max<std::size_t>(1, static_cast<std::size_t>(options_.trim * static_cast<double>(all)));
-        std::stable_sort(pairs_.begin(), pairs_.end(), [](const Pair& p, const Pair& q) { return p.squared < q.squared; });
-        if (pairs_.size() > wanted) pairs_.resize(wanted);
+        const std::size_t all = a_.sample_points.size() + b_.sample_points.size(), met = pairs_.list.size();
+        const std::size_t wanted = pairs_.trim(options_.trim, all);
         // A pose in which few points find a partner is no better for it: who has none is as far off as the farthest that counts.
-        double sum = 0;
-        for (const Pair& pair : pairs_) {
-            const double off = pair.normal.dot(pair.point - pair.place);
-            sum += off * off;
-        }
-        const auto missing = static_cast<double>(wanted - pairs_.size());
-        if (!pairs_.empty()) sum += missing * pairs_.back().squared;
-        rms_ = pairs_.empty() ? b_.size : std::sqrt(sum / static_cast<double>(wanted));
-        return rms_;
+        double sum = pairs_.squares();
+        if (met > 0) sum += static_cast<double>(wanted - pairs_.list.size()) * pairs_.list.back().squared;
+        const double rms = met > 0 ? std::sqrt(sum / static_cast<double>(wanted)) : b_.size;
+        return {rms, rms, static_cast<double>(met) / static_cast<double>(all)};
     }
 
     void collect(const AlignSurface::State& from, const AlignSurface::State& to, const Motion& there, const Motion& back,
@@ -163,25 +115,22 @@ private:
         for (std::size_t i = 0; i < from.sample_points.size(); ++i) {
             const Vector3d p = there(from.sample_points[i]), n = there.turn * from.sample_normals[i];
             const std::size_t v = to.nearest(p);
-            if (to.border[v] || n.dot(to.normals[v]) < cosine_) continue;
+            if (v == no_index || to.border[v] || n.dot(to.normals[v]) < cosine_) continue;  // none: the pose is not finite
             // Lengths and planes are compared where the second surface is.
             if (forward) {
-                pairs_.push_back({p, to.points[v], to.normals[v], (p - to.points[v]).squaredNorm(), true});
+                pairs_.list.push_back({p, to.points[v], to.normals[v], (p - to.points[v]).squaredNorm()});
             } else {
                 const Vector3d q = back(to.points[v]);
                 const Vector3d normal = back.turn * to.normals[v];
-                pairs_.push_back({q, from.sample_points[i], normal, (q - from.sample_points[i]).squaredNorm(), false});
+                pairs_.list.push_back({q, from.sample_points[i], normal, (q - from.sample_points[i]).squaredNorm()});
             }
         }
     }
 
     /// The first surface is turned by w, shifted by t and scaled by 1 + s about the pairs' centre, linearised.
     Motion step(const Motion& motion) {
-        Vector3d centre = Vector3d::Zero();
-        for (const Pair& pair : pairs_) centre += pair.point / static_cast<double>(pairs_.size());
         const bool scaled = options_.shrinkage > 0;
-        PlaneMotion planes(centre, b_.size);
-        for (const Pair& pair : pairs_) planes.add(pair.point, pair.normal, pair.normal.dot(pair.place - pair.point));
+        const PlaneMotion planes = pairs_.planes(b_.size);
         PlaneMotion::Step step = planes.solve(1e-9, scaled);
         if (scaled)
             step.growth =
@@ -193,8 +142,7 @@ private:
     const AlignSurface::State &a_, &b_;
     const AlignOptions& options_;
     double cosine_;
-    std::vector<Pair> pairs_;
-    double rms_ = 0, overlap_ = 0;
+    detail::PlanePairs pairs_;
 };
 
 }  // namespace

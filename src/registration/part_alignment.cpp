@@ -1,10 +1,11 @@
 #include "ostraka/registration/part_alignment.h"
 #include "ostraka/core/angles.h"
 
+#include "trimmed_registration.h"
+
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/geom/eigen.h"
-#include "ostraka/geom/plane_motion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -45,68 +46,43 @@ public:
         : samples_(std::move(samples)), whole_(whole), anchors_(anchors), options_(options) {}
 
     PartAlignment run(const Motion& start) {
-        constexpr int patience = 4;
-        PartAlignment result;
-        Motion pose = start;
-        double least = measure(pose);
-        result.pose = pose;
-        result.residual = residual_;
-        result.overlap = overlap_;
-        for (int since = 0; result.iterations < options_.iterations && since < patience && pairs_.size() >= 6;
-             ++result.iterations) {
-            pose = step(pose);
-            const double now = measure(pose);
-            since = now < least * (1 - 1e-4) ? 0 : since + 1;
-            if (now < least) {
-                least = now;
-                result.pose = pose;
-                result.residual = residual_;
-                result.overlap = overlap_;
-            }
-            result.settled = since >= patience;
-        }
-        return result;
+        const detail::Registration found = detail::register_from(
+            start, options_.iterations, 1e-4, pairs_, [&](const Motion& pose) { return measure(pose); },
+            [&](const Motion& pose) { return step(pose); });
+        return {found.pose, found.fit.residual, found.fit.overlap, found.iterations, found.settled};
     }
 
 private:
-    struct Pair {
-        Vector3d point, place, normal;
-        double squared;
-    };
-
     /// Pairs under a pose, trimmed; what is minimised, anchors and samples without a partner included.
-    double measure(const Motion& pose) {
-        std::vector<std::optional<Pair>> found(samples_.size());
+    detail::PoseFit measure(const Motion& pose) {
+        std::vector<std::optional<detail::PlanePair>> found(samples_.size());
         const double reach = options_.reach * whole_.diagonal(), cosine = std::cos(options_.angle * pi / 180);
         parallel_for(samples_.size(), [&](std::size_t i) {
             const Vector3d p = pose(samples_[i].place), n = pose.turn * samples_[i].normal;
             const auto hit = whole_.closest_compatible(point_of(p), vector_of(n), cosine, reach);
-            if (hit) found[i] = Pair{p, eigen(hit->point), eigen(whole_.normal(hit->face)), hit->distance * hit->distance};
+            if (hit)
+                found[i] =
+                    detail::PlanePair{p, eigen(hit->point), eigen(whole_.normal(hit->face)), hit->distance * hit->distance};
         });
-        pairs_.clear();
+        pairs_.list.clear();
         for (const auto& pair : found)
-            if (pair) pairs_.push_back(*pair);
-        overlap_ = static_cast<double>(pairs_.size()) / static_cast<double>(samples_.size());
-        const auto wanted =
-            std::max<std::size_t>(1, static_cast<std::size_t>(options_.trim * static_cast<double>(samples_.size())));
-        std::stable_sort(pairs_.begin(), pairs_.end(), [](const Pair& a, const Pair& b) { return a.squared < b.squared; });
-        if (pairs_.size() > wanted) pairs_.resize(wanted);
-        double sum = 0;
-        for (const Pair& pair : pairs_) sum += std::pow(pair.normal.dot(pair.point - pair.place), 2);
-        residual_ = pairs_.empty() ? reach : std::sqrt(sum / static_cast<double>(pairs_.size()));
+            if (pair) pairs_.list.push_back(*pair);
+        detail::PoseFit fit;
+        fit.overlap = static_cast<double>(pairs_.list.size()) / static_cast<double>(samples_.size());
+        const std::size_t wanted = pairs_.trim(options_.trim, samples_.size()), met = pairs_.list.size();
+        double sum = pairs_.squares();
+        fit.residual = met == 0 ? reach : std::sqrt(sum / static_cast<double>(met));
         // Who has no partner is as far off as can be: a pose in which few find one is no better for it.
-        sum += static_cast<double>(wanted - pairs_.size()) * reach * reach;
+        sum += static_cast<double>(wanted - met) * reach * reach;
         weight_ = anchors_.empty() ? 0 : options_.anchors * static_cast<double>(wanted) / static_cast<double>(anchors_.size());
         for (const Anchor& anchor : anchors_) sum += weight_ * (pose(anchor.of_part) - anchor.of_whole).squaredNorm();
-        return sum;
+        fit.minimised = sum;
+        return fit;
     }
 
     /// Turned by w and shifted by t about the pairs' centre, linearised.
     [[nodiscard]] Motion step(const Motion& pose) const {
-        Vector3d centre = Vector3d::Zero();
-        for (const Pair& pair : pairs_) centre += pair.point / static_cast<double>(pairs_.size());
-        PlaneMotion planes(centre, whole_.diagonal());
-        for (const Pair& pair : pairs_) planes.add(pair.point, pair.normal, pair.normal.dot(pair.place - pair.point));
+        PlaneMotion planes = pairs_.planes(whole_.diagonal());
         for (const Anchor& anchor : anchors_) {
             const Vector3d p = pose(anchor.of_part);
             for (int axis = 0; axis < 3; ++axis) planes.add(p, Vector3d::Unit(axis), anchor.of_whole[axis] - p[axis], weight_);
@@ -118,8 +94,8 @@ private:
     const SurfaceSearch& whole_;
     const std::vector<Anchor>& anchors_;
     const PartAlignmentOptions& options_;
-    std::vector<Pair> pairs_;
-    double residual_ = 0, overlap_ = 0, weight_ = 0;
+    detail::PlanePairs pairs_;
+    double weight_ = 0;
 };
 
 }  // namespace

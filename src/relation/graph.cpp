@@ -3,10 +3,10 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/ids.h"
+#include "ostraka/core/nearest_name.h"
 
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <set>
 #include <tuple>
 
@@ -81,19 +81,6 @@ std::string lower(std::string text) {
     return text;
 }
 
-/// Levenshtein's distance of two words.
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-    std::vector<std::size_t> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), std::size_t{0});
-    for (std::size_t i = 1; i <= a.size(); ++i) {
-        std::size_t diagonal = row[0];
-        row[0] = i;
-        for (std::size_t j = 1; j <= b.size(); ++j)
-            diagonal = std::exchange(row[j], std::min({row[j] + 1, row[j - 1] + 1, diagonal + (a[i - 1] != b[j - 1] ? 1 : 0)}));
-    }
-    return row.back();
-}
-
 bool finite(const std::array<double, 3>& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
 
 void check_direction(const std::array<double, 3>& v, const char* what, const std::string& place) {
@@ -151,7 +138,7 @@ std::string nearest_relation_type(const std::string& name) {
     const RelationType* best = nullptr;
     std::size_t least = std::numeric_limits<std::size_t>::max();
     for (const auto& type : relation_types()) {
-        const std::size_t distance = edit_distance(wanted, type.name);
+        const std::size_t distance = edit_distance(wanted, type.name, 200);
         if (distance < least) least = distance, best = &type;
     }
     return best->name;

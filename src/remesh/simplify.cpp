@@ -5,6 +5,7 @@
 #include "collapse_rules.h"
 #include "indexed_heap.h"
 #include "metric.h"
+#include "ostraka/core/disjoint_sets.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/progress.h"
 
@@ -33,10 +34,8 @@ public:
           metric_(options.method == SimplifyOptions::Method::qem ? make_quadric_metric(mesh, frame_, marks_, options)
                                                                  : make_lindstrom_turk_metric(frame_)),
           heap_(mesh.number_of_edges()),
-          parent_(mesh.number_of_vertices()),
-          remaining_(mesh.number_of_vertices()) {
-        for (std::size_t v = 0; v < parent_.size(); ++v) parent_[v] = static_cast<Index>(v);
-    }
+          merged_(mesh.number_of_vertices()),
+          remaining_(mesh.number_of_vertices()) {}
 
     void run(std::size_t wanted, SimplifyResult& result) {
         const bool can_break = options_.outlines == SimplifyOptions::Outlines::follow && rules_.any_marks();
@@ -58,8 +57,8 @@ public:
         result.outlines_broken = rules_.broken();
         result.reached = remaining_ == wanted;
         result.stop_reason = result.reached ? "the wanted number of vertices was reached" : explain(wanted);
-        result.vertex_map.resize(parent_.size());
-        for (std::size_t v = 0; v < parent_.size(); ++v) result.vertex_map[v] = root(static_cast<Index>(v));
+        result.vertex_map.resize(merged_.size());
+        for (std::size_t v = 0; v < merged_.size(); ++v) result.vertex_map[v] = merged_.find(v);
     }
 
 private:
@@ -137,7 +136,7 @@ private:
         rules_.before_collapse(mesh_, h);
         collapse(mesh_, h, visitor_);
         metric_->merged(v, u);
-        parent_[u] = v;
+        merged_.unite_into(v, u);
         --remaining_;
         ++collapses_;
         rules_.after_collapse(mesh_, v);
@@ -184,13 +183,6 @@ private:
         return fine;
     }
 
-    Index root(Index v) {
-        Index r = v;
-        while (parent_[r] != r) r = parent_[r];
-        while (parent_[v] != r) v = std::exchange(parent_[v], r);
-        return r;
-    }
-
     [[nodiscard]] std::string explain(std::size_t wanted) const {
         std::string text = "stopped at " + std::to_string(remaining_) + " vertices instead of " + std::to_string(wanted) +
                            ": of the remaining " + std::to_string(mesh_.number_of_edges()) + " edges ";
@@ -210,7 +202,7 @@ private:
     CollapseRules rules_;
     std::unique_ptr<CollapseMetric> metric_;
     IndexedHeap heap_;
-    std::vector<Index> parent_;
+    DisjointSets merged_;
     std::size_t remaining_;
     std::size_t collapses_ = 0;
     std::size_t refused_topology_ = 0, refused_shape_ = 0;

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <functional>
 #include <map>
 #include <stdexcept>
 
@@ -21,10 +20,6 @@ bool is_number(const std::string& cell) {
     std::string bare = cell;
     while (!bare.empty() && (bare.back() == '%' || bare.back() == ' ')) bare.pop_back();
     return number_of(bare).has_value();
-}
-
-std::size_t characters(const std::string& text) {
-    return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; }));
 }
 
 }  // namespace
@@ -48,6 +43,10 @@ TableCell fixed_cell(const std::optional<double>& value, int after_point) {
 
 TableCell percent_cell(const std::optional<double>& share, int after_point) {
     return finite_cell(share, [&](double x) { return percent(x, after_point); });
+}
+
+std::size_t shown_width(const std::string& text) {
+    return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; }));
 }
 
 TextTable::TextTable(const std::vector<TableColumn>& columns) {
@@ -174,25 +173,34 @@ std::string TextTable::latex(const std::string& caption, const std::string& labe
            (label.empty() ? "" : "\\label{" + label + "}\n") + "\\end{table}\n";
 }
 
-std::string TextTable::plain() const {
-    const std::vector<bool> right = numeric();
-    std::vector<std::size_t> widths;
-    for (std::size_t j = 0; j < columns_.size(); ++j) {
-        widths.push_back(characters(one_line(columns_[j])));
-        for (const auto& row : rows_) widths[j] = std::max(widths[j], characters(one_line(row[j])));
-    }
-    const auto line = [&](const std::vector<std::string>& cells) {
-        std::string text;
-        for (std::size_t j = 0; j < cells.size(); ++j) {
-            const std::string cell = one_line(cells[j]), blanks(widths[j] - characters(cell), ' ');
-            text += (j == 0 ? "" : "  ") + (right[j] ? blanks + cell : cell + blanks);
+std::string aligned_rows(const std::vector<std::vector<std::string>>& rows,
+                         const std::function<bool(std::size_t, std::size_t)>& right) {
+    constexpr std::size_t widest = 100;
+    std::vector<std::size_t> widths(rows.front().size(), 0);
+    for (const auto& row : rows)
+        for (std::size_t j = 0; j < widths.size(); ++j) {
+            const std::size_t width = shown_width(row[j]);
+            widths[j] = std::max(widths[j], &row == &rows.front() ? width : std::min(width, widest));
         }
-        while (!text.empty() && text.back() == ' ') text.pop_back();
-        return text + '\n';
-    };
-    std::string text = line(columns_);
-    for (const auto& row : rows_) text += line(row);
+    std::string text;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        for (std::size_t j = 0; j < widths.size(); ++j) {
+            const std::string& cell = rows[i][j];
+            const std::string blanks(widths[j] - std::min(widths[j], shown_width(cell)), ' ');
+            text += (j == 0 ? "" : "  ") + (right(i, j) ? blanks + cell : cell + blanks);
+        }
+        text.erase(text.find_last_not_of(' ') + 1);
+        text += '\n';
+    }
     return text;
+}
+
+std::string TextTable::plain() const {
+    std::vector<std::vector<std::string>> rows{columns_};
+    rows.insert(rows.end(), rows_.begin(), rows_.end());
+    for (auto& row : rows)
+        for (std::string& cell : row) cell = one_line(cell);
+    return aligned_rows(rows, [right = numeric()](std::size_t, std::size_t column) { return right[column]; });
 }
 
 void TextTable::write(const Path& folder, const std::string& name, const std::string& caption) const {

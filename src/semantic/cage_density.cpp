@@ -1,25 +1,12 @@
 #include "ostraka/semantic/cage_density.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/geom/point_tree.h"
 #include "ostraka/relation/geometric.h"
-
-#include <CGAL/Fuzzy_sphere.h>
-#include <CGAL/Kd_tree.h>
-#include <CGAL/Search_traits_3.h>
-#include <CGAL/Search_traits_adapter.h>
-#include <CGAL/property_map.h>
 
 #include <memory>
 
 namespace ostraka {
-
-namespace {
-
-using Weighted = std::pair<Point, double>;
-using Traits = CGAL::Search_traits_adapter<Weighted, CGAL::First_of_pair_property_map<Weighted>, CGAL::Search_traits_3<Kernel>>;
-using Tree = CGAL::Kd_tree<Traits>;
-
-}  // namespace
 
 CageDensity annotation_density(const Mesh& mesh, const AnnotationSet& set, const std::vector<std::pair<int, double>>& factors) {
     std::map<Index, double> at;
@@ -55,15 +42,19 @@ CageDensity annotation_density(const Mesh& mesh, const AnnotationSet& set, const
             for (const Vertex v : corners(mesh, Face(f))) mark(v.idx(), factor);
     }
     if (at.empty()) return {};
-    const auto tree = std::make_shared<Tree>();
-    for (const auto& [v, factor] : at) tree->insert({mesh.point(Vertex(v)), factor});
-    tree->build();
+    std::vector<Point> places;
+    std::vector<double> marked;
+    for (const auto& [v, factor] : at) {
+        places.push_back(mesh.point(Vertex(v)));
+        marked.push_back(factor);
+    }
+    const auto tree = std::make_shared<PointTree>(places);
     const double reach = box_diagonal(mesh) / 20;
-    return [tree, reach](const Point& p) {
+    return [tree, marked, reach](const Point& p) {
         double factor = 0;
-        std::vector<Weighted> near;
-        tree->search(std::back_inserter(near), CGAL::Fuzzy_sphere<Traits>(p, reach));
-        for (const Weighted& entry : near) factor = std::max(factor, entry.second);
+        std::vector<Index> near;
+        tree->within(p, reach, near);
+        for (const Index i : near) factor = std::max(factor, marked[i]);
         return factor > 0 ? factor : 1.0;
     };
 }

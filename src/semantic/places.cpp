@@ -1,6 +1,7 @@
 // Constraints on where points and parts are: on a plane, on a line, mirrored, next to each other.
 #include "reader.h"
 
+#include "ostraka/geom/point_tree.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/relation/geometric.h"
 
@@ -77,32 +78,23 @@ Partners partners_of(const Reader& read, const Vector3d& point, const Vector3d& 
     return partners;
 }
 
-/// Pairs, lower index first, of each vertex with the nearest other one within reach, found in bins of that size.
+/// Pairs, lower index first, of each vertex with the nearest one within reach that is not at the same place.
 void add_nearest(const Points& points, const std::vector<Index>& from, const std::vector<Index>& to, double reach,
                  std::vector<std::array<int, 2>>& pairs) {
-    using Bin = std::array<std::int64_t, 3>;
-    const auto bin = [&](const Vector3d& p) -> Bin {
-        const auto at = [&](double x) { return static_cast<std::int64_t>(std::floor(x / reach)); };
-        return {at(p.x()), at(p.y()), at(p.z())};
-    };
-    const Vector3d low = points.rowwise().minCoeff();
-    std::map<Bin, std::vector<Index>> bins;
-    for (const Index v : to) bins[bin(points.col(v) - low)].push_back(v);
+    std::vector<Point> places;
+    for (const Index v : to) places.push_back(point_of(points.col(v)));
+    const PointTree tree(places);
+    std::vector<Index> near;
     for (const Index v : from) {
-        const Vector3d p = points.col(v);
-        const Bin at = bin(p - low);
-        double best = reach;
-        std::optional<Index> partner;
-        for (int i = 0; i < 27; ++i) {
-            const auto found = bins.find({at[0] + i % 3 - 1, at[1] + i / 3 % 3 - 1, at[2] + i / 9 - 1});
-            if (found == bins.end()) continue;
-            for (const Index w : found->second) {
-                const double d = (points.col(w) - p).norm();
-                if (d > 0 && d <= best) best = d, partner = w;
-            }
+        double best = std::numeric_limits<double>::infinity();
+        Index partner = no_index;
+        tree.within(point_of(points.col(v)), reach, near);
+        for (const Index i : near) {
+            const double d = (points.col(to[i]) - points.col(v)).norm();
+            if (d > 0 && d < best) best = d, partner = to[i];
         }
-        if (!partner) continue;
-        pairs.push_back({static_cast<int>(std::min(v, *partner)), static_cast<int>(std::max(v, *partner))});
+        if (partner == no_index) continue;
+        pairs.push_back({static_cast<int>(std::min(v, partner)), static_cast<int>(std::max(v, partner))});
     }
 }
 

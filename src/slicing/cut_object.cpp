@@ -3,6 +3,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/slicing/curve_slices.h"
+#include "ostraka/stats/summary.h"
 
 #include <algorithm>
 
@@ -89,12 +90,7 @@ SliceFrame median_frame(const CutObject& cut) {
     for (const auto& d : cut.descriptors)
         if (d.outline_barycentre.allFinite()) x.push_back(d.outline_barycentre.x()), y.push_back(d.outline_barycentre.y());
     if (x.empty()) return frame;
-    const auto middle = [](std::vector<double>& values) {
-        std::nth_element(values.begin(), values.begin() + static_cast<long>(values.size() / 2), values.end());
-        return values[values.size() / 2];
-    };
-    const double middle_x = middle(x), middle_y = middle(y);
-    frame.origin = frame.point({middle_x, middle_y}, 0);
+    frame.origin = frame.point({upper_median(std::move(x)), upper_median(std::move(y))}, 0);
     return frame;
 }
 

@@ -3,6 +3,7 @@
 
 #include "strips.h"
 
+#include "ostraka/core/disjoint_sets.h"
 #include "ostraka/core/error.h"
 
 #include <CGAL/Delaunay_triangulation_2.h>
@@ -13,7 +14,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace ostraka {
 
@@ -121,21 +121,15 @@ Graph voronoi(const std::vector<Contour>& contours, int samples) {
 
 /// The nodes of links no longer than `least` become one: the node of the lowest number.
 void contract(Graph& graph, double least, double floor) {
-    std::vector<int> root(graph.places.size());
-    std::iota(root.begin(), root.end(), 0);
-    const auto find = [&](int i) {
-        while (root[static_cast<std::size_t>(i)] != i)
-            i = root[static_cast<std::size_t>(i)] = root[static_cast<std::size_t>(root[static_cast<std::size_t>(i)])];
-        return i;
-    };
+    DisjointSets sets(graph.places.size());
     for (const auto& link : graph.links) {
         if (link.residue < floor) continue;
         if ((graph.places[static_cast<std::size_t>(link.from)] - graph.places[static_cast<std::size_t>(link.to)]).norm() > least)
             continue;
-        const int a = find(link.from), b = find(link.to);
-        root[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+        sets.unite(static_cast<std::size_t>(link.from), static_cast<std::size_t>(link.to));
     }
-    for (auto& link : graph.links) link.from = find(link.from), link.to = find(link.to);
+    for (auto& link : graph.links)
+        for (int* node : {&link.from, &link.to}) *node = static_cast<int>(sets.find(static_cast<std::size_t>(*node)));
 }
 
 MedialAxis::Level prune(const Graph& graph, double residue) {

@@ -1,5 +1,6 @@
 #include "assembly.h"
 
+#include "ostraka/core/disjoint_sets.h"
 #include "ostraka/core/parallel.h"
 
 #include <algorithm>
@@ -129,13 +130,8 @@ LowerTriangle normal_matrix(const RowMatrix& rows, const RowMatrix& columns, std
 }
 
 Floating floating_parts(const Unknowns& unknowns, std::span<const double> row_weight) {
-    std::vector<int> root(static_cast<std::size_t>(unknowns.count));
-    std::iota(root.begin(), root.end(), 0);
-    const auto find = [&](int i) {
-        while (root[i] != i) i = root[i] = root[root[i]];
-        return i;
-    };
-    std::vector<char> active(root.size(), 0), held(root.size(), 0);
+    DisjointSets sets(static_cast<std::size_t>(unknowns.count));
+    std::vector<char> active(sets.size(), 0), held(sets.size(), 0);
     const RowMatrix& rows = unknowns.rows;
     for (int pass = 0; pass < 2; ++pass)  // first who belongs together, then who is held
         for (std::size_t r = 0; r < rows.rows(); ++r) {
@@ -146,21 +142,18 @@ Floating floating_parts(const Unknowns& unknowns, std::span<const double> row_we
                 active[rows.unknown[k]] = 1;
                 sum += rows.value[k];
                 size += std::abs(rows.value[k]);
-                if (pass == 0) {
-                    const int a = find(first), b = find(rows.unknown[k]);
-                    root[std::max(a, b)] = std::min(a, b);
-                }
+                if (pass == 0) sets.unite(first, rows.unknown[k]);
             }
-            if (pass == 1 && std::abs(sum) > 1e-9 * size) held[find(first)] = 1;
+            if (pass == 1 && std::abs(sum) > 1e-9 * size) held[sets.find(first)] = 1;
         }
     Floating result;
-    std::vector<int> part_of(root.size(), -1);
+    std::vector<int> part_of(sets.size(), -1);
     for (int i = 0; i < unknowns.count; ++i) {
         if (!active[i]) {
             result.idle.push_back(i);
             continue;
         }
-        const int r = find(i);
+        const Index r = sets.find(i);
         if (held[r] || i >= static_cast<int>(unknowns.point.size())) continue;
         if (part_of[r] < 0) {
             part_of[r] = static_cast<int>(result.parts.size());

@@ -2,6 +2,7 @@
 #include "ostraka/core/angles.h"
 
 #include "check_samples.h"
+#include "ostraka/core/disjoint_sets.h"
 #include "ostraka/core/error.h"
 
 #include <algorithm>
@@ -183,21 +184,14 @@ Linkage linkage(const Eigen::MatrixXd& distances, LinkageMethod method) {
 
     Linkage tree;
     tree.samples = static_cast<int>(n);
-    std::vector<int> cluster(static_cast<std::size_t>(n)), size(static_cast<std::size_t>(n), 1),
-        root(static_cast<std::size_t>(n));
+    std::vector<int> cluster(static_cast<std::size_t>(n)), size(static_cast<std::size_t>(n), 1);
     std::iota(cluster.begin(), cluster.end(), 0);
-    std::iota(root.begin(), root.end(), 0);
-    const auto find = [&](Eigen::Index i) {
-        auto at = static_cast<std::size_t>(i);
-        while (root[at] != static_cast<int>(at))
-            at = static_cast<std::size_t>(root[at] = root[static_cast<std::size_t>(root[at])]);
-        return at;
-    };
+    DisjointSets sets(static_cast<std::size_t>(n));
     for (const Step& step : steps) {
-        const std::size_t a = find(step.a), b = find(step.b);
+        const std::size_t a = sets.find(static_cast<std::size_t>(step.a)), b = sets.find(static_cast<std::size_t>(step.b));
         const int sum = size[a] + size[b];
         tree.merges.push_back({std::min(cluster[a], cluster[b]), std::max(cluster[a], cluster[b]), step.height, sum});
-        root[b] = static_cast<int>(a);
+        sets.unite_into(a, b);
         size[a] = sum;
         cluster[a] = static_cast<int>(n) + static_cast<int>(tree.merges.size()) - 1;
     }

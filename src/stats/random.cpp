@@ -19,6 +19,11 @@ std::uint64_t mixed(std::uint64_t x) {
 
 }  // namespace
 
+double random_share(std::uint64_t seed, std::uint64_t counter) {
+    const std::uint64_t x = (seed + 0x632be59bd9b4e019U + counter) * 0x9e3779b97f4a7c15U;
+    return static_cast<double>(mixed(x) >> 11) * 0x1p-53;
+}
+
 Random::Random(std::uint64_t seed, std::uint64_t stream) : engine_(mixed(mixed(seed) + stream)) {}
 
 std::size_t Random::below(std::size_t count) {

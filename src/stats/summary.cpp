@@ -135,4 +135,10 @@ double sample_quantile(std::vector<double> values, double share, const std::stri
     return interpolated(values, share);
 }
 
+double upper_median(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
 }  // namespace ostraka

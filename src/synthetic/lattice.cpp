@@ -1,9 +1,8 @@
 #include "lattice.h"
 
-#include "random.h"
-
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/stats/random.h"
 
 #include <algorithm>
 

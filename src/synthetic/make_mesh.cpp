@@ -2,13 +2,13 @@
 
 #include "evening.h"
 #include "lattice.h"
-#include "random.h"
 
+#include "ostraka/core/disjoint_sets.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/stats/random.h"
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 
 namespace ostraka {
 
@@ -33,19 +33,11 @@ bool has_genus(const shapes::Triangles& mesh, int genus) {
 }
 
 bool is_connected(const shapes::Triangles& mesh) {
-    std::vector<Index> leader(mesh.points.size());
-    std::iota(leader.begin(), leader.end(), Index{0});
-    const auto find = [&](Index v) {
-        while (leader[v] != v) v = leader[v] = leader[leader[v]];
-        return v;
-    };
+    DisjointSets sets(mesh.points.size());
     std::size_t pieces = mesh.points.size();
-    for (const auto& [a, b, c] : mesh.faces) {
-        for (const Index v : {b, c}) {
-            const Index p = find(a), q = find(v);
-            if (p != q) leader[std::max(p, q)] = std::min(p, q), --pieces;
-        }
-    }
+    for (const auto& [a, b, c] : mesh.faces)
+        for (const Index v : {b, c})
+            if (sets.unite(a, v)) --pieces;
     return pieces == 1;
 }
 
@@ -130,7 +122,7 @@ MadeMesh make_mesh(const MadeObject& object, const MakeOptions& options) {
         const double edge = std::sqrt(area(even) / static_cast<double>(even.points.size()) * 2 / std::sqrt(3.0));
         parallel_for(even.points.size(), [&](std::size_t v) {
             const Vector3d normal = object.sample(even.points[v]).gradient.normalized();
-            even.points[v] += options.noise * edge * (2 * shapes::random_share(options.seed, 1000 + v) - 1) * normal;
+            even.points[v] += options.noise * edge * (2 * random_share(options.seed, 1000 + v) - 1) * normal;
         });
     }
     TriangleSoup soup;

@@ -1,8 +1,6 @@
 #include "ostraka/core/angles.h"
 #include "ostraka/synthetic/statuettes.h"
 
-#include "random.h"
-
 #include "ostraka/core/error.h"
 #include "ostraka/stats/random.h"
 
@@ -17,7 +15,7 @@ namespace {
 class Draws {
 public:
     Draws(std::uint64_t seed, std::uint64_t object) : seed_(seed), next_(object << 20) {}
-    double share() { return shapes::random_share(seed_, next_++); }
+    double share() { return random_share(seed_, next_++); }
     double normal() {
         const double radius = std::sqrt(-2 * std::log(1 - share()));
         return radius * std::cos(2 * pi * share());

@@ -2,11 +2,11 @@
 #include "ostraka/core/angles.h"
 #include "ostraka/synthetic/statuettes.h"
 
-#include "random.h"
 #include "statuette_build.h"
 
 #include "ostraka/core/parallel.h"
 #include "ostraka/geom/surface_search.h"
+#include "ostraka/stats/random.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,8 +22,7 @@ constexpr std::uint64_t noise_numbers = std::uint64_t{1} << 40, hole_numbers = s
 
 /// Standard normal number of a vertex (Box and Muller 1958).
 double normal_number(std::uint64_t seed, std::uint64_t vertex) {
-    const double a = shapes::random_share(seed, noise_numbers + 2 * vertex),
-                 b = shapes::random_share(seed, noise_numbers + 2 * vertex + 1);
+    const double a = random_share(seed, noise_numbers + 2 * vertex), b = random_share(seed, noise_numbers + 2 * vertex + 1);
     return std::sqrt(-2 * std::log(1 - a)) * std::cos(2 * pi * b);
 }
 
@@ -57,7 +56,7 @@ void miss_patches(std::vector<bool>& missing, const Mesh& mesh, const std::vecto
         if (labels[f.idx()] <= 1 && centroid(mesh, f).z() < highest && centroid(mesh, f).z() > 0.02 * highest) body.push_back(f);
     if (body.empty()) return;
     for (int hole = 0; hole < p.holes; ++hole) {
-        const double share = shapes::random_share(p.seed, hole_numbers + static_cast<std::uint64_t>(hole));
+        const double share = random_share(p.seed, hole_numbers + static_cast<std::uint64_t>(hole));
         const Face middle = body[std::min(static_cast<std::size_t>(share * static_cast<double>(body.size())), body.size() - 1)];
         const Point centre = centroid(mesh, middle);
         const Vector way = area_vector(mesh, middle);

@@ -2,11 +2,11 @@
 #include "ostraka/core/angles.h"
 
 #include "builder.h"
-#include "random.h"
 #include "statuette_build.h"
 #include "warp.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/stats/random.h"
 
 #include <cmath>
 #include <map>

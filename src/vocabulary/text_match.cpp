@@ -1,11 +1,11 @@
 #include "ostraka/vocabulary/text_match.h"
 #include "ostraka/core/angles.h"
+#include "ostraka/core/nearest_name.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <map>
-#include <numeric>
 
 namespace ostraka {
 
@@ -108,30 +108,6 @@ std::string folded(std::string_view text) {
     }
     if (!result.empty() && result.back() == U' ') result.pop_back();
     return encoded(result);
-}
-
-std::size_t edit_distance(std::string_view first, std::string_view second, std::size_t limit) {
-    const std::u32string a = decoded(first), b = decoded(second);
-    const std::size_t longer = std::max(a.size(), b.size()), shorter = std::min(a.size(), b.size());
-    if (longer - shorter > limit) return limit + 1;
-    // Rows of the table: the one before the last, the last, and the one being filled; only cells within `limit` of the diagonal.
-    std::vector<std::size_t> before(b.size() + 1, limit + 1), last(b.size() + 1), row(b.size() + 1, limit + 1);
-    std::iota(last.begin(), last.end(), std::size_t{0});
-    for (std::size_t i = 1; i <= a.size(); ++i) {
-        const std::size_t begin = i > limit ? i - limit : 1, end = std::min(b.size(), i + limit);
-        row.assign(b.size() + 1, limit + 1);
-        if (i <= limit) row[0] = i;
-        std::size_t best = row[0];
-        for (std::size_t j = begin; j <= end; ++j) {
-            row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
-            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) row[j] = std::min(row[j], before[j - 2] + 1);
-            best = std::min(best, row[j]);
-        }
-        if (best > limit) return limit + 1;
-        std::swap(before, last);
-        std::swap(last, row);
-    }
-    return std::min(last[b.size()], limit + 1);
 }
 
 std::vector<std::string> near_misses(const std::string& text, const std::vector<std::string>& candidates, std::size_t most) {

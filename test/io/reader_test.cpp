@@ -1,6 +1,7 @@
 // Each format's readings with known answers, and what is refused with which words.
 #include "io_examples.h"
 #include "ostraka/core/error.h"
+#include "ostraka/io/ply.h"
 #include "scratch.h"
 
 #include <gtest/gtest.h>
@@ -150,6 +151,25 @@ TEST(Ply, StripsBecomeTriangles) {
                                         "element tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 "
                                         "1 0\n1 1 0\n0 2 0\n10 0 1 2 3 -1 2 3 4 4 1\n");
     EXPECT_EQ(soup.corners, (Corners{0, 1, 2, 2, 1, 3, 2, 3, 4}));
+}
+
+TEST(Ply, VectorsOfTheVertices) {
+    const Scratch scratch;
+    const std::string start = "ply\nformat ascii 1.0\n", normals = "property float nx\nproperty double ny\nproperty float nz\n";
+    using Vectors = std::vector<std::array<double, 3>>;
+    const auto vectors = [&](const std::string& bytes) {
+        return read_ply_vectors(scratch.file("a.ply", bytes), {"nx", "ny", "nz"});
+    };
+    EXPECT_EQ(vectors(start + "element other 1\nproperty list int int list\nelement vertex 2\n" + normals +
+                      "property list int int more\n" + ply_xyz + "end_header\n2 7 8\n1 0 0.5 0 1 2 3\n0 1 2 1 9 1 2 3\n"),
+              (Vectors{{1, 0, 0.5}, {0, 1, 2}}));
+    EXPECT_EQ(vectors(start + "element vertex 1\n" + ply_xyz + "end_header\n1 2 3\n"), Vectors{});
+    EXPECT_EQ(vectors(start + "element vertex 1\n" + ply_xyz + "property int nx\nproperty int ny\nproperty int nz\nend_header\n" +
+                      "1 2 3 0 0 1\n"),
+              Vectors{})
+        << "whole numbers are no normals";
+    EXPECT_EQ(vectors("OFF\n0 0 0\n"), Vectors{});
+    EXPECT_THROW(vectors(start + "element vertex 2\n" + normals + "end_header\n1 0 0\n0 x 0\n"), Error);
 }
 
 TEST(Ply, HeadersThatLieAreRefusedBeforeMemoryIsTaken) {

@@ -102,6 +102,22 @@ TEST(Summary, WeightedOnesAgreeWithRepeatedValues) {
     EXPECT_EQ(quantile({1, 2, 5}, {1, 3, 2}, 0.5), 2);
 }
 
+TEST(UpperMedian, OfOddAndEvenNumbers) {
+    EXPECT_EQ(upper_median({4}), 4);
+    EXPECT_EQ(upper_median({9, 1, 5}), 5);
+    EXPECT_EQ(upper_median({9, 1, 5, 2}), 5) << "the upper one of 2 and 5";
+    EXPECT_EQ(upper_median({3, 3, 3, -1}), 3);
+}
+
+TEST(RandomNumbers, OfACounterAreFixed) {
+    EXPECT_EQ(random_share(0, 0), 0x1.3faa35593b596p-1);
+    EXPECT_EQ(random_share(7, 1000000), 0x1.a48826bfb959ap-1);
+    EXPECT_EQ(random_share(~0ULL, ~0ULL), 0x1.2a0bb911f81e2p-1);
+    double sum = 0;
+    for (std::uint64_t i = 0; i < 10000; ++i) sum += random_share(3, i);
+    EXPECT_NEAR(sum / 10000, 0.5, 4 / std::sqrt(12.0 * 10000));
+}
+
 TEST(RandomNumbers, AreThoseOfTheStandardsEngine) {
     // The engine's numbers are fixed by the standard; these laws would not hold if draws were mapped badly.
     Random random(42);

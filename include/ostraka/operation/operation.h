@@ -175,7 +175,4 @@ auto in_file(const std::string& file, Work&& work) {
     }
 }
 
-/// Of several names the one that is nearest to what was written, by edit distance; empty where none is near.
-std::string nearest_name(const std::string& name, const std::vector<std::string>& names);
-
 }  // namespace ostraka

@@ -3,6 +3,7 @@
 
 #include "ostraka/core/file.h"
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -56,7 +57,7 @@ public:
     [[nodiscard]] std::string markdown() const;
     /// A tabular of the booktabs package, in a table with this caption and label where there is a caption.
     [[nodiscard]] std::string latex(const std::string& caption = {}, const std::string& label = {}) const;
-    /// For a terminal: columns aligned by blanks.
+    /// For a terminal, as `aligned_rows`; columns that hold numbers only stand to the right.
     [[nodiscard]] std::string plain() const;
 
     /// FOLDER/NAME.md, .csv and .tex.
@@ -69,6 +70,13 @@ private:
     std::vector<std::size_t> csv_widths_;  ///< a column: its columns in the CSV
     std::vector<std::vector<std::string>> rows_, csv_rows_;
 };
+
+/// Rows, of which the first is the header, for a terminal: columns padded with blanks, no text cut; a cell of more than 100
+/// characters pushes the rest of its own row aside only. right(row, column): whether the cell stands to the right.
+std::string aligned_rows(const std::vector<std::vector<std::string>>& rows,
+                         const std::function<bool(std::size_t, std::size_t)>& right);
+/// Columns on a terminal, not bytes: continuation bytes of UTF-8 take no room.
+std::size_t shown_width(const std::string& text);
 
 /// Text that LaTeX sets as it stands.
 std::string latex_text(const std::string& text);

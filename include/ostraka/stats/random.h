@@ -40,4 +40,8 @@ private:
     bool has_spare_ = false;
 };
 
+/// The counter's number in the seed's sequence (SplitMix64; Steele, Lea and Flood 2014), in [0, 1): for what must not depend on
+/// how much was drawn before.
+double random_share(std::uint64_t seed, std::uint64_t counter);
+
 }  // namespace ostraka

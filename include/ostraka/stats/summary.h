@@ -41,6 +41,9 @@ Summary summarise(const std::vector<double>& values, const std::string& where = 
 /// least, 1 the largest, 0.5 the median. Throws as above, and Error (usage) for a share outside 0 to 1.
 double sample_quantile(std::vector<double> values, double share, const std::string& where = "values");
 
+/// The value in the middle of the order, of an even number the upper of the two there. At least one value.
+double upper_median(std::vector<double> values);
+
 /// Throws Error (input), naming `where` and the value's place, unless all values are finite.
 void require_finite(const std::vector<double>& values, const std::string& where);
 

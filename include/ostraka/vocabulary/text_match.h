@@ -11,10 +11,6 @@ namespace ostraka {
 /// Lower case (Latin, Greek and Cyrillic letters), runs of blanks as one, none at the ends. Accents stay. UTF-8 in and out.
 std::string folded(std::string_view text);
 
-/// Fewest insertions, deletions, replacements of letters and swaps of neighbours (optimal string alignment) from one text to
-/// the other, or more than `limit` where it is more. Time: length x limit.
-std::size_t edit_distance(std::string_view a, std::string_view b, std::size_t limit);
-
 /// Up to `most` of the candidates that differ from the text, both folded, by no more than one edit in three letters; closest
 /// first, then in the order given. Nothing for texts of more than 200 bytes.
 std::vector<std::string> near_misses(const std::string& text, const std::vector<std::string>& candidates, std::size_t most = 3);

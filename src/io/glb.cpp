@@ -1,17 +1,19 @@
-#include "glb.h"
-
-#include "text.h"
+#include "ostraka/io/glb.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/markup.h"
 #include "ostraka/core/provenance.h"
+#include "ostraka/core/text.h"
 
 #include <rapidjson/stringbuffer.h>
 #include <rapidjson/writer.h>
 
+#include <array>
+#include <cmath>
 #include <cstring>
 #include <limits>
 
-namespace ostraka::exchange::glb {
+namespace ostraka::glb {
 
 namespace {
 
@@ -59,7 +61,25 @@ double number_at(std::string_view bytes, std::size_t offset, int component) {
 
 }  // namespace
 
-Builder::Builder() {
+std::uint16_t linear_channel(std::size_t value) {
+    static const auto table = [] {
+        std::array<std::uint16_t, 256> values{};
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            const double s = static_cast<double>(i) / 255;
+            const double linear = s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
+            values[i] = static_cast<std::uint16_t>(std::lround(65535 * linear));
+        }
+        return values;
+    }();
+    return table.at(value);
+}
+
+void check_size(std::size_t bytes, const std::string& where, const std::string& remedy) {
+    if (bytes > std::numeric_limits<std::uint32_t>::max())
+        throw Error(ErrorKind::failure, where, "would exceed the four gigabytes of a GLB file", remedy);
+}
+
+Builder::Builder(std::size_t alignment, bool escapes) : alignment_(alignment), escapes_(escapes) {
     document_.SetObject();
     JsonValue asset(rapidjson::kObjectType);
     add_member(asset, "version", "2.0", allocator());
@@ -67,24 +87,22 @@ Builder::Builder() {
     add_member(document_, "asset", std::move(asset), allocator());
 }
 
-int Builder::add_view(const std::string& bytes, int target, int stride) {
-    binary_.resize((binary_.size() + 7) / 8 * 8, '\0');
+int Builder::view(std::size_t size, int target, int stride) {
+    size_ = (size_ + alignment_ - 1) / alignment_ * alignment_;
     JsonValue entry(rapidjson::kObjectType);
     add_member(entry, "buffer", JsonValue(0), allocator());
-    add_member(entry, "byteOffset", JsonValue(static_cast<std::uint64_t>(binary_.size())), allocator());
-    // A view holds one byte at least.
-    add_member(entry, "byteLength", JsonValue(static_cast<std::uint64_t>(std::max<std::size_t>(bytes.size(), 1))), allocator());
+    add_member(entry, "byteOffset", JsonValue(static_cast<std::uint64_t>(size_)), allocator());
+    add_member(entry, "byteLength", JsonValue(static_cast<std::uint64_t>(size)), allocator());
     if (stride > 0) add_member(entry, "byteStride", JsonValue(stride), allocator());
     if (target > 0) add_member(entry, "target", JsonValue(target), allocator());
-    binary_ += bytes.empty() ? std::string(1, '\0') : bytes;
+    size_ += size;
     views_.PushBack(entry, allocator());
     return static_cast<int>(views_.Size()) - 1;
 }
 
-int Builder::add_accessor(const std::string& bytes, int target, int stride, int component, std::size_t count, const char* type,
-                          JsonValue* min, JsonValue* max) {
+int Builder::accessor(int view, int component, std::size_t count, const char* type, JsonValue* min, JsonValue* max) {
     JsonValue entry(rapidjson::kObjectType);
-    add_member(entry, "bufferView", JsonValue(add_view(bytes, target, stride)), allocator());
+    add_member(entry, "bufferView", JsonValue(view), allocator());
     add_member(entry, "componentType", JsonValue(component), allocator());
     add_member(entry, "count", JsonValue(static_cast<std::uint64_t>(count)), allocator());
     add_member(entry, "type", type, allocator());
@@ -94,41 +112,52 @@ int Builder::add_accessor(const std::string& bytes, int target, int stride, int 
     return static_cast<int>(accessors_.Size()) - 1;
 }
 
+int Builder::add_view(const std::string& bytes, int target, int stride) {
+    const int added = view(std::max<std::size_t>(bytes.size(), 1), target, stride);  // a view holds one byte at least
+    binary_.resize((binary_.size() + alignment_ - 1) / alignment_ * alignment_, '\0');
+    binary_ += bytes.empty() ? std::string(1, '\0') : bytes;
+    return added;
+}
+
+int Builder::add_accessor(const std::string& bytes, int target, int stride, int component, std::size_t count, const char* type,
+                          JsonValue* min, JsonValue* max) {
+    return accessor(add_view(bytes, target, stride), component, count, type, min, max);
+}
+
+int Builder::announce_accessor(std::size_t size, int target, int component, std::size_t count, const char* type, JsonValue* min,
+                               JsonValue* max) {
+    return accessor(view(size, target, 0), component, count, type, min, max);
+}
+
 void Builder::mark_normalised(int accessor) {
     add_member(accessors_[static_cast<rapidjson::SizeType>(accessor)], "normalized", JsonValue(true), allocator());
 }
 
-std::string Builder::finish(const std::string& where) {
-    binary_.resize((binary_.size() + 7) / 8 * 8, '\0');
+std::string Builder::head(const std::string& where, const std::string& remedy) {
+    size_ = (size_ + alignment_ - 1) / alignment_ * alignment_;
+    if (!binary_.empty()) binary_.resize(size_, '\0');
     JsonValue buffers(rapidjson::kArrayType), buffer(rapidjson::kObjectType);
-    add_member(buffer, "byteLength", JsonValue(static_cast<std::uint64_t>(binary_.size())), allocator());
+    add_member(buffer, "byteLength", JsonValue(static_cast<std::uint64_t>(size_)), allocator());
     buffers.PushBack(buffer, allocator());
     add_member(document_, "accessors", std::move(accessors_), allocator());
     add_member(document_, "bufferViews", std::move(views_), allocator());
     add_member(document_, "buffers", std::move(buffers), allocator());
-    rapidjson::StringBuffer buffer_text;
-    rapidjson::Writer<rapidjson::StringBuffer> writer(buffer_text);
+    rapidjson::StringBuffer text;
+    rapidjson::Writer<rapidjson::StringBuffer> writer(text);
     document_.Accept(writer);
-    std::string json;
-    for (const char* c = buffer_text.GetString(); c != buffer_text.GetString() + buffer_text.GetSize(); ++c) {
-        if (*c == '<') json += "\\u003C";
-        else if (*c == '>') json += "\\u003E";
-        else if (*c == '&') json += "\\u0026";
-        else json += *c;
-    }
-    while ((12 + 8 + json.size() + 8) % 8 != 0) json += ' ';
-    const std::size_t total = 12 + 8 + json.size() + 8 + binary_.size();
-    if (total > std::numeric_limits<std::uint32_t>::max())
-        throw Error(ErrorKind::failure, where, "would exceed the four gigabytes of a GLB file", "simplify the mesh");
+    std::string json(text.GetString(), text.GetSize());
+    if (escapes_) json = with_markup_escaped(json);
+    while ((12 + 8 + json.size() + 8) % alignment_ != 0) json += ' ';
+    const std::size_t total = 12 + 8 + json.size() + 8 + size_;
+    check_size(total, where, remedy);
     std::string file;
-    file.reserve(total);
     for (const std::uint32_t w :
          {magic, 2U, static_cast<std::uint32_t>(total), static_cast<std::uint32_t>(json.size()), json_chunk})
         append(file, w);
     file += json;
-    append(file, static_cast<std::uint32_t>(binary_.size()));
+    append(file, static_cast<std::uint32_t>(size_));
     append(file, binary_chunk);
-    return file + binary_;
+    return file;
 }
 
 Reader::Reader(const std::string& bytes, const std::string& where) : where_(where) {
@@ -187,9 +216,11 @@ std::vector<double> Reader::accessor(std::size_t index, std::size_t width, const
     const JsonValue& entry = element("accessors", index, pointer);
     const std::string here = "/accessors/" + std::to_string(index);
     if (find_member(entry, "sparse") != nullptr) fail(here + "/sparse", "sparse accessors are not read");
-    const std::string type = text_member(entry, "type");
+    const JsonValue* stated_type = find_member(entry, "type");
+    const std::string type = stated_type != nullptr && stated_type->IsString() ? stated_type->GetString() : "";
     const std::size_t stated = type == "SCALAR" ? 1 : type == "VEC2" ? 2 : type == "VEC3" ? 3 : type == "VEC4" ? 4 : 0;
-    if (stated != width) fail(here + "/type", "'" + one_line(type).substr(0, 20) + "' is not what is asked for here");
+    if (stated != width)
+        fail(here + "/type", "'" + without_controls(type, " ").substr(0, 20) + "' is not what is asked for here");
     const std::size_t kind = number(entry, "componentType", here, 0);
     const std::size_t size = kind > 10000 ? 0 : size_of(static_cast<int>(kind));
     if (size == 0) fail(here + "/componentType", "is not known");
@@ -213,4 +244,4 @@ std::vector<double> Reader::accessor(std::size_t index, std::size_t width, const
     return values;
 }
 
-}  // namespace ostraka::exchange::glb
+}  // namespace ostraka::glb

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace ostraka::exchange::glb {
+namespace ostraka::glb {
 
 // Constants of glTF 2.0 (Khronos, sections 3.6, 3.7, 5.1, 5.11).
 inline constexpr int signed_byte = 5120, byte = 5121, signed_short = 5122, short_word = 5123, word = 5125, single = 5126;
@@ -16,10 +16,16 @@ inline constexpr int array_buffer = 34962, element_array_buffer = 34963;
 inline constexpr const char* display_only = "ostraka-display";
 inline constexpr int points_mode = 0, lines_mode = 1, triangles_mode = 4;
 
-/// Collects buffer views and accessors over one buffer. Every view begins at a multiple of eight bytes.
+/// Colours of vertices are linear in glTF (section 3.7.2.1), ours are sRGB (IEC 61966-2-1). `value`: 0 to 255.
+std::uint16_t linear_channel(std::size_t value);
+
+/// Collects buffer views and accessors over one buffer. Their bytes are kept and become a whole file, or they are announced only
+/// and written by the caller after the head of the file, one view after the other.
 class Builder {
 public:
-    Builder();
+    /// Every view and both chunks begin at a multiple of `alignment`, which extensions ask to be 8; with `escapes`, the JSON
+    /// chunk may stand inside an HTML page.
+    explicit Builder(std::size_t alignment = 4, bool escapes = false);
     JsonAllocator& allocator() { return document_.GetAllocator(); }
     Json& document() { return document_; }
 
@@ -28,16 +34,29 @@ public:
     /// Index of a new accessor over a new view.
     int add_accessor(const std::string& bytes, int target, int stride, int component, std::size_t count, const char* type,
                      JsonValue* min = nullptr, JsonValue* max = nullptr);
+    /// As above, of a view of `size` bytes, a multiple of the alignment, that the caller writes.
+    int announce_accessor(std::size_t size, int target, int component, std::size_t count, const char* type,
+                          JsonValue* min = nullptr, JsonValue* max = nullptr);
     /// Whole numbers of the accessor stand for 0 to 1.
     void mark_normalised(int accessor);
-    /// The whole file; the binary chunk begins at a multiple of eight. `where` stands in errors.
-    std::string finish(const std::string& where);
+    /// The file up to the first byte of the buffer. Throws Error (failure), naming `where`, beyond four gigabytes.
+    std::string head(const std::string& where, const std::string& remedy);
+    /// The whole file, of views that were all given with their bytes.
+    std::string finish(const std::string& where, const std::string& remedy) { return head(where, remedy) + binary_; }
 
 private:
+    int view(std::size_t size, int target, int stride);
+    int accessor(int view, int component, std::size_t count, const char* type, JsonValue* min, JsonValue* max);
+
     Json document_;
     JsonValue views_{rapidjson::kArrayType}, accessors_{rapidjson::kArrayType};
     std::string binary_;
+    std::size_t alignment_, size_ = 0;
+    bool escapes_;
 };
+
+/// Throws Error (failure) if a file of so many bytes cannot be.
+void check_size(std::size_t bytes, const std::string& where, const std::string& remedy);
 
 template <class T>
 void append(std::string& bytes, T value) {
@@ -69,4 +88,4 @@ private:
     Json document_;
 };
 
-}  // namespace ostraka::exchange::glb
+}  // namespace ostraka::glb

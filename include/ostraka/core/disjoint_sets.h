@@ -1,0 +1,40 @@
+// Which elements belong together (union-find).
+#pragma once
+
+#include "ostraka/core/mesh.h"
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+namespace ostraka {
+
+/// Disjoint sets of the elements 0, 1, ..., each alone at first. A set is named by one of its members, its root.
+class DisjointSets {
+public:
+    explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), Index{0}); }
+
+    [[nodiscard]] std::size_t size() const { return parent_.size(); }
+
+    /// The root of the set of element i.
+    Index find(std::size_t i) {
+        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+        return static_cast<Index>(i);
+    }
+
+    /// Joins two sets under the smaller of their roots: where all are joined so, a root is the smallest member of its set,
+    /// whatever the order. False: they were one already.
+    bool unite(std::size_t a, std::size_t b) {
+        const auto [low, high] = std::minmax({find(a), find(b)});
+        parent_[high] = low;
+        return low != high;
+    }
+
+    /// Joins two sets under the root of the first.
+    void unite_into(std::size_t kept, std::size_t gone) { parent_[find(gone)] = find(kept); }
+
+private:
+    std::vector<Index> parent_;
+};
+
+}  // namespace ostraka

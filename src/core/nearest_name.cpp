@@ -1,0 +1,59 @@
+#include "ostraka/core/nearest_name.h"
+
+#include "ostraka/core/text.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace ostraka {
+
+namespace {
+
+/// A byte that is not UTF-8 stands for itself, beyond all characters.
+std::u32string characters(std::string_view text) {
+    std::u32string list;
+    for (std::size_t at = 0; at < text.size();) {
+        const Character here = character_at(text, at);
+        const bool odd = here.code == 0xFFFD && here.length == 1;
+        list += odd ? 0x110000U + static_cast<unsigned char>(text[at]) : here.code;
+        at += here.length;
+    }
+    return list;
+}
+
+}  // namespace
+
+std::size_t edit_distance(std::string_view first, std::string_view second, std::size_t limit) {
+    const std::u32string a = characters(first), b = characters(second);
+    const std::size_t longer = std::max(a.size(), b.size()), shorter = std::min(a.size(), b.size());
+    if (longer - shorter > limit) return limit + 1;
+    // Rows of the table: the one before the last, the last, and the one being filled; only cells within `limit` of the diagonal.
+    std::vector<std::size_t> before(b.size() + 1, limit + 1), last(b.size() + 1), row(b.size() + 1, limit + 1);
+    std::iota(last.begin(), last.end(), std::size_t{0});
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        const std::size_t begin = i > limit ? i - limit : 1, end = std::min(b.size(), i + limit);
+        row.assign(b.size() + 1, limit + 1);
+        if (i <= limit) row[0] = i;
+        std::size_t best = row[0];
+        for (std::size_t j = begin; j <= end; ++j) {
+            row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) row[j] = std::min(row[j], before[j - 2] + 1);
+            best = std::min(best, row[j]);
+        }
+        if (best > limit) return limit + 1;
+        std::swap(before, last);
+        std::swap(last, row);
+    }
+    return std::min(last[b.size()], limit + 1);
+}
+
+std::string nearest_name(const std::string& name, const std::vector<std::string>& names) {
+    std::string best;
+    std::size_t fewest = std::max<std::size_t>(2, name.size() / 3) + 1;
+    for (const std::string& candidate : names)
+        if (const std::size_t distance = edit_distance(name, candidate, fewest - 1); distance < fewest)
+            fewest = distance, best = candidate;
+    return best;
+}
+
+}  // namespace ostraka

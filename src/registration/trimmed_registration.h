@@ -1,0 +1,77 @@
+// Trimmed iterative closest points, point to plane: what is the same whatever is paired with what.
+#pragma once
+
+#include "ostraka/geom/plane_motion.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace ostraka::detail {
+
+/// A moved point and the plane at its partner.
+struct PlanePair {
+    Eigen::Vector3d point, place, normal;
+    double squared = 0;  ///< distance of the two
+};
+
+/// How well a pose fits.
+struct PoseFit {
+    double minimised = 0, residual = 0, overlap = 0;
+};
+
+class PlanePairs {
+public:
+    std::vector<PlanePair> list;
+
+    /// Keeps the nearest, at most `share` of `samples`, and at least one; how many that would be if all had a partner.
+    std::size_t trim(double share, std::size_t samples) {
+        const auto wanted = std::max<std::size_t>(1, static_cast<std::size_t>(share * static_cast<double>(samples)));
+        std::stable_sort(list.begin(), list.end(), [](const PlanePair& a, const PlanePair& b) { return a.squared < b.squared; });
+        if (list.size() > wanted) list.resize(wanted);
+        return wanted;
+    }
+    /// Sum of the squared distances from the planes.
+    [[nodiscard]] double squares() const {
+        double sum = 0;
+        for (const PlanePair& pair : list) {
+            const double off = pair.normal.dot(pair.point - pair.place);
+            sum += off * off;
+        }
+        return sum;
+    }
+    /// The small motion onto the planes, about the pairs' centre.
+    [[nodiscard]] PlaneMotion planes(double unit) const {
+        Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+        for (const PlanePair& pair : list) centre += pair.point / static_cast<double>(list.size());
+        PlaneMotion planes(centre, unit);
+        for (const PlanePair& pair : list) planes.add(pair.point, pair.normal, pair.normal.dot(pair.place - pair.point));
+        return planes;
+    }
+};
+
+struct Registration {
+    Motion pose;
+    PoseFit fit;
+    int iterations = 0;
+    bool settled = false;  ///< the last step moved nothing any more
+};
+
+/// From `start`: measure(pose) fills `pairs` and judges, step(pose) gives the next pose. The pairs change from step to step, so
+/// that what is minimised may rise for a while: the best pose met is kept. Ends after some steps without a gain of `least_gain`.
+template <class Measure, class Step>
+Registration register_from(const Motion& start, int iterations, double least_gain, const PlanePairs& pairs, Measure&& measure,
+                           Step&& step) {
+    constexpr int patience = 4;
+    Registration result{start, measure(start)};
+    Motion pose = start;
+    for (int since = 0; result.iterations < iterations && since < patience && pairs.list.size() >= 6; ++result.iterations) {
+        pose = step(pose);
+        const PoseFit now = measure(pose);
+        since = now.minimised < result.fit.minimised * (1 - least_gain) ? 0 : since + 1;
+        if (now.minimised < result.fit.minimised) result.pose = pose, result.fit = now;
+        result.settled = since >= patience;
+    }
+    return result;
+}
+
+}  // namespace ostraka::detail
