@@ -291,7 +291,7 @@ void AtomicFile::commit() {
     if (is_memory(file_)) {
         temporary_ = open_transaction == nullptr ? file_ : memory_files().temporary();
         memory_files().put(temporary_, std::move(memory_));
-        if (open_transaction != nullptr) open_transaction->waiting_.emplace_back(temporary_, file_);
+        if (open_transaction != nullptr) open_transaction->wait(temporary_, file_);
         return;
     }
     const bool direct = temporary_.empty();
@@ -300,7 +300,7 @@ void AtomicFile::commit() {
     const bool closed = std::fclose(stream_) == 0;
     stream_ = nullptr;
     const bool waits = flushed && closed && !direct && open_transaction != nullptr;
-    if (waits) open_transaction->waiting_.emplace_back(temporary_, file_);
+    if (waits) open_transaction->wait(temporary_, file_);
     else if (!flushed || !closed || (!direct && ::rename(temporary_.c_str(), file_.c_str()) != 0)) {
         const std::string cause = flushed ? reason() : why;
         if (!direct) ::unlink(temporary_.c_str());
@@ -316,9 +316,18 @@ OutputTransaction::~OutputTransaction() {
     for (const auto& [temporary, file] : waiting_) remove_file(temporary);
 }
 
+void OutputTransaction::wait(const Path& temporary, const Path& file) {
+    const std::lock_guard lock(mutex_);
+    waiting_.emplace_back(temporary, file);
+}
+
+OutputTransaction* current_transaction() { return open_transaction; }
+TransactionScope::TransactionScope(OutputTransaction* transaction) : outer_(open_transaction) { open_transaction = transaction; }
+TransactionScope::~TransactionScope() { open_transaction = outer_; }
+
 void OutputTransaction::commit() {
     std::vector<OutputSweep> sweeps;
-    for (const auto& [folder, owner] : replaced_) sweeps.emplace_back(folder, owner, waiting_);
+    for (const auto& [folder, owner] : replaced_) sweeps.emplace_back(folder, owner, waiting_, kept_);
     replaced_.clear();
     for (const OutputSweep& sweep : sweeps) sweep.write_list();
     while (!waiting_.empty()) {

@@ -240,6 +240,12 @@ void add_member(JsonValue& object, std::string_view name, std::string_view text,
     add_member(object, name, json_string(text, allocator), allocator);
 }
 
+Json json_document(std::string_view kind) {
+    Json document(rapidjson::kObjectType);
+    add_members(document, document.GetAllocator(), "format", "ostraka-" + std::string(kind), "version", 1);
+    return document;
+}
+
 double number_or(const JsonValue& object, std::string_view name, double otherwise) {
     const JsonValue* value = find_member(object, name);
     return value == nullptr ? otherwise : value->GetDouble();

@@ -14,17 +14,13 @@ public:
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)");
         reading.describe(p.options);
-        p.input("vocabulary", Kind::vocabulary, vocabulary,
-                "vocabulary (.vocabulary.json, .ttl, .rdf) that tags and attributes must be from")
-            .optional()
-            .flag();
+        p.input_option("vocabulary", Kind::vocabulary, vocabulary,
+                       "vocabulary (.vocabulary.json, .ttl, .rdf) that tags and attributes must be from");
         words.describe(p.options);
-        p.input("rules", Kind::rules, rules, "rules of the class (.rules.json) that the annotations must keep").optional().flag();
-        p.input(
-             "graph", Kind::graph, graph,
-             "relationships that the rules speak of (.graph.json); without it containment and adjacency are taken from the mesh")
-            .optional()
-            .flag();
+        p.input_option("rules", Kind::rules, rules, "rules of the class (.rules.json) that the annotations must keep");
+        p.input_option(
+            "graph", Kind::graph, graph,
+            "relationships that the rules speak of (.graph.json); without it containment and adjacency are taken from the mesh");
         p.report.checks = true;
     }
 

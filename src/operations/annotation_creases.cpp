@@ -15,13 +15,9 @@ public:
         p.options("regions", regions, "regions instead of lines");
         p.options("unit", unit, "unit of the mesh's coordinates, e.g. mm");
         options.describe(p.options);
-        p.report.table("creases", {{"id", FieldType::integer, "id"},
-                                   {"tag", FieldType::text, "tag"},
-                                   {"closed", FieldType::boolean, "closed"},
-                                   {"length", FieldType::number, "length", "length"},
-                                   {"width", FieldType::number, "width", "length"},
-                                   {"mean curvature", FieldType::number, "mean curvature", "1/length"},
-                                   {"strength", FieldType::number, "strength"}});
+        p.report.table("creases", integer("id", "id"), text("tag", "tag"), boolean("closed", "closed"),
+                       number("length", "length", "length"), number("width", "width", "length"),
+                       number("mean curvature", "mean curvature", "1/length"), number("strength", "strength"));
     }
 
     void run(Context&, Report& report) override {

@@ -19,8 +19,7 @@ public:
         p.output("output", Kind::text, output, "file to write");
         describe_format(p, format);
         options.describe(p.options);
-        p.report.value("format", FieldType::text).value("annotations", FieldType::integer).value("bytes", FieldType::integer);
-        p.report.value("sha256", FieldType::text);
+        p.report.values(text("format"), integer("annotations"), integer("bytes"), text("sha256"));
     }
 
     void run(Context& context, Report& report) override {
@@ -29,10 +28,8 @@ public:
         const ExportedAnnotations exported =
             export_annotations(mesh->mesh, set, *format, mesh.file(), context.provenance(), options);
         report.notes(exported.notes);
-        report.value("format", *format);
-        report.value("annotations", exported.annotations);
-        report.value("bytes", exported.bytes.size());
-        report.value("sha256", sha256(exported.bytes));
+        report("format", *format)("annotations", exported.annotations)("bytes", exported.bytes.size())("sha256",
+                                                                                                       sha256(exported.bytes));
         const std::size_t all = set.annotations.size(), written = exported.annotations;
         report.line(std::to_string(written) + (written == all ? "" : " of " + std::to_string(all)) +
                     (all == 1 ? " annotation" : " annotations") + " as " + *format + ", " +
@@ -55,18 +52,12 @@ public:
         p.input("input", Kind::text, input, "file to read");
         p.output("output", Kind::annotations, output, "annotations to write (.ant.json)");
         describe_format(p, format);
-        p.input("onto", Kind::annotations, onto,
-                "annotations to which the file's are added, or that its table of attributes is of")
-            .optional()
-            .flag();
+        p.input_option("onto", Kind::annotations, onto,
+                       "annotations to which the file's are added, or that its table of attributes is of");
         options.describe(p.options);
-        p.report.value("format", FieldType::text).value("annotations", FieldType::integer);
-        p.report.table("placed", {{"id", FieldType::integer, "id"},
-                                  {"tag", FieldType::text, "tag"},
-                                  {"by", FieldType::text, "by"},
-                                  {"points", FieldType::integer, "points"},
-                                  {"toSurface", FieldType::number, "to surface", "length"},
-                                  {"toVertex", FieldType::number, "to vertex", "length"}});
+        p.report.values(text("format"), integer("annotations"));
+        p.report.table("placed", integer("id", "id"), text("tag", "tag"), text("by", "by"), integer("points", "points"),
+                       number("toSurface", "to surface", "length"), number("toVertex", "to vertex", "length"));
     }
 
     void run(Context& context, Report& report) override {
@@ -84,8 +75,7 @@ public:
             }
         }();
         context.notes("", placed.set.notes);
-        report.value("format", *format);
-        report.value("annotations", placed.set.annotations.size());
+        report("format", *format)("annotations", placed.set.annotations.size());
         report.empty_table("placed", false);
         for (const PlacedAnnotation& one : placed.placements)
             report.row("placed")("id", one.id)("tag", one.tag)("by", one.how)("points", one.points)(

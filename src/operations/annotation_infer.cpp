@@ -14,13 +14,9 @@ public:
         p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)");
         p.input("vocabulary", Kind::vocabulary, vocabulary, "vocabulary with rules (.vocabulary.json, .ttl, .rdf)");
         p.output("output", Kind::annotations, output, "annotations to write");
-        p.report.table("inferred", {{"annotation", FieldType::integer, "id"},
-                                    {"tag", FieldType::text, "tag"},
-                                    {"attribute", FieldType::text, "attribute"},
-                                    {"value", FieldType::text, "value"},
-                                    {"rule", FieldType::text},
-                                    {"why", FieldType::text, "why"}});
-        p.report.value("contradictions", FieldType::texts).value("missing", FieldType::texts);
+        p.report.table("inferred", integer("annotation", "id"), text("tag", "tag"), text("attribute", "attribute"),
+                       text("value", "value"), text("rule"), text("why", "why"));
+        p.report.values(texts("contradictions"), texts("missing"));
     }
 
     void run(Context&, Report& report) override {
@@ -30,8 +26,7 @@ public:
         for (const Inference& one : result.inferred)
             report.row("inferred")("annotation", one.annotation)("tag", result.annotations.find(one.annotation)->tag)(
                 "attribute", one.attribute)("value", one.value)("rule", one.rule)("why", one.why);
-        report.value("contradictions", result.contradictions);
-        report.value("missing", result.missing);
+        report("contradictions", result.contradictions)("missing", result.missing);
         report.notes(result.missing);
         for (const auto& text : result.contradictions) report.line("contradiction: " + printable(text));
         report.line(std::to_string(result.inferred.size()) + (result.inferred.size() == 1 ? " word" : " words") + " inferred");

@@ -7,14 +7,8 @@
 namespace ostraka {
 
 void declare_differences(ReportLayout& layout, const std::string& table) {
-    layout.table(table, {{"id", FieldType::integer, "id"},
-                         {"tag", FieldType::text, "tag"},
-                         {"kind", FieldType::text, "what"},
-                         {"field", FieldType::text, "field"},
-                         {"before", FieldType::text, "before"},
-                         {"after", FieldType::text, "after"},
-                         {"onlyBefore", FieldType::integer},
-                         {"onlyAfter", FieldType::integer}});
+    layout.table(table, integer("id", "id"), text("tag", "tag"), text("kind", "what"), text("field", "field"),
+                 text("before", "before"), text("after", "after"), integer("onlyBefore"), integer("onlyAfter"));
 }
 
 namespace {
@@ -55,13 +49,13 @@ public:
         p.input("mesh", Kind::mesh, mesh, "mesh of both");
         p.input("before", Kind::annotations, before, "annotations (.ant.json)");
         p.input("after", Kind::annotations, after, "annotations to compare with them");
-        p.report.value("same", FieldType::boolean);
+        p.report.values(boolean("same"));
         declare_differences(p.report, "differences");
     }
 
     void run(Context&, Report& report) override {
         const auto list = differences(before.on(mesh->mesh), after.on(mesh->mesh));
-        report.value("same", list.empty());
+        report("same", list.empty());
         add_differences(report, "differences", list, "no difference");
         if (!list.empty()) report.answer_no();
     }
@@ -80,13 +74,9 @@ public:
         p.input("theirs", Kind::annotations, theirs, "the other's annotations");
         p.output("output", Kind::annotations, output, "annotations to write");
         options.describe(p.options);
-        p.report.value("merged", FieldType::boolean).value("annotations", FieldType::integer);
-        p.report.table("conflicts", {{"id", FieldType::integer, "id"},
-                                     {"tag", FieldType::text, "tag"},
-                                     {"field", FieldType::text, "conflict"},
-                                     {"base", FieldType::text, "base"},
-                                     {"ours", FieldType::text, "ours"},
-                                     {"theirs", FieldType::text, "theirs"}});
+        p.report.values(boolean("merged"), integer("annotations"));
+        p.report.table("conflicts", integer("id", "id"), text("tag", "tag"), text("field", "conflict"), text("base", "base"),
+                       text("ours", "ours"), text("theirs", "theirs"));
     }
 
     void run(Context&, Report& report) override {
@@ -94,8 +84,7 @@ public:
         const MergedAnnotations merged = merge_annotations(base.on(on), ours.on(on), theirs.on(on), options);
         const bool settled = merged.settled(options);
         report.notes(merged.notes);
-        report.value("merged", settled);
-        report.value("annotations", merged.set.annotations.size());
+        report("merged", settled)("annotations", merged.set.annotations.size());
         report.empty_table("conflicts", false);
         for (const Conflict& conflict : merged.conflicts)
             named_row(report, "conflicts", conflict)("base", conflict.base)("ours", conflict.ours)("theirs", conflict.theirs);

@@ -15,13 +15,11 @@ public:
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file, closed");
         p.output("output", Kind::annotations, output, "annotations to write (.ant.json)");
-        p.output("labels-out", Kind::labels, labels_out, "write the number of each face's segment, one a line").optional().flag();
+        p.output_option("labels-out", Kind::labels, labels_out, "write the number of each face's segment, one a line");
         options.describe(p.options);
         thickness_options.describe(p.options);
-        p.report.table("segments", {{"id", FieldType::integer, "id"},
-                                    {"tag", FieldType::text, "tag"},
-                                    {"faces", FieldType::integer, "faces"},
-                                    {"area", FieldType::number, "area", "length^2"}});
+        p.report.table("segments", integer("id", "id"), text("tag", "tag"), integer("faces", "faces"),
+                       number("area", "area", "length^2"));
     }
 
     void run(Context&, Report& report) override {

@@ -332,30 +332,20 @@ public:
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("annotations", Kind::annotations, annotations, "annotation file (.ant.json): brought up to date, or made");
-        p.output("output", Kind::annotations, output, "write the annotations here and leave the file as it is")
-            .optional()
-            .flag()
+        p.output_option("output", Kind::annotations, output, "write the annotations here and leave the file as it is")
             .updates(annotations);
-        p.input("record", Kind::recipe, record, "recipe to which the step is added, or which is begun").optional().flag();
-        p.output("recipe", Kind::recipe, recipe, "write the recipe here and leave that of --record as it is")
-            .optional()
-            .flag()
+        p.input_option("record", Kind::recipe, record, "recipe to which the step is added, or which is begun");
+        p.output_option("recipe", Kind::recipe, recipe, "write the recipe here and leave that of --record as it is")
             .updates(record);
         step.describe(p.options);
         p.options.group("New file");
         p.options("class", object_class, "what the object is (any text)");
         p.options("unit", unit, "unit of the coordinates (any text, such as mm)");
 
-        p.report.value("id", FieldType::integer).value("action", FieldType::text).value("tag", FieldType::text);
-        p.report.value("type", FieldType::text).value("elements", FieldType::integer).value("patches", FieldType::integer);
-        p.report.value("area", FieldType::number, "", "length^2").value("length", FieldType::number, "", "length");
-        p.report.table("", {{"", FieldType::integer, "id"},
-                            {"", FieldType::text, "tag"},
-                            {"", FieldType::text, "type"},
-                            {"", FieldType::integer, "elements"},
-                            {"", FieldType::integer, "patches"},
-                            {"", FieldType::number, "area", "length^2"},
-                            {"", FieldType::number, "perimeter / length", "length"}});
+        p.report.values(integer("id"), text("action"), text("tag"), text("type"), integer("elements"), integer("patches"),
+                        number("area", "", "length^2"), number("length", "", "length"));
+        p.report.table("", people("id"), people("tag"), people("type"), people("elements"), people("patches"),
+                       people("area", FieldType::number, "length^2"), people("perimeter / length", FieldType::number, "length"));
     }
 
     void check() const override {
@@ -458,18 +448,14 @@ private:
 
     void tell(Report& report, const Mesh& on, const AnnotationSet& set, int id) const {
         report.set_unit(set.unit);
-        report.value("id", id);
-        report.value("action", step.action);
+        report("id", id)("action", step.action);
         const Annotation* chosen = set.find(id);
         if (chosen == nullptr) return report.line("annotation " + std::to_string(id) + " deleted");
         const AnnotationSummary summary = summarise(on, *chosen);
         const bool region = chosen->type == AnnotationType::region, point = chosen->type == AnnotationType::point;
-        report.value("tag", chosen->tag);
-        report.value("type", to_string(chosen->type));
-        report.value("elements", summary.elements);
-        report.value("patches", summary.patches);
-        if (region) report.value("area", summary.area);
-        if (!point) report.value("length", summary.length);
+        report("tag", chosen->tag)("type", to_string(chosen->type))("elements", summary.elements)("patches", summary.patches);
+        if (region) report("area", summary.area);
+        if (!point) report("length", summary.length);
         Report::Row row = report.row("");
         row.shown("id", std::to_string(id)).shown("tag", chosen->tag).shown("type", to_string(chosen->type));
         row.shown("elements", std::to_string(summary.elements)).shown("patches", std::to_string(summary.patches));

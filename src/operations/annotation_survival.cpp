@@ -13,10 +13,8 @@ public:
         p.input("mesh", Kind::mesh, mesh, "the annotated mesh");
         p.input("annotations", Kind::annotations, annotations, "its annotations");
         options.describe(p.options);
-        p.report.table("annotations", {{"id", FieldType::integer, "id"},
-                                       {"tag", FieldType::text, "tag"},
-                                       {"vertices", FieldType::integer, "smallest number of vertices"},
-                                       {"end", FieldType::text, "and below"}});
+        p.report.table("annotations", integer("id", "id"), text("tag", "tag"), integer("vertices", "smallest number of vertices"),
+                       text("end", "and below"));
     }
 
     void run(Context&, Report& report) override {

@@ -33,49 +33,26 @@ public:
         p.input("annotations", Kind::annotations, annotations, "its annotations");
         p.input("target", Kind::mesh, target, "the mesh at another resolution");
         p.output("output", Kind::annotations, output, "the annotations on the target (*.ant.json)");
-        p.output("back", Kind::annotations, back, "transfer them back to the source as well, into this file, and score that")
-            .optional()
-            .flag();
-        p.output("ply", Kind::mesh, coloured,
-                 "write the target in the colours of its annotations (PLY or another format with colours)")
-            .optional()
-            .flag();
-        p.output("refined-mesh", Kind::mesh, refined, "with --refine: the target with the inserted vertices").optional().flag();
-        p.output("map", Kind::index_map, map, "with --refine: new face -> old face, as JSON").optional().flag();
+        p.output_option("back", Kind::annotations, back,
+                        "transfer them back to the source as well, into this file, and score that");
+        p.output_option("ply", Kind::mesh, coloured,
+                        "write the target in the colours of its annotations (PLY or another format with colours)");
+        p.output_option("refined-mesh", Kind::mesh, refined, "with --refine: the target with the inserted vertices");
+        p.output_option("map", Kind::index_map, map, "with --refine: new face -> old face, as JSON");
         options.describe(p.options);
 
         for (const char* direction : {"annotations", "back"})
-            p.report.table(direction, {{"id", FieldType::integer, "id"},
-                                       {"tag", FieldType::text, "tag"},
-                                       {"sourceType", FieldType::text},
-                                       {"targetType", FieldType::text, "type"},
-                                       {"outcome", FieldType::text},
-                                       {"note", FieldType::text},
-                                       {"sourceArea", FieldType::number, "", "length^2"},
-                                       {"targetArea", FieldType::number, "", "length^2"},
-                                       {"sourcePerimeter", FieldType::number, "", "length"},
-                                       {"targetPerimeter", FieldType::number, "", "length"},
-                                       {"distortion.A", FieldType::number, "A %"},
-                                       {"distortion.P", FieldType::number, "P %"},
-                                       {"distortion.P/A", FieldType::number, "P/A %"},
-                                       {"distortion.A/P", FieldType::number, "A/P %"},
-                                       {"distortion.C", FieldType::number, "C %"},
-                                       {"distortion.average", FieldType::number, "mean %"},
-                                       {"sourceLength", FieldType::number, "", "length"},
-                                       {"targetLength", FieldType::number, "", "length"},
-                                       {"hausdorff", FieldType::number, "Hausdorff"},
-                                       {"overlap", FieldType::number, "overlap"},
-                                       {"wrongSide", FieldType::number},
-                                       {"", FieldType::text, "by ray"},
-                                       {"correspondence.vertices", FieldType::integer},
-                                       {"correspondence.byRay", FieldType::integer},
-                                       {"correspondence.byClosestPoint", FieldType::integer},
-                                       {"correspondence.withoutPlace", FieldType::integer},
-                                       {"correspondence.relocated", FieldType::integer},
-                                       {"correspondence.detours", FieldType::integer},
-                                       {"crossingsResolved", FieldType::boolean},
-                                       {"voted", FieldType::boolean},
-                                       {"", FieldType::text, "remarks"}});
+            p.report.table(direction, integer("id", "id"), text("tag", "tag"), text("sourceType"), text("targetType", "type"),
+                           text("outcome"), text("note"), number("sourceArea", "", "length^2"),
+                           number("targetArea", "", "length^2"), number("sourcePerimeter", "", "length"),
+                           number("targetPerimeter", "", "length"), number("distortion.A", "A %"), number("distortion.P", "P %"),
+                           number("distortion.P/A", "P/A %"), number("distortion.A/P", "A/P %"), number("distortion.C", "C %"),
+                           number("distortion.average", "mean %"), number("sourceLength", "", "length"),
+                           number("targetLength", "", "length"), number("hausdorff", "Hausdorff"), number("overlap", "overlap"),
+                           number("wrongSide"), people("by ray"), integer("correspondence.vertices"),
+                           integer("correspondence.byRay"), integer("correspondence.byClosestPoint"),
+                           integer("correspondence.withoutPlace"), integer("correspondence.relocated"),
+                           integer("correspondence.detours"), boolean("crossingsResolved"), boolean("voted"), people("remarks"));
     }
 
     void check() const override {

@@ -15,14 +15,13 @@ public:
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)").optional();
-        p.output("output", Kind::report, output, "write the axis as poly-lines (.json, .obj)").optional().flag();
+        p.output_option("output", Kind::report, output, "write the axis as poly-lines (.json, .obj)");
         p.options("annotation", names, "id or tag of the part; more than one: all together; a line or points: its circle")
             .words();
         options.describe(p.options);
 
-        p.report.value("found", FieldType::boolean, "axis").value("reason", FieldType::text);
-        p.report.value("point", FieldType::numbers, "through").value("direction", FieldType::numbers, "direction");
-        p.report.structure("polylines").value("quality", FieldType::number, "quality").structure("figures");
+        p.report.values(boolean("found", "axis"), text("reason"), numbers("point", "through"), numbers("direction", "direction"),
+                        any("polylines"), number("quality", "quality"), any("figures"));
     }
 
     void check() const override {
@@ -78,10 +77,9 @@ private:
     static void tell(Report& report, const Axis& axis, const std::string& unit) {
         auto& allocator = report.allocator();
         const auto three = [](const auto& p) { return std::vector<double>{p.x(), p.y(), p.z()}; };
-        report.value("found", axis.found, axis.found ? "found" : "none");
+        report("found", axis.found, axis.found ? "found" : "none");
         if (axis.found) {
-            report.value("point", three(axis.point));
-            report.value("direction", three(axis.direction));
+            report("point", three(axis.point))("direction", three(axis.direction));
             JsonValue lines(rapidjson::kArrayType);
             for (const auto& line : axis.lines) {
                 JsonValue points(rapidjson::kArrayType);
@@ -92,12 +90,12 @@ private:
                 }
                 lines.PushBack(points, allocator);
             }
-            report.value("polylines", std::move(lines));
+            report("polylines", std::move(lines));
         } else {
-            report.value("reason", axis.reason);
+            report("reason", axis.reason);
             report.answer_no();
         }
-        report.value("quality", axis.quality, number(axis.quality, 4));
+        report("quality", axis.quality, number(axis.quality, 4));
         JsonValue figures(rapidjson::kArrayType);
         for (const auto& figure : axis.figures) {
             const std::string in = figure.unit == "length" ? unit : figure.unit;
@@ -108,7 +106,7 @@ private:
             figures.PushBack(entry, allocator);
             report.people(figure.name, number(figure.value) + (in.empty() ? "" : " " + in));
         }
-        report.value("figures", std::move(figures));
+        report("figures", std::move(figures));
         if (!axis.found) report.line("has no axis: " + axis.reason);
     }
 

@@ -27,10 +27,9 @@ public:
         p.output("output", Kind::coordinates, output, "weights to write (.npy; a .coordinates.json goes beside it)");
         p.options("kind", kind, "mean-value, or green (strictly inside; without constraints only)", Choices(coordinate_kinds()));
         options.describe(p.options);
-        p.report.value("kind", FieldType::text, "coordinates").value("points", FieldType::integer, "points");
-        p.report.value("cageVertices", FieldType::integer, "cage vertices").value("cageFaces", FieldType::integer, "cage faces");
-        p.report.structure("certificate").value("holds", FieldType::boolean, "verdict");
-        p.report.table("", {{"", FieldType::text, "property"}, {"", FieldType::text, "value"}, {"", FieldType::text, "meaning"}});
+        p.report.values(text("kind", "coordinates"), integer("points", "points"), integer("cageVertices", "cage vertices"),
+                        integer("cageFaces", "cage faces"), any("certificate"), boolean("holds", "verdict"));
+        p.report.people_table("", {"property", "value", "meaning"});
     }
 
     void run(Context&, Report& report) override {
@@ -48,11 +47,8 @@ public:
 
 private:
     static void tell(Report& report, const CoordinateCertificate& c) {
-        report.value("kind", c.kind);
-        report.value("points", c.points);
-        report.value("cageVertices", c.vertices);
-        report.value("cageFaces", c.faces);
-        report.value("certificate", to_json(c, report.allocator()));
+        report("kind", c.kind)("points", c.points)("cageVertices", c.vertices)("cageFaces", c.faces)(
+            "certificate", to_json(c, report.allocator()));
         const auto row = [&](const char* property, const std::string& value, const char* meaning) {
             report.row("").shown("property", property).shown("value", value).shown("meaning", meaning);
         };
@@ -71,8 +67,8 @@ private:
         row("negative sum", number(c.negative_sum), "largest of a point");
         row("locality", number(c.carriers_mean, 4) + " mean, " + std::to_string(c.carriers_most) + " most",
             "weights that carry 95 % at a point");
-        report.value("holds", c.holds(),
-                     c.holds() ? "fit for deformation" : "not fit for deformation: partition or linear precision fails");
+        report("holds", c.holds(),
+               c.holds() ? "fit for deformation" : "not fit for deformation: partition or linear precision fails");
         if (!c.holds()) report.answer_no();
     }
 
@@ -91,14 +87,13 @@ public:
         p.output("output", Kind::mesh, output,
                  "coloured mesh to write (PLY, with the numbers as the property quality): the cage for --annotation, else the "
                  "mesh; without a choice coloured by the number of cage vertices that carry 95 %");
-        p.input("annotations", Kind::annotations, annotations, "annotations of the mesh (.ant.json)").optional().flag();
+        p.input_option("annotations", Kind::annotations, annotations, "annotations of the mesh (.ant.json)");
         p.options("cage-vertex", cage_vertex, "the weights of this cage vertex on the mesh");
         p.options("annotation", annotation, "id or tag: the influence of each cage vertex on its vertices");
         p.options("by", by, "influence on an annotation: largest weight on its vertices, or their sum", Choices{"max", "sum"});
         p.options("threshold", threshold, "list the cage vertices with an influence above this");
-        p.report.value("what", FieldType::text, "what").value("on", FieldType::text, "on the");
-        p.report.value("min", FieldType::number, "min").value("max", FieldType::number, "max");
-        p.report.structure("above").structure("strongest");
+        p.report.values(text("what", "what"), text("on", "on the"), number("min", "min"), number("max", "max"), any("above"),
+                        any("strongest"));
     }
 
     void check() const override {
@@ -129,10 +124,7 @@ public:
             what = "cage vertices that carry 95 %";
         }
         const auto [low, high] = std::minmax_element(values.begin(), values.end());
-        report.value("what", what);
-        report.value("on", on_cage ? "cage" : "mesh");
-        report.value("min", *low);
-        report.value("max", *high);
+        report("what", what)("on", on_cage ? "cage" : "mesh")("min", *low)("max", *high);
         if (on_cage) list(report, values);
         const ColourScale scale = scale_of({&values}, "the weights");
         MeshExtras extras;
@@ -158,7 +150,7 @@ private:
             text += (chosen.Empty() ? "" : ", ") + std::to_string(v);
             chosen.PushBack(v, report.allocator());
         }
-        report.value(threshold ? "above" : "strongest", std::move(chosen));
+        report(threshold ? "above" : "strongest", std::move(chosen));
         report.people(threshold ? "cage vertices above" : "strongest cage vertices", text.empty() ? "none" : text);
     }
 

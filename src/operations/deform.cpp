@@ -22,42 +22,23 @@ public:
         p.output("output", Kind::mesh, output, "the deformed mesh to write");
         p.order({"mesh", "annotations", "edit", "output"});
         p.order({"template", "edit", "output"});
-        p.input("graph", Kind::graph, graph,
-                "relationships (.graph.json): those that are constraints are kept; instead of the template's")
-            .optional()
-            .flag();
-        p.input("cage", Kind::cage, cage, "cage whose vertices are the handles; without it, the mesh's own are")
-            .optional()
-            .flag();
-        p.input("weights", Kind::coordinates, weights, "weights of 'cage weights' (.npy)").optional().flag();
-        p.output("annotations-out", Kind::annotations, annotations_out, "annotations of the deformed mesh, measures taken anew")
-            .optional()
-            .flag();
-        p.output("cage-out", Kind::cage, cage_out, "the cage after the deformation").optional().flag();
+        p.input_option("graph", Kind::graph, graph,
+                       "relationships (.graph.json): those that are constraints are kept; instead of the template's");
+        p.input_option("cage", Kind::cage, cage, "cage whose vertices are the handles; without it, the mesh's own are");
+        p.input_option("weights", Kind::coordinates, weights, "weights of 'cage weights' (.npy)");
+        p.output_option("annotations-out", Kind::annotations, annotations_out,
+                        "annotations of the deformed mesh, measures taken anew");
+        p.output_option("cage-out", Kind::cage, cage_out, "the cage after the deformation");
         p.options("states", states, "also write the shape after each step of the edit, before constraints: output-step1 ...");
         options.describe(p.options);
         tolerances.describe(p.options);
-        p.report.value("acceptable", FieldType::boolean)
-            .value("iterations", FieldType::integer)
-            .value("rounds", FieldType::integer);
-        p.report.value("stopped", FieldType::text).value("passes", FieldType::integer);
-        p.report.value("selfIntersections", FieldType::integer);
-        p.report.table("constraints", {{"id", FieldType::integer, "id"},
-                                       {"type", FieldType::text, "constraint"},
-                                       {"weight", FieldType::number, "weight"},
-                                       {"hard", FieldType::boolean},
-                                       {"used", FieldType::boolean},
-                                       {"before", FieldType::text},
-                                       {"verdict", FieldType::text, "verdict"},
-                                       {"text", FieldType::text},
-                                       {"deviations", FieldType::any, "how well"},
-                                       {"residual.mean", FieldType::number},
-                                       {"residual.median", FieldType::number},
-                                       {"residual.min", FieldType::number},
-                                       {"residual.max", FieldType::number},
-                                       {"residual.greatest distance", FieldType::number},
-                                       {"residual.constraints", FieldType::integer}});
-        p.report.table("conflicts", {{"id", FieldType::integer}, {"freed", FieldType::numbers}, {"deviations", FieldType::any}});
+        p.report.values(boolean("acceptable"), integer("iterations"), integer("rounds"), text("stopped"), integer("passes"),
+                        integer("selfIntersections"));
+        p.report.table("constraints", integer("id", "id"), text("type", "constraint"), number("weight", "weight"),
+                       boolean("hard"), boolean("used"), text("before"), text("verdict", "verdict"), text("text"),
+                       any("deviations", "how well"), number("residual.mean"), number("residual.median"), number("residual.min"),
+                       number("residual.max"), number("residual.greatest distance"), integer("residual.constraints"));
+        p.report.table("conflicts", integer("id"), numbers("freed"), any("deviations"));
     }
 
     void check() const override {
@@ -116,7 +97,7 @@ public:
                                     (space.cage != nullptr ? " cage vertices" : " vertices");
         for (std::size_t i = 0; i < result.selected.size(); ++i)
             report.note("step " + std::to_string(i + 1) + ": " + std::to_string(result.selected[i]) + " of " + handles);
-        report.value("selfIntersections", crossing);
+        report("selfIntersections", crossing);
         tell(report, result);
         if (!result.acceptable) report.answer_no();
     }
@@ -180,12 +161,9 @@ private:
     }
 
     static void tell(Report& report, const DeformResult& result) {
-        report.value("acceptable", result.acceptable);
-        report.value("iterations", result.summary.iterations);
-        report.value("rounds", result.rounds);
+        report("acceptable", result.acceptable)("iterations", result.summary.iterations)("rounds", result.rounds);
         const std::string stopped = result.passes > 0 ? std::string(ostraka::describe(result.summary.stop)) : "nothing to solve";
-        report.value("stopped", stopped);
-        report.value("passes", result.passes);
+        report("stopped", stopped)("passes", result.passes);
         report.empty_table("constraints", false);
         for (const ConstraintReport& constraint : result.constraints) tell(report, constraint);
         if (result.passes > 0)

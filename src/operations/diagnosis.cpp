@@ -171,22 +171,21 @@ std::vector<std::pair<std::string, std::string>> rows_of(const MeshDiagnosis& d)
 }
 
 void declare_diagnosis(ReportLayout& layout) {
-    layout.value("sound", FieldType::boolean).value("defects", FieldType::texts);
+    layout.values(boolean("sound"), texts("defects"));
     for (const char* name :
          {"vertices", "edges", "triangles", "isolated_vertices", "duplicate_vertices", "repeated_corner_triangles",
           "degenerate_triangles", "thin_triangles", "duplicate_triangles", "border_edges", "nonmanifold_edges",
           "nonmanifold_vertices", "misoriented_edges", "nonorientable_components", "inside_out_components", "cavities", "euler",
           "component_count", "border_loop_count"})
-        layout.value(name, FieldType::integer);
-    for (const char* name : {"closed", "manifold", "oriented", "self_intersections_complete"})
-        layout.value(name, FieldType::boolean);
+        layout.values(integer(name));
+    for (const char* name : {"closed", "manifold", "oriented", "self_intersections_complete"}) layout.values(boolean(name));
     for (const char* name : {"self_intersections", "self_intersection_examples", "components", "border_loops", "size"})
-        layout.structure(name);
+        layout.values(any(name));
 }
 
 void add_diagnosis(Report& report, const MeshDiagnosis& diagnosis) {
     JsonValue all = to_json(diagnosis, report.allocator());
-    for (auto& member : all.GetObject()) report.value(member.name.GetString(), std::move(member.value));
+    for (auto& member : all.GetObject()) report(member.name.GetString(), std::move(member.value));
 }
 
 }  // namespace ostraka

@@ -27,14 +27,12 @@ public:
         p.output("output", Kind::folder, output,
                  "folder for completed.ply, completed.ant.json and fit.assembly.json; made if it is missing")
             .flag();
-        p.input("assembly", Kind::assembly, assembly, "an assembly: its matches of annotations with \"stated\": true hold")
-            .optional()
-            .flag();
-        p.input("class", Kind::shape_class, class_file,
-                "a class learnt with this template (NAME.class.json of 'template learn'): what no fragment shows is as in its "
-                "members that look so where one does; thresholds that are not told are those of its members")
-            .optional()
-            .flag();
+        p.input_option("assembly", Kind::assembly, assembly,
+                       "an assembly: its matches of annotations with \"stated\": true hold");
+        p.input_option(
+            "class", Kind::shape_class, class_file,
+            "a class learnt with this template (NAME.class.json of 'template learn'): what no fragment shows is as in its "
+            "members that look so where one does; thresholds that are not told are those of its members");
         p.options("fresh", fresh, "search poses anew, whatever an earlier fit in the folder found").unrecorded();
         p.options("placed", placed, "also write each fragment where it lies: NAME.placed.ply");
         options.describe(p.options);

@@ -21,8 +21,8 @@ public:
             "x, y, z, -x, -y, -z or three numbers: direction that slices lie across; else as the annotations say, else 0,0,1");
         p.options("unit", unit, "unit of the mesh's coordinates, e.g. mm; else as the annotations say");
         options.describe(p.options);
-        for (const Figure& figure : figures_of({})) p.report.value(figure.name, FieldType::any, "", figure.unit);
-        p.report.value("unit", FieldType::text).value("volume of the mesh", FieldType::number, "", "length^3");
+        for (const Figure& figure : figures_of({})) p.report.values(any(figure.name, "", figure.unit));
+        p.report.values(text("unit"), number("volume of the mesh", "", "length^3"));
     }
 
     void check() const override {
@@ -43,11 +43,10 @@ public:
         const double own = closed_volume(mesh->mesh);
         for (const Figure& figure : figures_of(clay)) {
             const bool known = !std::isnan(figure.value);
-            report.value(figure.name, known ? JsonValue(figure.value) : JsonValue());
+            report(figure.name, known ? JsonValue(figure.value) : JsonValue());
             report.people(figure.name, known ? number(figure.value) + unit_text(figure.unit) : "unknown");
         }
-        report.value("unit", length_unit);
-        report.value("volume of the mesh", own);
+        report("unit", length_unit)("volume of the mesh", own);
         report.line(sentence(clay, own));
         add_notes(report, clay);
         if (std::isnan(clay.most)) report.answer_no();

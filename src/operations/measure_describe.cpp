@@ -13,19 +13,13 @@ class MeasureDescribe final : public Operation {
 public:
     void describe(Parameters& p) override {
         object.describe(p);
-        p.input("map", Kind::values, maps, "NAME=FILE: a map of one value a vertex (.npy, or text with a number a line)")
-            .optional()
-            .flag()
+        p.input_option("map", Kind::values, maps, "NAME=FILE: a map of one value a vertex (.npy, or text with a number a line)")
             .many()
             .named();
         p.options("annotation", chosen, "id or tag of an annotation; once for each, all if left out");
         options.describe(p.options);
-        p.report.table("annotations", {{"id", FieldType::integer}, {"tag", FieldType::text}, {"quantities", FieldType::any}});
-        p.report.table("", {{"", FieldType::text, "id"},
-                            {"", FieldType::text, "tag"},
-                            {"", FieldType::text, "quantity"},
-                            {"", FieldType::text, "value"},
-                            {"", FieldType::text, "unit"}});
+        p.report.table("annotations", integer("id"), text("tag"), any("quantities"));
+        p.report.people_table("", {"id", "tag", "quantity", "value", "unit"});
     }
 
     void run(Context&, Report& report) override {

@@ -38,8 +38,7 @@ public:
         p.input("input", Kind::mesh, input, "mesh to read: .ply, .obj, .off, .stl");
         options.describe(p.options);
         declare_diagnosis(p.report);
-        p.report.value("polygons", FieldType::integer).value("degenerate_polygons", FieldType::integer);
-        p.report.value("holds", FieldType::texts);
+        p.report.values(integer("polygons"), integer("degenerate_polygons"), texts("holds"));
     }
 
     void run(Context& context, Report& report) override {
@@ -60,10 +59,7 @@ public:
         context.notes("", triangles.notes);
         add_diagnosis(report, diagnosis);
         const bool sound = diagnosis.defects().empty() && degenerate == 0;
-        report.value("sound", sound);
-        report.value("polygons", polygon_count);
-        report.value("degenerate_polygons", degenerate);
-        report.value("holds", extras);
+        report("sound", sound)("polygons", polygon_count)("degenerate_polygons", degenerate)("holds", extras);
         for (const auto& [part, time] : seconds) report.run("seconds." + part, time);
 
         auto rows = rows_of(diagnosis);

@@ -13,18 +13,11 @@ class Operations final : public Operation {
 public:
     void describe(Parameters& p) override {
         p.options("name", name, "only the operations whose names begin with this").positional();
-        p.output("pages", Kind::folder, pages, "write a page of Markdown for each first word of the names").optional().flag();
-        p.output("manuals", Kind::folder, manuals, "write a manual page for each operation").optional().flag();
-        p.output("completions", Kind::folder, shells, "write what bash, zsh and fish read to complete commands")
-            .optional()
-            .flag();
-        p.report.table("operations", {{"name", FieldType::text, "operation"},
-                                      {"help", FieldType::text, "what it does"},
-                                      {"inputs", FieldType::any},
-                                      {"outputs", FieldType::any},
-                                      {"options", FieldType::any},
-                                      {"arguments", FieldType::any},
-                                      {"result", FieldType::any}});
+        p.output_option("pages", Kind::folder, pages, "write a page of Markdown for each first word of the names");
+        p.output_option("manuals", Kind::folder, manuals, "write a manual page for each operation");
+        p.output_option("completions", Kind::folder, shells, "write what bash, zsh and fish read to complete commands");
+        p.report.table("operations", text("name", "operation"), text("help", "what it does"), any("inputs"), any("outputs"),
+                       any("options"), any("arguments"), any("result"));
     }
 
     void run(Context&, Report& report) override {

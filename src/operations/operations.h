@@ -9,6 +9,8 @@
 
 namespace ostraka {
 
+using namespace fields;
+
 /// Seconds since it was made.
 class Stopwatch {
 public:

@@ -100,13 +100,10 @@ public:
     void describe(Parameters& p) override {
         describe_inputs(p);
         describe_output(p);
-        p.input("graph", Kind::graph, graph, "graph whose stated relationships are kept").optional().flag();
+        p.input_option("graph", Kind::graph, graph, "graph whose stated relationships are kept");
         p.options("type", types, "type to look for, once for each; all without it").words();
         tolerances.describe(p.options);
-        p.report.table("tree", {{"annotation", FieldType::integer},
-                                {"tag", FieldType::text},
-                                {"depth", FieldType::integer},
-                                {"parent", FieldType::integer}});
+        p.report.table("tree", integer("annotation"), text("tag"), integer("depth"), integer("parent"));
         describe_relationships(p.report);
     }
 
@@ -152,7 +149,7 @@ public:
     void describe(Parameters& p) override {
         describe_inputs(p);
         describe_output(p);
-        p.input("graph", Kind::graph, graph, "graph it is added to; without it a new one begins").optional().flag();
+        p.input_option("graph", Kind::graph, graph, "graph it is added to; without it a new one begins");
         p.options("type", type, "type, e.g. adjacency, \"mirror symmetry\", proportion").required();
         p.options("annotation", members, "id or tag of a member, once for each; the first is the subject").words().required();
         p.options("own-type", own_type, "the type is one of your own");
@@ -312,7 +309,7 @@ public:
         describe_graph(p);
         tolerances.describe(p.options);
         describe_relationships(p.report, true);
-        for (const char* verdict : {"holds", "fails", "unknown"}) p.report.value(verdict, FieldType::integer);
+        for (const char* verdict : {"holds", "fails", "unknown"}) p.report.values(integer(verdict));
     }
 
     void run(Context&, Report& report) override {
@@ -328,7 +325,7 @@ public:
             tell(report, relationship)("verdict", to_string(checks[i].verdict))("text", checks[i].text);
         }
         for (const Verdict verdict : {Verdict::holds, Verdict::fails, Verdict::unknown})
-            report.value(to_string(verdict), counts.at(static_cast<std::size_t>(verdict)));
+            report(to_string(verdict), counts.at(static_cast<std::size_t>(verdict)));
         report.line(std::to_string(counts[0]) + " hold, " + std::to_string(counts[1]) + " fail, " + std::to_string(counts[2]) +
                     " unknown");
         if (counts[1] > 0) report.answer_no();
@@ -344,7 +341,7 @@ public:
         describe_inputs(p);
         describe_graph(p);
         p.output("output", Kind::text, dot, "file to write (.dot, .gv)");
-        for (const char* count : {"relationships", "annotations"}) p.report.value(count, FieldType::integer, count);
+        for (const char* count : {"relationships", "annotations"}) p.report.values(integer(count, count));
     }
 
     void check() const override {
@@ -355,8 +352,7 @@ public:
     void run(Context&, Report& report) override {
         const RelationGraph relations = read_relations();
         dot.write(graph_to_dot(relations, set()));
-        report.value("relationships", relations.relationships.size());
-        report.value("annotations", set().annotations.size());
+        report("relationships", relations.relationships.size())("annotations", set().annotations.size());
     }
 
 private:

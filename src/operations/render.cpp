@@ -20,15 +20,11 @@ public:
         p.input("meshes", Kind::mesh, meshes, "one or more meshes").many();
         p.output("picture", Kind::picture, picture, "picture to write (PNG)");
         p.order({"meshes", "picture"});
-        p.input("annotations", Kind::annotations, annotations, "annotation file; once a mesh, 'none' for a mesh without")
-            .many_or_none()
-            .optional()
-            .flag();
-        p.input("map", Kind::values, maps,
-                "one number a vertex or face (.npy, or text with a number a line); once a mesh, 'none' for a mesh without")
-            .many_or_none()
-            .optional()
-            .flag();
+        p.input_option("annotations", Kind::annotations, annotations, "annotation file; once a mesh, 'none' for a mesh without")
+            .many_or_none();
+        p.input_option("map", Kind::values, maps,
+                       "one number a vertex or face (.npy, or text with a number a line); once a mesh, 'none' for a mesh without")
+            .many_or_none();
         p.options("title", titles, "written under the object; once a mesh, 'none' for a mesh without");
         p.options("map-on", map_on, "what the map's numbers belong to; auto: as their count says",
                   Choices{"auto", "vertex", "face"});
@@ -38,17 +34,10 @@ public:
                   Choices{"auto", "labels", "colours", "none"});
         p.options("unit", unit, "unit of the mesh, for the scale bar");
         options.describe(p.options);
-        p.report.value("picture", FieldType::text);
-        for (const char* side : {"width", "height"}) p.report.value(side, FieldType::integer, "", "pixels");
-        p.report.table("panes", {{"object", FieldType::integer},
-                                 {"view", FieldType::text},
-                                 {"vertices", FieldType::integer},
-                                 {"faces", FieldType::integer},
-                                 {"pixelsPerUnit", FieldType::number},
-                                 {"scaleBar", FieldType::number},
-                                 {"markers", FieldType::integer},
-                                 {"markersShown", FieldType::integer},
-                                 {"camera", FieldType::any}});
+        p.report.values(text("picture"));
+        for (const char* side : {"width", "height"}) p.report.values(integer(side, "", "pixels"));
+        p.report.table("panes", integer("object"), text("view"), integer("vertices"), integer("faces"), number("pixelsPerUnit"),
+                       number("scaleBar"), integer("markers"), integer("markersShown"), any("camera"));
     }
 
     void check() const override {
@@ -85,9 +74,7 @@ public:
         write_png(picture.path(), rendering.picture);
         report.run("writeSeconds", writing.seconds());
         report.run("threads", threads());
-        report.value("picture", picture.file_name());
-        report.value("width", rendering.picture.width);
-        report.value("height", rendering.picture.height);
+        report("picture", picture.file_name())("width", rendering.picture.width)("height", rendering.picture.height);
         report.empty_table("panes");
         for (const Pane& pane : rendering.panes) {
             const Scene& scene = scenes[pane.scene];

@@ -65,13 +65,12 @@ public:
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json): unit, upward direction, parts")
             .optional();
-        p.output("output", Kind::folder, output,
-                 "a folder for everything, or .json (all), .csv (descriptors), .svg, .png (drawing), .ply (slices on the mesh); "
-                 "repeatable")
-            .optional()
-            .flag()
+        p.output_option(
+             "output", Kind::folder, output,
+             "a folder for everything, or .json (all), .csv (descriptors), .svg, .png (drawing), .ply (slices on the mesh); "
+             "repeatable")
             .many();
-        p.output("profile", Kind::picture, profile, "write a profile drawing (.svg, .png)").optional().flag();
+        p.output_option("profile", Kind::picture, profile, "write a profile drawing (.svg, .png)");
         p.options("annotation", names, "id or tag of a region: slice that part only; more than one: all together").words();
         p.options.group("Planes");
         p.options("direction", direction,

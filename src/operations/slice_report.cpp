@@ -161,12 +161,8 @@ void add_compared_axis(Report& report, const ComparedAxis& axis) {
 
 void add_slice_thickness(Report& report, const SliceFindings& found) {
     const ThicknessHomogeneity& t = found.thickness;
-    report.value("thickness.slices", t.slices);
-    report.value("thickness.slices_with_parts_beside", t.beside);
-    report.value("thickness.mean", t.mean);
-    report.value("thickness.variation_within", t.within);
-    report.value("thickness.variation_across", t.across);
-    report.value("thickness.variation_overall", t.overall);
+    report("thickness.slices", t.slices)("thickness.slices_with_parts_beside", t.beside)("thickness.mean", t.mean)(
+        "thickness.variation_within", t.within)("thickness.variation_across", t.across)("thickness.variation_overall", t.overall);
     const auto percent = [](double share) { return std::isfinite(share) ? number(100 * share, 3) : std::string("-"); };
     if (std::isfinite(t.mean))
         report.line(
@@ -180,28 +176,26 @@ void add_slice_thickness(Report& report, const SliceFindings& found) {
 
 void add_slice_tube(Report& report, const SliceFindings& found) {
     const Tube& tube = found.tube;
-    report.value("tube.found", tube.found);
+    report("tube.found", tube.found);
     if (tube.found) {
         const auto heights = found.cut.sorted_heights();
-        report.value("tube.lowest", heights[tube.first]);
-        report.value("tube.highest", heights[tube.last]);
+        report("tube.lowest", heights[tube.first])("tube.highest", heights[tube.last]);
         report.line("\ntubular from " + number(heights[tube.first]) + " to " + number(heights[tube.last]) +
                     (found.unit.empty() ? "" : " " + found.unit) + " (" + std::to_string(tube.last - tube.first + 1) +
                     " slices)");
     } else {
-        report.value("tube.reason", tube.reason);
+        report("tube.reason", tube.reason);
         report.line("\nno tubular part: " + tube.reason);
     }
     JsonValue groups(rapidjson::kArrayType);
     for (const int group : tube.cluster) groups.PushBack(group, report.allocator());
-    report.value("tube.groups_by_height", std::move(groups));
+    report("tube.groups_by_height", std::move(groups));
 }
 
 }  // namespace
 
 void declare_slices(ReportLayout& layout) {
-    layout.value("unit", FieldType::text).value("planes", FieldType::text).value("reversed", FieldType::boolean);
-    layout.value("heights_of_the_mesh", FieldType::numbers, "", "length");
+    layout.values(text("unit"), text("planes"), boolean("reversed"), numbers("heights_of_the_mesh", "", "length"));
     std::vector<Field> columns{{"", FieldType::integer, "slice"},
                                {"height", FieldType::number, "height", "length"},
                                {"", FieldType::integer, "contours"},
@@ -222,33 +216,23 @@ void declare_slices(ReportLayout& layout) {
     columns.push_back({"completeness.share", FieldType::number, "complete %"});
     for (const char* structure : {"thickness_profile", "contours", "medial_axis"}) columns.push_back({structure, FieldType::any});
     layout.table("slices", std::move(columns));
-    layout.table("axes", {{"name", FieldType::text, "axis"},
-                          {"found", FieldType::boolean},
-                          {"reason", FieldType::text},
-                          {"point", FieldType::numbers, "", "length"},
-                          {"direction", FieldType::numbers},
-                          {"polyline", FieldType::any},
-                          {"straightness.mean_distance", FieldType::number, "mean distance", "length"},
-                          {"straightness.deviation", FieldType::number, "", "length"},
-                          {"straightness.largest_distance", FieldType::number, "largest", "length"},
-                          {"straightness.length", FieldType::number, "length", "length"},
-                          {"straightness.relative", FieldType::number, "mean / length %"}});
-    layout.value("thickness.slices", FieldType::integer).value("thickness.slices_with_parts_beside", FieldType::integer);
-    layout.value("thickness.mean", FieldType::number, "", "length");
-    for (const char* part : {"within", "across", "overall"})
-        layout.value("thickness.variation_" + std::string(part), FieldType::number);
-    layout.value("tube.found", FieldType::boolean).value("tube.reason", FieldType::text);
-    layout.value("tube.lowest", FieldType::number, "", "length").value("tube.highest", FieldType::number, "", "length");
-    layout.structure("tube.groups_by_height");
+    layout.table("axes", text("name", "axis"), boolean("found"), text("reason"), numbers("point", "", "length"),
+                 numbers("direction"), any("polyline"), number("straightness.mean_distance", "mean distance", "length"),
+                 number("straightness.deviation", "", "length"), number("straightness.largest_distance", "largest", "length"),
+                 number("straightness.length", "length", "length"), number("straightness.relative", "mean / length %"));
+    layout.values(integer("thickness.slices"), integer("thickness.slices_with_parts_beside"),
+                  number("thickness.mean", "", "length"));
+    for (const char* part : {"within", "across", "overall"}) layout.values(number("thickness.variation_" + std::string(part)));
+    layout.values(boolean("tube.found"), text("tube.reason"), number("tube.lowest", "", "length"),
+                  number("tube.highest", "", "length"), any("tube.groups_by_height"));
 }
 
 void add_slices(Report& report, const SliceFindings& found) {
     const CutObject& cut = found.cut;
     report.set_unit(found.unit);
-    if (!found.unit.empty()) report.value("unit", found.unit);
-    report.value("planes", cut.parallel ? "parallel" : "across a curve");
-    report.value("reversed", cut.reversed);
-    if (cut.parallel && !found.one_plane) report.value("heights_of_the_mesh", std::vector{cut.lowest, cut.highest});
+    if (!found.unit.empty()) report("unit", found.unit);
+    report("planes", cut.parallel ? "parallel" : "across a curve")("reversed", cut.reversed);
+    if (cut.parallel && !found.one_plane) report("heights_of_the_mesh", std::vector{cut.lowest, cut.highest});
     for (std::size_t i = 0; i < cut.slices.size(); ++i) add_one_slice(report, cut, i);
     if (!cut.parallel) report.line("height: length along the curve");
     report.line(

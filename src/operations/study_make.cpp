@@ -90,7 +90,7 @@ public:
     void describe(Parameters& p) override {
         describe_folder(p, "folder to write meshes, annotations, measures and truth.csv to");
         options.describe(p.options);
-        p.report.value("folder", FieldType::text).value("objects", FieldType::integer).value("fixed", FieldType::text);
+        p.report.values(text("folder"), integer("objects"), text("fixed"));
     }
 
     void run(Context& context, Report& report) override {
@@ -110,9 +110,7 @@ public:
         std::string fixed;
         for (const std::string size : ProportionedOptions::size_names)
             if (options.is_fixed(size)) fixed += (fixed.empty() ? "" : ", ") + size;
-        report.value("folder", folder.path().string());
-        report.value("objects", list.size());
-        report.value("fixed", fixed);
+        report("folder", folder.path().string())("objects", list.size())("fixed", fixed);
         report.line(std::to_string(list.size()) + " statuettes with truth.csv and statuettes.measures.json in " +
                     printable(folder.path().string()) + "; in fixed proportion: right arm and left arm" +
                     (fixed.empty() ? "" : "; " + fixed));
@@ -127,8 +125,8 @@ public:
     void describe(Parameters& p) override {
         describe_folder(p, "folder to write meshes, annotations and truth.csv to");
         options.describe(p.options);
-        p.report.value("folder", FieldType::text);
-        for (const char* count : {"objects", "wheel", "hand"}) p.report.value(count, FieldType::integer);
+        p.report.values(text("folder"));
+        for (const char* count : {"objects", "wheel", "hand"}) p.report.values(integer(count));
     }
 
     void run(Context& context, Report& report) override {
@@ -155,10 +153,7 @@ public:
 
         const auto wheel = static_cast<std::size_t>(
             std::count_if(list.begin(), list.end(), [](const auto& one) { return one.technique == "wheel"; }));
-        report.value("folder", folder.path().string());
-        report.value("objects", list.size());
-        report.value("wheel", wheel);
-        report.value("hand", list.size() - wheel);
+        report("folder", folder.path().string())("objects", list.size())("wheel", wheel)("hand", list.size() - wheel);
         report.line(std::to_string(list.size()) + " statuettes of level " + std::to_string(options.level) + ", " +
                     std::to_string(wheel) + " wheel-made and " + std::to_string(list.size() - wheel) +
                     " hand-made, and truth.csv in " + printable(folder.path().string()));
@@ -174,8 +169,8 @@ public:
         describe_folder(p, "folder to write to: a PLY mesh with labelled faces each, and truth.csv");
         population.describe(p.options);
         cast.describe(p.options);
-        p.report.value("objects", FieldType::integer).value("parts", FieldType::texts);
-        p.report.table("", {{"", FieldType::integer, "label"}, {"", FieldType::text, "part"}});
+        p.report.values(integer("objects"), texts("parts"));
+        p.report.people_table("", {"label", "part"});
     }
 
     void run(Context& context, Report& report) override {
@@ -199,8 +194,7 @@ public:
         write_file(folder.in("truth.csv"), truth);
 
         const std::vector<std::string> parts = head_part_names();
-        report.value("objects", plan.size());
-        report.value("parts", parts);
+        report("objects", plan.size())("parts", parts);
         report.line(std::to_string(plan.size()) + " heads in " + printable(folder.path().string()) +
                     ", their moulds in truth.csv");
         for (std::size_t part = 0; part < parts.size(); ++part)

@@ -24,21 +24,12 @@ public:
         compare.describe(p.options);
         group.describe(p.options);
         stability.describe(p.options);
-        for (const char* word : {"similarity", "method", "epsilonRule"}) p.report.value(word, FieldType::text);
-        for (const char* figure : {"epsilon", "featureSize", "silhouette", "adjustedRandIndex"})
-            p.report.value(figure, FieldType::number);
-        p.report.value("clear", FieldType::boolean);
-        p.report.table("groups", {{"group", FieldType::integer},
-                                  {"heads", FieldType::texts},
-                                  {"stability", FieldType::number},
-                                  {"recovered", FieldType::number},
-                                  {"dissolved", FieldType::number}});
-        p.report.table("heads", {{"name", FieldType::text},
-                                 {"group", FieldType::integer},
-                                 {"silhouette", FieldType::number},
-                                 {"secondGroup", FieldType::integer},
-                                 {"relativeSize", FieldType::number},
-                                 {"label", FieldType::text}});
+        for (const char* word : {"similarity", "method", "epsilonRule"}) p.report.values(text(word));
+        for (const char* figure : {"epsilon", "featureSize", "silhouette", "adjustedRandIndex"}) p.report.values(number(figure));
+        p.report.values(boolean("clear"));
+        p.report.table("groups", integer("group"), texts("heads"), number("stability"), number("recovered"), number("dissolved"));
+        p.report.table("heads", text("name"), integer("group"), number("silhouette"), integer("secondGroup"),
+                       number("relativeSize"), text("label"));
     }
 
     void check() const override { files.check(); }
@@ -68,16 +59,11 @@ public:
         if (choices)
             choice_table(study, answers, known).write(files.output.path(), "choices", "Groups by every similarity and epsilon");
 
-        report.value("similarity", similarity);
-        report.value("method", group.method);
-        report.value("epsilonRule", group.epsilon);
-        report.value("epsilon", study.groups.epsilon);
-        report.value("featureSize", prepared.options.features.size);
-        report.value("silhouette", study.groups.silhouette);
-        report.value("clear", study.groups.clear);
+        report("similarity", similarity)("method", group.method)("epsilonRule", group.epsilon)("epsilon", study.groups.epsilon)(
+            "featureSize", prepared.options.features.size)("silhouette", study.groups.silhouette)("clear", study.groups.clear);
         known.add_to(report);
         const double agreement = known.scorable() ? agreement_with_answers(study.groups.labels, answers) : 0;
-        if (known.scorable()) report.value("adjustedRandIndex", agreement);
+        if (known.scorable()) report("adjustedRandIndex", agreement);
         const std::string single = tell_groups(report, study, answers);
         write_report(report, context.provenance());
 

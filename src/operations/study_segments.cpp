@@ -17,32 +17,20 @@ public:
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.output("output", Kind::annotations, output, "annotations to write (.ant.json)");
-        p.output("curve", Kind::picture, curve, "plot of the criterion over the number of clusters (.svg, .png)")
-            .optional()
-            .flag();
-        p.input("compare", Kind::annotations, compare,
-                "annotations with the known parts; else the mesh file's labels, if it has any")
-            .optional()
-            .flag();
+        p.output_option("curve", Kind::picture, curve, "plot of the criterion over the number of clusters (.svg, .png)");
+        p.input_option("compare", Kind::annotations, compare,
+                       "annotations with the known parts; else the mesh file's labels, if it has any");
         p.options("up", up,
                   "x, y, z, -x, -y, -z or three numbers: upward direction; else as the annotations of --compare say, else 0,0,1");
         p.options("unit", unit, "unit of the mesh; else as the annotations of --compare say");
         options.describe(p.options);
-        p.report.value("unit", FieldType::text).value("clusters", FieldType::integer);
-        p.report.value("proposed", FieldType::integer).value("criterion", FieldType::text);
-        p.report.table("curve", {{"clusters", FieldType::integer, "clusters"},
-                                 {"cost", FieldType::number, "cost"},
-                                 {"silhouette", FieldType::number, "silhouette"},
-                                 {"gap", FieldType::number, "gap"},
-                                 {"gapError", FieldType::number, "gap error"}});
-        p.report.table("segments", {{"tag", FieldType::text, "segment"},
-                                    {"cluster", FieldType::integer, "cluster"},
-                                    {"low", FieldType::number, "from", "length"},
-                                    {"high", FieldType::number, "to", "length"},
-                                    {"slices", FieldType::integer, "slices"},
-                                    {"faces", FieldType::integer},
-                                    {"area", FieldType::number, "area", "length^2"}});
-        p.report.value("adjustedRandIndex", FieldType::number);
+        p.report.values(text("unit"), integer("clusters"), integer("proposed"), text("criterion"));
+        p.report.table("curve", integer("clusters", "clusters"), number("cost", "cost"), number("silhouette", "silhouette"),
+                       number("gap", "gap"), number("gapError", "gap error"));
+        p.report.table("segments", text("tag", "segment"), integer("cluster", "cluster"), number("low", "from", "length"),
+                       number("high", "to", "length"), integer("slices", "slices"), integer("faces"),
+                       number("area", "area", "length^2"));
+        p.report.values(number("adjustedRandIndex"));
     }
 
     void check() const override {
@@ -64,10 +52,8 @@ public:
             segment_agreement(segments, parts != nullptr ? labels_of(surface, *parts) : mesh->extras.face_labels);
 
         report.set_unit(set.unit);
-        if (!set.unit.empty()) report.value("unit", set.unit);
-        report.value("clusters", segments.clusters);
-        report.value("proposed", segments.count.proposed);
-        report.value("criterion", options.count.criterion);
+        if (!set.unit.empty()) report("unit", set.unit);
+        report("clusters", segments.clusters)("proposed", segments.count.proposed)("criterion", options.count.criterion);
         report.empty_table("curve");
         for (const ClusterCount::Row& row : segments.count.rows)
             report.row("curve")("clusters", row.clusters)("cost", row.cost)("silhouette", row.silhouette)("gap", row.gap)(
@@ -83,7 +69,7 @@ public:
         }
         tell_clusters(report, segments);
         if (agreement) {
-            report.value("adjustedRandIndex", *agreement);
+            report("adjustedRandIndex", *agreement);
             report.line("adjusted Rand index against the known parts, over the faces: " + number(*agreement, 3));
         }
         if (curve && segments.count.rows.size() > 2) draw(segments);

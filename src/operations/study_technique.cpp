@@ -20,8 +20,8 @@ public:
             "x, y, z, -x, -y, -z or three numbers: upward direction of all objects; else as their annotations say, else 0,0,1");
         slices.describe(p.options);
         options.describe(p.options);
-        for (const char* word : {"positive", "negative", "answeredBy"}) p.report.value(word, FieldType::text);
-        for (const char* answer : {"learned", "separated"}) p.report.value(answer, FieldType::boolean);
+        for (const char* word : {"positive", "negative", "answeredBy"}) p.report.values(text(word));
+        for (const char* answer : {"learned", "separated"}) p.report.values(boolean(answer));
         std::vector<Field> columns{{"name", FieldType::text},       {"descriptors", FieldType::texts},
                                    {"objects", FieldType::integer}, {"f1Interval", FieldType::numbers},
                                    {"better", FieldType::boolean},  {"positiveAbove", FieldType::boolean},
@@ -79,12 +79,9 @@ public:
 private:
     static void fill(Report& report, const TechniqueStudy& study, const std::vector<TechniqueObject>& objects,
                      const KnownAnswers& known) {
-        report.value("positive", study.positive);
-        report.value("negative", study.negative);
-        report.value("learned", study.learned);
+        report("positive", study.positive)("negative", study.negative)("learned", study.learned);
         known.add_to(report);
-        report.value("answeredBy", study.answered_by);
-        report.value("separated", study.separated);
+        report("answeredBy", study.answered_by)("separated", study.separated);
         for (const char* table : {"classifiers", "divisions", "objects"}) report.empty_table(table);
         for (const ClassifierResult& each : study.classifiers) {
             Report::Row row = report.row("classifiers");

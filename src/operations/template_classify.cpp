@@ -15,16 +15,10 @@ public:
         p.input("files", Kind::shape_class, files,
                 "classes (.class.json), then a mesh file for each object (of landmarks for classes of landmarks)")
             .many();
-        p.output("report", Kind::report, answer, "write the whole answer as JSON (doc/schema/classification.schema.json)")
-            .optional()
-            .flag();
+        p.output_option("report", Kind::report, answer, "write the whole answer as JSON (doc/schema/classification.schema.json)");
         options.describe(p.options);
         p.report.schema = "classification";
-        p.report.table("", {{"", FieldType::text, "object"},
-                            {"", FieldType::text, "class"},
-                            {"", FieldType::text, "verdict"},
-                            {"", FieldType::text, "score"},
-                            {"", FieldType::text, "against"}});
+        p.report.people_table("", {"object", "class", "verdict", "score", "against"});
     }
 
     void check() const override {

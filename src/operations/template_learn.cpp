@@ -25,9 +25,8 @@ public:
         p.options("name", name, "of the class; else as the template says");
         p.options("given", given, "the same as --correspondence given");
         options.describe(p.options);
-        p.report.value("class", FieldType::text).value("members", FieldType::integer).value("archetype", FieldType::text);
-        p.report.value("meanSize", FieldType::number, "", "length").value("diversity", FieldType::number);
-        p.report.value("varianceShares", FieldType::numbers);
+        p.report.values(text("class"), integer("members"), text("archetype"), number("meanSize", "", "length"),
+                        number("diversity"), numbers("varianceShares"));
         const auto people = [](const std::vector<const char*>& titles) {
             std::vector<Field> fields;
             for (const char* title : titles) fields.push_back({"", FieldType::number, title});
@@ -127,12 +126,8 @@ private:
         const ShapeModes& modes = learnt.modes;
         std::vector<double> shares;
         for (const double variance : modes.variances) shares.push_back(modes.total > 0 ? variance / modes.total : 0);
-        report.value("class", learnt.name);
-        report.value("members", learnt.members.size());
-        report.value("archetype", learnt.members[modes.archetype].name);
-        report.value("meanSize", modes.mean_size);
-        report.value("diversity", learnt.diversity);
-        report.value("varianceShares", shares);
+        report("class", learnt.name)("members", learnt.members.size())("archetype", learnt.members[modes.archetype].name)(
+            "meanSize", modes.mean_size)("diversity", learnt.diversity)("varianceShares", shares);
         for (std::size_t i = 0; i < learnt.members.size(); ++i)
             report.row("members")
                 .shown("member", learnt.members[i].name)

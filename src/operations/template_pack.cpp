@@ -12,18 +12,15 @@ namespace {
 /// What a template holds and what is wrong with it; `contents`: for people as well.
 void declare_template(ReportLayout& layout, bool contents) {
     const auto title = [&](const char* text) { return contents ? text : ""; };
-    layout.value("class", FieldType::text).value("unit", FieldType::text);
-    layout.table("parts", {{"role", FieldType::text, title("part")},
-                           {"file", FieldType::text, title("file")},
-                           {"bytes", FieldType::integer, title("bytes")},
-                           {"text", FieldType::text, title("what")}});
+    layout.values(text("class"), text("unit"));
+    layout.table("parts", text("role", title("part")), text("file", title("file")), integer("bytes", title("bytes")),
+                 text("text", title("what")));
     layout.checks = true;
 }
 
 void add_template(Report& report, const Template& known, bool contents) {
     const std::string &object_class = known.file.object_class, &unit = known.file.unit;
-    report.value("class", object_class);
-    report.value("unit", unit);
+    report("class", object_class)("unit", unit);
     if (contents && (!object_class.empty() || !unit.empty()))
         report.line(printable(object_class + (unit.empty() ? "" : ", in " + unit)));
     report.empty_table("parts");
@@ -38,7 +35,7 @@ public:
     void describe(Parameters& p) override {
         p.output("output", Kind::template_package, output, "template to write (.template.json)");
         const auto part = [&](const char* role, Kind kind, const char* help) -> Slot& {
-            return p.input(role, kind, parts[role], help).optional().flag();
+            return p.input_option(role, kind, parts[role], help);
         };
         part("mesh", Kind::mesh, "mesh").needed = true;
         part("annotations", Kind::annotations, "its annotations (.ant.json)");

@@ -25,20 +25,10 @@ public:
             "have to be in correspondence (given); it is fitted to all (fitted)",
             Choices{"auto", "given", "fitted"});
         options.fit.describe(p.options);
-        p.report.table("members", {{"name", FieldType::text, "member"},
-                                   {"placedBy", FieldType::text, "laid on by"},
-                                   {"distance", FieldType::number, "distance %"},
-                                   {"distanceBack", FieldType::number},
-                                   {"unmatched", FieldType::number, "unmatched %"},
-                                   {"unexplained", FieldType::number, "unexplained %"},
-                                   {"stretch", FieldType::number},
-                                   {"bend", FieldType::number},
-                                   {"annotations", FieldType::integer, "annotations"},
-                                   {"lost", FieldType::integer, "lost"},
-                                   {"notes", FieldType::texts, "notes"},
-                                   {"liesOn", FieldType::boolean},
-                                   {"problem", FieldType::text},
-                                   {"", FieldType::text, "remarks"}});
+        p.report.table("members", text("name", "member"), text("placedBy", "laid on by"), number("distance", "distance %"),
+                       number("distanceBack"), number("unmatched", "unmatched %"), number("unexplained", "unexplained %"),
+                       number("stretch"), number("bend"), integer("annotations", "annotations"), integer("lost", "lost"),
+                       texts("notes", "notes"), boolean("liesOn"), text("problem"), people("remarks"));
     }
 
     void check() const override {

@@ -51,11 +51,8 @@ public:
         p.input("vocabulary", Kind::vocabulary, file, vocabulary_file);
         p.options("language", language, "language of the labels");
         p.options("under", under, "only this concept (id or label) and narrower ones");
-        p.report.table("concepts", {{"label", FieldType::text, "concept"},
-                                    {"id", FieldType::text, "id"},
-                                    {"depth", FieldType::integer},
-                                    {"", FieldType::text, "other languages"},
-                                    {"attributes", FieldType::texts, "attributes"}});
+        p.report.table("concepts", text("label", "concept"), text("id", "id"), integer("depth"), people("other languages"),
+                       texts("attributes", "attributes"));
     }
 
     void run(Context&, Report& report) override {
@@ -162,7 +159,7 @@ public:
         p.input("input", Kind::vocabulary, input, vocabulary_file);
         p.output("output", Kind::vocabulary, output, "vocabulary to write (.vocabulary.json, .ttl, .rdf)");
         p.options("scheme", scheme, scheme_help);
-        p.report.value("concepts", FieldType::integer).value("rules", FieldType::integer);
+        p.report.values(integer("concepts"), integer("rules"));
     }
 
     void check() const override {
@@ -190,8 +187,7 @@ public:
                        error.remedy());
         }
         report.notes(vocabulary.notes);
-        report.value("concepts", vocabulary.concepts.size());
-        report.value("rules", vocabulary.rules.size());
+        report("concepts", vocabulary.concepts.size())("rules", vocabulary.rules.size());
         report.line(std::to_string(vocabulary.concepts.size()) + " concepts, " + std::to_string(vocabulary.rules.size()) +
                     " rules");
     }

@@ -30,6 +30,13 @@ class Parameters {
 public:
     Slot& input(std::string name, Kind kind, Slot& slot, std::string help);
     Slot& output(std::string name, Kind kind, Slot& slot, std::string help);
+    /// The same for what may be left out, and is given by its name: --name FILE.
+    Slot& input_option(std::string name, Kind kind, Slot& slot, std::string help) {
+        return input(std::move(name), kind, slot, std::move(help)).optional().flag();
+    }
+    Slot& output_option(std::string name, Kind kind, Slot& slot, std::string help) {
+        return output(std::move(name), kind, slot, std::move(help)).optional().flag();
+    }
     OptionList options;
     ReportLayout report;
 
@@ -95,6 +102,8 @@ public:
     void record_input(const std::string& name, const std::string& sha256);
     /// The object in memory has this checksum, if it says none itself.
     void record_object(const Slot& slot, std::size_t i, const std::string& sha256);
+    /// That of an object in memory; empty where nothing says it.
+    std::string checksum_of_object(const Slot& slot, std::size_t i);
     /// Notes for the report of the call under way.
     void note(const std::string& text);
     void notes(const std::string& file, const std::vector<std::string>& texts);
