@@ -26,6 +26,11 @@ Slot* Parameters::slot(const std::string& name) const {
     return found == slots_.end() ? nullptr : *found;
 }
 
+bool Parameters::in_some_order(const std::string& name) const {
+    return std::any_of(orders.begin(), orders.end(),
+                       [&](const auto& order) { return std::find(order.begin(), order.end(), name) != order.end(); });
+}
+
 bool Parameters::updated_in_place(const Slot& input) const {
     return std::any_of(slots_.begin(), slots_.end(), [&](const Slot* slot) {
         return slot->updated == &input && !slot->sources.empty() && slot->sources.front().in_place;
@@ -216,7 +221,10 @@ void Call::check_given() const {
         }
     }
     check_outputs(inputs, outputs);
-    in_operation(entry_->name, [&] { operation_->check(); });
+    in_operation(entry_->name, [&] {
+        for (const auto& check : parameters_.checks) check();
+        operation_->check();
+    });
     for (const Slot* slot : parameters_.slots())
         for (const Source& source : slot->sources)
             if (slot->role == Role::input && !source.file.empty() && slot->kind != Kind::collection && !is_folder(source.file) &&

@@ -61,12 +61,8 @@ void tell_annotations(Context& context, Report& report, const Mesh& mesh, const 
         if (annotation.type == AnnotationType::line) row("length", summary.length);
         if (annotation.type != AnnotationType::point) row.shown("perimeter / length", number(summary.length));
         std::vector<std::string> attributes;
-        std::string shown;
-        for (const Attribute& attribute : annotation.attributes) {
-            attributes.push_back(attribute_text(attribute));
-            shown += (shown.empty() ? "" : "; ") + attributes.back();
-        }
-        row("attributes", attributes, shown + (annotation.note.empty() ? "" : " [" + annotation.note + "]"));
+        for (const Attribute& attribute : annotation.attributes) attributes.push_back(attribute_text(attribute));
+        row("attributes", attributes, joined(attributes, "; ") + (annotation.note.empty() ? "" : " [" + annotation.note + "]"));
         if (!annotation.note.empty()) row("note", annotation.note);
     }
 }

@@ -29,7 +29,7 @@ public:
         report("contradictions", result.contradictions)("missing", result.missing);
         report.notes(result.missing);
         for (const auto& text : result.contradictions) report.line("contradiction: " + printable(text));
-        report.line(std::to_string(result.inferred.size()) + (result.inferred.size() == 1 ? " word" : " words") + " inferred");
+        report.line(counted(result.inferred.size(), "word") + " inferred");
         if (!result.contradictions.empty()) report.answer_no();
         output.write(std::move(result.annotations), mesh->mesh, mesh.file());
     }

@@ -100,8 +100,7 @@ public:
             return std::any_of(merged.conflicts.begin(), merged.conflicts.end(),
                                [&](const Conflict& conflict) { return conflict.field == field; });
         };
-        report.line(std::to_string(count) + (count == 1 ? " conflict" : " conflicts") +
-                    "; nothing written (settle them in the files, or choose with --prefer" +
+        report.line(counted(count, "conflict") + "; nothing written (settle them in the files, or choose with --prefer" +
                     (any("both added") ? "; --renumber keeps both where both added under one id" : "") +
                     (any("geometry") ? "; --merge-faces joins regions that both changed" : "") + ")");
     }

@@ -34,8 +34,8 @@ public:
         }
         const bool intersects = !check_cage(moved, Mesh()).intersections.empty();
         report("steps", states.size())("moved", touched)("intersects", intersects);
-        report.line(std::to_string(states.size()) + (states.size() == 1 ? " step, " : " steps, ") + std::to_string(touched) +
-                    " of " + std::to_string(moved.number_of_vertices()) + " vertices moved");
+        report.line(counted(states.size(), "step") + ", " + std::to_string(touched) + " of " +
+                    std::to_string(moved.number_of_vertices()) + " vertices moved");
         if (intersects) report.note("the moved cage intersects itself, which deforms a mesh all the same, but may fold it");
         output.write(std::move(moved), cage->extras);
     }

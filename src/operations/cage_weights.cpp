@@ -50,7 +50,7 @@ private:
         report("kind", c.kind)("points", c.points)("cageVertices", c.vertices)("cageFaces", c.faces)(
             "certificate", to_json(c, report.allocator()));
         const auto row = [&](const char* property, const std::string& value, const char* meaning) {
-            report.row("").shown("property", property).shown("value", value).shown("meaning", meaning);
+            report.row("", {property, value, meaning});
         };
         const auto share = [](double part) { return number(100 * part, 4) + " %"; };
         const auto on_cage = [&](const char* property, const std::optional<double>& value, const char* meaning) {

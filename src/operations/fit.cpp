@@ -39,14 +39,9 @@ public:
         reading.describe(p.options);
         for (const char* name : {"residual", "scale-tolerance", "slack"}) thresholds[name] = p.options.find(name);
         p.report.schema = "assembly";
-        const auto people = [](const std::vector<const char*>& titles) {
-            std::vector<Field> fields;
-            for (const char* title : titles) fields.push_back({"", FieldType::text, title});
-            return fields;
-        };
-        p.report.table("", people({"fragment", "place", "landmarks", "residual", "own scale", "wrong landmarks"}), "fragments");
-        p.report.table("", people({"breaks", "turn, degrees", "contact %", "rim %", "residual", "confidence", "turn"}), "joints");
-        p.report.table("", people({"id", "constraint", "verdict", "how well"}), "constraints");
+        p.report.people_table("fragments", {"fragment", "place", "landmarks", "residual", "own scale", "wrong landmarks"});
+        p.report.people_table("joints", {"breaks", "turn, degrees", "contact %", "rim %", "residual", "confidence", "turn"});
+        p.report.people_table("constraints", {"id", "constraint", "verdict", "how well"});
     }
 
     void check() const override {
@@ -233,33 +228,27 @@ private:
             count += landmark.used ? 1 : 0;
             if (!landmark.used && one.problem.empty() && search == nullptr) wrong += (wrong.empty() ? "" : ", ") + landmark.name;
         }
-        report.row("fragments")
-            .shown("fragment", names.fragments[k])
-            .shown("place", !one.problem.empty() ? "left out"
-                            : search == nullptr
-                                ? "placed"
-                                : "found, confidence " + number(search->confidence, 3) +
-                                      (search->freedom.kind == FreedomKind::none ? "" : "; open: " + search->freedom.text()))
-            .shown("landmarks", std::to_string(count) + " of " + std::to_string(one.landmarks.size()))
-            .shown("residual", one.problem.empty() ? number(one.residual, 3) : "-")
-            .shown("own scale", one.own_scale > 0 ? number(one.own_scale, 4) : "-")
-            .shown("wrong landmarks", wrong);
+        report.row(
+            "fragments",
+            {names.fragments[k],
+             !one.problem.empty() ? "left out"
+             : search == nullptr  ? "placed"
+                                  : "found, confidence " + number(search->confidence, 3) +
+                                       (search->freedom.kind == FreedomKind::none ? "" : "; open: " + search->freedom.text()),
+             std::to_string(count) + " of " + std::to_string(one.landmarks.size()),
+             one.problem.empty() ? number(one.residual, 3) : "-", one.own_scale > 0 ? number(one.own_scale, 4) : "-", wrong});
     }
 
     /// The joints by which turns were decided, and the fragments without one.
     void tell_turns(Report& report, const BreakTurns& turns) const {
         for (const BreakJoint& joint : turns.joints)
-            report.row("joints")
-                .shown("breaks", names.fragments[static_cast<std::size_t>(joint.first)] + " - " +
-                                     names.fragments[static_cast<std::size_t>(joint.second)])
-                .shown("turn, degrees", number(joint.turn, 4))
-                .shown("contact %", number(100 * joint.contact, 3))
-                .shown("rim %", number(100 * joint.rim, 3))
-                .shown("residual", number(joint.residual, 3))
-                .shown("confidence", joint.carries ? number(joint.confidence, 2) : "-")
-                .shown("turn", !joint.carries  ? "closes a cycle"
-                               : joint.decided ? "decided"
-                                               : "not decided");
+            report.row("joints", {names.fragments[static_cast<std::size_t>(joint.first)] + " - " +
+                                      names.fragments[static_cast<std::size_t>(joint.second)],
+                                  number(joint.turn, 4), number(100 * joint.contact, 3), number(100 * joint.rim, 3),
+                                  number(joint.residual, 3), joint.carries ? number(joint.confidence, 2) : "-",
+                                  !joint.carries  ? "closes a cycle"
+                                  : joint.decided ? "decided"
+                                                  : "not decided"});
         for (std::size_t k = 0; k < names.fragments.size() && k < turns.notes.size(); ++k)
             if (!turns.notes[k].empty()) report.line(printable(names.fragments[k]) + ": " + printable(turns.notes[k]));
     }
@@ -275,13 +264,11 @@ private:
         const bool objected = std::any_of(result.objections.begin(), result.objections.end(), [&](const Objection& one) {
             return one.kind == ObjectionKind::constraint && one.constraint == constraint.id;
         });
-        report.row("constraints")
-            .shown("id", std::to_string(constraint.id))
-            .shown("constraint", constraint.type)
-            .shown("verdict", !constraint.used                                    ? "left out"
-                              : constraint.verdict == Verdict::fails && !objected ? "holds within --slack"
-                                                                                  : to_string(constraint.verdict))
-            .shown("how well", words);
+        report.row("constraints", {constraint.id, constraint.type,
+                                   !constraint.used                                    ? "left out"
+                                   : constraint.verdict == Verdict::fails && !objected ? "holds within --slack"
+                                                                                       : to_string(constraint.verdict),
+                                   words});
     }
 
     TemplateInput known;

@@ -16,27 +16,23 @@ public:
         p.input("mesh", Kind::mesh, mesh, "mesh file, closed or open");
         p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json): unit and upward direction")
             .optional();
-        p.options(
-            "up", up,
-            "x, y, z, -x, -y, -z or three numbers: direction that slices lie across; else as the annotations say, else 0,0,1");
+        up.describe(p,
+                    "x, y, z, -x, -y, -z or three numbers: direction that slices lie across; else as the annotations say, "
+                    "else 0,0,1");
         p.options("unit", unit, "unit of the mesh's coordinates, e.g. mm; else as the annotations say");
         options.describe(p.options);
         for (const Figure& figure : figures_of({})) p.report.values(any(figure.name, "", figure.unit));
         p.report.values(text("unit"), number("volume of the mesh", "", "length^3"));
     }
 
-    void check() const override {
-        if (!up.empty()) static_cast<void>(direction_of(up, "--up"));
-    }
-
     void run(Context&, Report& report) override {
         std::array<double, 3> direction{0, 0, 1};
-        if (!up.empty()) direction = direction_of(up, "--up");
+        if (up) direction = *up.value();
         length_unit = unit;
         if (annotations) {
             const AnnotationSet& set = annotations.on(mesh->mesh);
             if (unit.empty()) length_unit = set.unit;
-            if (up.empty() && set.up) direction = *set.up;
+            if (!up && set.up) direction = *set.up;
         }
         const SliceFrame frame = slice_frame(Point(0, 0, 0), Vector(direction[0], direction[1], direction[2]));
         const ClayVolume clay = in_file(mesh.file(), [&] { return clay_volume(mesh->mesh, frame, options); });
@@ -115,8 +111,8 @@ private:
 
     MeshInput mesh;
     AnnotationsInput annotations;
-    std::string up, unit;
-    std::string length_unit;  ///< the unit asked for, or that of the annotations
+    DirectionOption up;
+    std::string unit, length_unit;  ///< the unit asked for, or that of the annotations
     ClayOptions options;
 };
 

@@ -93,12 +93,7 @@ private:
             else add_member(item, "value", JsonValue(quantity.values.front()), allocator);
             add_member(item, "unit", unit_of(quantity, unit), allocator);
             list.PushBack(item, allocator);
-            report.row("")
-                .shown("id", std::to_string(annotation.id))
-                .shown("tag", annotation.tag)
-                .shown("quantity", quantity.name)
-                .shown("value", text)
-                .shown("unit", unit_of(quantity, unit));
+            report.row("", {annotation.id, annotation.tag, quantity.name, text, unit_of(quantity, unit)});
         }
         report.row("annotations")("id", annotation.id)("tag", annotation.tag)("quantities", std::move(list));
     }

@@ -65,9 +65,7 @@ public:
         auto rows = rows_of(diagnosis);
         rows.insert(rows.begin() + 2, {{"polygons", std::to_string(polygon_count)},
                                        {"polygons with fewer than three corners", std::to_string(degenerate)}});
-        std::string held;
-        for (const auto& name : extras) held += (held.empty() ? "" : ", ") + name;
-        rows.insert(rows.end() - 1, {"holds", held.empty() ? "nothing but the geometry" : held});
+        rows.insert(rows.end() - 1, {"holds", extras.empty() ? "nothing but the geometry" : joined(extras)});
         for (const auto& [what, value] : rows) report.people(what, value);
         if (!sound) report.answer_no();
     }

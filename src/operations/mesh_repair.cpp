@@ -58,10 +58,10 @@ private:
         for (const auto& [what, count] : step.counts) {
             add_member(counts, what, JsonValue(static_cast<std::uint64_t>(count)), report.allocator());
             if (count == 0) continue;
-            report.row("").shown("step", name).shown("what", what).shown("count", std::to_string(count));
+            report.row("", {name, what, count});
             name.clear();
         }
-        if (!name.empty()) report.row("").shown("step", name).shown("what", "nothing to do").shown("count", "-");
+        if (!name.empty()) report.row("", {name, "nothing to do", "-"});
         report.row("steps")("step", step.name)("counts", std::move(counts));
     }
 

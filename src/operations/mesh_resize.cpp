@@ -23,11 +23,7 @@ protected:
         for (const auto& [mesh, when, totals] : {std::tuple{"input.", "before", before}, {"output.", "after", after}}) {
             report(std::string(mesh) + "vertices", totals.vertices)(std::string(mesh) + "faces", totals.faces)(
                 std::string(mesh) + "area", totals.area);
-            report.row("")
-                .shown("mesh", when)
-                .shown("vertices", std::to_string(totals.vertices))
-                .shown("faces", std::to_string(totals.faces))
-                .shown("area", number(totals.area));
+            report.row("", {when, totals.vertices, totals.faces, number(totals.area)});
         }
     }
 

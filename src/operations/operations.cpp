@@ -3,8 +3,6 @@
 
 #include "ostraka/operations/pages.h"
 
-#include <algorithm>
-
 namespace ostraka {
 
 namespace {
@@ -37,11 +35,7 @@ public:
         if (pages)
             for (const std::string& word : command_pages()) put(pages, word + ".md", commands_page(word));
         if (manuals)
-            for (const OperationEntry& entry : operations()) {
-                std::string file = "ostraka-" + std::string(entry.name) + ".1";
-                std::replace(file.begin(), file.end(), ' ', '-');
-                put(manuals, file, manual_page(entry));
-            }
+            for (const OperationEntry& entry : operations()) put(manuals, manual_name(entry) + ".1", manual_page(entry));
         if (shells) {
             put(shells, "ostraka", completion_script(Shell::bash));
             put(shells, "_ostraka", completion_script(Shell::zsh));

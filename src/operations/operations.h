@@ -5,6 +5,8 @@
 
 #include "arguments.h"
 
+#include "ostraka/core/text.h"
+
 #include <chrono>
 
 namespace ostraka {

@@ -20,10 +20,7 @@ public:
         options.describe(p.options);
         reading.describe(p.options);
         p.report.schema = "pair";
-        std::vector<Field> columns;
-        for (const char* title : {"pose", "score", "contact %", "rim %", "residual", "penetration %"})
-            columns.push_back({"", FieldType::number, title});
-        p.report.table("", std::move(columns));
+        p.report.people_table("", {"pose", "score", "contact %", "rim %", "residual", "penetration %"});
     }
 
     void run(Context& context, Report& report) override {
@@ -45,10 +42,8 @@ public:
             report.line(printable(slot->file()) + ": facets by " + file->facets_from + ", fracture " + number(fracture, 4));
         std::size_t count = 0;
         for (const PairCandidate& one : pair.candidates) {
-            Report::Row row = report.row("");
-            row.shown("pose", std::to_string(++count)).shown("score", number(one.score, 3));
-            row.shown("contact %", number(100 * one.contact, 3)).shown("rim %", number(100 * one.rim, 3));
-            row.shown("residual", number(one.residual, 3)).shown("penetration %", number(100 * one.penetration, 2));
+            report.row("", {++count, number(one.score, 3), number(100 * one.contact, 3), number(100 * one.rim, 3),
+                            number(one.residual, 3), number(100 * one.penetration, 2)});
         }
         const std::string confidence = "confidence " + number(pair.confidence, 2);
         report.line(pair.decided() ? "they go together as in pose 1, " + confidence

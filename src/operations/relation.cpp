@@ -23,16 +23,12 @@ protected:
     void describe_output(Parameters& p) { p.output("output", Kind::graph, output, "graph to write (.graph.json)"); }
     /// The table of relationships, with what became of each where they were checked.
     static void describe_relationships(ReportLayout& report, bool checked = false) {
-        std::vector<Field> columns{{"id", FieldType::integer, "id"}};
-        if (checked) columns.push_back({"verdict", FieldType::text, "verdict"});
-        columns.push_back({"type", FieldType::text, "type"});
-        columns.push_back({"origin", FieldType::text, checked ? "" : "origin"});
-        columns.push_back({"annotations", FieldType::numbers, "annotations"});
-        columns.push_back({"parameters", FieldType::any, "measured"});
-        if (checked) columns.push_back({"text", FieldType::text, "remark"});
-        for (const char* key : {"isDirected", "isConstraint"}) columns.push_back({key, FieldType::boolean});
-        columns.push_back({"weight", FieldType::number});
-        columns.push_back({"constraint", FieldType::any});
+        std::vector<Field> columns{integer("id", "id")};
+        if (checked) columns.push_back(text("verdict", "verdict"));
+        columns.insert(columns.end(), {text("type", "type"), text("origin", checked ? "" : "origin"),
+                                       numbers("annotations", "annotations"), any("parameters", "measured")});
+        if (checked) columns.push_back(text("text", "remark"));
+        columns.insert(columns.end(), {boolean("isDirected"), boolean("isConstraint"), number("weight"), any("constraint")});
         report.table("relationships", std::move(columns));
     }
 
@@ -64,15 +60,12 @@ protected:
 
 private:
     [[nodiscard]] std::string members_of(const Relationship& relationship) const {
-        std::string text;
+        std::vector<std::string> members;
         for (const int id : relationship.annotations) {
             const Annotation* annotation = set().find(id);
-            text += (text.empty()            ? ""
-                     : relationship.directed ? " > "
-                                             : ", ") +
-                    std::to_string(id) + (annotation == nullptr ? "" : " " + annotation->tag);
+            members.push_back(std::to_string(id) + (annotation == nullptr ? "" : " " + annotation->tag));
         }
-        return text;
+        return joined(members, relationship.directed ? " > " : ", ");
     }
 
     /// The type, of "equal attributes" with the attribute, of constraints with the weight.
@@ -119,10 +112,8 @@ public:
             const auto known = std::find_if(list.begin(), list.end(), [&](const auto& one) { return one.id == id; });
             report.note("relationship " + std::to_string(id) + " (" + known->type + ") is stated already");
         }
-        std::string left_out;
-        for (const std::string& type : found.not_looked_for) left_out += (left_out.empty() ? "" : ", ") + type;
-        if (!left_out.empty())
-            report.note("not looked for, as the annotations do not say what is up: " + left_out +
+        if (!found.not_looked_for.empty())
+            report.note("not looked for, as the annotations do not say what is up: " + joined(found.not_looked_for) +
                         " ('ostraka annotation edit --set-up x,y,z' says it)");
         report.empty_table("tree");
         std::string text = "the whole shape\n";
@@ -244,12 +235,9 @@ private:
         if (value < 0) fail_usage("the tolerance '" + printable(text, 60) + "' is negative", "use 0 or more");
         const std::string quantity = text.substr(0, sign);
         const auto measured = measured_quantities(own_name());
-        if (std::find(measured.begin(), measured.end(), quantity) == measured.end()) {
-            std::string list;
-            for (const auto& name : measured) list += (list.empty() ? "" : ", ") + name;
+        if (std::find(measured.begin(), measured.end(), quantity) == measured.end())
             fail_usage("'" + own_name() + "' does not measure '" + quantity + "'",
-                       list.empty() ? "leave the tolerance out" : "it measures " + list);
-        }
+                       measured.empty() ? "leave the tolerance out" : "it measures " + joined(measured));
         const bool length = quantity == "distance" || quantity == "height", angle = quantity == "angle" || quantity == "tilt";
         if (percent && angle) fail_usage("'" + text + "' is not a tolerance", "give an angle in degrees, without '%'");
         return {quantity, value, percent && length, length, angle};

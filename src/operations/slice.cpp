@@ -75,7 +75,7 @@ public:
         p.options.group("Planes");
         p.options("direction", direction,
                   "across what: up, principal, rotation, skeleton, an axis such as y or -z, or three numbers like 0,1,0");
-        p.options("up", up, "x, y, z, -x, -y, -z or three numbers: upward direction; else as the annotations say, else 0,0,1");
+        up.describe(p, "x, y, z, -x, -y, -z or three numbers: upward direction; else as the annotations say, else 0,0,1");
         p.options("count", count, "number of slices, in the middles of as many layers (default 50)", Range{1, 1e6});
         p.options("spacing", spacing, "distance of the slices, from the lowest place up", Anything{}, "the mesh's unit");
         p.options("heights", heights, "heights over the lowest place, with commas between them", Anything{}, "the mesh's unit");
@@ -142,7 +142,6 @@ private:
         if (range.size() != 2 || !(range[0] < range[1]))
             fail_usage("--range is '" + listed(range) + "'", "give two shares of the height, the lower one first, like 0,0.4");
         if (!plane.empty()) static_cast<void>(frame_of_plane());
-        if (!up.empty()) static_cast<void>(direction_of(up, "--up"));
         if (direction != "up" && !is_by_axis()) static_cast<void>(asked_direction());
     }
 
@@ -194,7 +193,7 @@ private:
             std::sort(faces.begin(), faces.end());
             faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
         }
-        if (!up.empty()) upward = direction_of(up, "--up"), up_known = true;
+        if (up) upward = *up.value(), up_known = true;
         upwards = {upward[0], upward[1], upward[2]};
     }
 
@@ -316,7 +315,8 @@ private:
     SliceOutput output;
     FileOutput profile{".svg"};
     std::vector<std::string> names;
-    std::string direction = "up", up, unit, title, colour_by = "height";
+    std::string direction = "up", unit, title, colour_by = "height";
+    DirectionOption up;
     std::optional<int> count;
     std::optional<double> spacing, angle;
     std::vector<double> heights, range{0, 1}, plane, residues;

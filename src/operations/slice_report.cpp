@@ -10,6 +10,8 @@
 
 namespace ostraka {
 
+using namespace fields;
+
 namespace {
 
 constexpr double slice_degree = M_PI / 180;
@@ -38,18 +40,18 @@ bool is_slice_count(std::string_view name) { return name == "components" || name
 
 Field descriptor_field(const NamedDescriptor& entry) {
     const ShownDescriptor* shown = shown_descriptor(entry.name);
-    const std::string unit = entry.unit;
     return {"descriptors." + std::string(entry.name), is_slice_count(entry.name) ? FieldType::integer : FieldType::number,
-            std::string(shown == nullptr ? "" : shown->title), unit == "area" ? "length^2" : unit};
+            std::string(shown == nullptr ? "" : shown->title), std::string(entry.unit) == "area" ? "length^2" : entry.unit};
 }
 
 std::vector<double> slice_triple(const Vector& v) { return {v.x(), v.y(), v.z()}; }
 std::vector<double> slice_triple(const Point& p) { return {p.x(), p.y(), p.z()}; }
 
-JsonValue slice_list(const std::vector<double>& numbers, JsonAllocator& allocator) {
-    JsonValue list(rapidjson::kArrayType);
-    for (const double x : numbers) list.PushBack(std::isfinite(x) ? JsonValue(x) : JsonValue(), allocator);
-    return list;
+/// Numbers that are not finite are null.
+JsonValue slice_list(const std::vector<double>& values, JsonAllocator& allocator) {
+    std::vector<std::optional<double>> list;
+    for (const double x : values) list.push_back(std::isfinite(x) ? std::optional(x) : std::nullopt);
+    return json_value(list, allocator);
 }
 JsonValue slice_points(const std::vector<Eigen::Vector2d>& points, JsonAllocator& allocator) {
     JsonValue list(rapidjson::kArrayType);
@@ -58,47 +60,35 @@ JsonValue slice_points(const std::vector<Eigen::Vector2d>& points, JsonAllocator
 }
 
 JsonValue slice_json(const SliceFrame& frame, JsonAllocator& allocator) {
-    JsonValue object(rapidjson::kObjectType);
-    add_member(object, "origin", slice_list(slice_triple(frame.origin), allocator), allocator);
-    add_member(object, "u", slice_list(slice_triple(frame.u), allocator), allocator);
-    add_member(object, "v", slice_list(slice_triple(frame.v), allocator), allocator);
-    add_member(object, "normal", slice_list(slice_triple(frame.normal), allocator), allocator);
-    return object;
+    const auto list = [&](const auto& of) { return slice_list(slice_triple(of), allocator); };
+    return json_object(allocator, "origin", list(frame.origin), "u", list(frame.u), "v", list(frame.v), "normal",
+                       list(frame.normal));
 }
 
 JsonValue slice_json(const Contour& contour, JsonAllocator& allocator) {
-    JsonValue object(rapidjson::kObjectType);
-    add_member(object, "closed", JsonValue(contour.closed), allocator);
+    JsonValue object = json_object(allocator, "closed", contour.closed);
     if (contour.closed) {
-        add_member(object, "hole", JsonValue(contour.hole), allocator);
-        add_member(object, "parent", JsonValue(contour.parent), allocator);
-        add_member(object, "depth", JsonValue(contour.depth), allocator);
-        add_member(object, "area", JsonValue(contour.area), allocator);
-        if (contour.crosses) add_member(object, "crosses", JsonValue(true), allocator);
-        if (contour.turned) add_member(object, "turned", JsonValue(true), allocator);
+        add_members(object, allocator, "hole", contour.hole, "parent", contour.parent, "depth", contour.depth, "area",
+                    contour.area);
+        if (contour.crosses) add_members(object, allocator, "crosses", true);
+        if (contour.turned) add_members(object, allocator, "turned", true);
     } else {
-        add_member(object, "gap", JsonValue(contour.gap), allocator);
-        add_member(object, "share", JsonValue(contour.length / (contour.length + contour.gap)), allocator);
+        add_members(object, allocator, "gap", contour.gap, "share", contour.length / (contour.length + contour.gap));
     }
-    add_member(object, "length", JsonValue(contour.length), allocator);
-    add_member(object, "points", slice_points(contour.points, allocator), allocator);
+    add_members(object, allocator, "length", contour.length, "points", slice_points(contour.points, allocator));
     return object;
 }
 
 JsonValue slice_json(const MedialAxis& medial, JsonAllocator& allocator) {
     JsonValue levels(rapidjson::kArrayType);
     for (const auto& level : medial.levels) {
-        JsonValue object(rapidjson::kObjectType), branches(rapidjson::kArrayType);
-        add_member(object, "residue", JsonValue(level.residue), allocator);
-        add_member(object, "length", JsonValue(level.length), allocator);
-        for (const auto& branch : level.branches) {
-            JsonValue entry(rapidjson::kObjectType);
-            add_member(entry, "points", slice_points(branch.points, allocator), allocator);
-            add_member(entry, "radii", slice_list(branch.radii, allocator), allocator);
-            branches.PushBack(entry, allocator);
-        }
-        add_member(object, "branches", std::move(branches), allocator);
-        levels.PushBack(object, allocator);
+        JsonValue branches(rapidjson::kArrayType);
+        for (const auto& branch : level.branches)
+            branches.PushBack(json_object(allocator, "points", slice_points(branch.points, allocator), "radii",
+                                          slice_list(branch.radii, allocator)),
+                              allocator);
+        levels.PushBack(json_object(allocator, "residue", level.residue, "length", level.length, "branches", std::move(branches)),
+                        allocator);
     }
     return levels;
 }
@@ -187,34 +177,32 @@ void add_slice_tube(Report& report, const SliceFindings& found) {
         report("tube.reason", tube.reason);
         report.line("\nno tubular part: " + tube.reason);
     }
-    JsonValue groups(rapidjson::kArrayType);
-    for (const int group : tube.cluster) groups.PushBack(group, report.allocator());
-    report("tube.groups_by_height", std::move(groups));
+    report("tube.groups_by_height", json_value(tube.cluster, report.allocator()));
 }
 
 }  // namespace
 
 void declare_slices(ReportLayout& layout) {
     layout.values(text("unit"), text("planes"), boolean("reversed"), numbers("heights_of_the_mesh", "", "length"));
-    std::vector<Field> columns{{"", FieldType::integer, "slice"},
-                               {"height", FieldType::number, "height", "length"},
-                               {"", FieldType::integer, "contours"},
-                               {"frame", FieldType::any},
-                               {"completeness.empty", FieldType::boolean},
-                               {"completeness.complete", FieldType::boolean},
-                               {"completeness.closed_share", FieldType::number},
-                               {"completeness.angle_degrees", FieldType::number, "", "degrees"},
-                               {"completeness.crossing_contours", FieldType::integer},
-                               {"completeness.turned_contours", FieldType::integer},
-                               {"completeness.doubtful_share", FieldType::number}};
+    std::vector<Field> columns{people("slice"),
+                               number("height", "height", "length"),
+                               people("contours"),
+                               any("frame"),
+                               boolean("completeness.empty"),
+                               boolean("completeness.complete"),
+                               number("completeness.closed_share"),
+                               number("completeness.angle_degrees", "", "degrees"),
+                               integer("completeness.crossing_contours"),
+                               integer("completeness.turned_contours"),
+                               number("completeness.doubtful_share")};
     const auto descriptors = list_descriptors({});
     for (const ShownDescriptor& shown : shown_descriptors)
-        columns.push_back(descriptor_field(
-            *std::find_if(descriptors.begin(), descriptors.end(), [&](const auto& entry) { return entry.name == shown.name; })));
+        for (const auto& entry : descriptors)
+            if (entry.name == shown.name) columns.push_back(descriptor_field(entry));
     for (const auto& entry : descriptors)
         if (shown_descriptor(entry.name) == nullptr) columns.push_back(descriptor_field(entry));
-    columns.push_back({"completeness.share", FieldType::number, "complete %"});
-    for (const char* structure : {"thickness_profile", "contours", "medial_axis"}) columns.push_back({structure, FieldType::any});
+    columns.insert(columns.end(),
+                   {number("completeness.share", "complete %"), any("thickness_profile"), any("contours"), any("medial_axis")});
     layout.table("slices", std::move(columns));
     layout.table("axes", text("name", "axis"), boolean("found"), text("reason"), numbers("point", "", "length"),
                  numbers("direction"), any("polyline"), number("straightness.mean_distance", "mean distance", "length"),

@@ -197,8 +197,7 @@ public:
         report("objects", plan.size())("parts", parts);
         report.line(std::to_string(plan.size()) + " heads in " + printable(folder.path().string()) +
                     ", their moulds in truth.csv");
-        for (std::size_t part = 0; part < parts.size(); ++part)
-            report.row("").shown("label", std::to_string(part)).shown("part", parts[part]);
+        for (std::size_t part = 0; part < parts.size(); ++part) report.row("", {part, parts[part]});
     }
 
 private:

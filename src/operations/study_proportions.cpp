@@ -119,14 +119,15 @@ public:
         options.describe(p.options);
         proposals.describe(p.options);
         p.report.values(integer("objects"));
-        std::vector<Field> columns{{"name", FieldType::text}, {"unit", FieldType::text}, {"objects", FieldType::integer}};
-        for (const char* name : {"average", "min", "max", "median", "ownDeviation"}) columns.push_back({name, FieldType::number});
-        for (const char* name : {"deviation", "deviationInterval", "variation", "variationInterval"})
-            columns.push_back({name, FieldType::any});
+        std::vector<Field> columns{text("name"),       text("unit"),
+                                   integer("objects"), number("average"),
+                                   number("min"),      number("max"),
+                                   number("median"),   number("ownDeviation"),
+                                   any("deviation"),   any("deviationInterval"),
+                                   any("variation"),   any("variationInterval")};
         p.report.table("measures", columns);
-        for (const char* name : {"numerator", "denominator", "verdict"}) columns.push_back({name, FieldType::text});
-        for (const char* name : {"logDeviation", "pPairing", "pOthers", "q"}) columns.push_back({name, FieldType::number});
-        for (const char* name : {"range", "pSize"}) columns.push_back({name, FieldType::any});
+        columns.insert(columns.end(), {text("numerator"), text("denominator"), text("verdict"), number("logDeviation"),
+                                       number("pPairing"), number("pOthers"), number("q"), any("range"), any("pSize")});
         p.report.table("ratios", columns);
         p.report.values(any("sizeDeviation"), integer("proposed", "proposed constraints"));
     }

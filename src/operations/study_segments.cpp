@@ -20,8 +20,8 @@ public:
         p.output_option("curve", Kind::picture, curve, "plot of the criterion over the number of clusters (.svg, .png)");
         p.input_option("compare", Kind::annotations, compare,
                        "annotations with the known parts; else the mesh file's labels, if it has any");
-        p.options("up", up,
-                  "x, y, z, -x, -y, -z or three numbers: upward direction; else as the annotations of --compare say, else 0,0,1");
+        up.describe(
+            p, "x, y, z, -x, -y, -z or three numbers: upward direction; else as the annotations of --compare say, else 0,0,1");
         p.options("unit", unit, "unit of the mesh; else as the annotations of --compare say");
         options.describe(p.options);
         p.report.values(text("unit"), integer("clusters"), integer("proposed"), text("criterion"));
@@ -33,15 +33,11 @@ public:
         p.report.values(number("adjustedRandIndex"));
     }
 
-    void check() const override {
-        if (!up.empty()) direction_of(up, "--up");
-    }
-
     void run(Context&, Report& report) override {
         const Mesh& surface = mesh->mesh;
         const AnnotationSet* parts = compare ? &compare.on(surface) : nullptr;
         std::optional<std::array<double, 3>> way = parts != nullptr ? parts->up : std::nullopt;
-        if (!up.empty()) way = direction_of(up, "--up");
+        if (up) way = up.value();
         if (!way) report.note("no upward direction is known, z is taken; else give --up");
         const Vector upward = way ? Vector((*way)[0], (*way)[1], (*way)[2]) : Vector(0, 0, 1);
         const SliceSegments segments = in_file(mesh.file(), [&] { return segment_by_slices(surface, upward, options); });
@@ -123,7 +119,8 @@ private:
     AnnotationsInput compare;
     AnnotationsOutput output;
     FileOutput curve{".svg"};
-    std::string up, unit;
+    DirectionOption up;
+    std::string unit;
     SliceSegmentOptions options;
 };
 

@@ -15,43 +15,31 @@ class StudyOfTechnique final : public Operation {
 public:
     void describe(Parameters& p) override {
         files.describe(p, true);
-        p.options(
-            "up", up,
+        up.describe(
+            p,
             "x, y, z, -x, -y, -z or three numbers: upward direction of all objects; else as their annotations say, else 0,0,1");
         slices.describe(p.options);
         options.describe(p.options);
         for (const char* word : {"positive", "negative", "answeredBy"}) p.report.values(text(word));
         for (const char* answer : {"learned", "separated"}) p.report.values(boolean(answer));
-        std::vector<Field> columns{{"name", FieldType::text},       {"descriptors", FieldType::texts},
-                                   {"objects", FieldType::integer}, {"f1Interval", FieldType::numbers},
-                                   {"better", FieldType::boolean},  {"positiveAbove", FieldType::boolean},
-                                   {"roc", FieldType::any}};
-        for (const char* score : {"f1", "f1Deviation", "trivialF1", "error", "precision", "recall", "area", "threshold"})
-            columns.push_back({score, FieldType::number});
-        p.report.table("classifiers", columns);
-        columns = {{"descriptor", FieldType::text}, {"objects", FieldType::integer}, {"lower", FieldType::integer}};
-        for (const char* figure : {"threshold", "shareBetween", "p", "f1"}) columns.push_back({figure, FieldType::number});
-        p.report.table("divisions", columns);
-        columns = {{"resamples", FieldType::integer},      {"unlike.descriptor", FieldType::text},
-                   {"unlike.value", FieldType::number},    {"unlike.labelled", FieldType::numbers},
-                   {"unlike.distance", FieldType::number}, {"score", FieldType::number},
-                   {"agreement", FieldType::number},       {"roundnessInterval", FieldType::numbers},
-                   {"descriptors", FieldType::any}};
-        for (const char* word : {"name", "label", "answer", "certainty", "words"}) columns.push_back({word, FieldType::text});
-        for (const char* count : {"asked", "used", "open", "tooOpen", "empty"})
-            columns.push_back({std::string("slices.") + count, FieldType::integer});
-        p.report.table("objects", columns);
+        p.report.table("classifiers", text("name"), texts("descriptors"), integer("objects"), numbers("f1Interval"),
+                       boolean("better"), boolean("positiveAbove"), any("roc"), number("f1"), number("f1Deviation"),
+                       number("trivialF1"), number("error"), number("precision"), number("recall"), number("area"),
+                       number("threshold"));
+        p.report.table("divisions", text("descriptor"), integer("objects"), integer("lower"), number("threshold"),
+                       number("shareBetween"), number("p"), number("f1"));
+        p.report.table("objects", integer("resamples"), text("unlike.descriptor"), number("unlike.value"),
+                       numbers("unlike.labelled"), number("unlike.distance"), number("score"), number("agreement"),
+                       numbers("roundnessInterval"), any("descriptors"), text("name"), text("label"), text("answer"),
+                       text("certainty"), text("words"), integer("slices.asked"), integer("slices.used"), integer("slices.open"),
+                       integer("slices.tooOpen"), integer("slices.empty"));
     }
 
-    void check() const override {
-        files.check();
-        if (!up.empty()) direction_of(up, "--up");
-    }
+    void check() const override { files.check(); }
 
     void run(Context& context, Report& report) override {
         const Collection collection = files.read(context);
-        const auto measured = measure_technique(collection, up.empty() ? std::nullopt : std::optional(direction_of(up, "--up")),
-                                                slices, files.store());
+        const auto measured = measure_technique(collection, up.value(), slices, files.store());
         report.notes(notes_on_directions(collection, measured));
         const std::vector<TechniqueObject> objects = technique_objects(collection, measured);
         const std::size_t left_out = report_failures(report, collection, measured);
@@ -216,7 +204,7 @@ private:
     }
 
     StudyFiles files;
-    std::string up;
+    DirectionOption up;
     TechniqueOptions slices;
     TechniqueStudyOptions options;
 };

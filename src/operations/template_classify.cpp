@@ -100,12 +100,8 @@ private:
         if (answer) answer.write(std::move(document));
         for (const Classification& object : answers)
             for (const ClassAnswer& one : object.answers)
-                report.row("")
-                    .shown("object", object.object)
-                    .shown("class", one.name)
-                    .shown("verdict", to_string(one.verdict))
-                    .shown("score", one.fit.problem.empty() ? number(one.score, 4) : "-")
-                    .shown("against", std::to_string(one.against.size()));
+                report.row("", {object.object, one.name, to_string(one.verdict),
+                                one.fit.problem.empty() ? number(one.score, 4) : "-", one.against.size()});
         for (const Classification& object : answers) {
             report.line("\n" + printable(object.object) + " " + printable(object.text));
             for (const ClassAnswer& one : object.answers) {

@@ -48,14 +48,13 @@ public:
         part("landmarks", Kind::landmarks, "landmarks (.ant.json)");
         p.options("class", object_class, "class of the object; else as the annotations say");
         p.options("unit", unit, "unit of the coordinates, any text such as mm; else as the annotations say");
-        p.options("up", up, "upward direction: x, y, z, -x, -y, -z or three numbers; else as the annotations say");
+        up.describe(p, "upward direction: x, y, z, -x, -y, -z or three numbers; else as the annotations say");
         p.options("copy", copy, "copy the parts into the template's folder");
         options.describe(p.options);
         declare_template(p.report, true);
     }
 
     void check() const override {
-        if (!up.empty()) static_cast<void>(direction_of(up, "--up"));
         if (copy && output.file().empty())
             fail_usage("there is no folder to copy the parts to", "give the template's file, or leave --copy out");
     }
@@ -65,7 +64,7 @@ public:
         TemplateFile file;
         file.object_class = object_class;
         file.unit = unit;
-        if (!up.empty()) file.up = direction_of(up, "--up");
+        file.up = up.value();
         std::vector<Path> inputs, outputs{place};
         std::map<Path, Path> copies;  // and what they are of
         for (const std::string& role : template_roles())
@@ -98,7 +97,8 @@ public:
 private:
     TemplateOutput output;
     std::map<std::string, FileInput> parts;  ///< by role
-    std::string object_class, unit, up;
+    std::string object_class, unit;
+    DirectionOption up;
     bool copy = false;
     TemplateOptions options;
 };

@@ -39,11 +39,15 @@ public:
     }
     OptionList options;
     ReportLayout report;
+    std::vector<std::function<void()>> checks;  ///< of single options; run before Operation::check, and throw as it does
 
     /// Names, in the order in which the command line gives them, where that is not the order of the declarations; several where
     /// there are several ways, told apart by how many there are. A name that may repeat takes what is left.
     std::vector<std::vector<std::string>> orders;
     void order(std::vector<std::string> names) { orders.push_back(std::move(names)); }
+
+    /// It is given by its place, in one of the orders at least.
+    [[nodiscard]] bool in_some_order(const std::string& name) const;
 
     [[nodiscard]] std::vector<Slot*> slots() const { return slots_; }
     [[nodiscard]] Slot* slot(const std::string& name) const;
