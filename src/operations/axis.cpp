@@ -39,12 +39,9 @@ public:
         tell(report, axis, unit);
         if (!output) return;
         if (extension(output.file()) == ".obj") return output.write(to_obj(axis));
-        Json document(rapidjson::kObjectType);
+        Json document = json_document("axis");
         auto& allocator = document.GetAllocator();
-        add_member(document, "format", "ostraka-axis", allocator);
-        add_member(document, "version", JsonValue(1), allocator);
-        add_member(document, "axis", JsonValue(report.result(), allocator), allocator);
-        add_member(document, "provenance", context.provenance().to_json(allocator), allocator);
+        add_members(document, allocator, "axis", report.result(), "provenance", context.provenance().to_json(allocator));
         output.write(to_text(document));
     }
 
@@ -83,11 +80,7 @@ private:
             JsonValue lines(rapidjson::kArrayType);
             for (const auto& line : axis.lines) {
                 JsonValue points(rapidjson::kArrayType);
-                for (const auto& p : line) {
-                    JsonValue point(rapidjson::kArrayType);
-                    for (const double x : three(p)) point.PushBack(x, allocator);
-                    points.PushBack(point, allocator);
-                }
+                for (const auto& p : line) points.PushBack(json_value(three(p), allocator), allocator);
                 lines.PushBack(points, allocator);
             }
             report("polylines", std::move(lines));
@@ -99,10 +92,8 @@ private:
         JsonValue figures(rapidjson::kArrayType);
         for (const auto& figure : axis.figures) {
             const std::string in = figure.unit == "length" ? unit : figure.unit;
-            JsonValue entry(rapidjson::kObjectType);
-            add_member(entry, "name", figure.name, allocator);
-            add_member(entry, "value", JsonValue(figure.value), allocator);
-            if (!in.empty()) add_member(entry, "unit", in, allocator);
+            JsonValue entry = json_object(allocator, "name", figure.name, "value", figure.value);
+            if (!in.empty()) add_members(entry, allocator, "unit", in);
             figures.PushBack(entry, allocator);
             report.people(figure.name, number(figure.value) + (in.empty() ? "" : " " + in));
         }

@@ -143,15 +143,15 @@ private:
         std::vector<Index> order(values.size());
         std::iota(order.begin(), order.end(), Index{0});
         std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return values[a] > values[b]; });
-        JsonValue chosen(rapidjson::kArrayType);
-        std::string text;
+        std::vector<Index> chosen;
+        std::vector<std::string> texts;
         for (const Index v : order) {
-            if (threshold ? !(values[v] > *threshold) : chosen.Size() == 10) break;
-            text += (chosen.Empty() ? "" : ", ") + std::to_string(v);
-            chosen.PushBack(v, report.allocator());
+            if (threshold ? !(values[v] > *threshold) : chosen.size() == 10) break;
+            chosen.push_back(v);
+            texts.push_back(std::to_string(v));
         }
-        report(threshold ? "above" : "strongest", std::move(chosen));
-        report.people(threshold ? "cage vertices above" : "strongest cage vertices", text.empty() ? "none" : text);
+        report(threshold ? "above" : "strongest", chosen);
+        report.people(threshold ? "cage vertices above" : "strongest cage vertices", texts.empty() ? "none" : joined(texts));
     }
 
     MeshInput mesh, cage;

@@ -151,12 +151,9 @@ private:
     }
 
     static JsonValue deviation_json(const Deviation& d, std::optional<double> before, JsonAllocator& allocator) {
-        JsonValue deviation(rapidjson::kObjectType);
-        add_member(deviation, "quantity", d.quantity, allocator);
-        if (before) add_member(deviation, "before", JsonValue(*before), allocator);
-        add_member(deviation, "value", JsonValue(*d.value), allocator);
-        add_member(deviation, "tolerance", JsonValue(*d.tolerance), allocator);
-        add_member(deviation, "unit", d.unit, allocator);
+        JsonValue deviation = json_object(allocator, "quantity", d.quantity);
+        if (before) add_members(deviation, allocator, "before", *before);
+        add_members(deviation, allocator, "value", *d.value, "tolerance", *d.tolerance, "unit", d.unit);
         return deviation;
     }
 
@@ -167,12 +164,12 @@ private:
         report.empty_table("constraints", false);
         for (const ConstraintReport& constraint : result.constraints) tell(report, constraint);
         if (result.passes > 0)
-            report.line((result.rounds > 0 ? std::to_string(result.rounds) + (result.rounds == 1 ? " round" : " rounds") +
-                                                 " for the hard constraints, the last with "
-                                           : "") +
-                        std::to_string(result.summary.iterations) +
-                        (result.summary.iterations == 1 ? " iteration: " : " iterations: ") + stopped +
-                        (result.passes > 1 ? "; " + std::to_string(result.passes) + " passes" : ""));
+            report.line(
+                (result.rounds > 0
+                     ? counted(static_cast<std::size_t>(result.rounds), "round") + " for the hard constraints, the last with "
+                     : "") +
+                std::to_string(result.summary.iterations) + (result.summary.iterations == 1 ? " iteration: " : " iterations: ") +
+                stopped + (result.passes > 1 ? "; " + std::to_string(result.passes) + " passes" : ""));
         report.empty_table("conflicts");
         for (const ConstraintConflict& conflict : result.conflicts) tell(report, result, conflict);
         if (result.untried > 0)
@@ -184,21 +181,19 @@ private:
 
     static void tell(Report& report, const ConstraintReport& constraint) {
         JsonValue deviations(rapidjson::kArrayType);
-        std::string words;
-        for (std::size_t i = 0; i < constraint.deviations.size(); ++i) {
-            const Deviation& d = constraint.deviations[i];
-            const double before = i < constraint.before_values.size() ? constraint.before_values[i] : 0;
-            deviations.PushBack(deviation_json(d, before, report.allocator()), report.allocator());
-            words += (words.empty() ? "" : "; ") + d.quantity + " " + number(*d.value, 4) + " (was " + number(before, 4) +
-                     ", at most " + number(*d.tolerance, 4) + ")" + (d.unit.empty() ? "" : " " + d.unit);
-        }
-        if (!constraint.text.empty()) words += (words.empty() ? "" : "; ") + constraint.text;
+        for (std::size_t i = 0; i < constraint.deviations.size(); ++i)
+            deviations.PushBack(
+                deviation_json(constraint.deviations[i], i < constraint.before_values.size() ? constraint.before_values[i] : 0,
+                               report.allocator()),
+                report.allocator());
+        std::vector<std::string> words = deviation_texts(constraint);
+        if (!constraint.text.empty()) words.push_back(constraint.text);
         Report::Row row = report.row("constraints");
         row("id", constraint.id)("type", constraint.type);
         row("weight", constraint.weight, number(constraint.weight) + (constraint.hard ? ", hard" : ""));
         row("hard", constraint.hard)("used", constraint.used)("before", to_string(constraint.before));
         row("verdict", to_string(constraint.verdict), constraint.used ? to_string(constraint.verdict) : "left out");
-        row("text", constraint.text)("deviations", std::move(deviations)).shown("deviations", words);
+        row("text", constraint.text)("deviations", std::move(deviations)).shown("deviations", joined(words, "; "));
         for (const auto& [name, value] : {std::pair{"mean", constraint.mean},
                                           {"median", constraint.median},
                                           {"min", constraint.least},
@@ -215,23 +210,21 @@ private:
                 if (one.id == id) return std::to_string(id) + " (" + one.type + ")";
             return std::to_string(id);
         };
-        JsonValue freed(rapidjson::kArrayType), deviations(rapidjson::kArrayType);
-        std::string others, gives;
-        for (const int id : conflict.freed) {
-            freed.PushBack(id, report.allocator());
-            others += (others.empty() ? "" : ", ") + name(id);
-        }
+        JsonValue deviations(rapidjson::kArrayType);
+        std::vector<std::string> others, gives;
+        for (const int id : conflict.freed) others.push_back(name(id));
         for (const Deviation& d : conflict.deviations) {
             deviations.PushBack(deviation_json(d, {}, report.allocator()), report.allocator());
             if (*d.value > *d.tolerance)
-                gives += (gives.empty() ? "" : "; ") + d.quantity + " " + number(*d.value, 4) + " instead of at most " +
-                         number(*d.tolerance, 4) + (d.unit.empty() ? "" : " " + d.unit);
+                gives.push_back(d.quantity + " " + number(*d.value, 4) + " instead of at most " + number(*d.tolerance, 4) +
+                                (d.unit.empty() ? "" : " " + d.unit));
         }
         const std::string id = std::to_string(conflict.id);
-        report.row("conflicts")("id", conflict.id)("freed", std::move(freed))("deviations", std::move(deviations));
-        report.line(printable(name(conflict.id) + " fights with " + others + ": if " + id + " is left out, " +
-                              (conflict.freed.size() == 1 ? "the other holds" : "the others hold") +
-                              (gives.empty() ? ", and so does " + id : "; " + id + " would have to give: " + gives)));
+        report.row("conflicts")("id", conflict.id)("freed", conflict.freed)("deviations", std::move(deviations));
+        report.line(
+            printable(name(conflict.id) + " fights with " + joined(others) + ": if " + id + " is left out, " +
+                      (conflict.freed.size() == 1 ? "the other holds" : "the others hold") +
+                      (gives.empty() ? ", and so does " + id : "; " + id + " would have to give: " + joined(gives, "; "))));
     }
 
     TemplateInput bundle;

@@ -150,37 +150,31 @@ private:
     }
 
     void write(Context& context, Report& report, const Reconstruction& result, const PoseSearches& searches) const {
-        const Provenance provenance = context.provenance();
-        const auto write_document = [&](const char* name, JsonValue&& content, Json& document) {
-            add_member(content, "provenance", provenance.to_json(document.GetAllocator()), document.GetAllocator());
-            write_json(output.in(name), content);
-        };
         Json document;
         JsonValue content = assembly_to_json(result, names, document.GetAllocator());
-        add_member(content, "thresholds", thresholds_to_json(used, document.GetAllocator()), document.GetAllocator());
+        add_members(content, document.GetAllocator(), "thresholds", thresholds_to_json(used, document.GetAllocator()));
         report.values(content);
-        write_document("fit.assembly.json", std::move(content), document);
-        if (!searches.empty()) write_document(searches_file, searches.to_json(document.GetAllocator()), document);
-        WriteOptions how;
-        how.comment = provenance.to_line();
+        output.write("fit.assembly.json", content);
+        if (!searches.empty()) output.write(searches_file, searches.to_json(document.GetAllocator()));
         if (!result.points.empty()) {
-            write_object(result.object, how);
+            write_object(result.object);
             for (std::size_t k = 0; k < result.notes.size(); ++k) context.notes(names.fragments[k], result.notes[k]);
             for (const CompletionNote& note : result.object.notes)
                 report.note(names.fragments[static_cast<std::size_t>(note.fragment)] + ": " + note.text +
                             "; the template's triangles show what was seen of it");
             AnnotationSet carried = carry_annotations(known->mesh->mesh, *known->annotations, result);
             report.notes(refresh_measures(result.object.mesh, carried).notes);
-            write_annotations(output.in("completed.ant.json"), carried, result.object.mesh, "completed.ply", provenance);
+            output.write("completed.ant.json", carried, result.object.mesh, "completed.ply");
         }
         for (std::size_t k = 0; placed && k < fragments.size(); ++k)
             if (const FragmentPlacement& one = result.placement.fragments[k]; one.problem.empty())
-                write_mesh(output.in(names.fragments[k] + ".placed.ply"), moved(fragments[k]->mesh, one.pose), {}, how);
+                output.write(names.fragments[k] + ".placed.ply", moved(fragments[k]->mesh, one.pose));
     }
 
     /// Colours and labels say what was seen.
-    void write_object(const CompletedObject& object, WriteOptions how) const {
+    void write_object(const CompletedObject& object) const {
         MeshExtras extras;
+        WriteOptions how;
         FaceValues fragment{"fragment", {}}, distance{"distance", {}}, confidence{"confidence", {}};
         for (std::size_t f = 0; f < object.origin.size(); ++f) {
             const Origin origin = object.origin[f];
@@ -193,7 +187,7 @@ private:
             confidence.values.push_back(static_cast<float>(object.confidence[f]));
         }
         how.face_values = {std::move(fragment), std::move(distance), std::move(confidence)};
-        write_mesh(output.in("completed.ply"), object.mesh, extras, how);
+        output.write("completed.ply", object.mesh, extras, how);
     }
 
     void tell(Report& report, const Reconstruction& result) const {
@@ -254,13 +248,8 @@ private:
     }
 
     static void tell_constraint(Report& report, const Reconstruction& result, const ConstraintReport& constraint) {
-        std::string words = constraint.text;
-        for (std::size_t i = 0; i < constraint.deviations.size(); ++i) {
-            const Deviation& d = constraint.deviations[i];
-            words += (words.empty() ? "" : "; ") + d.quantity + " " + number(d.value.value_or(0), 4) + " (was " +
-                     number(i < constraint.before_values.size() ? constraint.before_values[i] : 0, 4) + ", at most " +
-                     number(d.tolerance.value_or(0), 4) + ")" + (d.unit.empty() ? "" : " " + d.unit);
-        }
+        std::vector<std::string> words = deviation_texts(constraint);
+        if (!constraint.text.empty()) words.insert(words.begin(), constraint.text);
         const bool objected = std::any_of(result.objections.begin(), result.objections.end(), [&](const Objection& one) {
             return one.kind == ObjectionKind::constraint && one.constraint == constraint.id;
         });
@@ -268,7 +257,7 @@ private:
                                    !constraint.used                                    ? "left out"
                                    : constraint.verdict == Verdict::fails && !objected ? "holds within --slack"
                                                                                        : to_string(constraint.verdict),
-                                   words});
+                                   joined(words, "; ")});
     }
 
     TemplateInput known;

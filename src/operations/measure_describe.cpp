@@ -80,18 +80,15 @@ private:
         auto& allocator = report.allocator();
         JsonValue list(rapidjson::kArrayType);
         for (const Quantity& quantity : quantities) {
-            JsonValue item(rapidjson::kObjectType), numbers(rapidjson::kArrayType);
             std::string text;
             const bool axes = quantity.name == "box axes" && quantity.values.size() == 9;  // three vectors
-            for (std::size_t i = 0; i < quantity.values.size(); ++i) {
-                numbers.PushBack(quantity.values[i], allocator);
+            for (std::size_t i = 0; i < quantity.values.size(); ++i)
                 text += (text.empty() ? "" : " ") + std::string(axes && i % 3 == 0 ? "(" : "") + number(quantity.values[i], 6) +
                         (axes && i % 3 == 2 ? ")" : "");
-            }
-            add_member(item, "name", quantity.name, allocator);
-            if (quantity.is_list) add_member(item, "value", std::move(numbers), allocator);
-            else add_member(item, "value", JsonValue(quantity.values.front()), allocator);
-            add_member(item, "unit", unit_of(quantity, unit), allocator);
+            JsonValue item = json_object(allocator, "name", quantity.name);
+            if (quantity.is_list) add_members(item, allocator, "value", quantity.values);
+            else add_members(item, allocator, "value", quantity.values.front());
+            add_members(item, allocator, "unit", unit_of(quantity, unit));
             list.PushBack(item, allocator);
             report.row("", {annotation.id, annotation.tag, quantity.name, text, unit_of(quantity, unit)});
         }

@@ -136,9 +136,7 @@ private:
     }
 
     void tell(Report& report, const Annotation& holder, const Measure& measure, const Evaluated& taken) const {
-        JsonValue pins(rapidjson::kArrayType);
-        for (const Index v : measure.points) pins.PushBack(v, report.allocator());
-        report("name", called())("annotation", holder.id)("tool", tool)("points", std::move(pins))("value", taken.value)(
+        report("name", called())("annotation", holder.id)("tool", tool)("points", measure.points)("value", taken.value)(
             "unit", measure.unit)("uncertainty", taken.uncertainty)("resolution", taken.resolution)("spread", taken.spread)(
             "pickings", taken.pickings);
         std::string line = printable(called(), 60) + " " + number(taken.value, 9) + " " + printable(measure.unit, 20) +

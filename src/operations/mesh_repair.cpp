@@ -56,7 +56,7 @@ private:
         JsonValue counts(rapidjson::kObjectType);
         std::string name = step.name;  // once, beside its first count
         for (const auto& [what, count] : step.counts) {
-            add_member(counts, what, JsonValue(static_cast<std::uint64_t>(count)), report.allocator());
+            add_members(counts, report.allocator(), what, count);
             if (count == 0) continue;
             report.row("", {name, what, count});
             name.clear();

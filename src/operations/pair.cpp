@@ -29,11 +29,9 @@ public:
             context.check_outputs({folder / "first.ply", folder / "second.ply", folder / "pair.json"});
         const FragmentFile &a = read(first), &b = read(second);
         const BreakPair pair = pair_breaks(a.fragment, b.fragment, options);
-        JsonAllocator& allocator = report.allocator();
-        JsonValue result = pair_to_json(pair, first.file_name(), second.file_name(), allocator);
+        const JsonValue result = pair_to_json(pair, first.file_name(), second.file_name(), report.allocator());
         report.values(result);
-        add_member(result, "provenance", context.provenance().to_json(allocator), allocator);
-        write_json(output.in("pair.json"), result);
+        output.write("pair.json", result);
         if (!pair.candidates.empty()) write("second.ply", b.fragment, pair.candidates.front().pose);
         if (a.points) write("first.ply", a.fragment, Motion());
 
@@ -62,9 +60,7 @@ private:
     void write(const std::string& name, const Fragment& fragment, const Motion& pose) const {
         MeshExtras extras;
         for (const Facet facet : fragment.facets) extras.face_labels.push_back(static_cast<std::int32_t>(facet));
-        WriteOptions how;
-        how.comment = output.context->provenance().to_line();
-        write_mesh(output.in(name), moved(fragment.mesh, pose), extras, how);
+        output.write(name, moved(fragment.mesh, pose), extras);
     }
 
     FileInput first, second;

@@ -214,24 +214,14 @@ private:
     /// As recipes take it, so that pixels of this picture can be picked.
     static JsonValue camera_json(const Pane& pane, const Picture& picture, JsonAllocator& allocator) {
         const PictureCamera& camera = pane.camera;
-        const auto list = [&](const auto& numbers) {
-            JsonValue array(rapidjson::kArrayType);
-            for (const auto x : numbers) array.PushBack(x, allocator);
-            return array;
-        };
-        const auto triple = [&](const auto& v) { return list(std::array{v.x(), v.y(), v.z()}); };
+        const auto triple = [](const auto& v) { return std::array{v.x(), v.y(), v.z()}; };
         const bool parallel = camera.distance == 0;
         const double distance = parallel ? std::max(pane.width, pane.height) / camera.scale : camera.distance;
-        JsonValue result(rapidjson::kObjectType);
-        add_member(result, "frame", "mesh", allocator);
-        add_member(result, "eye", triple(camera.centre + distance * camera.toward), allocator);
-        add_member(result, "target", triple(camera.centre), allocator);
-        add_member(result, "up", triple(camera.up), allocator);
-        add_member(result, "projection", parallel ? "orthographic" : "perspective", allocator);
-        add_member(result, "pixelsPerUnit", JsonValue(camera.scale), allocator);
-        add_member(result, "picture", list(std::array{picture.width, picture.height}), allocator);
-        add_member(result, "pane", list(std::array{pane.left, pane.top, pane.width, pane.height}), allocator);
-        return result;
+        return json_object(allocator, "frame", "mesh", "eye", triple(camera.centre + distance * camera.toward), "target",
+                           triple(camera.centre), "up", triple(camera.up), "projection",
+                           parallel ? "orthographic" : "perspective", "pixelsPerUnit", camera.scale, "picture",
+                           std::array{picture.width, picture.height}, "pane",
+                           std::array{pane.left, pane.top, pane.width, pane.height});
     }
 
     MeshInput meshes;

@@ -244,13 +244,11 @@ private:
 
     /// The result so far, as a file.
     static Json document(const Context& context, const Report& report) {
-        Json document(rapidjson::kObjectType);
+        Json document = json_document("slices");
         auto& allocator = document.GetAllocator();
-        add_member(document, "format", "ostraka-slices", allocator);
-        add_member(document, "version", JsonValue(1), allocator);
         for (const auto& member : report.result().GetObject())
-            add_member(document, member.name.GetString(), JsonValue(member.value, allocator), allocator);
-        add_member(document, "provenance", context.provenance().to_json(allocator), allocator);
+            add_members(document, allocator, member.name.GetString(), member.value);
+        add_members(document, allocator, "provenance", context.provenance().to_json(allocator));
         return document;
     }
 

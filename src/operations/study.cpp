@@ -76,14 +76,10 @@ void KnownAnswers::add_to(Report& report) const {
 }
 
 void write_study_report(const Path& file, const std::string& kind, const JsonValue& result, const Provenance& provenance) {
-    Json document(rapidjson::kObjectType);
+    Json document = json_document(kind);
     auto& allocator = document.GetAllocator();
-    add_member(document, "format", "ostraka-" + kind, allocator);
-    add_member(document, "version", JsonValue(1), allocator);
-    for (const auto& member : result.GetObject())
-        add_member(document, std::string_view(member.name.GetString(), member.name.GetStringLength()),
-                   JsonValue(member.value, allocator), allocator);
-    add_member(document, "provenance", provenance.to_json(allocator), allocator);
+    for (const auto& member : result.GetObject()) add_members(document, allocator, member.name.GetString(), member.value);
+    add_members(document, allocator, "provenance", provenance.to_json(allocator));
     validate(document, kind, file.string());
     write_json(file, document);
 }

@@ -69,7 +69,7 @@ public:
 
         report.table(groups);
         const int count = study.group_count();
-        report.line(std::to_string(count) + (count == 1 ? " group of " : " groups of ") + std::to_string(answers.size()) +
+        report.line(counted(static_cast<std::size_t>(count), "group") + " of " + std::to_string(answers.size()) +
                     " heads at epsilon " + number(study.groups.epsilon, 3) + ", mean silhouette " +
                     number(study.groups.silhouette, 3) +
                     (known.scorable() ? ", adjusted Rand index " + number(agreement, 4) : ""));
@@ -112,15 +112,12 @@ private:
     }
 
     void write_report(const Report& report, const Provenance& provenance) const {
-        Json document(rapidjson::kObjectType);
+        Json document = json_document("mould-study");
         auto& allocator = document.GetAllocator();
-        add_member(document, "format", "ostraka-mould-study", allocator);
-        add_member(document, "version", JsonValue(1), allocator);
-        add_member(document, "provenance", provenance.to_json(allocator), allocator);
         JsonValue result(report.result(), allocator), failed(result["failed"], allocator);
         result.EraseMember("failed");
-        add_member(result, "failed", std::move(failed), allocator);  // the last one in the file
-        add_member(document, "result", std::move(result), allocator);
+        add_members(result, allocator, "failed", std::move(failed));  // the last one in the file
+        add_members(document, allocator, "provenance", provenance.to_json(allocator), "result", std::move(result));
         validate(document, "mould-study", "moulds.json");
         write_json(files.in("moulds.json"), document);
     }
@@ -149,13 +146,11 @@ private:
             const ClusterStability& stability = study.stability[group++];
             const bool resampled = stability.resamples > 0 && each.members.size() > 1;
             const auto if_resampled = [&](double value) { return resampled ? std::optional(value) : std::nullopt; };
-            std::string members;
-            for (const std::string& name : each.members) members += (members.empty() ? "" : " ") + name;
             table.add({std::to_string(group), std::to_string(each.members.size()), number_cell(each.within, 3),
                        number_cell(each.nearest ? std::optional<double>(*each.nearest + 1) : std::nullopt, 6),
                        number_cell(each.to_nearest, 3), number_cell(each.silhouette, 3),
                        number_cell(if_resampled(stability.jaccard), 3), percent_cell(if_resampled(stability.dissolved), 0),
-                       members});
+                       joined(each.members, " ")});
         }
         return table;
     }

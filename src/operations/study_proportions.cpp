@@ -191,12 +191,9 @@ private:
     }
 
     static void tell(Report& report, const ProportionStudy& study) {
-        const auto optional = [](const std::optional<double>& value) { return value ? JsonValue(*value) : JsonValue(); };
+        const auto optional = [&](const auto& value) { return json_value(value, report.allocator()); };
         const auto interval = [&](const std::optional<Interval>& of) {
-            if (!of) return JsonValue();
-            JsonValue list(rapidjson::kArrayType);
-            list.PushBack(of->low, report.allocator()).PushBack(of->high, report.allocator());
-            return list;
+            return optional(of ? std::optional(std::array{of->low, of->high}) : std::nullopt);
         };
         const auto describe = [&](Report::Row row, const MeasureRow& of) {
             row("name", of.name);
@@ -237,11 +234,8 @@ private:
 
     void write_report(const Report& report, const std::vector<std::string>& notes, const Provenance& provenance) const {
         Json result;
-        auto& allocator = result.GetAllocator();
-        result.CopyFrom(report.result(), allocator);
-        JsonValue list(rapidjson::kArrayType);
-        for (const auto& note : notes) list.PushBack(json_string(note, allocator), allocator);
-        add_member(result, "notes", std::move(list), allocator);
+        result.CopyFrom(report.result(), result.GetAllocator());
+        add_members(result, result.GetAllocator(), "notes", notes);
         write_study_report(files.in("proportions.json"), "proportions", result, provenance);
     }
 

@@ -80,20 +80,14 @@ private:
                 "better", each.better)("error", each.error)("precision", each.validation.mean_precision)(
                 "recall", each.validation.mean_recall)("area", each.roc.area);
             if (each.threshold) row("threshold", each.threshold->value)("positiveAbove", each.threshold->above);
-            JsonValue roc(rapidjson::kArrayType);
-            for (const RocPoint& point : each.roc.points) {
-                JsonValue pair(rapidjson::kArrayType);
-                pair.PushBack(point.false_positive_rate, report.allocator())
-                    .PushBack(point.true_positive_rate, report.allocator());
-                roc.PushBack(pair, report.allocator());
-            }
-            row("roc", std::move(roc));
+            std::vector<std::array<double, 2>> roc;
+            for (const RocPoint& point : each.roc.points) roc.push_back({point.false_positive_rate, point.true_positive_rate});
+            row("roc", json_value(roc, report.allocator()));
         }
         for (const TechniqueSplit& each : study.splits) {
             Report::Row row = report.row("divisions");
             row("descriptor", each.descriptor)("objects", each.objects)("lower", each.lower)("threshold", each.threshold)(
-                "shareBetween", each.share)("p", each.p_value);
-            if (each.f1) row("f1", *each.f1);
+                "shareBetween", each.share)("p", each.p_value)("f1", each.f1);
         }
         for (std::size_t i = 0; i < objects.size(); ++i)
             fill_answer(report.row("objects"), study.answers[i], objects[i].measures, study.learned, report.allocator());
@@ -114,7 +108,7 @@ private:
             "slices.tooOpen", measures.too_open)("slices.empty", measures.empty);
         JsonValue descriptors(rapidjson::kObjectType);
         for (const TechniqueDescriptor& d : measures.descriptors)
-            add_member(descriptors, d.name, std::isfinite(d.value) ? JsonValue(d.value) : JsonValue(), allocator);
+            add_members(descriptors, allocator, d.name, std::isfinite(d.value) ? std::optional(d.value) : std::nullopt);
         row("descriptors", std::move(descriptors))("words", each.words);
     }
 

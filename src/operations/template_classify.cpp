@@ -89,13 +89,11 @@ private:
     }
 
     void tell(Report& report, const std::vector<Classification>& answers) const {
-        Json document(rapidjson::kObjectType);
+        Json document = json_document("classification");
         auto& allocator = document.GetAllocator();
         JsonValue objects(rapidjson::kArrayType);
         for (const Classification& one : answers) objects.PushBack(classification_to_json(one, allocator), allocator);
-        add_member(document, "format", "ostraka-classification", allocator);
-        add_member(document, "version", JsonValue(1), allocator);
-        add_member(document, "objects", std::move(objects), allocator);
+        add_members(document, allocator, "objects", std::move(objects));
         report.values(document);
         if (answer) answer.write(std::move(document));
         for (const Classification& object : answers)

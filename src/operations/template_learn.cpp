@@ -77,9 +77,7 @@ private:
             for (const TemplatePart& part : package.file.parts) check_copy(part.file);
             static_cast<void>(copy_template(package.file, output.open(), result.template_file, context.provenance()));
         }
-        WriteOptions how;
-        how.comment = context.provenance().to_line();
-        write_mesh(output.in(name + ".mean.ply"), with_points(package.mesh->mesh, points_of(result.modes.mean)), {}, how);
+        output.write(name + ".mean.ply", with_points(package.mesh->mesh, points_of(result.modes.mean)));
         write_class(output.open(), result, context.provenance());
         return result;
     }

@@ -80,7 +80,7 @@ public:
             if (!again)
                 for (auto next = narrower[i].rbegin(); next != narrower[i].rend(); ++next) stack.emplace_back(*next, depth + 1);
         }
-        if (const std::string common = joined(texts_of(vocabulary.attributes)); !common.empty())
+        if (const std::string common = joined(texts_of(vocabulary.attributes), "; "); !common.empty())
             report.line("every concept: " + printable(common));
         // Of those about the concepts shown, and of all.
         const auto about = std::count_if(vocabulary.rules.begin(), vocabulary.rules.end(), [&](const InferenceRule& rule) {
@@ -95,10 +95,11 @@ private:
     [[nodiscard]] std::size_t named_concept(const VocabularySearch& search) const {
         const auto found = search.concepts_of(under);
         if (found.size() == 1) return found.front();
-        std::string known;
-        for (const auto& name : search.suggestions(under)) known += (known.empty() ? "close to it: " : ", ") + name;
+        const auto near = search.suggestions(under);
         fail_input(file.file(), "'" + under + "' names " + (found.empty() ? "no concept" : "several concepts"),
-                   found.empty() ? known : "use an id");
+                   !found.empty() ? "use an id"
+                   : near.empty() ? ""
+                                  : "close to it: " + joined(near));
     }
 
     void tell(Report& report, const VocabularySearch& search, std::size_t i, std::size_t depth, bool again) const {
@@ -110,7 +111,7 @@ private:
         const auto attributes = texts_of(entry.attributes);
         Report::Row row = report.row("concepts");
         row("label", label, std::string(2 * std::min<std::size_t>(depth, 30), ' ') + label + (again ? " (see above)" : ""))(
-            "id", entry.id)("depth", depth)("attributes", attributes, joined(attributes));
+            "id", entry.id)("depth", depth)("attributes", attributes, joined(attributes, "; "));
         row.shown("other languages", others);
     }
 
@@ -121,9 +122,7 @@ private:
             for (const auto& [tongue, text] : entry.labels) known.insert(tongue);
         known.erase("");
         if (known.empty() || known.contains(language)) return;
-        std::string list;
-        for (const auto& tongue : known) list += (list.empty() ? "" : ", ") + tongue;
-        report.note("no label is in the language '" + language + "'; there are " + list);
+        report.note("no label is in the language '" + language + "'; there are " + joined(known));
     }
 
     static std::vector<std::string> texts_of(const std::vector<AllowedAttribute>& attributes) {
@@ -142,11 +141,6 @@ private:
             texts.push_back(std::move(text));
         }
         return texts;
-    }
-    static std::string joined(const std::vector<std::string>& texts) {
-        std::string list;
-        for (const auto& text : texts) list += (list.empty() ? "" : "; ") + text;
-        return list;
     }
 
     FileInput file;
