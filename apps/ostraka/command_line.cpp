@@ -3,6 +3,7 @@
 
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
+#include "ostraka/core/words.h"
 #include "ostraka/operations/pages.h"
 #include "ostraka/operations/table.h"
 

@@ -36,6 +36,10 @@ std::size_t count_components(const Mesh& mesh) {
     return count;
 }
 
+std::string counted(std::size_t count, const std::string& one) {
+    return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
+}
+
 double largest_coordinate_of(const Mesh& mesh) {
     double largest = 0;
     for (const Point& p : mesh.points()) largest = std::max({largest, std::abs(p.x()), std::abs(p.y()), std::abs(p.z())});

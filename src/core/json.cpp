@@ -1,4 +1,4 @@
-#include "ostraka/core/json.h"
+#include "ostraka/core/json_build.h"
 
 #include "ostraka/core/error.h"
 

@@ -1,8 +1,8 @@
 #include "ostraka/core/parallel.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/file.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/core/transaction.h"
 
 #include <omp.h>
 

@@ -70,8 +70,4 @@ std::optional<int> whole_of(std::string_view text) {
     return value;
 }
 
-std::string counted(std::size_t count, std::string_view what) {
-    return std::to_string(count) + " " + std::string(what) + (count == 1 ? "" : "s");
-}
-
 }  // namespace ostraka

@@ -1,4 +1,5 @@
 // What a call takes, as JSON.
+#include "ostraka/core/json_build.h"
 #include "ostraka/operation/operation.h"
 
 namespace ostraka {

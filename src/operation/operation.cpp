@@ -1,5 +1,7 @@
 #include "run.h"
 
+#include "ostraka/core/transaction.h"
+
 #include <algorithm>
 #include <stdexcept>
 
@@ -260,10 +262,12 @@ Report Call::run(Context& context, const std::function<void(const Report&)>& bef
     report.set_provenance(context.provenance());
     check_cancelled();
     if (before_commit) before_commit(report);
-    for (const auto& entry : run.read) outputs.keep(entry.file);
+    std::vector<Path> inputs;
+    for (const auto& entry : run.read) inputs.push_back(entry.file);
     for (const Slot* slot : parameters_.slots())
         for (const Source& source : slot->sources)
-            if (slot->role == Role::input) outputs.keep(source.file);
+            if (slot->role == Role::input) inputs.push_back(source.file);
+    const KeptFiles kept(std::move(inputs));
     outputs.commit();
     for (Slot* slot : parameters_.slots()) slot->finish();
     return report;

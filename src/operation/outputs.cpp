@@ -1,3 +1,6 @@
+#include "polygons.h"
+
+#include "ostraka/core/json_build.h"
 #include "ostraka/operation/operation.h"
 #include "ostraka/render/values.h"
 

@@ -1,5 +1,8 @@
 #include "ostraka/operation/report.h"
 
+#include "ostraka/core/json_build.h"
+#include "ostraka/core/words.h"
+
 #include "ostraka/core/text.h"
 #include "ostraka/report/table.h"
 

@@ -1,5 +1,7 @@
 #include "ostraka/operation/report.h"
 
+#include "ostraka/core/json_build.h"
+
 namespace ostraka {
 
 namespace {

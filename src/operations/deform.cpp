@@ -1,10 +1,9 @@
 // deform: an edit of a shape that keeps what its annotations and relations ask for.
-#include "operations.h"
+#include "constraint_report.h"
 
 #include "ostraka/geom/with_points.h"
 #include "ostraka/io/diagnose.h"
 #include "ostraka/measure/measure.h"
-#include "ostraka/semantic/deform.h"
 
 namespace ostraka {
 

@@ -1,6 +1,7 @@
 #include "diagnosis.h"
 
-#include "ostraka/core/text.h"
+#include "ostraka/core/json_build.h"
+#include "ostraka/core/words.h"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // fit: from fragments to the whole object.
-#include "operations.h"
+#include "constraint_report.h"
 
 #include "ostraka/measure/measure.h"
 #include "ostraka/reconstruction/assembly.h"

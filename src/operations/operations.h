@@ -5,7 +5,8 @@
 
 #include "arguments.h"
 
-#include "ostraka/core/text.h"
+#include "ostraka/core/json_build.h"
+#include "ostraka/core/words.h"
 
 #include <chrono>
 

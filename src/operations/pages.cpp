@@ -1,6 +1,7 @@
 #include "ostraka/operations/pages.h"
 
 #include "ostraka/core/text.h"
+#include "ostraka/core/words.h"
 
 #include <algorithm>
 

@@ -1,6 +1,7 @@
 #include "slice_report.h"
 
 #include "ostraka/core/csv.h"
+#include "ostraka/core/json_build.h"
 #include "ostraka/render/colour_scale.h"
 
 #include <algorithm>

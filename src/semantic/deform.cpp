@@ -1,7 +1,5 @@
 #include "ostraka/semantic/deform.h"
 
-#include "ostraka/core/text.h"
-
 #include "statement.h"
 
 #include "ostraka/core/error.h"
@@ -435,17 +433,6 @@ void DeformOptions::describe(OptionList& visit) {
     visit("conflicts", conflicts,
           "where a constraint does not hold, at most so many are left out in turn, to tell which fight; 0 for none",
           Range{0, 1000});
-}
-
-std::vector<std::string> deviation_texts(const ConstraintReport& constraint) {
-    std::vector<std::string> texts;
-    for (std::size_t i = 0; i < constraint.deviations.size(); ++i) {
-        const Deviation& d = constraint.deviations[i];
-        const double before = i < constraint.before_values.size() ? constraint.before_values[i] : 0;
-        texts.push_back(d.quantity + " " + digits(d.value.value_or(0), 4) + " (was " + digits(before, 4) + ", at most " +
-                        digits(d.tolerance.value_or(0), 4) + ")" + (d.unit.empty() ? "" : " " + d.unit));
-    }
-    return texts;
 }
 
 }  // namespace ostraka

@@ -4,7 +4,6 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <mutex>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -77,9 +76,8 @@ private:
     std::string memory_;  ///< of a file in memory
 };
 
-/// Several outputs that appear together or not at all: while one is open on this thread, files that AtomicFile commits on it and
-/// in the parallel loops it starts are on the disk but wait under their temporary names until `commit` renames them all; without
-/// it they are removed.
+/// Several outputs that appear together or not at all: while one is open on this thread, files that AtomicFile commits are on
+/// the disk but wait under their temporary names until `commit` renames them all; without it they are removed.
 class OutputTransaction {
 public:
     OutputTransaction();
@@ -87,32 +85,13 @@ public:
     OutputTransaction(const OutputTransaction&) = delete;
     OutputTransaction& operator=(const OutputTransaction&) = delete;
 
-    /// These stay, even where an earlier run wrote them into a folder of `replace_outputs`: inputs of this one.
-    void keep(const Path& file) { kept_.push_back(file); }
     void commit();
 
 private:
     friend class AtomicFile;
     friend void replace_outputs(const Path&, const std::string&);
-    void wait(const Path& temporary, const Path& file);
-    std::mutex mutex_;                                    ///< of `waiting_`, while several threads write
     std::vector<std::pair<Path, Path>> waiting_;          ///< temporary name, name
     std::vector<std::pair<Path, std::string>> replaced_;  ///< folder, owner
-    std::vector<Path> kept_;
-    OutputTransaction* outer_;
-};
-
-/// The innermost transaction that is open on this thread, or none.
-OutputTransaction* current_transaction();
-/// Makes it (or none) that of this thread as long as it lives: parallel loops write into the transaction of who starts them.
-class TransactionScope {
-public:
-    explicit TransactionScope(OutputTransaction* transaction);
-    ~TransactionScope();
-    TransactionScope(const TransactionScope&) = delete;
-    TransactionScope& operator=(const TransactionScope&) = delete;
-
-private:
     OutputTransaction* outer_;
 };
 

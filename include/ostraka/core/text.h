@@ -32,17 +32,4 @@ std::optional<int> whole_of(std::string_view text);
 /// Without blanks around it.
 std::string_view trimmed(std::string_view text);
 
-/// The texts, one after the other, with something between them.
-template <class Texts>
-std::string joined(const Texts& texts, std::string_view between = ", ") {
-    std::string all;
-    for (std::size_t count = 0; const auto& text : texts) {
-        if (count++ > 0) all += between;
-        all += text;
-    }
-    return all;
-}
-/// "1 slice", "2 slices".
-std::string counted(std::size_t count, std::string_view what);
-
 }  // namespace ostraka

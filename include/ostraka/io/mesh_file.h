@@ -48,8 +48,6 @@ struct TriangulatedSoup {
     std::vector<std::string> notes;
 };
 TriangulatedSoup triangulate(PolygonSoup&& polygons);
-/// The other way round: triangles of any topology as polygons.
-PolygonSoup as_polygons(TriangleSoup triangles, MeshExtras extras);
 
 /// A file read as an oriented manifold (open or closed) triangle mesh. Vertex i is the file's vertex i.
 struct MeshFile {

@@ -38,9 +38,6 @@ struct ConstraintReport {
     double distance = 0;  ///< greatest distance of one of their rows from what it admits, in the mesh's unit
 };
 
-/// "angle 3 (was 7, at most 5) degree": each deviation, as people read it.
-std::vector<std::string> deviation_texts(const ConstraintReport& constraint);
-
 /// Without one constraint, others hold that do not hold with it.
 struct ConstraintConflict {
     int id = 0;                         ///< of the constraint that was left out
