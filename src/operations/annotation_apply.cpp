@@ -84,8 +84,7 @@ struct AnnotationPictures {
     }
 };
 
-class AnnotationApply final : public Operation {
-public:
+struct AnnotationApply final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("recipe", Kind::recipe, recipe, "recipe (.recipe.json) or label file (one integer a face)").optional();
@@ -121,7 +120,6 @@ public:
         tell_annotations(context, report, file.mesh, set);
     }
 
-private:
     static std::vector<std::int32_t> labels_in(const MeshFile& file) {
         return file.extras.face_labels.empty() && !file.extras.vertex_labels.empty()
                    ? face_labels_from_vertices(file.mesh, file.extras.vertex_labels)
@@ -157,8 +155,7 @@ private:
     bool mesh_labels = false;
 };
 
-class AnnotationList final : public Operation {
-public:
+struct AnnotationList final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)");
@@ -169,13 +166,11 @@ public:
         tell_annotations(context, report, mesh->mesh, annotations.on(mesh->mesh));
     }
 
-private:
     MeshInput mesh;
     AnnotationsInput annotations;
 };
 
-class AnnotationRemap final : public Operation {
-public:
+struct AnnotationRemap final : Operation {
     void describe(Parameters& p) override {
         p.input("before", Kind::mesh, before, "mesh before the change");
         p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json) or label file");
@@ -218,7 +213,6 @@ public:
         tell_annotations(context, report, target, moved);
     }
 
-private:
     /// The old mesh may be broken here: labels ask for the count of its faces only.
     void carry_labels(Context& context, Report& report, const Mesh& target) const {
         const TriangulatedSoup source = triangulate(before.take_polygons());

@@ -8,8 +8,7 @@ namespace ostraka {
 
 namespace {
 
-class AnnotationCheck final : public Operation {
-public:
+struct AnnotationCheck final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)");
@@ -54,7 +53,6 @@ public:
         report.findings(findings);
     }
 
-private:
     void hold_against(const ClassRules& kept, const Vocabulary* known, const Mesh& on, const AnnotationSet& set,
                       std::vector<Finding>& findings) const {
         const RelationGraph* stated = graph ? &graph.on(set) : nullptr;

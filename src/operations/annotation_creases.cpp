@@ -7,8 +7,7 @@ namespace ostraka {
 
 namespace {
 
-class AnnotationCreases final : public Operation {
-public:
+struct AnnotationCreases final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.output("output", Kind::annotations, output, "annotations to write (.ant.json): lines along the crests");
@@ -42,7 +41,6 @@ public:
         output.write(std::move(set), on, mesh.file());
     }
 
-private:
     MeshInput mesh;
     AnnotationsOutput output;
     bool regions = false;

@@ -38,8 +38,7 @@ std::array<int, 3> named_colour(const std::string& text) {
     return colour;
 }
 
-class AnnotationEditing final : public Operation {
-public:
+struct AnnotationEditing final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)");
@@ -97,7 +96,6 @@ public:
         output.write(std::move(set), on, mesh.file());
     }
 
-private:
     [[nodiscard]] std::optional<std::array<double, 3>> direction() const {
         if (!up || up->empty()) return {};
         return direction_of(*up, "--set-up");

@@ -11,8 +11,7 @@ void describe_format(Parameters& p, std::optional<std::string>& format) {
     p.options("format", format, "format of the file, if its ending does not tell", Choices(exchange_formats()));
 }
 
-class AnnotationExport final : public Operation {
-public:
+struct AnnotationExport final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)");
@@ -37,7 +36,6 @@ public:
         output.write(exported.bytes);
     }
 
-private:
     MeshInput mesh;
     AnnotationsInput annotations;
     FileOutput output;
@@ -45,8 +43,7 @@ private:
     ExportOptions options;
 };
 
-class AnnotationImport final : public Operation {
-public:
+struct AnnotationImport final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("input", Kind::text, input, "file to read");
@@ -83,7 +80,6 @@ public:
         output.write(std::move(placed.set), on, mesh.file());
     }
 
-private:
     MeshInput mesh;
     FileInput input;
     AnnotationsInput onto;

@@ -7,8 +7,7 @@ namespace ostraka {
 
 namespace {
 
-class AnnotationFacets final : public Operation {
-public:
+struct AnnotationFacets final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file of the fragment");
         p.input("annotations", Kind::annotations, annotations,
@@ -53,7 +52,6 @@ public:
         report.answer_no();
     }
 
-private:
     MeshInput mesh;
     AnnotationsInput annotations;
     AnnotationsOutput output;

@@ -7,8 +7,7 @@ namespace ostraka {
 
 namespace {
 
-class AnnotationInfer final : public Operation {
-public:
+struct AnnotationInfer final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)");
@@ -34,7 +33,6 @@ public:
         output.write(std::move(result.annotations), mesh->mesh, mesh.file());
     }
 
-private:
     MeshInput mesh;
     AnnotationsInput annotations;
     FileInput vocabulary;

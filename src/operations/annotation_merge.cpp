@@ -43,8 +43,7 @@ void add_differences(Report& report, const std::string& table, const std::vector
 
 namespace {
 
-class AnnotationDiff final : public Operation {
-public:
+struct AnnotationDiff final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh of both");
         p.input("before", Kind::annotations, before, "annotations (.ant.json)");
@@ -60,13 +59,11 @@ public:
         if (!list.empty()) report.answer_no();
     }
 
-private:
     MeshInput mesh;
     AnnotationsInput before, after;
 };
 
-class AnnotationMerge final : public Operation {
-public:
+struct AnnotationMerge final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh of all");
         p.input("base", Kind::annotations, base, "annotations that both began with");
@@ -105,7 +102,6 @@ public:
                     (any("geometry") ? "; --merge-faces joins regions that both changed" : "") + ")");
     }
 
-private:
     MeshInput mesh;
     AnnotationsInput base, ours, theirs;
     AnnotationsOutput output;

@@ -10,8 +10,7 @@ namespace ostraka {
 
 namespace {
 
-class AnnotationSegment final : public Operation {
-public:
+struct AnnotationSegment final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file, closed");
         p.output("output", Kind::annotations, output, "annotations to write (.ant.json)");
@@ -40,7 +39,6 @@ public:
         output.write(std::move(set), on, mesh.file());
     }
 
-private:
     MeshInput mesh;
     AnnotationsOutput output;
     FileOutput labels_out{".seg"};

@@ -9,8 +9,7 @@ namespace ostraka {
 
 namespace {
 
-class AnnotationSelect final : public Operation {
-public:
+struct AnnotationSelect final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("annotations", Kind::annotations, annotations, "annotation file (.ant.json): brought up to date, or made");
@@ -93,7 +92,6 @@ public:
                         ": replay it with 'annotation apply --edit' on the annotations as they were before it was begun");
     }
 
-private:
     /// What the options say of the object, where the recipe does not. With an older file --up turns the camera only.
     void add_head(Json& document, bool makes) const {
         auto& a = document.GetAllocator();

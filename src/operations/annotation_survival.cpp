@@ -7,8 +7,7 @@ namespace ostraka {
 
 namespace {
 
-class AnnotationSurvival final : public Operation {
-public:
+struct AnnotationSurvival final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "the annotated mesh");
         p.input("annotations", Kind::annotations, annotations, "its annotations");
@@ -27,7 +26,6 @@ public:
         }
     }
 
-private:
     MeshInput mesh;
     AnnotationsInput annotations;
     SurvivalOptions options;

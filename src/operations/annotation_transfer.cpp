@@ -26,8 +26,7 @@ std::string remarks_on(const TransferScore& score) {
     return remarks;
 }
 
-class AnnotationTransfer final : public Operation {
-public:
+struct AnnotationTransfer final : Operation {
     void describe(Parameters& p) override {
         p.input("source", Kind::mesh, source, "the annotated mesh");
         p.input("annotations", Kind::annotations, annotations, "its annotations");
@@ -103,7 +102,6 @@ public:
         if (refined) refined.write(std::move(there.refined->mesh));
     }
 
-private:
     static void tell(Report& report, const std::string& table, const std::vector<TransferScore>& scores) {
         report.empty_table(table);
         for (const TransferScore& score : scores) {

@@ -10,8 +10,7 @@ namespace ostraka {
 
 namespace {
 
-class FindAxis final : public Operation {
-public:
+struct FindAxis final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)").optional();
@@ -45,7 +44,6 @@ public:
         output.write(to_text(document));
     }
 
-private:
     [[nodiscard]] Axis find(const Mesh& whole, std::string& unit) const {
         std::vector<Index> faces;
         if (!annotations) {

@@ -10,8 +10,7 @@ namespace ostraka {
 
 namespace {
 
-class CageEdit final : public Operation {
-public:
+struct CageEdit final : Operation {
     void describe(Parameters& p) override {
         p.input("cage", Kind::cage, cage, "cage file");
         p.input("edit", Kind::edit, edit, "what is done to its vertices (.edit.json): select cageVertices, box or all");
@@ -40,7 +39,6 @@ public:
         output.write(std::move(moved), cage->extras);
     }
 
-private:
     /// A step may select by annotation, but not here.
     void refuse_annotations(const Json& document) const {
         const JsonValue* steps = document.IsObject() ? find_member(document, "steps") : nullptr;

@@ -10,8 +10,7 @@ namespace ostraka {
 
 namespace {
 
-class CageMake final : public Operation {
-public:
+struct CageMake final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file; it may be open");
         p.output("output", Kind::cage, output, "cage to write (.ply, .obj, .off, .stl)");
@@ -83,7 +82,6 @@ public:
             else output.write_part(ending(sizes[i]), std::move(results[i].cage));
     }
 
-private:
     static std::string ending(std::uint64_t size) { return "-" + std::to_string(size); }
 
     /// Numbers of vertices, from fine to coarse.
@@ -136,8 +134,7 @@ private:
     std::vector<std::string> details;
 };
 
-class CheckOfCage final : public Operation {
-public:
+struct CheckOfCage final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("cage", Kind::cage, cage, "cage file");
@@ -146,7 +143,6 @@ public:
 
     void run(Context&, Report& report) override { report.findings(findings(check_cage(cage->mesh, mesh->mesh), "")); }
 
-private:
     MeshInput mesh, cage;
 };
 

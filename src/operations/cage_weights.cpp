@@ -19,8 +19,7 @@ const Mesh& triangles_of_cage(const MeshInput& cage, Report& report) {
     return cage->mesh;
 }
 
-class CageCoordinates final : public Operation {
-public:
+struct CageCoordinates final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("cage", Kind::cage, cage, "closed mesh around it (polygons are cut into triangles)");
@@ -45,7 +44,6 @@ public:
         output.write(std::move(coordinates), subject, around, certificate);
     }
 
-private:
     static void tell(Report& report, const CoordinateCertificate& c) {
         report("kind", c.kind)("points", c.points)("cageVertices", c.vertices)("cageFaces", c.faces)(
             "certificate", to_json(c, report.allocator()));
@@ -78,8 +76,7 @@ private:
     CoordinateOptions options;
 };
 
-class CageInfluence final : public Operation {
-public:
+struct CageInfluence final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("cage", Kind::cage, cage, "its cage");
@@ -137,7 +134,6 @@ public:
         output.write(on_cage ? around : subject, std::move(extras), std::move(writing));
     }
 
-private:
     /// Cage vertices above the threshold, or the ten strongest.
     void list(Report& report, const std::vector<double>& values) const {
         std::vector<Index> order(values.size());

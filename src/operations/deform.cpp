@@ -9,8 +9,7 @@ namespace ostraka {
 
 namespace {
 
-class Deform final : public Operation {
-public:
+struct Deform final : Operation {
     void describe(Parameters& p) override {
         p.input("template", Kind::template_package, bundle,
                 "template (.template.json), with its graph, cage and coordinates, in place of mesh and annotations")
@@ -101,7 +100,6 @@ public:
         if (!result.acceptable) report.answer_no();
     }
 
-private:
     /// What is deformed, from files of its own or from a template.
     struct Subject {
         const MeshFile* object = nullptr;

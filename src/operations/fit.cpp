@@ -15,8 +15,7 @@ namespace ostraka {
 
 namespace {
 
-class Fit final : public Operation {
-public:
+struct Fit final : Operation {
     void describe(Parameters& p) override {
         p.input("template", Kind::template_package, known, "template of the object's class (.template.json)");
         p.input(
@@ -101,7 +100,6 @@ public:
         if (result.verdict != Compatibility::compatible) report.answer_no();
     }
 
-private:
     /// What a person stated of each.
     std::vector<std::vector<StatedMatch>> read_fragments(Context& context, Report& report) {
         std::vector<std::vector<StatedMatch>> stated;

@@ -10,8 +10,7 @@ namespace ostraka {
 
 namespace {
 
-class MeasureClay final : public Operation {
-public:
+struct MeasureClay final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file, closed or open");
         p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json): unit and upward direction")
@@ -48,7 +47,6 @@ public:
         if (std::isnan(clay.most)) report.answer_no();
     }
 
-private:
     struct Figure {
         std::string name;
         double value;

@@ -9,8 +9,7 @@ namespace ostraka {
 
 namespace {
 
-class MeasureDescribe final : public Operation {
-public:
+struct MeasureDescribe final : Operation {
     void describe(Parameters& p) override {
         object.describe(p);
         p.input_option("map", Kind::values, maps, "NAME=FILE: a map of one value a vertex (.npy, or text with a number a line)")
@@ -37,7 +36,6 @@ public:
         object.write(std::move(set));
     }
 
-private:
     [[nodiscard]] std::vector<NamedMap> read_maps(const Mesh& mesh) const {
         std::vector<NamedMap> named;
         for (std::size_t i = 0; i < maps.size(); ++i) {

@@ -11,8 +11,7 @@ namespace ostraka {
 
 namespace {
 
-class MeasureMap final : public Operation {
-public:
+struct MeasureMap final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.output("output", Kind::values, output, "one value a vertex or face (.npy, or text)");
@@ -50,7 +49,6 @@ public:
         output.write(std::move(values));
     }
 
-private:
     enum class Of { mean_curvature, gaussian_curvature, thickness, geodesic };
     enum class On { vertex, face };
 

@@ -7,8 +7,7 @@ namespace ostraka {
 
 namespace {
 
-class MeasureRefresh final : public Operation {
-public:
+struct MeasureRefresh final : Operation {
     void describe(Parameters& p) override {
         Slot& annotations = object.describe(p);
         annotations.needed = true;
@@ -42,7 +41,6 @@ public:
         object.write(std::move(set));
     }
 
-private:
     MeasuredObject object;
     bool merge = false;
 };

@@ -14,8 +14,7 @@ namespace ostraka {
 
 namespace {
 
-class MeasureTake final : public Operation {
-public:
+struct MeasureTake final : Operation {
     void describe(Parameters& p) override {
         object.describe(p);
         p.options("tool", tool, "ruler (straight), tape (over the surface) or bounding (between two planes)",
@@ -67,7 +66,6 @@ public:
         object.write(std::move(set));
     }
 
-private:
     enum class Geodesic { edges, exact };
     static constexpr int largest_index = std::numeric_limits<int>::max();
 

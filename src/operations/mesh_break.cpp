@@ -12,8 +12,7 @@ namespace ostraka {
 
 namespace {
 
-class MeshBreak final : public Operation {
-public:
+struct MeshBreak final : Operation {
     void describe(Parameters& p) override {
         p.input("input", Kind::mesh, input, "mesh file");
         p.output("output", Kind::mesh, output, "mesh file of the fragment to write");
@@ -59,7 +58,6 @@ public:
         output.write(std::move(piece.mesh), std::move(extras));
     }
 
-private:
     [[nodiscard]] Point place(const Mesh& mesh, const AnnotationSet* set) const {
         if (set != nullptr)
             for (const Annotation& one : set->annotations) {

@@ -5,8 +5,7 @@ namespace ostraka {
 
 namespace {
 
-class MeshConvert final : public Operation {
-public:
+struct MeshConvert final : Operation {
     void describe(Parameters& p) override {
         p.input("input", Kind::mesh, input, "mesh to read: .ply, .obj, .off, .stl");
         p.output("output", Kind::mesh, output.with_encoding(), "mesh to write: .ply, .obj, .off, .stl, .glb");
@@ -36,7 +35,6 @@ public:
         output.write(std::move(triangles.soup), std::move(triangles.extras));
     }
 
-private:
     MeshInput input;
     MeshOutput output;
     IndexMapOutput map;

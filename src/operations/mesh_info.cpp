@@ -32,8 +32,7 @@ std::size_t count_degenerate(const PolygonSoup& soup) {
     return count;
 }
 
-class MeshInfo final : public Operation {
-public:
+struct MeshInfo final : Operation {
     void describe(Parameters& p) override {
         p.input("input", Kind::mesh, input, "mesh to read: .ply, .obj, .off, .stl");
         options.describe(p.options);
@@ -70,7 +69,6 @@ public:
         if (!sound) report.answer_no();
     }
 
-private:
     MeshInput input;
     DiagnoseOptions options;
 };

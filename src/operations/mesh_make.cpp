@@ -8,8 +8,7 @@ namespace ostraka {
 
 namespace {
 
-class MeshMake final : public Operation {
-public:
+struct MeshMake final : Operation {
     void describe(Parameters& p) override {
         p.options("object", wanted, "what to make (see --list)").positional();
         p.output("output", Kind::mesh, output, "mesh file to write; PLY keeps labels and colours of faces and vertices")
@@ -61,7 +60,6 @@ public:
         output.write(std::move(made.mesh), std::move(extras));
     }
 
-private:
     static void show(Report& report, const MadeObject& object) {
         report.row("objects")("name", object.name)("class", object.object_class)("description", object.description)(
             "unit", object.unit)("genus", object.genus)("minimumVertices", object.minimum_vertices)("parts", object.parts);

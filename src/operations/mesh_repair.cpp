@@ -8,8 +8,7 @@ namespace ostraka {
 
 namespace {
 
-class MeshRepair final : public Operation {
-public:
+struct MeshRepair final : Operation {
     void describe(Parameters& p) override {
         p.input("input", Kind::mesh, input, "mesh to read: .ply, .obj, .off, .stl");
         p.output("output", Kind::mesh, output, "mesh to write: .ply, .obj, .off, .stl, .glb");
@@ -51,7 +50,6 @@ public:
         written.write(report.to_json());
     }
 
-private:
     static void tell(Report& report, const RepairStep& step) {
         JsonValue counts(rapidjson::kObjectType);
         std::string name = step.name;  // once, beside its first count

@@ -10,8 +10,7 @@ namespace ostraka {
 namespace {
 
 /// What all three declare and tell.
-class MeshResize : public Operation {
-protected:
+struct MeshResize : Operation {
     void describe_meshes(Parameters& p) {
         p.input("input", Kind::mesh, input, "mesh to read: .ply, .obj, .off, .stl");
         p.output("output", Kind::mesh, output.with_encoding(), "mesh to write: .ply, .obj, .off, .stl, .glb");
@@ -32,8 +31,7 @@ protected:
 };
 
 /// What annotations, labels and colours follow.
-class MeshResizeBound : public MeshResize {
-public:
+struct MeshResizeBound : MeshResize {
     void check() const override {
         if (static_cast<bool>(annotations) != static_cast<bool>(annotations_out))
             fail_usage("annotations are read from one file and written to another",
@@ -44,7 +42,6 @@ public:
                        "write the mesh as .ply, .obj or .off");
     }
 
-protected:
     void describe_bound(Parameters& p) {
         describe_meshes(p);
         p.input_option("annotations", Kind::annotations, annotations, "annotations of the input mesh (.ant.json)");
@@ -81,7 +78,6 @@ protected:
         return result;
     }
 
-private:
     static void tell_changes(Report& report, const std::vector<BoundMesh::Change>& changes) {
         const auto percent = [](double before, double after) {
             return before > 0 ? number(100 * (after / before - 1), 3) + " %" : std::string();
@@ -105,8 +101,7 @@ private:
     FileOutput labels_out{".txt"};
 };
 
-class MeshSimplify final : public MeshResizeBound {
-public:
+struct MeshSimplify final : MeshResizeBound {
     void describe(Parameters& p) override {
         describe_bound(p);
         p.output_option("vertex-map", Kind::index_map, vertex_map, "JSON file to write: the new vertex of each old one");
@@ -145,15 +140,13 @@ public:
         if (face_map) face_map.write({"face", std::move(result.face_map), faces});
     }
 
-private:
     IndexMapOutput vertex_map, face_map;
     SimplifyOptions options;
     bool protect = false;
     const Option* outlines = nullptr;
 };
 
-class MeshRefine final : public MeshResizeBound {
-public:
+struct MeshRefine final : MeshResizeBound {
     void describe(Parameters& p) override {
         describe_bound(p);
         options.describe(p.options);
@@ -165,12 +158,10 @@ public:
         report("levels", result.levels)("bisections", result.bisections);
     }
 
-private:
     RefineOptions options;
 };
 
-class MeshRemesh final : public MeshResize {
-public:
+struct MeshRemesh final : MeshResize {
     void describe(Parameters& p) override {
         describe_meshes(p);
         options.describe(p.options);
@@ -200,7 +191,6 @@ public:
         output.write(std::move(result.mesh));
     }
 
-private:
     RemeshOptions options;
 };
 

@@ -7,8 +7,7 @@ namespace ostraka {
 
 namespace {
 
-class Operations final : public Operation {
-public:
+struct Operations final : Operation {
     void describe(Parameters& p) override {
         p.options("name", name, "only the operations whose names begin with this").positional();
         p.output_option("pages", Kind::folder, pages, "write a page of Markdown for each first word of the names");
@@ -43,7 +42,6 @@ public:
         }
     }
 
-private:
     /// Others may keep files of their own in these folders.
     static void put(const FolderOutput& folder, const std::string& file, const std::string& text) {
         folder.open(0, false);

@@ -8,8 +8,7 @@ namespace ostraka {
 
 namespace {
 
-class PairFragments final : public Operation {
-public:
+struct PairFragments final : Operation {
     void describe(Parameters& p) override {
         p.input("first", Kind::mesh, first, "mesh file, or points without faces; it stays where it is");
         p.input("second", Kind::mesh, second, "the fragment that is moved");
@@ -49,7 +48,6 @@ public:
         if (!pair.decided()) report.answer_no();
     }
 
-private:
     [[nodiscard]] const FragmentFile& read(const FileInput& slot) const {
         const auto& file =
             slot.load<FragmentFile>([&](const Path& path) { return read_fragment(path, reading); }, 0, options_text(reading));

@@ -13,8 +13,7 @@ namespace ostraka {
 namespace {
 
 /// What all of them read and tell.
-class RelationOperation : public Operation {
-protected:
+struct RelationOperation : Operation {
     void describe_inputs(Parameters& p) {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)");
@@ -58,7 +57,6 @@ protected:
     GraphInput graph;
     GraphOutput output;
 
-private:
     [[nodiscard]] std::string members_of(const Relationship& relationship) const {
         std::vector<std::string> members;
         for (const int id : relationship.annotations) {
@@ -88,8 +86,7 @@ private:
     }
 };
 
-class RelationExtract final : public RelationOperation {
-public:
+struct RelationExtract final : RelationOperation {
     void describe(Parameters& p) override {
         describe_inputs(p);
         describe_output(p);
@@ -130,13 +127,11 @@ public:
         output.write(std::move(found.graph), set());
     }
 
-private:
     std::vector<std::string> types;
     RelationOptions tolerances;
 };
 
-class RelationAdd final : public RelationOperation {
-public:
+struct RelationAdd final : RelationOperation {
     void describe(Parameters& p) override {
         describe_inputs(p);
         describe_output(p);
@@ -211,7 +206,6 @@ public:
         tell(report, std::vector{relationship});
     }
 
-private:
     struct Tolerance {
         std::string quantity;
         double value;
@@ -249,8 +243,7 @@ private:
     bool directed = false, is_constraint = false, own_type = false;
 };
 
-class RelationRemove final : public RelationOperation {
-public:
+struct RelationRemove final : RelationOperation {
     void describe(Parameters& p) override {
         describe_inputs(p);
         describe_graph(p);
@@ -276,12 +269,10 @@ public:
         tell(report, removed);
     }
 
-private:
     std::vector<int> ids;
 };
 
-class RelationList final : public RelationOperation {
-public:
+struct RelationList final : RelationOperation {
     void describe(Parameters& p) override {
         describe_inputs(p);
         describe_graph(p);
@@ -290,8 +281,7 @@ public:
     void run(Context&, Report& report) override { tell(report, read_relations().relationships); }
 };
 
-class RelationCheckAll final : public RelationOperation {
-public:
+struct RelationCheckAll final : RelationOperation {
     void describe(Parameters& p) override {
         describe_inputs(p);
         describe_graph(p);
@@ -319,12 +309,10 @@ public:
         if (counts[1] > 0) report.answer_no();
     }
 
-private:
     RelationOptions tolerances;
 };
 
-class RelationExport final : public RelationOperation {
-public:
+struct RelationExport final : RelationOperation {
     void describe(Parameters& p) override {
         describe_inputs(p);
         describe_graph(p);
@@ -343,7 +331,6 @@ public:
         report("relationships", relations.relationships.size())("annotations", set().annotations.size());
     }
 
-private:
     FileOutput dot{".dot"};
 };
 

@@ -14,8 +14,7 @@ namespace ostraka {
 
 namespace {
 
-class Render final : public Operation {
-public:
+struct Render final : Operation {
     void describe(Parameters& p) override {
         p.input("meshes", Kind::mesh, meshes, "one or more meshes").many();
         p.output("picture", Kind::picture, picture, "picture to write (PNG)");
@@ -87,7 +86,6 @@ public:
         }
     }
 
-private:
     enum class MapOn { automatic, vertex, face };
     enum class ColourBy { automatic, labels, colours, none };
 

@@ -59,8 +59,7 @@ private:
     }
 };
 
-class SliceObject final : public Operation {
-public:
+struct SliceObject final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json): unit, upward direction, parts")
@@ -126,7 +125,6 @@ public:
         if (!cut.met()) report.answer_no();
     }
 
-private:
     void check_planes() const {
         const int ways = (count ? 1 : 0) + (spacing ? 1 : 0) + (heights.empty() ? 0 : 1);
         if (ways > 1) fail_usage("heights are asked for in more than one way", "give one of --count, --spacing and --heights");

@@ -14,8 +14,7 @@ namespace ostraka {
 
 namespace {
 
-class StudyLandmarks final : public Operation {
-public:
+struct StudyLandmarks final : Operation {
     void describe(Parameters& p) override {
         files.describe(p, true);
         p.options("components", components, "principal components to write", Range{1, 1000});
@@ -63,7 +62,6 @@ public:
         report.table(table);
     }
 
-private:
     /// The table of objects and the plot of the first two components.
     void write(const LandmarkShapes& shapes, const GeneralisedProcrustes& shape, const PrincipalComponents& principal) const {
         const Eigen::MatrixXd& scores = principal.scores;

@@ -14,8 +14,7 @@ namespace ostraka {
 namespace {
 
 /// The folder that all of them fill.
-class StudyMake : public Operation {
-protected:
+struct StudyMake : Operation {
     void describe_folder(Parameters& p, const std::string& help) { p.output("folder", Kind::collection, folder, help); }
 
     /// Makes the folder, which holds no objects yet, and each of them, several at a time.
@@ -43,8 +42,7 @@ protected:
 };
 
 /// Those that make statuettes.
-class StudyMakeStatuettes : public StudyMake {
-protected:
+struct StudyMakeStatuettes : StudyMake {
     /// "statuette-07" of more than nine.
     static std::string name_of(std::size_t i, std::size_t count) {
         const std::string number = std::to_string(i + 1);
@@ -85,8 +83,7 @@ constexpr const char* statuette_measures = R"({
 }
 )";
 
-class StudyMakeProportions final : public StudyMakeStatuettes {
-public:
+struct StudyMakeProportions final : StudyMakeStatuettes {
     void describe(Parameters& p) override {
         describe_folder(p, "folder to write meshes, annotations, measures and truth.csv to");
         options.describe(p.options);
@@ -116,12 +113,10 @@ public:
                     (fixed.empty() ? "" : "; " + fixed));
     }
 
-private:
     ProportionedOptions options;
 };
 
-class StudyMakeTechnique final : public StudyMakeStatuettes {
-public:
+struct StudyMakeTechnique final : StudyMakeStatuettes {
     void describe(Parameters& p) override {
         describe_folder(p, "folder to write meshes, annotations and truth.csv to");
         options.describe(p.options);
@@ -159,12 +154,10 @@ public:
                     " hand-made, and truth.csv in " + printable(folder.path().string()));
     }
 
-private:
     PopulationOptions options;
 };
 
-class StudyMakeMoulds final : public StudyMake {
-public:
+struct StudyMakeMoulds final : StudyMake {
     void describe(Parameters& p) override {
         describe_folder(p, "folder to write to: a PLY mesh with labelled faces each, and truth.csv");
         population.describe(p.options);
@@ -200,7 +193,6 @@ public:
         for (std::size_t part = 0; part < parts.size(); ++part) report.row("", {part, parts[part]});
     }
 
-private:
     MouldPopulationOptions population;
     CastOptions cast;
 };

@@ -14,8 +14,7 @@ namespace ostraka {
 
 namespace {
 
-class StudyMoulds final : public Operation {
-public:
+struct StudyMoulds final : Operation {
     void describe(Parameters& p) override {
         files.describe(p, true);
         p.options("similarity", similarity, "what the groups are found by", Choices(mould_similarities()));
@@ -86,7 +85,6 @@ public:
         if (failed > 0) report.line(std::to_string(failed) + " objects were left out");
     }
 
-private:
     /// Returns the heads that are alone in their group.
     [[nodiscard]] std::string tell_groups(Report& report, const MouldStudy& study,
                                           const std::vector<std::string>& answers) const {

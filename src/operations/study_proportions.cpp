@@ -105,8 +105,7 @@ Plot variation_plot(const ProportionStudy& study, const std::string& title) {
     return plot;
 }
 
-class StudyProportions final : public Operation {
-public:
+struct StudyProportions final : Operation {
     void describe(Parameters& p) override {
         files.describe(p, false, "folder of meshes, a list of objects (.study.json), or a table of measures (.csv)");
         p.input_option("measures", Kind::text, measures, "the measures to take on every object (.measures.json)");
@@ -184,7 +183,6 @@ public:
         write_report(report, notes, context.provenance());
     }
 
-private:
     [[nodiscard]] bool from_table() const { return extension(files.collection.file()) == ".csv"; }
     [[nodiscard]] const MeasureDefinitions& definitions() const {
         return measures.load<MeasureDefinitions>([](const Path& file) { return read_measure_definitions(file); });

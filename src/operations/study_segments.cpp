@@ -12,8 +12,7 @@ namespace ostraka {
 
 namespace {
 
-class StudySegments final : public Operation {
-public:
+struct StudySegments final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.output("output", Kind::annotations, output, "annotations to write (.ant.json)");
@@ -73,7 +72,6 @@ public:
         output.write(std::move(set), surface, mesh.file());
     }
 
-private:
     /// Clusters without a segment, and those with several.
     void tell_clusters(Report& report, const SliceSegments& segments) const {
         std::string gone, again;

@@ -11,8 +11,7 @@ namespace ostraka {
 
 namespace {
 
-class StudyOfTechnique final : public Operation {
-public:
+struct StudyOfTechnique final : Operation {
     void describe(Parameters& p) override {
         files.describe(p, true);
         up.describe(
@@ -64,7 +63,6 @@ public:
         if (!study.separated) report.answer_no();
     }
 
-private:
     static void fill(Report& report, const TechniqueStudy& study, const std::vector<TechniqueObject>& objects,
                      const KnownAnswers& known) {
         report("positive", study.positive)("negative", study.negative)("learned", study.learned);

@@ -9,8 +9,7 @@ namespace ostraka {
 
 namespace {
 
-class TemplateClassify final : public Operation {
-public:
+struct TemplateClassify final : Operation {
     void describe(Parameters& p) override {
         p.input("files", Kind::shape_class, files,
                 "classes (.class.json), then a mesh file for each object (of landmarks for classes of landmarks)")
@@ -41,7 +40,6 @@ public:
             report.answer_no();
     }
 
-private:
     [[nodiscard]] bool is_class(std::size_t i) const { return files.file(i).ends_with(".class.json"); }
 
     void read_classes() {

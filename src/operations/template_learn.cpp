@@ -11,8 +11,7 @@ namespace ostraka {
 
 namespace {
 
-class TemplateLearn final : public Operation {
-public:
+struct TemplateLearn final : Operation {
     void describe(Parameters& p) override {
         p.input("template", Kind::template_package, known,
                 "the template (.template.json), or the first member of a class of landmarks (.mrk.json, .fcsv, .tps, .pp), which "
@@ -48,7 +47,6 @@ public:
         tell(report, learnt);
     }
 
-private:
     [[nodiscard]] bool of_landmarks() const { return is_landmark_file(known.file()); }
 
     ShapeClass learn_meshes(Context& context) {

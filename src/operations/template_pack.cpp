@@ -30,8 +30,7 @@ void add_template(Report& report, const Template& known, bool contents) {
     report.findings(known.findings, "part");
 }
 
-class TemplatePack final : public Operation {
-public:
+struct TemplatePack final : Operation {
     void describe(Parameters& p) override {
         p.output("output", Kind::template_package, output, "template to write (.template.json)");
         const auto part = [&](const char* role, Kind kind, const char* help) -> Slot& {
@@ -94,7 +93,6 @@ public:
         output.write(std::move(known));
     }
 
-private:
     TemplateOutput output;
     std::map<std::string, FileInput> parts;  ///< by role
     std::string object_class, unit;
@@ -103,8 +101,7 @@ private:
     TemplateOptions options;
 };
 
-class TemplateShow final : public Operation {
-public:
+struct TemplateShow final : Operation {
     explicit TemplateShow(bool shows_contents) : contents(shows_contents) {}
 
     void describe(Parameters& p) override {
@@ -114,7 +111,6 @@ public:
 
     void run(Context&, Report& report) override { add_template(report, *input, contents); }
 
-private:
     bool contents;
     TemplateInput input;
 };

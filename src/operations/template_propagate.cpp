@@ -9,8 +9,7 @@ namespace ostraka {
 
 namespace {
 
-class TemplatePropagate final : public Operation {
-public:
+struct TemplatePropagate final : Operation {
     void describe(Parameters& p) override {
         p.input("template", Kind::template_package, known, "template (.template.json)");
         p.input("members", Kind::mesh, members, "a mesh file for each member; NAME.ant.json beside it are its annotations")
@@ -60,7 +59,6 @@ public:
         }
     }
 
-private:
     void write(const std::string& file, const WholeObject& member, const Propagated& result) const {
         const std::string fitted_name = member.name + ".fitted.ply";
         const Mesh fitted = with_points(known->mesh->mesh, result.fit.points);

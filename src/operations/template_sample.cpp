@@ -10,8 +10,7 @@ namespace ostraka {
 
 namespace {
 
-class TemplateSample final : public Operation {
-public:
+struct TemplateSample final : Operation {
     void describe(Parameters& p) override {
         p.input("class", Kind::shape_class, file, "class (.class.json), as 'template learn' writes it");
         p.output("output", Kind::folder, output, "folder for meshes, annotations and NAME.samples.json; made if it is missing")
@@ -38,7 +37,6 @@ public:
         if (names.size() < static_cast<std::size_t>(options.count)) report.answer_no();
     }
 
-private:
     void write(const KnownClass& known, const Sampling& result, const std::vector<std::string>& names, Report& report) const {
         const ClassTemplate of_class = known.known();
         for (std::size_t i = 0; i < names.size(); ++i) {

@@ -9,8 +9,7 @@ namespace ostraka {
 
 namespace {
 
-class TemplateTurn final : public Operation {
-public:
+struct TemplateTurn final : Operation {
     void describe(Parameters& p) override {
         p.input("sherds", Kind::mesh, files, "closed meshes of sherds, all where they lay in the vessel").many();
         p.output("output", Kind::folder, output, "folder to write the template to").flag();
@@ -35,7 +34,6 @@ public:
         tell(report, turned);
     }
 
-private:
     /// With the facets that the annotations beside it say.
     static Fragment read_sherd(const Path& file) {
         Fragment sherd;

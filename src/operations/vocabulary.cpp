@@ -13,8 +13,7 @@ namespace {
 constexpr const char* vocabulary_file = "vocabulary (.vocabulary.json, .ttl, .rdf)";
 constexpr const char* scheme_help = "URI of the concept scheme, where a SKOS file has several";
 
-class VocabularyCheck final : public Operation {
-public:
+struct VocabularyCheck final : Operation {
     void describe(Parameters& p) override {
         p.input("vocabulary", Kind::vocabulary, file, vocabulary_file);
         p.options("scheme", scheme, scheme_help);
@@ -40,13 +39,11 @@ public:
         report.findings(findings);
     }
 
-private:
     FileInput file;
     std::string scheme;
 };
 
-class VocabularyShow final : public Operation {
-public:
+struct VocabularyShow final : Operation {
     void describe(Parameters& p) override {
         p.input("vocabulary", Kind::vocabulary, file, vocabulary_file);
         p.options("language", language, "language of the labels");
@@ -91,7 +88,6 @@ public:
                         (all == 1 ? " rule" : " rules") + (under.empty() ? "" : " may apply to them"));
     }
 
-private:
     [[nodiscard]] std::size_t named_concept(const VocabularySearch& search) const {
         const auto found = search.concepts_of(under);
         if (found.size() == 1) return found.front();
@@ -147,8 +143,7 @@ private:
     std::string language = "en", under;
 };
 
-class VocabularyConvert final : public Operation {
-public:
+struct VocabularyConvert final : Operation {
     void describe(Parameters& p) override {
         p.input("input", Kind::vocabulary, input, vocabulary_file);
         p.output("output", Kind::vocabulary, output, "vocabulary to write (.vocabulary.json, .ttl, .rdf)");
@@ -186,7 +181,6 @@ public:
                     " rules");
     }
 
-private:
     FileInput input;
     FileOutput output{".vocabulary.json"};
     std::string scheme;
