@@ -38,7 +38,7 @@ void SelectStep::describe(OptionList& visit) {
     visit("above", above, "threshold: least value, in lengths as --frame says (curvature: one over them), of a file its own");
     visit("below", below, "threshold: greatest value, likewise");
     visit("quantiles", quantiles, "threshold: values are shares of the area, 0 to 1");
-    visit("scale", scale, "curvature: radius as a share of the diagonal; 0: as the mesh is fine", Range{0, 1});
+    visit("scale", scale, "curvature: radius; 0: as the mesh is fine", Range{0, 1}, "share of the diagonal");
     visit("smoothing", smoothing, "segment: how much short borders in hollows are preferred", Range{0, 1});
     visit("grow", grow, "so many rings larger", Range{0, 1000000});
     visit("shrink", shrink, "so many rings smaller", Range{0, 1000000});
