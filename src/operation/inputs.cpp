@@ -34,14 +34,16 @@ void tell_checksum(const Slot& slot, std::size_t i, const std::function<std::str
 }
 
 /// The i-th object of a slot: what `read` makes of its file; an object in memory itself if it is a T, with the checksum that
-/// `sum` says; else what `convert` makes of it, if anything, or `read` of the file that it would be.
+/// `sum` says and once `check` has seen it; else what `convert` makes of it, if anything, or `read` of the file that it would be.
 template <class T, class Read, class Sum>
 const T& loaded(const Slot& slot, std::size_t i, const std::string& key, const Read& read, const Sum& sum,
-                const std::function<std::optional<T>(const Object&)>& convert = {}) {
+                const std::function<std::optional<T>(const Object&)>& convert = {},
+                const std::function<void(const T&)>& check = {}) {
     const Object& object = slot.sources.at(i).object;
     return *std::static_pointer_cast<const T>(
         slot.context->load(slot, i, typeid(T), key, [&](const Path& file) -> std::shared_ptr<const void> {
             if (auto data = object.as<T>()) {
+                if (check) check(*data);
                 tell_checksum(slot, i, [&] { return sum(*data); });
                 return data;
             }
@@ -143,10 +145,10 @@ const AnnotationSet& AnnotationsInput::on(const Mesh& mesh, std::size_t i) const
     const Object& object = sources.at(i).object;
     const std::string key =
         context->keep_objects && !object ? mesh_checksum(mesh) + (reading.force_mesh ? " forced" : "") : address(&mesh);
-    if (const auto set = object.as<AnnotationSet>()) check_annotations(*set, mesh, object.name);
     const auto& set = loaded<AnnotationSet>(
         *this, i, key, [&](const Path& path) { return read_annotations(path, mesh, reading); },
-        [&](const AnnotationSet& known) { return checksum_of(known, mesh); });
+        [&](const AnnotationSet& known) { return checksum_of(known, mesh); }, {},
+        [&](const AnnotationSet& known) { check_annotations(known, mesh, object.name); });
     context->notes(size() > 1 ? sources[i].name() : std::string(), set.notes);
     return set;
 }
@@ -188,6 +190,12 @@ Path FileInput::path(std::size_t i) const {
     const Path file = in_memory(*context, source.object, name);
     if (source.object.sha256.empty() && file_exists(file)) context->record_object(*this, i, sha256_of_file(file));
     return file;
+}
+
+std::shared_ptr<const AnnotationSet> FileInput::annotations_on(const Mesh& mesh) const {
+    auto set = sources.at(0).object.as<AnnotationSet>();
+    if (set) tell_checksum(*this, 0, [&] { return checksum_of(*set, mesh); });
+    return set;
 }
 
 void FileInput::check_checksum(std::size_t i) const {

@@ -200,7 +200,7 @@ struct AnnotationRemap final : Operation {
         const Mesh& source = before->mesh;
         AnnotationSet set;
         std::vector<Index> vertices, faces;
-        const auto known = annotations.sources.front().object.as<AnnotationSet>();
+        const auto known = annotations.annotations_on(source);
         context.record([&] {
             set = known ? *known : read_annotations(annotations.path(), source, reading);
             vertices = read_index_map(vertex_map.path(), "vertex", source.number_of_vertices(), target.number_of_vertices());

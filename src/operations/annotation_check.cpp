@@ -32,7 +32,7 @@ struct AnnotationCheck final : Operation {
         const Vocabulary* known_words = vocabulary ? &vocabulary.load<Vocabulary>(read_vocabulary) : nullptr;
         const ClassRules* kept_rules = rules ? &rules.load<ClassRules>(read_class_rules) : nullptr;
         const Mesh& on = mesh->mesh;
-        const auto given = annotations.sources.front().object.as<AnnotationSet>();
+        const auto given = annotations.annotations_on(on);
         const Json* document = given ? nullptr : &annotations.load<Json>(read_json);
         std::vector<Finding> findings;
         std::optional<AnnotationSet> set;

@@ -30,9 +30,8 @@ struct AnnotationExport final : Operation {
         report("format", *format)("annotations", exported.annotations)("bytes", exported.bytes.size())("sha256",
                                                                                                        sha256(exported.bytes));
         const std::size_t all = set.annotations.size(), written = exported.annotations;
-        report.line(std::to_string(written) + (written == all ? "" : " of " + std::to_string(all)) +
-                    (all == 1 ? " annotation" : " annotations") + " as " + *format + ", " +
-                    std::to_string(exported.bytes.size()) + " bytes");
+        report.line((written == all ? "" : std::to_string(written) + " of ") + counted(all, "annotation") + " as " + *format +
+                    ", " + std::to_string(exported.bytes.size()) + " bytes");
         output.write(exported.bytes);
     }
 

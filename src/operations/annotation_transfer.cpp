@@ -14,16 +14,16 @@ namespace {
 std::string percent(double share) { return std::abs(share) < 1e-11 ? "0" : number(100 * share, 3); }
 
 std::string remarks_on(const TransferScore& score) {
-    std::string remarks = score.outcome == "kept" ? "" : score.outcome;
-    const auto remark = [&](const std::string& text) { remarks += (remarks.empty() ? "" : "; ") + text; };
-    if (score.by_closest_point > 0) remark(std::to_string(score.by_closest_point) + " by closest point");
-    if (score.without_place > 0) remark(std::to_string(score.without_place) + " without a place");
-    if (score.relocated > 0) remark(std::to_string(score.relocated) + " on another layer, placed again");
-    if (score.detours > 0) remark(std::to_string(score.detours) + " detours");
-    if (score.voted) remark("outlines crossed, filled face by face");
-    else if (score.crossings_resolved) remark("crossing outlines resolved");
-    if (!score.note.empty()) remark(score.note);
-    return remarks;
+    std::vector<std::string> remarks;
+    if (score.outcome != "kept") remarks.push_back(score.outcome);
+    if (score.by_closest_point > 0) remarks.push_back(std::to_string(score.by_closest_point) + " by closest point");
+    if (score.without_place > 0) remarks.push_back(std::to_string(score.without_place) + " without a place");
+    if (score.relocated > 0) remarks.push_back(std::to_string(score.relocated) + " on another layer, placed again");
+    if (score.detours > 0) remarks.push_back(std::to_string(score.detours) + " detours");
+    if (score.voted) remarks.emplace_back("outlines crossed, filled face by face");
+    else if (score.crossings_resolved) remarks.emplace_back("crossing outlines resolved");
+    if (!score.note.empty()) remarks.push_back(score.note);
+    return joined(remarks, "; ");
 }
 
 struct AnnotationTransfer final : Operation {
@@ -86,11 +86,10 @@ struct AnnotationTransfer final : Operation {
         // All work is done: what is written now is complete.
         if (coloured) coloured.write(on, colour_by_annotation(on, there.annotations));
         if (map) map.write({"face-origin", there.refined->face_origin, onto.number_of_faces()});
-        for (const auto& [name, seconds] : {std::pair{"correspondence", there.times.correspondence},
-                                            {"paths", there.times.paths},
-                                            {"regions", there.times.regions},
-                                            {"scores", there.times.scores}})
-            report.run(name, seconds);
+        report.run("correspondence", there.times.correspondence);
+        report.run("paths", there.times.paths);
+        report.run("regions", there.times.regions);
+        report.run("scores", there.times.scores);
         report.line(source.file_name() + " -> " + target.file_name());
         tell(report, "annotations", there.scores);
         if (again) {
@@ -115,31 +114,25 @@ struct AnnotationTransfer final : Operation {
             if (region) {
                 row("sourceArea", score.source_area)("targetArea", score.target_area)("sourcePerimeter", score.source_length)(
                     "targetPerimeter", score.target_length);
+                const auto shown = [&](double value) { return kept ? percent(value) : "-"; };
                 if (both && score.target_area > 0)
-                    for (const auto& [name, value] : {std::pair{"A", d.area},
-                                                      {"P", d.perimeter},
-                                                      {"P/A", d.perimeter_by_area},
-                                                      {"A/P", d.area_by_perimeter},
-                                                      {"C", d.circularity},
-                                                      {"average", d.mean}})
-                        row("distortion." + std::string(name), value, kept ? percent(value) : "-");
+                    row("distortion.A", d.area, shown(d.area))("distortion.P", d.perimeter, shown(d.perimeter))(
+                        "distortion.P/A", d.perimeter_by_area, shown(d.perimeter_by_area))("distortion.A/P", d.area_by_perimeter,
+                                                                                           shown(d.area_by_perimeter))(
+                        "distortion.C", d.circularity, shown(d.circularity))("distortion.average", d.mean, shown(d.mean));
                 if (score.overlap) row("overlap", *score.overlap, both && kept ? number(*score.overlap, 5) : "-");
-                if (score.wrong_side) row("wrongSide", *score.wrong_side);
+                row("wrongSide", score.wrong_side);
             } else {
                 row("sourceLength", score.source_length)("targetLength", score.target_length);
             }
             if (score.source_length > 0 && kept) row.shown("distortion.P", percent(d.perimeter));
             if (score.hausdorff) row("hausdorff", *score.hausdorff, number(*score.hausdorff, 3));
-            for (const auto& [name, count] : {std::pair{"vertices", score.vertices},
-                                              {"byRay", score.by_ray},
-                                              {"byClosestPoint", score.by_closest_point},
-                                              {"withoutPlace", score.without_place},
-                                              {"relocated", score.relocated},
-                                              {"detours", score.detours}})
-                row("correspondence." + std::string(name), count);
-            row("crossingsResolved", score.crossings_resolved)("voted", score.voted);
-            row.shown("by ray", std::to_string(score.by_ray) + "/" + std::to_string(score.vertices));
-            row.shown("remarks", remarks_on(score));
+            row("correspondence.vertices", score.vertices)("correspondence.byRay", score.by_ray)(
+                "correspondence.byClosestPoint", score.by_closest_point)("correspondence.withoutPlace", score.without_place)(
+                "correspondence.relocated", score.relocated)("correspondence.detours", score.detours)(
+                "crossingsResolved", score.crossings_resolved)("voted", score.voted)
+                .shown("by ray", std::to_string(score.by_ray) + "/" + std::to_string(score.vertices))
+                .shown("remarks", remarks_on(score));
             if (score.outcome == "lost" && table == "annotations") report.answer_no();
         }
     }

@@ -191,13 +191,9 @@ struct Deform final : Operation {
         row("hard", constraint.hard)("used", constraint.used)("before", to_string(constraint.before));
         row("verdict", to_string(constraint.verdict), constraint.used ? to_string(constraint.verdict) : "left out");
         row("text", constraint.text)("deviations", std::move(deviations)).shown("deviations", joined(words, "; "));
-        for (const auto& [name, value] : {std::pair{"mean", constraint.mean},
-                                          {"median", constraint.median},
-                                          {"min", constraint.least},
-                                          {"max", constraint.most},
-                                          {"greatest distance", constraint.distance}})
-            row("residual." + std::string(name), value);
-        row("residual.constraints", constraint.low_level);
+        row("residual.mean", constraint.mean)("residual.median", constraint.median)("residual.min", constraint.least)(
+            "residual.max", constraint.most)("residual.greatest distance", constraint.distance)("residual.constraints",
+                                                                                                constraint.low_level);
     }
 
     /// What fights with what.

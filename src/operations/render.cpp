@@ -77,12 +77,11 @@ struct Render final : Operation {
         report.empty_table("panes");
         for (const Pane& pane : rendering.panes) {
             const Scene& scene = scenes[pane.scene];
-            Report::Row row = report.row("panes");
-            row("object", pane.scene)("view", pane.view)("vertices", scene.mesh.points.size());
-            row("faces", scene.mesh.triangles.size())("pixelsPerUnit", pane.pixels_per_unit);
-            if (pane.bar_length > 0) row("scaleBar", pane.bar_length);
-            row("markers", scene.markers.size())("markersShown", pane.markers_shown);
-            row("camera", camera_json(pane, rendering.picture, report.allocator()));
+            const auto bar = pane.bar_length > 0 ? std::optional(pane.bar_length) : std::nullopt;
+            report.row("panes")("object", pane.scene)("view", pane.view)("vertices", scene.mesh.points.size())(
+                "faces", scene.mesh.triangles.size())("pixelsPerUnit", pane.pixels_per_unit)("scaleBar", bar)(
+                "markers", scene.markers.size())("markersShown", pane.markers_shown)(
+                "camera", camera_json(pane, rendering.picture, report.allocator()));
         }
     }
 

@@ -14,7 +14,7 @@ void StudyFiles::describe(Parameters& p, bool labels, const std::string& collect
     if (!labels) return;
     p.input_option("truth", Kind::table, truth_, "known answers: CSV with the columns name and label");
     p.options("truth-column", truth_column_, "the column of the answers, if not 'label'");
-    for (const char* count : {"labelled", "objects", "kinds"}) p.report.values(integer(std::string("truth.") + count));
+    p.report.values(integer("truth.labelled"), integer("truth.objects"), integer("truth.kinds"));
 }
 
 void StudyFiles::check() const {
@@ -70,9 +70,7 @@ void KnownAnswers::tell(Report& report) const {
 }
 
 void KnownAnswers::add_to(Report& report) const {
-    if (labelled == 0) return;
-    for (const auto& [name, count] : {std::pair{"labelled", labelled}, {"objects", objects}, {"kinds", kinds}})
-        report(std::string("truth.") + name, count);
+    if (labelled > 0) report("truth.labelled", labelled)("truth.objects", objects)("truth.kinds", kinds);
 }
 
 void write_study_report(const Path& file, const std::string& kind, const JsonValue& result, const Provenance& provenance) {

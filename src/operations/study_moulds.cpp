@@ -92,16 +92,14 @@ struct StudyMoulds final : Operation {
         std::size_t at = 0;
         for (const MouldGroupSummary& each : summarise_groups(study)) {
             const ClusterStability& resampled = study.stability[at++];
-            Report::Row row = report.row("groups");
-            row("group", at)("heads", each.members);
+            Report::Row row = report.row("groups")("group", at)("heads", each.members);
             if (each.members.size() == 1) single += (single.empty() ? "" : ", ") + each.members.front();
             else if (resampled.resamples > 0)
                 row("stability", resampled.jaccard)("recovered", resampled.recovered)("dissolved", resampled.dissolved);
         }
         for (std::size_t i = 0; i < answers.size(); ++i) {
-            Report::Row row = report.row("heads");
-            row("name", study.matrices.names[i])("group", study.groups.labels[i] + 1)("silhouette",
-                                                                                      study.groups.head_silhouettes[i]);
+            Report::Row row = report.row("heads")("name", study.matrices.names[i])("group", study.groups.labels[i] + 1)(
+                "silhouette", study.groups.head_silhouettes[i]);
             if (const int second = study.second_group(i).first; second >= 0) row("secondGroup", second + 1);
             if (compare.consistent.shrinkage > 0) row("relativeSize", study.sizes[i]);
             if (!answers[i].empty()) row("label", answers[i]);

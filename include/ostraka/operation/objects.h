@@ -231,6 +231,8 @@ public:
         return *std::static_pointer_cast<const T>(
             load_any(typeid(T), i, key, [&](const Path& path) { return std::make_shared<const T>(read(path)); }));
     }
+    /// Annotations of the mesh that were given in memory, unchecked; null where there are none.
+    [[nodiscard]] std::shared_ptr<const AnnotationSet> annotations_on(const Mesh& mesh) const;
     /// The name of the file (of an object in memory: of one in memory that was written for it).
     [[nodiscard]] Path path(std::size_t i = 0) const;
 
