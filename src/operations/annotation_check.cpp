@@ -32,13 +32,13 @@ struct AnnotationCheck final : Operation {
         const Vocabulary* known_words = vocabulary ? &vocabulary.load<Vocabulary>(read_vocabulary) : nullptr;
         const ClassRules* kept_rules = rules ? &rules.load<ClassRules>(read_class_rules) : nullptr;
         const Mesh& on = mesh->mesh;
-        const auto given = annotations.annotations_on(on);
+        const auto given = annotations.sources.front().object.as<AnnotationSet>();
         const Json* document = given ? nullptr : &annotations.load<Json>(read_json);
         std::vector<Finding> findings;
         std::optional<AnnotationSet> set;
         try {
             if (given) check_annotations(*given, on, annotations.file());
-            set = given ? *given : annotations_from_json(*document, on, annotations.file(), reading);
+            set = given ? *annotations.annotations_on(on) : annotations_from_json(*document, on, annotations.file(), reading);
         } catch (const Error& error) {
             if (error.kind() != ErrorKind::input) throw;
             findings.push_back({true, "", error.problem() + (error.remedy().empty() ? "" : " (" + error.remedy() + ")")});
