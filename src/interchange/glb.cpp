@@ -3,6 +3,7 @@
 #include "text.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/json_build.h"
 #include "ostraka/core/provenance.h"
 
 #include <rapidjson/stringbuffer.h>
@@ -61,17 +62,13 @@ double number_at(std::string_view bytes, std::size_t offset, int component) {
 
 Builder::Builder() {
     document_.SetObject();
-    JsonValue asset(rapidjson::kObjectType);
-    add_member(asset, "version", "2.0", allocator());
-    add_member(asset, "generator", "ostraka " + version(), allocator());
+    JsonValue asset = json_object(allocator(), "version", "2.0", "generator", "ostraka " + version());
     add_member(document_, "asset", std::move(asset), allocator());
 }
 
 int Builder::add_view(const std::string& bytes, int target, int stride) {
     binary_.resize((binary_.size() + 7) / 8 * 8, '\0');
-    JsonValue entry(rapidjson::kObjectType);
-    add_member(entry, "buffer", JsonValue(0), allocator());
-    add_member(entry, "byteOffset", JsonValue(static_cast<std::uint64_t>(binary_.size())), allocator());
+    JsonValue entry = json_object(allocator(), "buffer", 0, "byteOffset", binary_.size());
     // A view holds one byte at least.
     add_member(entry, "byteLength", JsonValue(static_cast<std::uint64_t>(std::max<std::size_t>(bytes.size(), 1))), allocator());
     if (stride > 0) add_member(entry, "byteStride", JsonValue(stride), allocator());
@@ -83,11 +80,8 @@ int Builder::add_view(const std::string& bytes, int target, int stride) {
 
 int Builder::add_accessor(const std::string& bytes, int target, int stride, int component, std::size_t count, const char* type,
                           JsonValue* min, JsonValue* max) {
-    JsonValue entry(rapidjson::kObjectType);
-    add_member(entry, "bufferView", JsonValue(add_view(bytes, target, stride)), allocator());
-    add_member(entry, "componentType", JsonValue(component), allocator());
-    add_member(entry, "count", JsonValue(static_cast<std::uint64_t>(count)), allocator());
-    add_member(entry, "type", type, allocator());
+    JsonValue entry = json_object(allocator(), "bufferView", add_view(bytes, target, stride), "componentType", component, "count",
+                                  count, "type", type);
     if (min != nullptr) add_member(entry, "min", std::move(*min), allocator());
     if (max != nullptr) add_member(entry, "max", std::move(*max), allocator());
     accessors_.PushBack(entry, allocator());
@@ -103,9 +97,8 @@ std::string Builder::finish(const std::string& where) {
     JsonValue buffers(rapidjson::kArrayType), buffer(rapidjson::kObjectType);
     add_member(buffer, "byteLength", JsonValue(static_cast<std::uint64_t>(binary_.size())), allocator());
     buffers.PushBack(buffer, allocator());
-    add_member(document_, "accessors", std::move(accessors_), allocator());
-    add_member(document_, "bufferViews", std::move(views_), allocator());
-    add_member(document_, "buffers", std::move(buffers), allocator());
+    add_members(document_, allocator(), "accessors", std::move(accessors_), "bufferViews", std::move(views_), "buffers",
+                std::move(buffers));
     rapidjson::StringBuffer buffer_text;
     rapidjson::Writer<rapidjson::StringBuffer> writer(buffer_text);
     document_.Accept(writer);
