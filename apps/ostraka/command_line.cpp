@@ -135,8 +135,7 @@ public:
         text << "\nPositionals:\n";
         const auto add = [&](const std::string& name, const std::string& what, const std::string& help) {
             if (call_.parameters().in_some_order(name))
-                CLI::detail::format_help(text, "  " + name + " " + what + (is_repeated(call_, name) ? " ..." : ""), help,
-                                         column_width_);
+                CLI::detail::format_help(text, name + " " + what + (is_repeated(call_, name) ? " ..." : ""), help, column_width_);
         };
         for (const Slot* slot : call_.parameters().slots()) add(slot->name, "FILE", slot->help);
         for (const Option& option : call_.parameters().options) add(option.name, type_of(option), option.help);
