@@ -106,11 +106,14 @@ Report::ShownTable& Report::table_of(const std::string& key) {
     table_index_[key] = tables_.size();
     blocks_.push_back({Block::Kind::table, {}, {}, tables_.size()});
     if (!layout->key.empty()) set_member(result_, key, JsonValue(rapidjson::kArrayType), allocator());
-    ShownTable& table = tables_.emplace_back(ShownTable{static_cast<std::size_t>(layout - layout_.tables.begin()), {}, {}, {}});
+    ShownTable& table =
+        tables_.emplace_back(ShownTable{static_cast<std::size_t>(layout - layout_.tables.begin()), {}, {}, {}, {}});
     for (const Field& column : layout->columns) {
-        table.columns[column.key.empty() ? column.title : column.key] =
-            column.title.empty() ? -1 : static_cast<int>(table.empty.size());
-        if (!column.title.empty()) table.empty.emplace_back(column.type == FieldType::number ? "-" : "");
+        const int place = column.title.empty() ? -1 : static_cast<int>(table.empty.size());
+        if (!column.key.empty()) table.places.emplace(column.key, place);
+        if (place < 0) continue;
+        table.shown.emplace(column.key.empty() ? column.title : column.key, place);
+        table.empty.emplace_back(column.type == FieldType::number ? "-" : "");
     }
     return table;
 }
@@ -136,13 +139,13 @@ void Report::row(const std::string& table, std::initializer_list<ReportText> cel
 }
 
 Report::Row& Report::Row::operator()(std::string_view key, ReportValue value, std::optional<std::string> text) {
-    const ShownTable& table = report_.tables_[table_];
+    ShownTable& table = report_.tables_[table_];
     const std::string& of = report_.layout_.tables[table.layout].key;
-    const auto column = table.columns.find(key);
-    if (column == table.columns.end() || of.empty())
+    const auto column = table.places.find(key);
+    if (column == table.places.end() || of.empty())
         throw std::logic_error("table '" + of + "' of the report declares no column '" + std::string(key) + "'");
     if (value.absent()) return *this;
-    if (column->second >= 0) shown(key, text ? std::move(*text) : value.text());
+    if (column->second >= 0) table.rows[row_][static_cast<std::size_t>(column->second)] = text ? std::move(*text) : value.text();
     JsonValue& list = *const_cast<JsonValue*>(find_member(report_.result_, of));
     set_member(list[static_cast<rapidjson::SizeType>(row_)], key, value.json(report_.allocator()), report_.allocator());
     return *this;
@@ -150,8 +153,8 @@ Report::Row& Report::Row::operator()(std::string_view key, ReportValue value, st
 
 Report::Row& Report::Row::shown(std::string_view title_or_key, ReportText text) {
     ShownTable& table = report_.tables_[table_];
-    const auto column = table.columns.find(title_or_key);
-    if (column == table.columns.end() || column->second < 0)
+    const auto column = table.shown.find(title_or_key);
+    if (column == table.shown.end())
         throw std::logic_error("the report's table has no column '" + std::string(title_or_key) + "' for people");
     table.rows[row_][static_cast<std::size_t>(column->second)] = std::move(text.text);
     return *this;

@@ -206,8 +206,9 @@ public:
 private:
     struct ShownTable {
         std::size_t layout = 0;
-        std::map<std::string, int, std::less<>> columns;  ///< by key, or title for people only: place in the rows, -1 for none
-        std::vector<std::string> empty;                   ///< a row without values
+        std::map<std::string, int, std::less<>> places;  ///< of keys in the rows, -1 of what only programs read
+        std::map<std::string, int, std::less<>> shown;   ///< of keys, or titles for people only
+        std::vector<std::string> empty;                  ///< a row without values
         std::vector<std::vector<std::string>> rows;
     };
     /// What people see, in order: a line, a value (title and text), or a table.
