@@ -536,16 +536,17 @@ TEST(Calls, MakeNoPartOfACollectionThatIsCancelled) {
 TEST(Reports, KnowTheirColumns) {
     ReportLayout layout;
     layout.values(fields::number("size", "size"));
-    layout.table("rows", fields::integer("id", "id"), fields::number("area"), fields::people("remarks"));
+    layout.table("rows", fields::integer("id", "id"), fields::number("area"), fields::people("remarks"), fields::people("area"));
     layout.people_table("seen", {"what", "count"});
     Report report({"test", {}, {}}, layout);
     report("size", 1.5)("size", std::optional<double>());
-    report.row("rows")("id", 7)("area", std::numeric_limits<double>::infinity()).shown("remarks", "odd");
+    report.row("rows")("id", 7)("area", std::numeric_limits<double>::infinity()).shown("remarks", "odd").shown("area", "none");
     report.row("seen", {"holes", 3});
     EXPECT_EQ(to_text(report.result()), to_text(parse_json(R"({"size": 1.5, "rows": [{"id": 7}]})", "expected")));
-    EXPECT_EQ(report.to_text(ReportFormat::table), "size  1.5\nid  remarks\n 7  odd\nseen\nwhat   count\nholes      3\n");
+    EXPECT_EQ(report.to_text(ReportFormat::table),
+              "size  1.5\nid  remarks  area\n 7  odd      none\nseen\nwhat   count\nholes      3\n");
     EXPECT_THROW(report("length", 1), std::logic_error);
     EXPECT_THROW(report.row("rows")("length", 1), std::logic_error);
-    EXPECT_THROW(report.row("rows").shown("area", "-"), std::logic_error);
+    EXPECT_THROW(report.row("rows").shown("length", "-"), std::logic_error);
     EXPECT_THROW(report.row("seen", {"holes"}), std::logic_error);
 }
