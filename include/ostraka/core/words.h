@@ -7,12 +7,12 @@
 
 namespace ostraka {
 
-/// The texts, one after the other, with something between them.
+/// The texts, one after the other, with something between them; nothing stands before the first that is not empty.
 template <class Texts>
 std::string joined(const Texts& texts, std::string_view between = ", ") {
     std::string all;
-    for (std::size_t count = 0; const auto& text : texts) {
-        if (count++ > 0) all += between;
+    for (const auto& text : texts) {
+        if (!all.empty()) all += between;
         all += text;
     }
     return all;
