@@ -4,6 +4,7 @@
 #include "ostraka/core/nearest_name.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
+#include "ostraka/core/words.h"
 #include "ostraka/operations/pages.h"
 #include "ostraka/operations/table.h"
 
@@ -61,11 +62,7 @@ const OperationEntry* named_operation(int argc, char** argv) {
 std::string type_of(const Option& option) {
     static constexpr const char* names[]{"", "INT", "FLOAT", "TEXT", "TEXT", "TEXT", "FLOATS", "INTS"};
     std::string text = names[static_cast<std::size_t>(option.type())];
-    if (const auto* choices = std::get_if<Choices>(&option.rule)) {
-        std::string list;
-        for (const auto& name : choices->names) list += (list.empty() ? "" : ",") + name;
-        text = "{" + list + "}";
-    }
+    if (const auto* choices = std::get_if<Choices>(&option.rule)) text = "{" + joined(choices->names, ",") + "}";
     if (const auto* range = std::get_if<Range>(&option.rule))
         text += " in [" + digits(range->min, 6) + ", " + digits(range->max, 6) + "]";
     return text;
@@ -118,11 +115,37 @@ bool is_repeated(Call& call, const std::string& name) {
     return slot != nullptr ? slot->repeated : call.parameters().options.find(name)->is_list();
 }
 
-std::string shown_order(Call& call, const std::vector<std::string>& order) {
-    std::string text;
-    for (const auto& name : order) text += (text.empty() ? "" : " ") + name + (is_repeated(call, name) ? " ..." : "");
-    return text;
+std::string shown_order(Call& call, std::vector<std::string> order) {
+    for (auto& name : order) name += is_repeated(call, name) ? " ..." : "";
+    return joined(order, " ");
 }
+
+/// Help where arguments without flags have several orders, which the parser knows as one list.
+class OrdersFormatter final : public CLI::Formatter {
+public:
+    explicit OrdersFormatter(Call& call) : call_(call) {}
+
+    std::string make_usage(const CLI::App* /*app*/, std::string name) const override {
+        std::string text;
+        for (const auto& order : call_.parameters().orders)
+            text += (text.empty() ? "Usage: " : "       ") + name + " [OPTIONS] " + shown_order(call_, order) + "\n";
+        return text;
+    }
+    std::string make_positionals(const CLI::App* /*app*/) const override {
+        std::ostringstream text;
+        text << "\nPositionals:\n";
+        const auto add = [&](const std::string& name, const std::string& what, const std::string& help) {
+            if (call_.parameters().in_some_order(name))
+                CLI::detail::format_help(text, name + " " + what + (is_repeated(call_, name) ? " ..." : ""), help, column_width_);
+        };
+        for (const Slot* slot : call_.parameters().slots()) add(slot->name, "FILE", slot->help);
+        for (const Option& option : call_.parameters().options) add(option.name, type_of(option), option.help);
+        return text.str();
+    }
+
+private:
+    Call& call_;
+};
 
 /// Arguments without flags where the order depends on how many there are.
 void take_positionals(Call& call, const std::vector<std::string>& words) {
@@ -133,9 +156,10 @@ void take_positionals(Call& call, const std::vector<std::string>& words) {
     };
     const auto order = std::find_if(orders.begin(), orders.end(), fits);
     if (order == orders.end()) {
-        std::string ways;
-        for (const auto& one : orders) ways += (ways.empty() ? "" : ", or ") + shown_order(call, one);
-        throw Error(ErrorKind::usage, call.entry().name, std::to_string(words.size()) + " arguments are given", "give " + ways);
+        std::vector<std::string> ways;
+        for (const auto& one : orders) ways.push_back(shown_order(call, one));
+        throw Error(ErrorKind::usage, call.entry().name, std::to_string(words.size()) + " arguments are given",
+                    "give " + joined(ways, ", or "));
     }
     std::size_t at = 0;
     for (std::size_t i = 0; i < order->size(); ++i) {
@@ -162,31 +186,18 @@ bool add_parameters(CLI::App& command, Call& call, std::vector<std::string>& wor
     bool plain = orders.size() == 1;
     if (plain)
         for (std::size_t i = 0; i + 1 < orders[0].size(); ++i) plain = plain && !is_repeated(call, orders[0][i]);
-    const auto in_order = [&](const std::string& name) {
-        return std::any_of(orders.begin(), orders.end(),
-                           [&](const auto& order) { return std::find(order.begin(), order.end(), name) != order.end(); });
-    };
     if (plain) {
         for (const auto& name : orders[0])
             if (const Slot* slot = parameters.slot(name)) add_slot(command, call, *slot);
             else add_option(command, *parameters.options.find(name));
     } else {
-        std::string help;
-        for (const auto& order : orders) help += (help.empty() ? "" : "; or ") + shown_order(call, order);
-        std::vector<std::string> told;
-        for (const auto& order : orders)
-            for (const auto& name : order) {
-                if (std::find(told.begin(), told.end(), name) != told.end()) continue;
-                told.push_back(name);
-                const Slot* slot = parameters.slot(name);
-                help += "\n" + name + ": " + (slot != nullptr ? slot->help : parameters.options.find(name)->help);
-            }
-        command.add_option("files", words, help)->type_name("FILE ...");
+        command.add_option("files", words);
+        command.formatter(std::make_shared<OrdersFormatter>(call));
     }
     for (const Slot* slot : parameters.slots())
-        if (!in_order(slot->name)) add_slot(command, call, *slot);
+        if (!parameters.in_some_order(slot->name)) add_slot(command, call, *slot);
     for (Option& option : parameters.options)
-        if (!in_order(option.name)) add_option(command, option);
+        if (!parameters.in_some_order(option.name)) add_option(command, option);
     return !plain;
 }
 

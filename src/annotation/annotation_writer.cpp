@@ -3,6 +3,7 @@
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/annotation/outline.h"
+#include "ostraka/core/json_build.h"
 
 #include <algorithm>
 #include <cmath>
@@ -42,15 +43,12 @@ void add_text(JsonValue& object, const char* name, const std::string& text, Json
 }
 
 JsonValue json_of(const Measure& measure, JsonAllocator& allocator) {
-    JsonValue object(rapidjson::kObjectType);
-    add_member(object, "tool", measure.tool, allocator);
-    add_member(object, "points", list_of(measure.points, allocator), allocator);
+    JsonValue object = json_object(allocator, "tool", measure.tool, "points", list_of(measure.points, allocator));
     if (!measure.locations.empty()) {
         JsonValue locations(rapidjson::kArrayType);
         for (const auto& location : measure.locations) {
-            JsonValue entry(rapidjson::kObjectType);
-            add_member(entry, "face", JsonValue(location.face), allocator);
-            add_member(entry, "barycentric", numbers_of(location.barycentric, allocator), allocator);
+            JsonValue entry =
+                json_object(allocator, "face", location.face, "barycentric", numbers_of(location.barycentric, allocator));
             locations.PushBack(entry, allocator);
         }
         add_member(object, "locations", std::move(locations), allocator);
@@ -66,9 +64,7 @@ JsonValue json_of(const Measure& measure, JsonAllocator& allocator) {
 }
 
 JsonValue json_of(const Attribute& attribute, JsonAllocator& allocator) {
-    JsonValue object(rapidjson::kObjectType);
-    add_member(object, "id", JsonValue(attribute.id), allocator);
-    add_member(object, "name", attribute.name, allocator);
+    JsonValue object = json_object(allocator, "id", attribute.id, "name", attribute.name);
     switch (attribute.type) {
         case AttributeType::semantic:
             add_member(object, "type", "semantic", allocator);
@@ -112,13 +108,10 @@ void add_region(JsonValue& object, const Annotation& annotation, const Mesh& mes
 }
 
 JsonValue json_of(const Annotation& annotation, const Mesh& mesh, JsonAllocator& allocator) {
-    JsonValue object(rapidjson::kObjectType);
-    add_member(object, "id", JsonValue(annotation.id), allocator);
-    add_member(object, "tag", annotation.tag, allocator);
+    JsonValue object = json_object(allocator, "id", annotation.id, "tag", annotation.tag);
     JsonValue colour(rapidjson::kArrayType);
     for (const int part : annotation.colour) colour.PushBack(part, allocator);
-    add_member(object, "colour", std::move(colour), allocator);
-    add_member(object, "type", to_string(annotation.type), allocator);
+    add_members(object, allocator, "colour", std::move(colour), "type", to_string(annotation.type));
     if (annotation.type == AnnotationType::point) add_member(object, "points", list_of(annotation.points, allocator), allocator);
     if (annotation.type == AnnotationType::line)
         add_member(object, "polylines", list_of(annotation.polylines, allocator), allocator);
@@ -160,21 +153,18 @@ Json annotations_to_json(const AnnotationSet& set, const Mesh& mesh, const std::
     check_annotations(set, mesh, mesh_file.empty() ? "annotations" : "annotations of " + mesh_file);
     Json document(rapidjson::kObjectType);
     auto& allocator = document.GetAllocator();
-    add_member(document, "format", "ostraka-annotations", allocator);
-    add_member(document, "version", JsonValue(1), allocator);
+    add_members(document, allocator, "format", "ostraka-annotations", "version", 1);
     JsonValue made_for(rapidjson::kObjectType);
     add_text(made_for, "file", Path(mesh_file).filename().string(), allocator);
-    add_member(made_for, "vertices", JsonValue(static_cast<std::uint64_t>(mesh.number_of_vertices())), allocator);
-    add_member(made_for, "faces", JsonValue(static_cast<std::uint64_t>(mesh.number_of_faces())), allocator);
-    add_member(made_for, "sha256", mesh_checksum(mesh), allocator);
+    add_members(made_for, allocator, "vertices", mesh.number_of_vertices(), "faces", mesh.number_of_faces(), "sha256",
+                mesh_checksum(mesh));
     add_member(document, "mesh", std::move(made_for), allocator);
     add_text(document, "unit", set.unit, allocator);
     add_text(document, "class", set.object_class, allocator);
     if (set.up) add_member(document, "up", numbers_of(*set.up, allocator), allocator);
     JsonValue list(rapidjson::kArrayType);
     for (const auto& annotation : set.annotations) list.PushBack(json_of(annotation, mesh, allocator), allocator);
-    add_member(document, "annotations", std::move(list), allocator);
-    add_member(document, "provenance", provenance.to_json(allocator), allocator);
+    add_members(document, allocator, "annotations", std::move(list), "provenance", provenance.to_json(allocator));
     return document;
 }
 

@@ -159,8 +159,8 @@ std::string to_obj(const Axis& axis) {
 
 void AxisOptions::describe(OptionList& visit) {
     visit("method", method, "how the axis is found", Choices{"rotation", "slices", "skeleton", "principal"});
-    visit("tolerance", tolerance,
-          "rotation: distance from the turned profile that counts as on it, share of its largest diameter", Range{0, 1});
+    visit("tolerance", tolerance, "rotation: distance from the turned profile that counts as on it", Range{0, 1},
+          "share of its largest diameter");
     visit("least-quality", least_quality, "rotation: share of the surface that must lie on the turned profile", Range{0, 1});
     visit("slices", slices, "slices: number of planes across the part", Range{4, 10000});
     visit("trials", trials, "rotation: random sets of normals tried", Range{0, 1000000});

@@ -1,6 +1,7 @@
 #include "ostraka/collection/landmark_shapes.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/json_build.h"
 #include "ostraka/interchange/landmarks.h"
 
 #include <algorithm>
@@ -25,9 +26,7 @@ Json landmarks_json(const CollectionObject& object) {
         names.PushBack(json_string(landmark.name, allocator), allocator);
         for (const double c : landmark.position) places.PushBack(c, allocator);
     }
-    add_member(document, "unit", set.unit, allocator);
-    add_member(document, "names", std::move(names), allocator);
-    add_member(document, "places", std::move(places), allocator);
+    add_members(document, allocator, "unit", set.unit, "names", std::move(names), "places", std::move(places));
     return document;
 }
 

@@ -1,6 +1,7 @@
 #include "ostraka/collection/measure_definitions.h"
 #include "ostraka/core/csv.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/json_build.h"
 #include "ostraka/core/text.h"
 
 #include <algorithm>
@@ -67,11 +68,8 @@ Json object_measures_to_json(const ObjectMeasures& measures) {
     JsonValue values(rapidjson::kArrayType), powers(rapidjson::kArrayType);
     for (const auto& value : measures.values) values.PushBack(value ? JsonValue(*value) : JsonValue(), allocator);
     for (const int power : measures.powers) powers.PushBack(power, allocator);
-    add_member(document, "unit", measures.unit, allocator);
-    add_member(document, "values", std::move(values), allocator);
-    add_member(document, "powers", std::move(powers), allocator);
-    add_member(document, "units", strings(measures.units), allocator);
-    add_member(document, "notes", strings(measures.notes), allocator);
+    add_members(document, allocator, "unit", measures.unit, "values", std::move(values), "powers", std::move(powers), "units",
+                strings(measures.units), "notes", strings(measures.notes));
     return document;
 }
 

@@ -2,6 +2,7 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/ids.h"
+#include "ostraka/core/json_build.h"
 #include "ostraka/core/text.h"
 #include "ostraka/measure/measure.h"
 
@@ -84,10 +85,8 @@ Carried carry(const Mesh& mesh, AnnotationSet& set, const MeasureDefinition& def
 std::string parameters(const Carried& part, const Carried& reference, double low, double high, bool hard) {
     Json document(rapidjson::kObjectType);
     auto& allocator = document.GetAllocator();
-    add_member(document, "measure1", part.attribute, allocator);
-    add_member(document, "measure2", reference.attribute, allocator);
-    add_member(document, "minValue", JsonValue(low), allocator);
-    add_member(document, "maxValue", JsonValue(high), allocator);
+    add_members(document, allocator, "measure1", part.attribute, "measure2", reference.attribute, "minValue", low, "maxValue",
+                high);
     if (hard) add_member(document, "hard", JsonValue(true), allocator);
     std::string text = to_text(document);
     while (!text.empty() && text.back() == '\n') text.pop_back();

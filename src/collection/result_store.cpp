@@ -1,6 +1,7 @@
 #include "ostraka/collection/objects.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/json_build.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
 #include "ostraka/core/provenance.h"
@@ -53,11 +54,8 @@ void ResultStore::keep(const std::string& name, const std::string& key, const Js
     make_folder(folder_);
     Json document(rapidjson::kObjectType);
     auto& allocator = document.GetAllocator();
-    add_member(document, "format", "ostraka-study-result", allocator);
-    add_member(document, "version", JsonValue(1), allocator);
-    add_member(document, "key", key, allocator);
-    add_member(document, "checksum", sha256(to_text(result)), allocator);
-    add_member(document, "result", JsonValue(result, allocator), allocator);
+    add_members(document, allocator, "format", "ostraka-study-result", "version", 1, "key", key, "checksum",
+                sha256(to_text(result)), "result", JsonValue(result, allocator));
     // There at once, whatever becomes of the outputs that the caller writes together.
     OutputTransaction own;
     write_json(folder_ / (name + ".json"), document);

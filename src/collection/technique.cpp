@@ -267,9 +267,9 @@ TechniqueMeasures technique_from_json(const JsonValue& json) {
 
 void TechniqueOptions::describe(OptionList& visit) {
     visit("slices", slices, "slices of each object", Range{2, 100000});
-    visit("from", from, "where they begin, as a share of the height", Range{0, 1});
-    visit("to", to, "where they end, as a share of the height (the thesis: the lowest two fifths)", Range{0, 1});
-    visit("least-turn", least_turn, "an open outline is used if it covers this share of the full turn", Range{0.5, 1});
+    visit("from", from, "where they begin", Range{0, 1}, "share of the height");
+    visit("to", to, "where they end (the thesis: the lowest two fifths)", Range{0, 1}, "share of the height");
+    visit("least-turn", least_turn, "an open outline is used if it covers as much", Range{0.5, 1}, "share of the full turn");
     visit("least-slices", least_slices, "an object needs as many slices that can be used", Range{2, 100000});
 }
 

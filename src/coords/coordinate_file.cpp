@@ -1,6 +1,7 @@
 #include "ostraka/coords/coordinate_file.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/json_build.h"
 #include "ostraka/core/npy.h"
 
 #include <algorithm>
@@ -20,10 +21,8 @@ void check_name(const Path& weights) {
 }
 
 JsonValue bound_json(const Mesh& mesh, JsonAllocator& allocator) {
-    JsonValue object(rapidjson::kObjectType);
-    add_member(object, "vertices", JsonValue(static_cast<std::uint64_t>(mesh.number_of_vertices())), allocator);
-    add_member(object, "faces", JsonValue(static_cast<std::uint64_t>(mesh.number_of_faces())), allocator);
-    add_member(object, "sha256", mesh_checksum(mesh), allocator);
+    JsonValue object = json_object(allocator, "vertices", mesh.number_of_vertices(), "faces", mesh.number_of_faces(), "sha256",
+                                   mesh_checksum(mesh));
     return object;
 }
 
@@ -31,11 +30,8 @@ JsonValue write_array(const Path& file, const WeightMatrix& matrix, JsonAllocato
     const auto rows = static_cast<std::size_t>(matrix.rows()), columns = static_cast<std::size_t>(matrix.cols());
     if (!matrix.allFinite()) throw Error(ErrorKind::failure, file.string(), "a weight is not finite");
     const std::string checksum = write_npy(file, std::span(matrix.data(), rows * columns), {rows, columns});
-    JsonValue object(rapidjson::kObjectType);
-    add_member(object, "file", file.filename().string(), allocator);
-    add_member(object, "rows", JsonValue(static_cast<std::uint64_t>(rows)), allocator);
-    add_member(object, "columns", JsonValue(static_cast<std::uint64_t>(columns)), allocator);
-    add_member(object, "sha256", checksum, allocator);
+    JsonValue object =
+        json_object(allocator, "file", file.filename().string(), "rows", rows, "columns", columns, "sha256", checksum);
     return object;
 }
 
@@ -131,16 +127,12 @@ void write_coordinates(const Path& weights, const Coordinates& coordinates, cons
         fail_usage("the coordinates do not fit the mesh and the cage", "give those that they were computed for");
     Json document(rapidjson::kObjectType);
     auto& allocator = document.GetAllocator();
-    add_member(document, "format", "ostraka-coordinates", allocator);
-    add_member(document, "version", JsonValue(1), allocator);
-    add_member(document, "kind", coordinates.kind, allocator);
-    add_member(document, "vertex", write_array(weights, W, allocator), allocator);
+    add_members(document, allocator, "format", "ostraka-coordinates", "version", 1, "kind", coordinates.kind, "vertex",
+                write_array(weights, W, allocator));
     if (coordinates.has_normals())
         add_member(document, "normal", write_array(normal_weights_file(weights), Q, allocator), allocator);
-    add_member(document, "mesh", bound_json(mesh, allocator), allocator);
-    add_member(document, "cage", bound_json(cage, allocator), allocator);
-    add_member(document, "certificate", to_json(certificate, allocator), allocator);
-    add_member(document, "provenance", provenance.to_json(allocator), allocator);
+    add_members(document, allocator, "mesh", bound_json(mesh, allocator), "cage", bound_json(cage, allocator), "certificate",
+                to_json(certificate, allocator), "provenance", provenance.to_json(allocator));
     write_json(coordinate_header_file(weights), document);
 }
 

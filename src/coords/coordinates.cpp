@@ -149,8 +149,8 @@ std::vector<Point> deformed(const Coordinates& coordinates, const Mesh& rest_cag
 }
 
 void CoordinateOptions::describe(OptionList& visit) {
-    visit("snap", snap, "distance, as a share of the cage's diagonal, below which a point counts as lying on the cage",
-          Range{0, 1e-6});
+    visit("snap", snap, "distance below which a point counts as lying on the cage", Range{0, 1e-6},
+          "share of the cage's diagonal");
 }
 
 }  // namespace ostraka

@@ -1,6 +1,7 @@
 #include "ostraka/core/file.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/transaction.h"
 #include "output_sweep.h"
 
 #include <fcntl.h>
@@ -52,6 +53,15 @@ struct Input {
 };
 
 thread_local OutputTransaction* open_transaction = nullptr;
+thread_local std::vector<Path> kept_files;
+
+/// Several threads may write into one transaction.
+void add_waiting(std::vector<std::pair<Path, Path>>& waiting, const Path& temporary, const Path& file) {
+    static std::mutex mutex;
+    const std::lock_guard lock(mutex);
+    waiting.emplace_back(temporary, file);
+}
+
 thread_local ReadRecord* open_record = nullptr;
 
 /// Files in memory by their names without "." and "..".
@@ -291,7 +301,7 @@ void AtomicFile::commit() {
     if (is_memory(file_)) {
         temporary_ = open_transaction == nullptr ? file_ : memory_files().temporary();
         memory_files().put(temporary_, std::move(memory_));
-        if (open_transaction != nullptr) open_transaction->waiting_.emplace_back(temporary_, file_);
+        if (open_transaction != nullptr) add_waiting(open_transaction->waiting_, temporary_, file_);
         return;
     }
     const bool direct = temporary_.empty();
@@ -300,7 +310,7 @@ void AtomicFile::commit() {
     const bool closed = std::fclose(stream_) == 0;
     stream_ = nullptr;
     const bool waits = flushed && closed && !direct && open_transaction != nullptr;
-    if (waits) open_transaction->waiting_.emplace_back(temporary_, file_);
+    if (waits) add_waiting(open_transaction->waiting_, temporary_, file_);
     else if (!flushed || !closed || (!direct && ::rename(temporary_.c_str(), file_.c_str()) != 0)) {
         const std::string cause = flushed ? reason() : why;
         if (!direct) ::unlink(temporary_.c_str());
@@ -316,9 +326,15 @@ OutputTransaction::~OutputTransaction() {
     for (const auto& [temporary, file] : waiting_) remove_file(temporary);
 }
 
+OutputTransaction* current_transaction() { return open_transaction; }
+TransactionScope::TransactionScope(OutputTransaction* transaction) : outer_(open_transaction) { open_transaction = transaction; }
+TransactionScope::~TransactionScope() { open_transaction = outer_; }
+KeptFiles::KeptFiles(std::vector<Path> files) : outer_(std::move(kept_files)) { kept_files = std::move(files); }
+KeptFiles::~KeptFiles() { kept_files = std::move(outer_); }
+
 void OutputTransaction::commit() {
     std::vector<OutputSweep> sweeps;
-    for (const auto& [folder, owner] : replaced_) sweeps.emplace_back(folder, owner, waiting_);
+    for (const auto& [folder, owner] : replaced_) sweeps.emplace_back(folder, owner, waiting_, kept_files);
     replaced_.clear();
     for (const OutputSweep& sweep : sweeps) sweep.write_list();
     while (!waiting_.empty()) {

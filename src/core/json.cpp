@@ -1,4 +1,4 @@
-#include "ostraka/core/json.h"
+#include "ostraka/core/json_build.h"
 
 #include "ostraka/core/error.h"
 
@@ -238,6 +238,12 @@ void add_member(JsonValue& object, std::string_view name, JsonValue value, JsonA
 
 void add_member(JsonValue& object, std::string_view name, std::string_view text, JsonAllocator& allocator) {
     add_member(object, name, json_string(text, allocator), allocator);
+}
+
+Json json_document(std::string_view kind) {
+    Json document(rapidjson::kObjectType);
+    add_members(document, document.GetAllocator(), "format", "ostraka-" + std::string(kind), "version", 1);
+    return document;
 }
 
 double number_or(const JsonValue& object, std::string_view name, double otherwise) {

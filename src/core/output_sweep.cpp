@@ -53,7 +53,8 @@ bool is_unchanged(const Path& file, const std::string& sum) {
 
 }  // namespace
 
-OutputSweep::OutputSweep(const Path& folder, const std::string& owner, const std::vector<std::pair<Path, Path>>& waiting)
+OutputSweep::OutputSweep(const Path& folder, const std::string& owner, const std::vector<std::pair<Path, Path>>& waiting,
+                         const std::vector<Path>& kept)
     : folder_(folder), list_(folder / ("." + owner + ".outputs")) {
     std::error_code code;
     for (const auto& [temporary, file] : waiting) {
@@ -61,8 +62,12 @@ OutputSweep::OutputSweep(const Path& folder, const std::string& owner, const std
         const std::string name = file.filename().string();
         if (plain(name) && fs::equivalent(parent, folder_, code)) now_[name] = sha256_of_file(temporary);
     }
-    for (const auto& [name, sum] : read_list(list_))
-        if (!now_.contains(name) && is_unchanged(folder_ / name, sum)) rest_[name] = sum;
+    for (const auto& [name, sum] : read_list(list_)) {
+        const Path file = folder_ / name;
+        const bool stays =
+            std::any_of(kept.begin(), kept.end(), [&](const Path& one) { return fs::equivalent(one, file, code); });
+        if (!now_.contains(name) && !stays && is_unchanged(file, sum)) rest_[name] = sum;
+    }
 }
 
 std::string OutputSweep::text() const {

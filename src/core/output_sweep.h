@@ -9,8 +9,9 @@ namespace ostraka {
 
 class OutputSweep {
 public:
-    /// `waiting`: temporary names and names of the files that are about to appear.
-    OutputSweep(const Path& folder, const std::string& owner, const std::vector<std::pair<Path, Path>>& waiting);
+    /// `waiting`: temporary names and names of the files that are about to appear; `kept`: files that stay, and are forgotten.
+    OutputSweep(const Path& folder, const std::string& owner, const std::vector<std::pair<Path, Path>>& waiting,
+                const std::vector<Path>& kept);
 
     /// The list of what is written now and of what is still to be removed, so that a run that is killed in between forgets
     /// nothing. Joins the open transaction.

@@ -2,6 +2,7 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/core/transaction.h"
 
 #include <omp.h>
 
@@ -25,11 +26,13 @@ void parallel_blocks(std::size_t count, std::size_t block, const std::function<v
     std::exception_ptr first;
     long long first_block = std::numeric_limits<long long>::max();
     Watch* const watch = current_watch();
+    OutputTransaction* const transaction = current_transaction();
 #pragma omp parallel for schedule(dynamic, 1) if (blocks > 1)
     for (long long b = 0; b < blocks; ++b) {
         const std::size_t begin = static_cast<std::size_t>(b) * block;
         try {
-            const WatchScope scope(watch);
+            const WatchScope watched(watch);
+            const TransactionScope written(transaction);
             check_cancelled();
             body(begin, std::min(count, begin + block));
         } catch (...) {

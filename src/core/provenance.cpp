@@ -1,4 +1,5 @@
 #include "ostraka/core/provenance.h"
+#include "ostraka/core/json_build.h"
 
 #include <algorithm>
 
@@ -9,9 +10,7 @@ std::string version() { return OSTRAKA_VERSION; }
 void Provenance::add_input(const Path& file) { inputs.emplace_back(file.filename().string(), sha256_of_file(file)); }
 
 JsonValue Provenance::to_json(JsonAllocator& allocator) const {
-    JsonValue result(rapidjson::kObjectType);
-    add_member(result, "tool", "ostraka " + version(), allocator);
-    add_member(result, "command", command, allocator);
+    JsonValue result = json_object(allocator, "tool", "ostraka " + version(), "command", command);
     JsonValue option_values(rapidjson::kObjectType);
     // An option that was given several times is one member: no name stands twice in an object.
     std::vector<std::pair<std::string, std::string>> members;
@@ -24,9 +23,7 @@ JsonValue Provenance::to_json(JsonAllocator& allocator) const {
     add_member(result, "options", std::move(option_values), allocator);
     JsonValue input_values(rapidjson::kArrayType);
     for (const auto& [name, hash] : inputs) {
-        JsonValue input(rapidjson::kObjectType);
-        add_member(input, "file", name, allocator);
-        add_member(input, "sha256", hash, allocator);
+        JsonValue input = json_object(allocator, "file", name, "sha256", hash);
         input_values.PushBack(input, allocator);
     }
     add_member(result, "inputs", std::move(input_values), allocator);

@@ -152,10 +152,9 @@ std::vector<double> vertices_from_faces(const Mesh& mesh, const std::vector<doub
 
 void ThicknessOptions::describe(OptionList& visit) {
     visit("rays", rays, "rays sent inward from each face", Range{1, 1000});
-    visit("cone", cone, "opening of the cone of rays, in degrees", Range{0, 175});
-    visit("thickness-scale", scale,
-          "radius over which normals are averaged for the cone's axis, as a share of the box diagonal; more bears more noise",
-          Range{0, 1});
+    visit("cone", cone, "opening of the cone of rays", Range{0, 175}, "degrees");
+    visit("thickness-scale", scale, "radius over which normals are averaged for the cone's axis; more bears more noise",
+          Range{0, 1}, "share of the box diagonal");
 }
 
 }  // namespace ostraka

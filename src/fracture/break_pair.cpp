@@ -189,9 +189,8 @@ void PairOptions::describe(OptionList& visit) {
     visit("samples", samples, "points on the fracture, and as many on the rest of the surface", Range{50, 1e6});
     visit("starts", starts, "poses that are refined quickly: the best of all tried", Range{1, 10000});
     visit("refined", refined, "poses that are refined to the end", Range{1, 1000});
-    visit("reach", reach,
-          "farthest that two fractures lie apart at first, share of the smaller fragment's size (root of its area)",
-          Range{1e-4, 1});
+    visit("reach", reach, "farthest that two fractures lie apart at first", Range{1e-4, 1},
+          "share of the root of the smaller fragment's area");
     visit("last-reach", last_reach, "the same at the end; deeper in each other than this they do not go together",
           Range{1e-4, 1});
     visit("edges", edges, "weight of the fractures' rims against their surfaces", Range{0, 1000});

@@ -261,7 +261,7 @@ Facets find_facets(const Mesh& mesh, const FacetOptions& options) {
 }
 
 void FacetOptions::describe(OptionList& visit) {
-    visit("facet-edge", edge, "turn of the surface, in degrees, over an edge where a break may begin", Range{5, 120});
+    visit("facet-edge", edge, "turn of the surface over an edge where a break may begin", Range{5, 120}, "degrees");
     visit("facet-wall", wall, "walls are thinner than this share of the square root of the area", Range{0.01, 1});
     visit("facet-coherence", coherence, "weight of neighbours against what a face shows by itself", Range{0, 100});
     visit("facet-rough", rough, "solids: a break deviates from a smooth surface by more than this share of its size",

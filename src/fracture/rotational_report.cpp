@@ -1,4 +1,5 @@
 #include "ostraka/fracture/rotational_report.h"
+#include "ostraka/core/json_build.h"
 
 #include <algorithm>
 
@@ -7,20 +8,13 @@ namespace ostraka {
 JsonValue joints_to_json(const BreakTurns& turns, const std::vector<std::string>& names, JsonAllocator& allocator) {
     JsonValue list(rapidjson::kArrayType);
     for (const BreakJoint& joint : turns.joints) {
-        JsonValue item(rapidjson::kObjectType);
-        add_member(item, "first", names[static_cast<std::size_t>(joint.first)], allocator);
-        add_member(item, "second", names[static_cast<std::size_t>(joint.second)], allocator);
-        add_member(item, "turn", JsonValue(joint.turn), allocator);
-        add_member(item, "score", JsonValue(joint.score), allocator);
-        add_member(item, "contact", JsonValue(joint.contact), allocator);
-        add_member(item, "rim", JsonValue(joint.rim), allocator);
-        add_member(item, "residual", JsonValue(joint.residual), allocator);
-        add_member(item, "carries", JsonValue(joint.carries), allocator);
+        JsonValue item =
+            json_object(allocator, "first", names[static_cast<std::size_t>(joint.first)], "second",
+                        names[static_cast<std::size_t>(joint.second)], "turn", joint.turn, "score", joint.score, "contact",
+                        joint.contact, "rim", joint.rim, "residual", joint.residual, "carries", joint.carries);
         if (joint.carries) {
-            add_member(item, "share", JsonValue(joint.share), allocator);
-            add_member(item, "lead", JsonValue(joint.lead), allocator);
-            add_member(item, "confidence", JsonValue(joint.confidence), allocator);
-            add_member(item, "decided", JsonValue(joint.decided), allocator);
+            add_members(item, allocator, "share", joint.share, "lead", joint.lead, "confidence", joint.confidence, "decided",
+                        joint.decided);
         }
         list.PushBack(item, allocator);
     }
@@ -33,9 +27,7 @@ JsonValue turn_to_json(const BreakTurns& turns, std::size_t fragment, const std:
     const int group = turns.group[fragment];
     for (std::size_t k = 0; k < turns.group.size(); ++k)
         if (k != fragment && turns.group[k] == group) with.PushBack(JsonValue(names[k], allocator), allocator);
-    add_member(item, "decided", JsonValue(!with.Empty()), allocator);
-    add_member(item, "holdsWith", std::move(with), allocator);
-    add_member(item, "overlap", JsonValue(turns.overlap[fragment]), allocator);
+    add_members(item, allocator, "decided", !with.Empty(), "holdsWith", std::move(with), "overlap", turns.overlap[fragment]);
     if (!turns.notes[fragment].empty()) add_member(item, "note", turns.notes[fragment], allocator);
     return item;
 }

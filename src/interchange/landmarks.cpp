@@ -262,8 +262,8 @@ void LandmarkFileOptions::describe(OptionList& visit) {
 }
 
 void PlaceOptions::describe(OptionList& visit) {
-    visit("tolerance", tolerance, "farthest that a place of the file may lie from the surface, as a share of the box diagonal",
-          Range{0, 1});
+    visit("tolerance", tolerance, "farthest that a place of the file may lie from the surface", Range{0, 1},
+          "share of the box diagonal");
     visit("skip-far", skip_far, "leave out what lies farther, with a note, instead of refusing the file", Anything{});
 }
 

@@ -4,6 +4,7 @@
 #include "ostraka/annotation/outline.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/json.h"
+#include "ostraka/core/json_build.h"
 #include "ostraka/measure/measure.h"
 
 #include <algorithm>
@@ -139,9 +140,7 @@ PlacedAnnotations placed_annotations(Json& native, JsonValue list, const JsonVal
                                      const std::string& where, bool same_mesh, std::vector<std::string> notes,
                                      std::vector<PlacedAnnotation> placements) {
     auto& allocator = native.GetAllocator();
-    JsonValue made_for(rapidjson::kObjectType);
-    add_member(made_for, "vertices", JsonValue(static_cast<std::uint64_t>(mesh.number_of_vertices())), allocator);
-    add_member(made_for, "faces", JsonValue(static_cast<std::uint64_t>(mesh.number_of_faces())), allocator);
+    JsonValue made_for = json_object(allocator, "vertices", mesh.number_of_vertices(), "faces", mesh.number_of_faces());
     add_member(native, "mesh", std::move(made_for), allocator);
     if (about != nullptr)
         for (const char* name : {"class", "unit", "up"})

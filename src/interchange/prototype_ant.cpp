@@ -7,6 +7,7 @@
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/ids.h"
+#include "ostraka/core/json_build.h"
 #include "ostraka/measure/measure.h"
 
 namespace ostraka {
@@ -37,9 +38,8 @@ std::string prototype_annotations(const Mesh& mesh, const AnnotationSet& set, st
         JsonValue entry(rapidjson::kObjectType);
         renamed += annotation.id < 0 ? 1 : 0;
         remarks += annotation.note.empty() ? 0 : 1;
-        add_member(entry, "id", JsonValue(annotation.id < 0 ? ids.next() : annotation.id), a);
-        add_member(entry, "tag", annotation.tag, a);
-        add_member(entry, "color", JsonValue(source["colour"], a), a);
+        add_members(entry, a, "id", annotation.id < 0 ? ids.next() : annotation.id, "tag", annotation.tag, "color",
+                    JsonValue(source["colour"], a));
         const bool point = annotation.type == AnnotationType::point, line = annotation.type == AnnotationType::line;
         add_member(entry, "type", point ? "Point" : line ? "Line" : "Area", a);
         if (point || line) {
@@ -58,9 +58,7 @@ std::string prototype_annotations(const Mesh& mesh, const AnnotationSet& set, st
         }
         JsonValue attributes(rapidjson::kArrayType);
         for (const Attribute& attribute : annotation.attributes) {
-            JsonValue flat(rapidjson::kObjectType);
-            add_member(flat, "id", JsonValue(attribute.id), a);
-            add_member(flat, "name", attribute.name, a);
+            JsonValue flat = json_object(a, "id", attribute.id, "name", attribute.name);
             if (attribute.type == AttributeType::measure) {
                 const Measure& measure = attribute.measure;
                 add_member(flat, "type", "Geometric", a);
@@ -73,14 +71,12 @@ std::string prototype_annotations(const Mesh& mesh, const AnnotationSet& set, st
                 add_member(flat, "value", JsonValue(value), a);
                 JsonValue points(rapidjson::kArrayType);
                 for (const Index index : measure.points) points.PushBack(index, a);
-                add_member(flat, "points", std::move(points), a);
-                add_member(flat, "tool", measure.tool, a);
+                add_members(flat, a, "points", std::move(points), "tool", measure.tool);
                 if (measure.direction) add_member(flat, "direction", triple_json(*measure.direction, a), a);
             } else {
                 const bool semantic = attribute.type == AttributeType::semantic;
                 descriptors += semantic ? 0 : 1;
-                add_member(flat, "type", "Semantic", a);
-                add_member(flat, "value", semantic ? attribute.note : in_words(attribute.descriptor), a);
+                add_members(flat, a, "type", "Semantic", "value", semantic ? attribute.note : in_words(attribute.descriptor));
             }
             attributes.PushBack(flat, a);
         }

@@ -9,6 +9,7 @@
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/json_build.h"
 #include "ostraka/measure/measure.h"
 
 #include <algorithm>
@@ -131,11 +132,7 @@ private:
         add_member(data, "tag", tags.empty() ? "" : tags.front(), allocator);
         JsonValue attributes(rapidjson::kArrayType);
         const auto add = [&](const char* name, const std::string& text) {
-            JsonValue attribute(rapidjson::kObjectType);
-            add_member(attribute, "id", JsonValue(attributes.Size()), allocator);
-            add_member(attribute, "name", name, allocator);
-            add_member(attribute, "type", "semantic", allocator);
-            add_member(attribute, "note", text, allocator);
+            JsonValue attribute = json_object(allocator, "id", attributes.Size(), "name", name, "type", "semantic", "note", text);
             attributes.PushBack(attribute, allocator);
         };
         for (std::size_t i = 1; i < tags.size(); ++i) add("tag", tags[i]);
@@ -181,8 +178,7 @@ private:
                 return {};
             }
         } else if (selectors.empty()) {
-            add_member(result, "type", "region", a());
-            add_member(result, "all", JsonValue(true), a());
+            add_members(result, a(), "type", "region", "all", true);
             placement.how = "whole";
         } else {
             note(pointer, by_index != nullptr ? "made for another mesh and without coordinates, left out"
@@ -255,8 +251,7 @@ private:
         if (const JsonValue* points = find_member(places, "points")) {
             const auto found = placed(*points, placement, pointer);
             if (!found) return false;
-            add_member(result, "type", "point", a());
-            add_member(result, "points", json_of(vertices(*found)), a());
+            add_members(result, a(), "type", "point", "points", json_of(vertices(*found)));
         } else if (const JsonValue* polylines = find_member(places, "polylines")) {
             JsonValue list(rapidjson::kArrayType);
             for (const auto& polyline : polylines->GetArray()) {
@@ -268,11 +263,9 @@ private:
                 else note(pointer, "a poly-line shrank to a point on this mesh and was left out");
             }
             if (list.Empty()) return false;
-            add_member(result, "type", "line", a());
-            add_member(result, "polylines", std::move(list), a());
+            add_members(result, a(), "type", "line", "polylines", std::move(list));
         } else if (const JsonValue* all = find_member(places, "all"); all != nullptr && all->GetBool()) {
-            add_member(result, "type", "region", a());
-            add_member(result, "all", JsonValue(true), a());
+            add_members(result, a(), "type", "region", "all", true);
         } else if (const JsonValue* parts = find_member(places, "parts")) {
             std::vector<RegionPart> wanted;
             for (const auto& part : parts->GetArray()) {
@@ -292,8 +285,7 @@ private:
             const std::vector<Index> faces = region_of(placer(), wanted, where_ + ", in " + pointer, remarks);
             for (const auto& remark : remarks) note(pointer, remark);
             if (faces.empty()) return false;
-            add_member(result, "type", "region", a());
-            add_member(result, "faces", json_of(faces), a());
+            add_members(result, a(), "type", "region", "faces", json_of(faces));
         } else {
             note(pointer, "a selector without places, left out");
             return false;
@@ -324,9 +316,7 @@ private:
             for (rapidjson::SizeType i = 0; i < list->Size(); ++i) {
                 const auto p = triple(&(*list)[i]);
                 const SurfaceHit hit = placer().nearest(Point((*p)[0], (*p)[1], (*p)[2]));
-                JsonValue location(rapidjson::kObjectType);
-                add_member(location, "face", JsonValue(hit.face), a());
-                add_member(location, "barycentric", triple_json(hit.barycentric, a()), a());
+                JsonValue location = json_object(a(), "face", hit.face, "barycentric", triple_json(hit.barycentric, a()));
                 locations.PushBack(location, a());
                 inside = inside || (*found)[i].to_vertex > 1e-9 * placer().diagonal();
             }

@@ -6,6 +6,7 @@
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/annotation/outline.h"
+#include "ostraka/core/json_build.h"
 
 #include <algorithm>
 #include <map>
@@ -57,26 +58,16 @@ public:
             items.PushBack(item, a());
         }
         const std::string collection = uuid_of(all);
-        add_member(document_, "@context", context(), a());
-        add_member(document_, "id", collection, a());
-        add_member(document_, "type", "AnnotationCollection", a());
-        add_member(document_, "label", set_.object_class.empty() ? "annotations" : set_.object_class, a());
-        JsonValue generator(rapidjson::kObjectType);
-        add_member(generator, "id", "urn:x-ostraka:tool", a());
-        add_member(generator, "type", "Software", a());
-        add_member(generator, "name", "ostraka " + version(), a());
-        add_member(document_, "generator", std::move(generator), a());
-        add_member(document_, "total", JsonValue(items.Size()), a());
+        add_members(document_, a(), "@context", context(), "id", collection, "type", "AnnotationCollection", "label",
+                    set_.object_class.empty() ? "annotations" : set_.object_class);
+        JsonValue generator = json_object(a(), "id", "urn:x-ostraka:tool", "type", "Software", "name", "ostraka " + version());
+        add_members(document_, a(), "generator", std::move(generator), "total", items.Size());
         JsonValue about(rapidjson::kObjectType);
         for (const char* name : {"class", "unit", "up", "provenance"})
             if (const JsonValue* value = find_member(native_, name)) add_member(about, name, JsonValue(*value, a()), a());
         add_member(document_, "about", std::move(about), a());
-        JsonValue page(rapidjson::kObjectType);
-        add_member(page, "id", uuid_of(all + "page"), a());
-        add_member(page, "type", "AnnotationPage", a());
-        add_member(page, "partOf", collection, a());
-        add_member(page, "startIndex", JsonValue(0), a());
-        add_member(page, "items", std::move(items), a());
+        JsonValue page = json_object(a(), "id", uuid_of(all + "page"), "type", "AnnotationPage", "partOf", collection,
+                                     "startIndex", 0, "items", std::move(items));
         add_member(document_, "first", std::move(page), a());
         return json_text(document_);
     }
@@ -86,13 +77,10 @@ private:
 
     JsonValue context() {
         JsonValue terms(rapidjson::kObjectType), list(rapidjson::kArrayType);
-        add_member(terms, "@version", JsonValue(1.1), a());
-        add_member(terms, "ostraka", web::terms, a());
+        add_members(terms, a(), "@version", 1.1, "ostraka", web::terms);
         for (const char* name : {"sha256", "vertices", "faces"}) add_member(terms, name, std::string("ostraka:") + name, a());
         for (const char* name : {"indices", "places", "about"}) {
-            JsonValue term(rapidjson::kObjectType);
-            add_member(term, "@id", std::string("ostraka:") + name, a());
-            add_member(term, "@type", "@json", a());
+            JsonValue term = json_object(a(), "@id", std::string("ostraka:") + name, "@type", "@json");
             add_member(terms, name, std::move(term), a());
         }
         list.PushBack(json_string(web::context, a()), a());
@@ -101,11 +89,7 @@ private:
     }
 
     JsonValue body(const char* purpose, const char* format, const std::string& value) {
-        JsonValue result(rapidjson::kObjectType);
-        add_member(result, "type", "TextualBody", a());
-        add_member(result, "purpose", purpose, a());
-        add_member(result, "format", format, a());
-        add_member(result, "value", value, a());
+        JsonValue result = json_object(a(), "type", "TextualBody", "purpose", purpose, "format", format, "value", value);
         return result;
     }
 
@@ -138,25 +122,17 @@ private:
         bodies.PushBack(body("describing", "application/json", data_text), a());
 
         JsonValue by_index(rapidjson::kObjectType), by_place(rapidjson::kObjectType), selectors(rapidjson::kArrayType);
-        add_member(by_index, "type", web::index_selector, a());
-        add_member(by_index, "indices", std::move(indices), a());
-        add_member(by_place, "type", web::place_selector, a());
-        add_member(by_place, "places", places(annotation), a());
+        add_members(by_index, a(), "type", web::index_selector, "indices", std::move(indices));
+        add_members(by_place, a(), "type", web::place_selector, "places", places(annotation));
         selectors.PushBack(by_index, a());
         selectors.PushBack(by_place, a());
         JsonValue source(rapidjson::kObjectType), target(rapidjson::kObjectType), result(rapidjson::kObjectType);
-        add_member(source, "id", source_, a());
-        add_member(source, "type", "Dataset", a());
+        add_members(source, a(), "id", source_, "type", "Dataset");
         for (const char* name : {"vertices", "faces", "sha256"})
             add_member(source, name, JsonValue(native_["mesh"][name], a()), a());
-        add_member(target, "type", "SpecificResource", a());
-        add_member(target, "source", std::move(source), a());
-        add_member(target, "selector", std::move(selectors), a());
-        add_member(result, "id", uuid_of(checksum_ + to_text(native)), a());
-        add_member(result, "type", "Annotation", a());
-        add_member(result, "motivation", "describing", a());
-        add_member(result, "body", std::move(bodies), a());
-        add_member(result, "target", std::move(target), a());
+        add_members(target, a(), "type", "SpecificResource", "source", std::move(source), "selector", std::move(selectors));
+        add_members(result, a(), "id", uuid_of(checksum_ + to_text(native)), "type", "Annotation", "motivation", "describing",
+                    "body", std::move(bodies), "target", std::move(target));
         return result;
     }
 
@@ -218,9 +194,8 @@ private:
         for (const auto& [component, part] : found) {
             JsonValue entry(rapidjson::kObjectType), outlines(rapidjson::kArrayType);
             for (const Outline& outline : part.outlines) outlines.PushBack(chain(outline), a());
-            add_member(entry, "area", JsonValue(part.area), a());
-            add_member(entry, "inside", place(centroid(mesh_, Face(part.largest))), a());
-            add_member(entry, "outlines", std::move(outlines), a());
+            add_members(entry, a(), "area", part.area, "inside", place(centroid(mesh_, Face(part.largest))), "outlines",
+                        std::move(outlines));
             list.PushBack(entry, a());
         }
         return list;
@@ -237,9 +212,7 @@ private:
                 for (std::vector<Index> polyline : annotation.polylines) {
                     const bool closed = polyline.size() > 3 && polyline.front() == polyline.back();
                     if (closed) polyline.pop_back();
-                    JsonValue entry(rapidjson::kObjectType);
-                    add_member(entry, "closed", JsonValue(closed), a());
-                    add_member(entry, "points", chain(polyline), a());
+                    JsonValue entry = json_object(a(), "closed", closed, "points", chain(polyline));
                     list.PushBack(entry, a());
                 }
                 add_member(result, "polylines", std::move(list), a());

@@ -191,18 +191,18 @@ RepairResult repair(const TriangleSoup& original, const MeshExtras& extras, cons
 }
 
 void RepairOptions::describe(OptionList& visit) {
-    visit("merge-distance", merge_distance, "merge border points closer than this share of the diagonal (0: only equal ones)",
-          Range{0, 0.1});
+    visit("merge-distance", merge_distance, "merge border points closer than this (0: only equal ones)", Range{0, 0.1},
+          "share of the diagonal");
     visit("keep-isolated", keep_isolated, "keep vertices without a face", Anything{});
     visit("keep-largest", keep_largest, "keep only the component with the largest area", Anything{});
-    visit("min-component-share", min_component_share, "drop components with less than this share of the area", Range{0, 1});
+    visit("min-component-share", min_component_share, "drop components with less than this", Range{0, 1}, "share of the area");
     visit("fill-holes", fill_holes, "fill holes of at most so many border edges (0: none)", Range{0, 100000});
-    visit("fill-holes-size", fill_holes_size,
-          "and at most so wide (diameter of a disc of the same area) as a share of their component's diagonal", Range{0, 1});
+    visit("fill-holes-size", fill_holes_size, "and at most so wide (diameter of a disc of the same area)", Range{0, 1},
+          "share of their component's diagonal");
     visit("remove-self-intersections", remove_self_intersections, "cut out intersecting triangles and close the gap", Anything{});
     visit("wrap", wrap, "replace the surface by a watertight wrap (loses detail below wrap-alpha)", Anything{});
-    visit("wrap-alpha", wrap_alpha, "the wrap enters openings wider than this share of the diagonal", Range{0.002, 0.5});
-    visit("wrap-offset", wrap_offset, "distance of the wrap from the surface, as a share of the diagonal", Range{0.0001, 0.1});
+    visit("wrap-alpha", wrap_alpha, "the wrap enters openings wider than this", Range{0.002, 0.5}, "share of the diagonal");
+    visit("wrap-offset", wrap_offset, "distance of the wrap from the surface", Range{0.0001, 0.1}, "share of the diagonal");
 }
 
 }  // namespace ostraka

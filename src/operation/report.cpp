@@ -1,5 +1,8 @@
 #include "ostraka/operation/report.h"
 
+#include "ostraka/core/json_build.h"
+#include "ostraka/core/words.h"
+
 #include "ostraka/core/text.h"
 #include "ostraka/report/table.h"
 
@@ -25,138 +28,47 @@ void set_member(JsonValue& object, std::string_view key, JsonValue value, JsonAl
     else add_member(*at, key, std::move(value), allocator);
 }
 
-JsonValue type_schema(const Field& field, JsonAllocator& allocator) {
-    JsonValue schema(rapidjson::kObjectType);
-    const auto array_of = [&](const char* type) {
-        JsonValue items(rapidjson::kObjectType);
-        add_member(items, "type", type, allocator);
-        add_member(schema, "type", "array", allocator);
-        add_member(schema, "items", std::move(items), allocator);
-    };
-    switch (field.type) {
-        case FieldType::boolean:
-            add_member(schema, "type", "boolean", allocator);
-            break;
-        case FieldType::integer:
-            add_member(schema, "type", "integer", allocator);
-            break;
-        case FieldType::number:
-            add_member(schema, "type", "number", allocator);
-            break;
-        case FieldType::text:
-            add_member(schema, "type", "string", allocator);
-            break;
-        case FieldType::numbers:
-            array_of("number");
-            break;
-        case FieldType::texts:
-            array_of("string");
-            break;
-        case FieldType::any:
-            break;
-    }
-    std::string about = field.title;
-    if (!field.unit.empty()) about += (about.empty() ? "in " : ", in ") + field.unit;
-    if (!field.schema.empty()) about += (about.empty() ? "as " : "; as ") + field.schema + ".schema.json has it";
-    if (!about.empty()) add_member(schema, "description", about, allocator);
-    return schema;
-}
-
-/// The object with these fields, as a schema; dots in keys are members of members.
-JsonValue object_schema(const std::vector<Field>& fields, JsonAllocator& allocator) {
-    JsonValue schema(rapidjson::kObjectType), properties(rapidjson::kObjectType);
-    add_member(schema, "type", "object", allocator);
-    std::map<std::string, std::vector<Field>> inner;
-    std::vector<std::string> order;
-    for (const Field& field : fields) {
-        if (field.key.empty()) continue;
-        const std::size_t dot = field.key.find('.');
-        const std::string name = field.key.substr(0, dot);
-        if (inner.find(name) == inner.end()) order.push_back(name);
-        Field rest = field;
-        rest.key = dot == std::string::npos ? "" : field.key.substr(dot + 1);
-        inner[name].push_back(std::move(rest));
-    }
-    for (const std::string& name : order) {
-        const auto& list = inner.at(name);
-        add_member(properties, name,
-                   list.front().key.empty() ? type_schema(list.front(), allocator) : object_schema(list, allocator), allocator);
-    }
-    add_member(schema, "properties", std::move(properties), allocator);
-    add_member(schema, "additionalProperties", JsonValue(false), allocator);
-    return schema;
-}
-
 bool is_number(const std::string& text) {
     return !text.empty() && (std::isdigit(static_cast<unsigned char>(text.front())) != 0 || text.front() == '-') &&
            text.find_first_of("0123456789") != std::string::npos;
 }
 
-JsonValue list_of(const std::vector<double>& values, JsonAllocator& allocator) {
-    JsonValue list(rapidjson::kArrayType);
-    for (const double one : values) list.PushBack(one, allocator);
-    return list;
-}
-JsonValue list_of(const std::vector<std::string>& values, JsonAllocator& allocator) {
-    JsonValue list(rapidjson::kArrayType);
-    for (const std::string& one : values) list.PushBack(json_string(one, allocator), allocator);
-    return list;
-}
-std::string text_of(const std::vector<double>& values) {
-    std::string text;
-    for (const double one : values) text += (text.empty() ? "" : " ") + number(one);
-    return text;
-}
-std::string text_of(const std::vector<std::string>& values) {
-    std::string text;
-    for (const std::string& one : values) text += (text.empty() ? "" : ", ") + one;
-    return text;
-}
-
-const Field* find_field(const std::vector<Field>& fields, const std::string& key) {
+const Field* find_field(const std::vector<Field>& fields, std::string_view key) {
     const auto found = std::find_if(fields.begin(), fields.end(), [&](const Field& field) { return field.key == key; });
     return found == fields.end() ? nullptr : &*found;
 }
 
 }  // namespace
 
-ReportLayout& ReportLayout::value(std::string key, FieldType type, std::string title, std::string unit) {
-    values.push_back({std::move(key), type, std::move(title), std::move(unit)});
-    return *this;
+ReportText::ReportText(double value) : text(number(value)) {}
+
+ReportValue::ReportValue(double value) {
+    if (std::isfinite(value)) value_ = value;
 }
 
-ReportLayout& ReportLayout::structure(std::string key, std::string of_schema) {
-    values.push_back({std::move(key), FieldType::any, {}, {}, std::move(of_schema)});
-    return *this;
+std::string ReportValue::text() const {
+    return std::visit(
+        [](const auto& value) -> std::string {
+            using Type = std::remove_cvref_t<decltype(value)>;
+            if constexpr (std::same_as<Type, bool>) return value ? "yes" : "no";
+            else if constexpr (std::is_arithmetic_v<Type> || std::same_as<Type, std::string>) return ReportText(value).text;
+            else if constexpr (std::same_as<Type, std::vector<std::string>>) return joined(value);
+            else if constexpr (requires { value.begin(); }) {
+                std::vector<std::string> texts;
+                for (const auto one : value) texts.push_back(ReportText(one).text);
+                return joined(texts, " ");
+            } else return {};
+        },
+        value_);
 }
 
-ReportLayout& ReportLayout::table(std::string key, std::vector<Field> columns, std::string title) {
-    tables.push_back({std::move(key), std::move(columns), std::move(title)});
-    return *this;
-}
-
-JsonValue ReportLayout::to_schema(JsonAllocator& allocator) const {
-    JsonValue result = object_schema(values, allocator);
-    JsonValue* properties = const_cast<JsonValue*>(find_member(result, "properties"));
-    for (const Table& table : tables) {
-        if (table.key.empty()) continue;
-        JsonValue list(rapidjson::kObjectType);
-        add_member(list, "type", "array", allocator);
-        if (!table.title.empty()) add_member(list, "description", table.title, allocator);
-        add_member(list, "items", object_schema(table.columns, allocator), allocator);
-        add_member(*properties, table.key, std::move(list), allocator);
-    }
-    if (checks) {
-        add_member(*properties, "sound", type_schema({"sound", FieldType::boolean}, allocator), allocator);
-        add_member(*properties, "defects", type_schema({"defects", FieldType::integer}, allocator), allocator);
-        add_member(*properties, "findings", type_schema({"findings", FieldType::any}, allocator), allocator);
-    }
-    add_member(*properties, "notes", type_schema({"notes", FieldType::texts}, allocator), allocator);
-    if (!schema.empty()) {
-        add_member(result, "description", "as " + schema + ".schema.json has it", allocator);
-        result["additionalProperties"].SetBool(true);
-    }
-    return result;
+JsonValue ReportValue::json(JsonAllocator& allocator) {
+    return std::visit(
+        [&](auto& value) {
+            if constexpr (std::same_as<std::remove_cvref_t<decltype(value)>, std::monostate>) return JsonValue();
+            else return json_value(std::move(value), allocator);
+        },
+        value_);
 }
 
 Report::Report(Provenance provenance, ReportLayout layout) : provenance_(std::move(provenance)), layout_(std::move(layout)) {
@@ -164,35 +76,19 @@ Report::Report(Provenance provenance, ReportLayout layout) : provenance_(std::mo
     run_.SetObject();
 }
 
-void Report::put(const std::string& key, JsonValue value, std::string text) {
-    const Field* field = find_field(layout_.values, key);
-    if (field == nullptr && layout_.schema.empty()) throw std::logic_error("the report declares no value '" + key + "'");
-    set_member(result_, key, std::move(value), allocator());
+Report& Report::operator()(std::string_view key, ReportValue value, std::optional<std::string> shown) {
+    const Field* field = find_field(layout_.of_values, key);
+    if (field == nullptr && layout_.schema.empty())
+        throw std::logic_error("the report declares no value '" + std::string(key) + "'");
+    if (value.absent()) return *this;
     if (field != nullptr && !field->title.empty())
-        blocks_.push_back({Block::Kind::value, field->title, text + (in_unit(*field).empty() ? "" : " " + in_unit(*field)), 0});
+        people(field->title, (shown ? *shown : value.text()) + (in_unit(*field).empty() ? "" : " " + in_unit(*field)));
+    set_member(result_, key, value.json(allocator()), allocator());
+    return *this;
 }
 
-void Report::value(const std::string& key, bool value, std::optional<std::string> shown) {
-    put(key, JsonValue(value), shown.value_or(value ? "yes" : "no"));
-}
-void Report::value(const std::string& key, double value, std::optional<std::string> shown) {
-    if (std::isfinite(value)) put(key, JsonValue(value), shown.value_or(number(value)));
-}
-void Report::value(const std::string& key, const std::string& value, std::optional<std::string> shown) {
-    put(key, json_string(value, allocator()), shown.value_or(value));
-}
-void Report::value(const std::string& key, const std::vector<double>& value, std::optional<std::string> shown) {
-    put(key, list_of(value, allocator()), shown.value_or(text_of(value)));
-}
-void Report::value(const std::string& key, const std::vector<std::string>& value, std::optional<std::string> shown) {
-    put(key, list_of(value, allocator()), shown.value_or(text_of(value)));
-}
-void Report::value(const std::string& key, JsonValue value) { put(key, std::move(value), {}); }
 void Report::values(const JsonValue& object) {
-    for (const auto& member : object.GetObject()) value(member.name.GetString(), JsonValue(member.value, allocator()));
-}
-void Report::integer(const std::string& key, std::int64_t value, std::optional<std::string> shown) {
-    put(key, JsonValue(value), shown.value_or(std::to_string(value)));
+    for (const auto& member : object.GetObject()) (*this)(member.name.GetString(), JsonValue(member.value, allocator()));
 }
 
 Report::ShownTable& Report::table_of(const std::string& key) {
@@ -204,7 +100,16 @@ Report::ShownTable& Report::table_of(const std::string& key) {
     table_index_[key] = tables_.size();
     blocks_.push_back({Block::Kind::table, {}, {}, tables_.size()});
     if (!layout->key.empty()) set_member(result_, key, JsonValue(rapidjson::kArrayType), allocator());
-    return tables_.emplace_back(ShownTable{static_cast<std::size_t>(layout - layout_.tables.begin()), {}});
+    ShownTable& table =
+        tables_.emplace_back(ShownTable{static_cast<std::size_t>(layout - layout_.tables.begin()), {}, {}, {}, {}});
+    for (const Field& column : layout->columns) {
+        const int place = column.title.empty() ? -1 : static_cast<int>(table.empty.size());
+        if (!column.key.empty()) table.places.emplace(column.key, place);
+        if (place < 0) continue;
+        table.shown.emplace(column.key.empty() ? column.title : column.key, place);
+        table.empty.emplace_back(column.type == FieldType::number ? "-" : "");
+    }
+    return table;
 }
 
 void Report::empty_table(const std::string& table, bool shown) {
@@ -214,59 +119,39 @@ void Report::empty_table(const std::string& table, bool shown) {
 
 Report::Row Report::row(const std::string& table) {
     ShownTable& shown = table_of(table);
-    const auto& layout = layout_.tables[shown.layout];
-    std::vector<std::string> cells;
-    for (const Field& column : layout.columns)
-        if (!column.title.empty()) cells.emplace_back(column.type == FieldType::number ? "-" : "");
-    shown.rows.push_back(std::move(cells));
-    if (!layout.key.empty())
-        const_cast<JsonValue*>(find_member(result_, layout.key))->PushBack(JsonValue(rapidjson::kObjectType), allocator());
+    shown.rows.push_back(shown.empty);
+    if (const std::string& key = layout_.tables[shown.layout].key; !key.empty())
+        const_cast<JsonValue*>(find_member(result_, key))->PushBack(JsonValue(rapidjson::kObjectType), allocator());
     return {*this, table_index_.at(table), shown.rows.size() - 1};
 }
 
-Report::Row& Report::Row::put(const std::string& key, JsonValue value, std::string text) {
-    const auto& layout = report_.layout_.tables[report_.tables_[table_].layout];
-    if (find_field(layout.columns, key) == nullptr || layout.key.empty())
-        throw std::logic_error("table '" + layout.key + "' of the report declares no column '" + key + "'");
-    JsonValue& list = *const_cast<JsonValue*>(find_member(report_.result_, layout.key));
-    set_member(list[static_cast<rapidjson::SizeType>(row_)], key, std::move(value), report_.allocator());
-    const auto is_here = [&](const Field& column) { return column.key == key && !column.title.empty(); };
-    return std::any_of(layout.columns.begin(), layout.columns.end(), is_here) ? shown(key, text) : *this;
+void Report::row(const std::string& table, std::initializer_list<ReportText> cells) {
+    ShownTable& shown = table_of(table);
+    if (cells.size() != shown.empty.size()) throw std::logic_error("a row of the table '" + table + "' has other columns");
+    auto& row = shown.rows.emplace_back();
+    for (const ReportText& cell : cells) row.push_back(cell.text);
 }
 
-Report::Row& Report::Row::shown(const std::string& title_or_key, const std::string& text) {
+Report::Row& Report::Row::operator()(std::string_view key, ReportValue value, std::optional<std::string> text) {
     ShownTable& table = report_.tables_[table_];
-    std::size_t at = 0;
-    for (const Field& column : report_.layout_.tables[table.layout].columns) {
-        if (column.title.empty()) continue;
-        if (column.key.empty() ? column.title == title_or_key : column.key == title_or_key) {
-            table.rows[row_][at] = text;
-            return *this;
-        }
-        ++at;
-    }
-    throw std::logic_error("the report's table has no column '" + title_or_key + "' for people");
+    const std::string& of = report_.layout_.tables[table.layout].key;
+    const auto column = table.places.find(key);
+    if (column == table.places.end() || of.empty())
+        throw std::logic_error("table '" + of + "' of the report declares no column '" + std::string(key) + "'");
+    if (value.absent()) return *this;
+    if (column->second >= 0) table.rows[row_][static_cast<std::size_t>(column->second)] = text ? std::move(*text) : value.text();
+    JsonValue& list = *const_cast<JsonValue*>(find_member(report_.result_, of));
+    set_member(list[static_cast<rapidjson::SizeType>(row_)], key, value.json(report_.allocator()), report_.allocator());
+    return *this;
 }
 
-Report::Row& Report::Row::operator()(const std::string& key, bool value, std::optional<std::string> text) {
-    return put(key, JsonValue(value), text.value_or(value ? "yes" : "no"));
-}
-Report::Row& Report::Row::operator()(const std::string& key, double value, std::optional<std::string> text) {
-    return std::isfinite(value) ? put(key, JsonValue(value), text.value_or(number(value))) : *this;
-}
-Report::Row& Report::Row::operator()(const std::string& key, const std::string& value, std::optional<std::string> text) {
-    return put(key, json_string(value, report_.allocator()), text.value_or(value));
-}
-Report::Row& Report::Row::operator()(const std::string& key, const std::vector<double>& value, std::optional<std::string> text) {
-    return put(key, list_of(value, report_.allocator()), text.value_or(text_of(value)));
-}
-Report::Row& Report::Row::operator()(const std::string& key, const std::vector<std::string>& value,
-                                     std::optional<std::string> text) {
-    return put(key, list_of(value, report_.allocator()), text.value_or(text_of(value)));
-}
-Report::Row& Report::Row::operator()(const std::string& key, JsonValue value) { return put(key, std::move(value), {}); }
-Report::Row& Report::Row::integer(const std::string& key, std::int64_t value, std::optional<std::string> text) {
-    return put(key, JsonValue(value), text.value_or(std::to_string(value)));
+Report::Row& Report::Row::shown(std::string_view title_or_key, ReportText text) {
+    ShownTable& table = report_.tables_[table_];
+    const auto column = table.shown.find(title_or_key);
+    if (column == table.shown.end())
+        throw std::logic_error("the report's table has no column '" + std::string(title_or_key) + "' for people");
+    table.rows[row_][static_cast<std::size_t>(column->second)] = std::move(text.text);
+    return *this;
 }
 
 void Report::people(const std::string& title, const std::string& text) {
@@ -294,23 +179,17 @@ void Report::findings(const std::vector<Finding>& findings, const std::string& p
     std::vector<std::vector<std::string>> rows;
     for (const Finding& finding : findings) {
         defects += finding.defect ? 1 : 0;
-        const std::string kind = finding.defect ? "defect" : "remark";
-        JsonValue entry(rapidjson::kObjectType);
-        add_member(entry, "kind", kind, allocator());
-        add_member(entry, place, finding.where, allocator());
-        add_member(entry, "text", finding.text, allocator());
-        list.PushBack(entry, allocator());
-        rows.push_back({kind, finding.where, finding.text});
+        const auto& row =
+            rows.emplace_back(std::vector{std::string(finding.defect ? "defect" : "remark"), finding.where, finding.text});
+        list.PushBack(json_object(allocator(), "kind", row[0], place, row[1], "text", row[2]), allocator());
     }
-    add_member(result_, "sound", JsonValue(defects == 0), allocator());
-    add_member(result_, "defects", JsonValue(static_cast<std::uint64_t>(defects)), allocator());
-    add_member(result_, "findings", std::move(list), allocator());
+    add_members(result_, allocator(), "sound", defects == 0, "defects", defects, "findings", std::move(list));
     if (!rows.empty()) {
         std::string text = plain_table({"kind", place, "what"}, rows);
         text.pop_back();
         line(text);
     }
-    line(defects == 0 ? "no defects" : std::to_string(defects) + (defects == 1 ? " defect" : " defects"));
+    line(defects == 0 ? "no defects" : counted(defects, "defect"));
     if (defects > 0) answer_no();
 }
 
@@ -319,13 +198,11 @@ void Report::run(const std::string& key, double value) { set_member(run_, key, J
 Json Report::to_json() const {
     Json report(rapidjson::kObjectType);
     auto& allocator = report.GetAllocator();
-    add_member(report, "format", "ostraka-report", allocator);
-    add_member(report, "command", provenance_.command, allocator);
     JsonValue result(result_, allocator);
-    if (find_member(result, "notes") == nullptr) add_member(result, "notes", list_of(notes_, allocator), allocator);
-    add_member(report, "result", std::move(result), allocator);
-    add_member(report, "provenance", provenance_.to_json(allocator), allocator);
-    if (run_.MemberCount() > 0) add_member(report, "run", JsonValue(run_, allocator), allocator);
+    if (find_member(result, "notes") == nullptr) add_members(result, allocator, "notes", notes_);
+    add_members(report, allocator, "format", "ostraka-report", "command", provenance_.command, "result", std::move(result),
+                "provenance", provenance_.to_json(allocator));
+    if (run_.MemberCount() > 0) add_members(report, allocator, "run", run_);
     return report;
 }
 

@@ -37,27 +37,18 @@ std::string attribute_text(const Attribute& attribute) {
 }
 
 void declare_annotations(ReportLayout& layout) {
-    layout.value("class", FieldType::text).value("unit", FieldType::text);
-    layout.table("annotations", {{"id", FieldType::integer, "id"},
-                                 {"tag", FieldType::text, "tag"},
-                                 {"type", FieldType::text, "type"},
-                                 {"elements", FieldType::integer, "elements"},
-                                 {"patches", FieldType::integer, "patches"},
-                                 {"outlines", FieldType::integer, "outlines"},
-                                 {"area", FieldType::number, "area", "length^2"},
-                                 {"perimeter", FieldType::number, "", "length"},
-                                 {"length", FieldType::number, "", "length"},
-                                 {"", FieldType::number, "perimeter / length", "length"},
-                                 {"attributes", FieldType::texts, "attributes"},
-                                 {"note", FieldType::text}});
+    layout.values(text("class"), text("unit"));
+    layout.table("annotations", integer("id", "id"), text("tag", "tag"), text("type", "type"), integer("elements", "elements"),
+                 integer("patches", "patches"), integer("outlines", "outlines"), number("area", "area", "length^2"),
+                 number("perimeter", "", "length"), number("length", "", "length"),
+                 people("perimeter / length", FieldType::number, "length"), texts("attributes", "attributes"), text("note"));
 }
 
 /// What the set holds.
 void tell_annotations(Context& context, Report& report, const Mesh& mesh, const AnnotationSet& set) {
     context.notes("", set.notes);
     report.set_unit(set.unit);
-    report.value("class", set.object_class);
-    report.value("unit", set.unit);
+    report("class", set.object_class)("unit", set.unit);
     report.empty_table("annotations");
     for (const Annotation& annotation : set.annotations) {
         const AnnotationSummary summary = summarise(mesh, annotation);
@@ -70,12 +61,8 @@ void tell_annotations(Context& context, Report& report, const Mesh& mesh, const 
         if (annotation.type == AnnotationType::line) row("length", summary.length);
         if (annotation.type != AnnotationType::point) row.shown("perimeter / length", number(summary.length));
         std::vector<std::string> attributes;
-        std::string shown;
-        for (const Attribute& attribute : annotation.attributes) {
-            attributes.push_back(attribute_text(attribute));
-            shown += (shown.empty() ? "" : "; ") + attributes.back();
-        }
-        row("attributes", attributes, shown + (annotation.note.empty() ? "" : " [" + annotation.note + "]"));
+        for (const Attribute& attribute : annotation.attributes) attributes.push_back(attribute_text(attribute));
+        row("attributes", attributes, joined(attributes, "; ") + (annotation.note.empty() ? "" : " [" + annotation.note + "]"));
         if (!annotation.note.empty()) row("note", annotation.note);
     }
 }
@@ -86,13 +73,10 @@ struct AnnotationPictures {
     FileOutput labels;
 
     void describe(Parameters& p) {
-        p.output("ply", Kind::mesh, coloured,
-                 "write the mesh in the colours of its annotations (PLY or another format with colours)")
-            .optional()
-            .flag();
-        p.output("labels-out", Kind::labels, labels, "write one label a face: the id of the smallest region on it, -1 for none")
-            .optional()
-            .flag();
+        p.output_option("ply", Kind::mesh, coloured,
+                        "write the mesh in the colours of its annotations (PLY or another format with colours)");
+        p.output_option("labels-out", Kind::labels, labels,
+                        "write one label a face: the id of the smallest region on it, -1 for none");
     }
     void write(const Mesh& mesh, const AnnotationSet& set) const {
         if (coloured) coloured.write(mesh, colour_by_annotation(mesh, set));
@@ -100,8 +84,7 @@ struct AnnotationPictures {
     }
 };
 
-class AnnotationApply final : public Operation {
-public:
+struct AnnotationApply final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("recipe", Kind::recipe, recipe, "recipe (.recipe.json) or label file (one integer a face)").optional();
@@ -109,12 +92,10 @@ public:
         p.order({"mesh", "recipe", "output"});
         p.order({"mesh", "output"});
         p.options("from-ply-labels", mesh_labels, "take the labels of the mesh file itself instead of a recipe or label file");
-        p.input("names", Kind::text, names, "JSON file with names of the labels").optional().flag();
-        p.input("edit", Kind::annotations, edited, "annotations that the recipe's steps edit and add to").optional().flag();
-        p.input("vocabulary", Kind::vocabulary, vocabulary,
-                "vocabulary (.vocabulary.json, .ttl, .rdf) that tags and attributes must be from")
-            .optional()
-            .flag();
+        p.input_option("names", Kind::text, names, "JSON file with names of the labels");
+        p.input_option("edit", Kind::annotations, edited, "annotations that the recipe's steps edit and add to");
+        p.input_option("vocabulary", Kind::vocabulary, vocabulary,
+                       "vocabulary (.vocabulary.json, .ttl, .rdf) that tags and attributes must be from");
         words.describe(p.options);
         pictures.describe(p);
         declare_annotations(p.report);
@@ -139,7 +120,6 @@ public:
         tell_annotations(context, report, file.mesh, set);
     }
 
-private:
     static std::vector<std::int32_t> labels_in(const MeshFile& file) {
         return file.extras.face_labels.empty() && !file.extras.vertex_labels.empty()
                    ? face_labels_from_vertices(file.mesh, file.extras.vertex_labels)
@@ -175,8 +155,7 @@ private:
     bool mesh_labels = false;
 };
 
-class AnnotationList final : public Operation {
-public:
+struct AnnotationList final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)");
@@ -187,26 +166,22 @@ public:
         tell_annotations(context, report, mesh->mesh, annotations.on(mesh->mesh));
     }
 
-private:
     MeshInput mesh;
     AnnotationsInput annotations;
 };
 
-class AnnotationRemap final : public Operation {
-public:
+struct AnnotationRemap final : Operation {
     void describe(Parameters& p) override {
         p.input("before", Kind::mesh, before, "mesh before the change");
         p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json) or label file");
         p.input("after", Kind::mesh, after, "mesh after the change");
         p.output("output", Kind::annotations, output, "annotations or labels to write");
-        p.input("vertex-map", Kind::index_map, vertex_map, "map of the vertices (JSON)").optional().flag();
-        p.input("face-map", Kind::index_map, face_map, "map of the faces (JSON); without it faces follow their corners")
-            .optional()
-            .flag();
+        p.input_option("vertex-map", Kind::index_map, vertex_map, "map of the vertices (JSON)");
+        p.input_option("face-map", Kind::index_map, face_map, "map of the faces (JSON); without it faces follow their corners");
         reading.describe(p.options);
         pictures.describe(p);
         declare_annotations(p.report);
-        p.report.value("labels", FieldType::integer, "labels written");
+        p.report.values(integer("labels", "labels written"));
     }
 
     void check() const override {
@@ -225,7 +200,7 @@ public:
         const Mesh& source = before->mesh;
         AnnotationSet set;
         std::vector<Index> vertices, faces;
-        const auto known = annotations.sources.front().object.as<AnnotationSet>();
+        const auto known = annotations.annotations_on(source);
         context.record([&] {
             set = known ? *known : read_annotations(annotations.path(), source, reading);
             vertices = read_index_map(vertex_map.path(), "vertex", source.number_of_vertices(), target.number_of_vertices());
@@ -238,7 +213,6 @@ public:
         tell_annotations(context, report, target, moved);
     }
 
-private:
     /// The old mesh may be broken here: labels ask for the count of its faces only.
     void carry_labels(Context& context, Report& report, const Mesh& target) const {
         const TriangulatedSoup source = triangulate(before.take_polygons());
@@ -250,7 +224,7 @@ private:
             faces = read_index_map(face_map.path(), "face", count, target.number_of_faces());
         });
         write_labels(output.path(), remap_labels(labels, faces, target.number_of_faces()));
-        report.value("labels", target.number_of_faces());
+        report("labels", target.number_of_faces());
     }
 
     MeshInput before, after;

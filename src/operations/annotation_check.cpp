@@ -8,23 +8,18 @@ namespace ostraka {
 
 namespace {
 
-class AnnotationCheck final : public Operation {
-public:
+struct AnnotationCheck final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)");
         reading.describe(p.options);
-        p.input("vocabulary", Kind::vocabulary, vocabulary,
-                "vocabulary (.vocabulary.json, .ttl, .rdf) that tags and attributes must be from")
-            .optional()
-            .flag();
+        p.input_option("vocabulary", Kind::vocabulary, vocabulary,
+                       "vocabulary (.vocabulary.json, .ttl, .rdf) that tags and attributes must be from");
         words.describe(p.options);
-        p.input("rules", Kind::rules, rules, "rules of the class (.rules.json) that the annotations must keep").optional().flag();
-        p.input(
-             "graph", Kind::graph, graph,
-             "relationships that the rules speak of (.graph.json); without it containment and adjacency are taken from the mesh")
-            .optional()
-            .flag();
+        p.input_option("rules", Kind::rules, rules, "rules of the class (.rules.json) that the annotations must keep");
+        p.input_option(
+            "graph", Kind::graph, graph,
+            "relationships that the rules speak of (.graph.json); without it containment and adjacency are taken from the mesh");
         p.report.checks = true;
     }
 
@@ -43,7 +38,7 @@ public:
         std::optional<AnnotationSet> set;
         try {
             if (given) check_annotations(*given, on, annotations.file());
-            set = given ? *given : annotations_from_json(*document, on, annotations.file(), reading);
+            set = given ? *annotations.annotations_on(on) : annotations_from_json(*document, on, annotations.file(), reading);
         } catch (const Error& error) {
             if (error.kind() != ErrorKind::input) throw;
             findings.push_back({true, "", error.problem() + (error.remedy().empty() ? "" : " (" + error.remedy() + ")")});
@@ -58,7 +53,6 @@ public:
         report.findings(findings);
     }
 
-private:
     void hold_against(const ClassRules& kept, const Vocabulary* known, const Mesh& on, const AnnotationSet& set,
                       std::vector<Finding>& findings) const {
         const RelationGraph* stated = graph ? &graph.on(set) : nullptr;

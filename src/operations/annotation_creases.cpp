@@ -7,21 +7,16 @@ namespace ostraka {
 
 namespace {
 
-class AnnotationCreases final : public Operation {
-public:
+struct AnnotationCreases final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.output("output", Kind::annotations, output, "annotations to write (.ant.json): lines along the crests");
         p.options("regions", regions, "regions instead of lines");
         p.options("unit", unit, "unit of the mesh's coordinates, e.g. mm");
         options.describe(p.options);
-        p.report.table("creases", {{"id", FieldType::integer, "id"},
-                                   {"tag", FieldType::text, "tag"},
-                                   {"closed", FieldType::boolean, "closed"},
-                                   {"length", FieldType::number, "length", "length"},
-                                   {"width", FieldType::number, "width", "length"},
-                                   {"mean curvature", FieldType::number, "mean curvature", "1/length"},
-                                   {"strength", FieldType::number, "strength"}});
+        p.report.table("creases", integer("id", "id"), text("tag", "tag"), boolean("closed", "closed"),
+                       number("length", "length", "length"), number("width", "width", "length"),
+                       number("mean curvature", "mean curvature", "1/length"), number("strength", "strength"));
     }
 
     void run(Context&, Report& report) override {
@@ -46,7 +41,6 @@ public:
         output.write(std::move(set), on, mesh.file());
     }
 
-private:
     MeshInput mesh;
     AnnotationsOutput output;
     bool regions = false;

@@ -38,13 +38,12 @@ std::array<int, 3> named_colour(const std::string& text) {
     return colour;
 }
 
-class AnnotationEditing final : public Operation {
-public:
+struct AnnotationEditing final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)");
         p.output("output", Kind::annotations, output, "annotations to write");
-        p.input("edits", Kind::edit, list, "list of edits (JSON, doc/schema/annotation-edits.schema.json)").optional().flag();
+        p.input_option("edits", Kind::edit, list, "list of edits (JSON, doc/schema/annotation-edits.schema.json)");
         p.options("annotation", annotation, "the annotation to edit: its id, or its tag if no other has it");
         p.options("merge", merge, "another annotation that becomes part of this one; may be given more than once");
         p.options("tag", tag, "new tag");
@@ -60,7 +59,7 @@ public:
         p.options("duplicate", duplicate, "add a copy; the other changes are made to the copy, the original stays");
         p.options("split", split, "make each patch, poly-line or point an annotation of its own");
         p.options("remove", remove, "remove the annotation");
-        p.report.value("annotations", FieldType::integer);
+        p.report.values(integer("annotations"));
         declare_differences(p.report, "changes");
     }
 
@@ -92,12 +91,11 @@ public:
             notes.emplace_back("the numbers stay as they are: the unit is that of the mesh's coordinates");
         }
         report.notes(notes);
-        report.value("annotations", set.annotations.size());
+        report("annotations", set.annotations.size());
         add_differences(report, "changes", differences(before, set), "nothing changed");
         output.write(std::move(set), on, mesh.file());
     }
 
-private:
     [[nodiscard]] std::optional<std::array<double, 3>> direction() const {
         if (!up || up->empty()) return {};
         return direction_of(*up, "--set-up");

@@ -11,16 +11,14 @@ void describe_format(Parameters& p, std::optional<std::string>& format) {
     p.options("format", format, "format of the file, if its ending does not tell", Choices(exchange_formats()));
 }
 
-class AnnotationExport final : public Operation {
-public:
+struct AnnotationExport final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)");
         p.output("output", Kind::text, output, "file to write");
         describe_format(p, format);
         options.describe(p.options);
-        p.report.value("format", FieldType::text).value("annotations", FieldType::integer).value("bytes", FieldType::integer);
-        p.report.value("sha256", FieldType::text);
+        p.report.values(text("format"), integer("annotations"), integer("bytes"), text("sha256"));
     }
 
     void run(Context& context, Report& report) override {
@@ -29,18 +27,14 @@ public:
         const ExportedAnnotations exported =
             export_annotations(mesh->mesh, set, *format, mesh.file(), context.provenance(), options);
         report.notes(exported.notes);
-        report.value("format", *format);
-        report.value("annotations", exported.annotations);
-        report.value("bytes", exported.bytes.size());
-        report.value("sha256", sha256(exported.bytes));
+        report("format", *format)("annotations", exported.annotations)("bytes", exported.bytes.size())("sha256",
+                                                                                                       sha256(exported.bytes));
         const std::size_t all = set.annotations.size(), written = exported.annotations;
-        report.line(std::to_string(written) + (written == all ? "" : " of " + std::to_string(all)) +
-                    (all == 1 ? " annotation" : " annotations") + " as " + *format + ", " +
-                    std::to_string(exported.bytes.size()) + " bytes");
+        report.line((written == all ? "" : std::to_string(written) + " of ") + counted(all, "annotation") + " as " + *format +
+                    ", " + std::to_string(exported.bytes.size()) + " bytes");
         output.write(exported.bytes);
     }
 
-private:
     MeshInput mesh;
     AnnotationsInput annotations;
     FileOutput output;
@@ -48,25 +42,18 @@ private:
     ExportOptions options;
 };
 
-class AnnotationImport final : public Operation {
-public:
+struct AnnotationImport final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("input", Kind::text, input, "file to read");
         p.output("output", Kind::annotations, output, "annotations to write (.ant.json)");
         describe_format(p, format);
-        p.input("onto", Kind::annotations, onto,
-                "annotations to which the file's are added, or that its table of attributes is of")
-            .optional()
-            .flag();
+        p.input_option("onto", Kind::annotations, onto,
+                       "annotations to which the file's are added, or that its table of attributes is of");
         options.describe(p.options);
-        p.report.value("format", FieldType::text).value("annotations", FieldType::integer);
-        p.report.table("placed", {{"id", FieldType::integer, "id"},
-                                  {"tag", FieldType::text, "tag"},
-                                  {"by", FieldType::text, "by"},
-                                  {"points", FieldType::integer, "points"},
-                                  {"toSurface", FieldType::number, "to surface", "length"},
-                                  {"toVertex", FieldType::number, "to vertex", "length"}});
+        p.report.values(text("format"), integer("annotations"));
+        p.report.table("placed", integer("id", "id"), text("tag", "tag"), text("by", "by"), integer("points", "points"),
+                       number("toSurface", "to surface", "length"), number("toVertex", "to vertex", "length"));
     }
 
     void run(Context& context, Report& report) override {
@@ -84,8 +71,7 @@ public:
             }
         }();
         context.notes("", placed.set.notes);
-        report.value("format", *format);
-        report.value("annotations", placed.set.annotations.size());
+        report("format", *format)("annotations", placed.set.annotations.size());
         report.empty_table("placed", false);
         for (const PlacedAnnotation& one : placed.placements)
             report.row("placed")("id", one.id)("tag", one.tag)("by", one.how)("points", one.points)(
@@ -93,7 +79,6 @@ public:
         output.write(std::move(placed.set), on, mesh.file());
     }
 
-private:
     MeshInput mesh;
     FileInput input;
     AnnotationsInput onto;

@@ -7,25 +7,19 @@ namespace ostraka {
 
 namespace {
 
-class AnnotationFacets final : public Operation {
-public:
+struct AnnotationFacets final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file of the fragment");
         p.input("annotations", Kind::annotations, annotations,
                 "annotations (.ant.json), brought up to date or made: regions \"outer\", \"inner\" and \"fracture\"; called "
                 "NAME.ant.json beside NAME.ply they are what 'fit' and 'pair' go by");
-        p.output("output", Kind::annotations, output, "write the annotations here and leave the file as it is")
-            .optional()
-            .flag()
+        p.output_option("output", Kind::annotations, output, "write the annotations here and leave the file as it is")
             .updates(annotations);
         p.options("unit", unit, "of a new file: unit of the mesh's coordinates, e.g. mm");
         options.describe(p.options);
-        p.report.value("shell", FieldType::boolean).value("thickness", FieldType::number, "", "length");
-        p.report.value("confidence", FieldType::number);
-        p.report.table("segments", {{"facet", FieldType::text, "facet"},
-                                    {"faces", FieldType::integer, "faces"},
-                                    {"area", FieldType::number, "area", "length^2"},
-                                    {"confidence", FieldType::number, "confidence"}});
+        p.report.values(boolean("shell"), number("thickness", "", "length"), number("confidence"));
+        p.report.table("segments", text("facet", "facet"), integer("faces", "faces"), number("area", "area", "length^2"),
+                       number("confidence", "confidence"));
     }
 
     void run(Context&, Report& report) override {
@@ -44,9 +38,9 @@ public:
         for (const FacetSegment& segment : facets.segments)
             report.row("segments")("facet", to_string(segment.facet))("faces", segment.faces.size())("area", segment.area)(
                 "confidence", segment.confidence, number(segment.confidence, 2));
-        report.value("shell", facets.shell);
-        if (facets.shell) report.value("thickness", facets.thickness);
-        report.value("confidence", facets.confidence);
+        report("shell", facets.shell);
+        if (facets.shell) report("thickness", facets.thickness);
+        report("confidence", facets.confidence);
         report.line(!facets.shell ? "a solid: no wall with two sides"
                                   : "a wall " + number(facets.thickness, 3) +
                                         (set.unit.empty() ? "" : " " + printable(set.unit, 60)) + " thick");
@@ -58,7 +52,6 @@ public:
         report.answer_no();
     }
 
-private:
     MeshInput mesh;
     AnnotationsInput annotations;
     AnnotationsOutput output;

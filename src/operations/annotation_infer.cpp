@@ -7,20 +7,15 @@ namespace ostraka {
 
 namespace {
 
-class AnnotationInfer final : public Operation {
-public:
+struct AnnotationInfer final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)");
         p.input("vocabulary", Kind::vocabulary, vocabulary, "vocabulary with rules (.vocabulary.json, .ttl, .rdf)");
         p.output("output", Kind::annotations, output, "annotations to write");
-        p.report.table("inferred", {{"annotation", FieldType::integer, "id"},
-                                    {"tag", FieldType::text, "tag"},
-                                    {"attribute", FieldType::text, "attribute"},
-                                    {"value", FieldType::text, "value"},
-                                    {"rule", FieldType::text},
-                                    {"why", FieldType::text, "why"}});
-        p.report.value("contradictions", FieldType::texts).value("missing", FieldType::texts);
+        p.report.table("inferred", integer("annotation", "id"), text("tag", "tag"), text("attribute", "attribute"),
+                       text("value", "value"), text("rule"), text("why", "why"));
+        p.report.values(texts("contradictions"), texts("missing"));
     }
 
     void run(Context&, Report& report) override {
@@ -30,16 +25,14 @@ public:
         for (const Inference& one : result.inferred)
             report.row("inferred")("annotation", one.annotation)("tag", result.annotations.find(one.annotation)->tag)(
                 "attribute", one.attribute)("value", one.value)("rule", one.rule)("why", one.why);
-        report.value("contradictions", result.contradictions);
-        report.value("missing", result.missing);
+        report("contradictions", result.contradictions)("missing", result.missing);
         report.notes(result.missing);
         for (const auto& text : result.contradictions) report.line("contradiction: " + printable(text));
-        report.line(std::to_string(result.inferred.size()) + (result.inferred.size() == 1 ? " word" : " words") + " inferred");
+        report.line(counted(result.inferred.size(), "word") + " inferred");
         if (!result.contradictions.empty()) report.answer_no();
         output.write(std::move(result.annotations), mesh->mesh, mesh.file());
     }
 
-private:
     MeshInput mesh;
     AnnotationsInput annotations;
     FileInput vocabulary;

@@ -7,14 +7,8 @@
 namespace ostraka {
 
 void declare_differences(ReportLayout& layout, const std::string& table) {
-    layout.table(table, {{"id", FieldType::integer, "id"},
-                         {"tag", FieldType::text, "tag"},
-                         {"kind", FieldType::text, "what"},
-                         {"field", FieldType::text, "field"},
-                         {"before", FieldType::text, "before"},
-                         {"after", FieldType::text, "after"},
-                         {"onlyBefore", FieldType::integer},
-                         {"onlyAfter", FieldType::integer}});
+    layout.table(table, integer("id", "id"), text("tag", "tag"), text("kind", "what"), text("field", "field"),
+                 text("before", "before"), text("after", "after"), integer("onlyBefore"), integer("onlyAfter"));
 }
 
 namespace {
@@ -49,30 +43,27 @@ void add_differences(Report& report, const std::string& table, const std::vector
 
 namespace {
 
-class AnnotationDiff final : public Operation {
-public:
+struct AnnotationDiff final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh of both");
         p.input("before", Kind::annotations, before, "annotations (.ant.json)");
         p.input("after", Kind::annotations, after, "annotations to compare with them");
-        p.report.value("same", FieldType::boolean);
+        p.report.values(boolean("same"));
         declare_differences(p.report, "differences");
     }
 
     void run(Context&, Report& report) override {
         const auto list = differences(before.on(mesh->mesh), after.on(mesh->mesh));
-        report.value("same", list.empty());
+        report("same", list.empty());
         add_differences(report, "differences", list, "no difference");
         if (!list.empty()) report.answer_no();
     }
 
-private:
     MeshInput mesh;
     AnnotationsInput before, after;
 };
 
-class AnnotationMerge final : public Operation {
-public:
+struct AnnotationMerge final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh of all");
         p.input("base", Kind::annotations, base, "annotations that both began with");
@@ -80,13 +71,9 @@ public:
         p.input("theirs", Kind::annotations, theirs, "the other's annotations");
         p.output("output", Kind::annotations, output, "annotations to write");
         options.describe(p.options);
-        p.report.value("merged", FieldType::boolean).value("annotations", FieldType::integer);
-        p.report.table("conflicts", {{"id", FieldType::integer, "id"},
-                                     {"tag", FieldType::text, "tag"},
-                                     {"field", FieldType::text, "conflict"},
-                                     {"base", FieldType::text, "base"},
-                                     {"ours", FieldType::text, "ours"},
-                                     {"theirs", FieldType::text, "theirs"}});
+        p.report.values(boolean("merged"), integer("annotations"));
+        p.report.table("conflicts", integer("id", "id"), text("tag", "tag"), text("field", "conflict"), text("base", "base"),
+                       text("ours", "ours"), text("theirs", "theirs"));
     }
 
     void run(Context&, Report& report) override {
@@ -94,8 +81,7 @@ public:
         const MergedAnnotations merged = merge_annotations(base.on(on), ours.on(on), theirs.on(on), options);
         const bool settled = merged.settled(options);
         report.notes(merged.notes);
-        report.value("merged", settled);
-        report.value("annotations", merged.set.annotations.size());
+        report("merged", settled)("annotations", merged.set.annotations.size());
         report.empty_table("conflicts", false);
         for (const Conflict& conflict : merged.conflicts)
             named_row(report, "conflicts", conflict)("base", conflict.base)("ours", conflict.ours)("theirs", conflict.theirs);
@@ -111,13 +97,11 @@ public:
             return std::any_of(merged.conflicts.begin(), merged.conflicts.end(),
                                [&](const Conflict& conflict) { return conflict.field == field; });
         };
-        report.line(std::to_string(count) + (count == 1 ? " conflict" : " conflicts") +
-                    "; nothing written (settle them in the files, or choose with --prefer" +
+        report.line(counted(count, "conflict") + "; nothing written (settle them in the files, or choose with --prefer" +
                     (any("both added") ? "; --renumber keeps both where both added under one id" : "") +
                     (any("geometry") ? "; --merge-faces joins regions that both changed" : "") + ")");
     }
 
-private:
     MeshInput mesh;
     AnnotationsInput base, ours, theirs;
     AnnotationsOutput output;

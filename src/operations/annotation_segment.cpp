@@ -10,18 +10,15 @@ namespace ostraka {
 
 namespace {
 
-class AnnotationSegment final : public Operation {
-public:
+struct AnnotationSegment final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file, closed");
         p.output("output", Kind::annotations, output, "annotations to write (.ant.json)");
-        p.output("labels-out", Kind::labels, labels_out, "write the number of each face's segment, one a line").optional().flag();
+        p.output_option("labels-out", Kind::labels, labels_out, "write the number of each face's segment, one a line");
         options.describe(p.options);
         thickness_options.describe(p.options);
-        p.report.table("segments", {{"id", FieldType::integer, "id"},
-                                    {"tag", FieldType::text, "tag"},
-                                    {"faces", FieldType::integer, "faces"},
-                                    {"area", FieldType::number, "area", "length^2"}});
+        p.report.table("segments", integer("id", "id"), text("tag", "tag"), integer("faces", "faces"),
+                       number("area", "area", "length^2"));
     }
 
     void run(Context&, Report& report) override {
@@ -42,7 +39,6 @@ public:
         output.write(std::move(set), on, mesh.file());
     }
 
-private:
     MeshInput mesh;
     AnnotationsOutput output;
     FileOutput labels_out{".seg"};

@@ -7,29 +7,24 @@ namespace ostraka {
 
 namespace {
 
-class AnnotationSurvival final : public Operation {
-public:
+struct AnnotationSurvival final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "the annotated mesh");
         p.input("annotations", Kind::annotations, annotations, "its annotations");
         options.describe(p.options);
-        p.report.table("annotations", {{"id", FieldType::integer, "id"},
-                                       {"tag", FieldType::text, "tag"},
-                                       {"vertices", FieldType::integer, "smallest number of vertices"},
-                                       {"end", FieldType::text, "and below"}});
+        p.report.table("annotations", integer("id", "id"), text("tag", "tag"), integer("vertices", "smallest number of vertices"),
+                       text("end", "and below"));
     }
 
     void run(Context&, Report& report) override {
         report.empty_table("annotations");
         for (const Survival& survival : smallest_resolutions(mesh->mesh, annotations.on(mesh->mesh), options)) {
-            Report::Row row = report.row("annotations");
-            row("id", survival.id)("tag", survival.tag)("vertices", survival.vertices);
+            Report::Row row = report.row("annotations")("id", survival.id)("tag", survival.tag)("vertices", survival.vertices);
             if (survival.end.empty()) row.shown("end", "survived every resolution tried");
             else row("end", survival.end);
         }
     }
 
-private:
     MeshInput mesh;
     AnnotationsInput annotations;
     SurvivalOptions options;

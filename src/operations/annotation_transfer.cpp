@@ -14,68 +14,44 @@ namespace {
 std::string percent(double share) { return std::abs(share) < 1e-11 ? "0" : number(100 * share, 3); }
 
 std::string remarks_on(const TransferScore& score) {
-    std::string remarks = score.outcome == TransferOutcome::kept ? "" : to_string(score.outcome);
-    const auto remark = [&](const std::string& text) { remarks += (remarks.empty() ? "" : "; ") + text; };
-    if (score.by_closest_point > 0) remark(std::to_string(score.by_closest_point) + " by closest point");
-    if (score.without_place > 0) remark(std::to_string(score.without_place) + " without a place");
-    if (score.relocated > 0) remark(std::to_string(score.relocated) + " on another layer, placed again");
-    if (score.detours > 0) remark(std::to_string(score.detours) + " detours");
-    if (score.voted) remark("outlines crossed, filled face by face");
-    else if (score.crossings_resolved) remark("crossing outlines resolved");
-    if (!score.note.empty()) remark(score.note);
-    return remarks;
+    std::vector<std::string> remarks;
+    if (score.outcome != TransferOutcome::kept) remarks.push_back(to_string(score.outcome));
+    if (score.by_closest_point > 0) remarks.push_back(std::to_string(score.by_closest_point) + " by closest point");
+    if (score.without_place > 0) remarks.push_back(std::to_string(score.without_place) + " without a place");
+    if (score.relocated > 0) remarks.push_back(std::to_string(score.relocated) + " on another layer, placed again");
+    if (score.detours > 0) remarks.push_back(std::to_string(score.detours) + " detours");
+    if (score.voted) remarks.emplace_back("outlines crossed, filled face by face");
+    else if (score.crossings_resolved) remarks.emplace_back("crossing outlines resolved");
+    if (!score.note.empty()) remarks.push_back(score.note);
+    return joined(remarks, "; ");
 }
 
-class AnnotationTransfer final : public Operation {
-public:
+struct AnnotationTransfer final : Operation {
     void describe(Parameters& p) override {
         p.input("source", Kind::mesh, source, "the annotated mesh");
         p.input("annotations", Kind::annotations, annotations, "its annotations");
         p.input("target", Kind::mesh, target, "the mesh at another resolution");
         p.output("output", Kind::annotations, output, "the annotations on the target (*.ant.json)");
-        p.output("back", Kind::annotations, back, "transfer them back to the source as well, into this file, and score that")
-            .optional()
-            .flag();
-        p.output("ply", Kind::mesh, coloured,
-                 "write the target in the colours of its annotations (PLY or another format with colours)")
-            .optional()
-            .flag();
-        p.output("refined-mesh", Kind::mesh, refined, "with --refine: the target with the inserted vertices").optional().flag();
-        p.output("map", Kind::index_map, map, "with --refine: new face -> old face, as JSON").optional().flag();
+        p.output_option("back", Kind::annotations, back,
+                        "transfer them back to the source as well, into this file, and score that");
+        p.output_option("ply", Kind::mesh, coloured,
+                        "write the target in the colours of its annotations (PLY or another format with colours)");
+        p.output_option("refined-mesh", Kind::mesh, refined, "with --refine: the target with the inserted vertices");
+        p.output_option("map", Kind::index_map, map, "with --refine: new face -> old face, as JSON");
         options.describe(p.options);
 
         for (const char* direction : {"annotations", "back"})
-            p.report.table(direction, {{"id", FieldType::integer, "id"},
-                                       {"tag", FieldType::text, "tag"},
-                                       {"sourceType", FieldType::text},
-                                       {"targetType", FieldType::text, "type"},
-                                       {"outcome", FieldType::text},
-                                       {"note", FieldType::text},
-                                       {"sourceArea", FieldType::number, "", "length^2"},
-                                       {"targetArea", FieldType::number, "", "length^2"},
-                                       {"sourcePerimeter", FieldType::number, "", "length"},
-                                       {"targetPerimeter", FieldType::number, "", "length"},
-                                       {"distortion.A", FieldType::number, "A %"},
-                                       {"distortion.P", FieldType::number, "P %"},
-                                       {"distortion.P/A", FieldType::number, "P/A %"},
-                                       {"distortion.A/P", FieldType::number, "A/P %"},
-                                       {"distortion.C", FieldType::number, "C %"},
-                                       {"distortion.average", FieldType::number, "mean %"},
-                                       {"sourceLength", FieldType::number, "", "length"},
-                                       {"targetLength", FieldType::number, "", "length"},
-                                       {"hausdorff", FieldType::number, "Hausdorff"},
-                                       {"overlap", FieldType::number, "overlap"},
-                                       {"wrongSide", FieldType::number},
-                                       {"", FieldType::text, "by ray"},
-                                       {"correspondence.vertices", FieldType::integer},
-                                       {"correspondence.byRay", FieldType::integer},
-                                       {"correspondence.byClosestPoint", FieldType::integer},
-                                       {"correspondence.withoutPlace", FieldType::integer},
-                                       {"correspondence.relocated", FieldType::integer},
-                                       {"correspondence.detours", FieldType::integer},
-                                       {"crossingsResolved", FieldType::boolean},
-                                       {"voted", FieldType::boolean},
-                                       {"", FieldType::text, "remarks"}});
+            p.report.table(direction, integer("id", "id"), text("tag", "tag"), text("sourceType"), text("targetType", "type"),
+                           text("outcome"), text("note"), number("sourceArea", "", "length^2"),
+                           number("targetArea", "", "length^2"), number("sourcePerimeter", "", "length"),
+                           number("targetPerimeter", "", "length"), number("distortion.A", "A %"), number("distortion.P", "P %"),
+                           number("distortion.P/A", "P/A %"), number("distortion.A/P", "A/P %"), number("distortion.C", "C %"),
+                           number("distortion.average", "mean %"), number("sourceLength", "", "length"),
+                           number("targetLength", "", "length"), number("hausdorff", "Hausdorff"), number("overlap", "overlap"),
+                           number("wrongSide"), people("by ray"), integer("correspondence.vertices"),
+                           integer("correspondence.byRay"), integer("correspondence.byClosestPoint"),
+                           integer("correspondence.withoutPlace"), integer("correspondence.relocated"),
+                           integer("correspondence.detours"), boolean("crossingsResolved"), boolean("voted"), people("remarks"));
     }
 
     void check() const override {
@@ -110,11 +86,10 @@ public:
         // All work is done: what is written now is complete.
         if (coloured) coloured.write(on, colour_by_annotation(on, there.annotations));
         if (map) map.write({"face-origin", there.refined->face_origin, onto.number_of_faces()});
-        for (const auto& [name, seconds] : {std::pair{"correspondence", there.times.correspondence},
-                                            {"paths", there.times.paths},
-                                            {"regions", there.times.regions},
-                                            {"scores", there.times.scores}})
-            report.run(name, seconds);
+        report.run("correspondence", there.times.correspondence);
+        report.run("paths", there.times.paths);
+        report.run("regions", there.times.regions);
+        report.run("scores", there.times.scores);
         report.line(source.file_name() + " -> " + target.file_name());
         tell(report, "annotations", there.scores);
         if (again) {
@@ -126,45 +101,38 @@ public:
         if (refined) refined.write(std::move(there.refined->mesh));
     }
 
-private:
     static void tell(Report& report, const std::string& table, const std::vector<TransferScore>& scores) {
         report.empty_table(table);
         for (const TransferScore& score : scores) {
             Report::Row row = report.row(table);
             row("id", score.id)("tag", score.tag)("sourceType", to_string(score.source_type))(
-                "targetType", to_string(score.target_type))("outcome", to_string(score.outcome));
+                "targetType", to_string(score.target_type))("outcome", score.outcome);
             if (!score.note.empty()) row("note", score.note);
             const Distortions d = distortions(score);
-            const bool kept = score.outcome == TransferOutcome::kept, region = score.source_type == AnnotationType::region,
+            const bool kept = score.outcome == "kept", region = score.source_type == AnnotationType::region,
                        both = region && score.target_type == AnnotationType::region;
             if (region) {
                 row("sourceArea", score.source_area)("targetArea", score.target_area)("sourcePerimeter", score.source_length)(
                     "targetPerimeter", score.target_length);
+                const auto shown = [&](double value) { return kept ? percent(value) : "-"; };
                 if (both && score.target_area > 0)
-                    for (const auto& [name, value] : {std::pair{"A", d.area},
-                                                      {"P", d.perimeter},
-                                                      {"P/A", d.perimeter_by_area},
-                                                      {"A/P", d.area_by_perimeter},
-                                                      {"C", d.circularity},
-                                                      {"average", d.mean}})
-                        row("distortion." + std::string(name), value, kept ? percent(value) : "-");
+                    row("distortion.A", d.area, shown(d.area))("distortion.P", d.perimeter, shown(d.perimeter))(
+                        "distortion.P/A", d.perimeter_by_area, shown(d.perimeter_by_area))("distortion.A/P", d.area_by_perimeter,
+                                                                                           shown(d.area_by_perimeter))(
+                        "distortion.C", d.circularity, shown(d.circularity))("distortion.average", d.mean, shown(d.mean));
                 if (score.overlap) row("overlap", *score.overlap, both && kept ? number(*score.overlap, 5) : "-");
-                if (score.wrong_side) row("wrongSide", *score.wrong_side);
+                row("wrongSide", score.wrong_side);
             } else {
                 row("sourceLength", score.source_length)("targetLength", score.target_length);
             }
             if (score.source_length > 0 && kept) row.shown("distortion.P", percent(d.perimeter));
             if (score.hausdorff) row("hausdorff", *score.hausdorff, number(*score.hausdorff, 3));
-            for (const auto& [name, count] : {std::pair{"vertices", score.vertices},
-                                              {"byRay", score.by_ray},
-                                              {"byClosestPoint", score.by_closest_point},
-                                              {"withoutPlace", score.without_place},
-                                              {"relocated", score.relocated},
-                                              {"detours", score.detours}})
-                row("correspondence." + std::string(name), count);
-            row("crossingsResolved", score.crossings_resolved)("voted", score.voted);
-            row.shown("by ray", std::to_string(score.by_ray) + "/" + std::to_string(score.vertices));
-            row.shown("remarks", remarks_on(score));
+            row("correspondence.vertices", score.vertices)("correspondence.byRay", score.by_ray)(
+                "correspondence.byClosestPoint", score.by_closest_point)("correspondence.withoutPlace", score.without_place)(
+                "correspondence.relocated", score.relocated)("correspondence.detours", score.detours)(
+                "crossingsResolved", score.crossings_resolved)("voted", score.voted)
+                .shown("by ray", std::to_string(score.by_ray) + "/" + std::to_string(score.vertices))
+                .shown("remarks", remarks_on(score));
             if (score.outcome == TransferOutcome::lost && table == "annotations") report.answer_no();
         }
     }

@@ -1,7 +1,6 @@
 #include "arguments.h"
 
-#include "ostraka/measure/measure.h"
-#include "ostraka/operation/report.h"
+#include "ostraka/operation/operation.h"
 
 #include <charconv>
 #include <cmath>
@@ -25,8 +24,6 @@ std::vector<Number> numbers_of(const std::string& text, const std::string& optio
 }
 template std::vector<double> numbers_of<double>(const std::string&, const std::string&);
 template std::vector<std::uint32_t> numbers_of<std::uint32_t>(const std::string&, const std::string&);
-template std::vector<std::uint64_t> numbers_of<std::uint64_t>(const std::string&, const std::string&);
-template std::vector<int> numbers_of<int>(const std::string&, const std::string&);
 
 std::array<double, 3> direction_of(const std::string& text, const std::string& option) {
     for (std::size_t k = 0; k < 3; ++k)
@@ -47,6 +44,15 @@ std::array<double, 3> direction_of(const std::string& text, const std::string& o
     return {numbers[0], numbers[1], numbers[2]};
 }
 
+void DirectionOption::describe(Parameters& p, const std::string& help) {
+    p.options("up", text_, help);
+    p.checks.emplace_back([this] { static_cast<void>(value()); });
+}
+
+std::optional<std::array<double, 3>> DirectionOption::value() const {
+    return text_.empty() ? std::nullopt : std::optional(direction_of(text_, "--up"));
+}
+
 const Annotation& find_annotation(const AnnotationSet& set, const std::string& name, const std::string& file) {
     int id = 0;
     const auto [end, code] = std::from_chars(name.data(), name.data() + name.size(), id);
@@ -62,11 +68,6 @@ const Annotation& find_annotation(const AnnotationSet& set, const std::string& n
         fail_input(file, "has " + std::to_string(tagged.size()) + " annotations tagged '" + printable(name, 60) + "'",
                    "give the id of one");
     return *tagged.front();
-}
-
-std::string in_unit(const std::string& quantity, const AnnotationSet& set) {
-    const std::string unit = descriptor_unit(quantity, set.unit);
-    return quantity + (unit.empty() ? "" : " " + printable(unit, 20));
 }
 
 }  // namespace ostraka

@@ -1,8 +1,7 @@
 // Arguments that are texts: lists of numbers, directions, names of annotations.
 #pragma once
 
-#include "ostraka/annotation/annotation.h"
-#include "ostraka/core/error.h"
+#include "ostraka/operation/operation.h"
 
 #include <array>
 #include <string>
@@ -15,16 +14,23 @@ template <class Number>
 std::vector<Number> numbers_of(const std::string& text, const std::string& option);
 extern template std::vector<double> numbers_of<double>(const std::string&, const std::string&);
 extern template std::vector<std::uint32_t> numbers_of<std::uint32_t>(const std::string&, const std::string&);
-extern template std::vector<std::uint64_t> numbers_of<std::uint64_t>(const std::string&, const std::string&);
-extern template std::vector<int> numbers_of<int>(const std::string&, const std::string&);
 
 /// The direction "0,0,1", or the axis "z" or "-z"; Error (usage) names the option.
 std::array<double, 3> direction_of(const std::string& text, const std::string& option);
 
+/// --up: a direction as `direction_of` takes it, checked before any work.
+class DirectionOption {
+public:
+    void describe(Parameters& p, const std::string& help);
+    explicit operator bool() const { return !text_.empty(); }
+    /// Empty where none was given.
+    [[nodiscard]] std::optional<std::array<double, 3>> value() const;
+
+private:
+    std::string text_;
+};
+
 /// The annotation of this id, or of this tag if exactly one has it. Throws Error (input) that names the file.
 const Annotation& find_annotation(const AnnotationSet& set, const std::string& name, const std::string& file);
-
-/// The title of a column of quantities such as "area" with the unit they are in, if the set has one.
-std::string in_unit(const std::string& quantity, const AnnotationSet& set);
 
 }  // namespace ostraka

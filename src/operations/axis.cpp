@@ -10,19 +10,17 @@ namespace ostraka {
 
 namespace {
 
-class FindAxis final : public Operation {
-public:
+struct FindAxis final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)").optional();
-        p.output("output", Kind::report, output, "write the axis as poly-lines (.json, .obj)").optional().flag();
+        p.output_option("output", Kind::report, output, "write the axis as poly-lines (.json, .obj)");
         p.options("annotation", names, "id or tag of the part; more than one: all together; a line or points: its circle")
             .words();
         options.describe(p.options);
 
-        p.report.value("found", FieldType::boolean, "axis").value("reason", FieldType::text);
-        p.report.value("point", FieldType::numbers, "through").value("direction", FieldType::numbers, "direction");
-        p.report.structure("polylines").value("quality", FieldType::number, "quality").structure("figures");
+        p.report.values(boolean("found", "axis"), text("reason"), numbers("point", "through"), numbers("direction", "direction"),
+                        any("polylines"), number("quality", "quality"), any("figures"));
     }
 
     void check() const override {
@@ -40,16 +38,12 @@ public:
         tell(report, axis, unit);
         if (!output) return;
         if (extension(output.file()) == ".obj") return output.write(to_obj(axis));
-        Json document(rapidjson::kObjectType);
+        Json document = json_document("axis");
         auto& allocator = document.GetAllocator();
-        add_member(document, "format", "ostraka-axis", allocator);
-        add_member(document, "version", JsonValue(1), allocator);
-        add_member(document, "axis", JsonValue(report.result(), allocator), allocator);
-        add_member(document, "provenance", context.provenance().to_json(allocator), allocator);
+        add_members(document, allocator, "axis", report.result(), "provenance", context.provenance().to_json(allocator));
         output.write(to_text(document));
     }
 
-private:
     [[nodiscard]] Axis find(const Mesh& whole, std::string& unit) const {
         std::vector<Index> faces;
         if (!annotations) {
@@ -78,37 +72,30 @@ private:
     static void tell(Report& report, const Axis& axis, const std::string& unit) {
         auto& allocator = report.allocator();
         const auto three = [](const auto& p) { return std::vector<double>{p.x(), p.y(), p.z()}; };
-        report.value("found", axis.found, axis.found ? "found" : "none");
+        report("found", axis.found, axis.found ? "found" : "none");
         if (axis.found) {
-            report.value("point", three(axis.point));
-            report.value("direction", three(axis.direction));
+            report("point", three(axis.point))("direction", three(axis.direction));
             JsonValue lines(rapidjson::kArrayType);
             for (const auto& line : axis.lines) {
                 JsonValue points(rapidjson::kArrayType);
-                for (const auto& p : line) {
-                    JsonValue point(rapidjson::kArrayType);
-                    for (const double x : three(p)) point.PushBack(x, allocator);
-                    points.PushBack(point, allocator);
-                }
+                for (const auto& p : line) points.PushBack(json_value(three(p), allocator), allocator);
                 lines.PushBack(points, allocator);
             }
-            report.value("polylines", std::move(lines));
+            report("polylines", std::move(lines));
         } else {
-            report.value("reason", axis.reason);
+            report("reason", axis.reason);
             report.answer_no();
         }
-        report.value("quality", axis.quality, number(axis.quality, 4));
+        report("quality", axis.quality, number(axis.quality, 4));
         JsonValue figures(rapidjson::kArrayType);
         for (const auto& figure : axis.figures) {
             const std::string in = figure.unit == "length" ? unit : figure.unit;
-            JsonValue entry(rapidjson::kObjectType);
-            add_member(entry, "name", figure.name, allocator);
-            add_member(entry, "value", JsonValue(figure.value), allocator);
-            if (!in.empty()) add_member(entry, "unit", in, allocator);
+            JsonValue entry = json_object(allocator, "name", figure.name, "value", figure.value);
+            if (!in.empty()) add_members(entry, allocator, "unit", in);
             figures.PushBack(entry, allocator);
             report.people(figure.name, number(figure.value) + (in.empty() ? "" : " " + in));
         }
-        report.value("figures", std::move(figures));
+        report("figures", std::move(figures));
         if (!axis.found) report.line("has no axis: " + axis.reason);
     }
 

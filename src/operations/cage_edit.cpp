@@ -10,13 +10,12 @@ namespace ostraka {
 
 namespace {
 
-class CageEdit final : public Operation {
-public:
+struct CageEdit final : Operation {
     void describe(Parameters& p) override {
         p.input("cage", Kind::cage, cage, "cage file");
         p.input("edit", Kind::edit, edit, "what is done to its vertices (.edit.json): select cageVertices, box or all");
         p.output("output", Kind::cage, output, "cage to write");
-        p.report.value("steps", FieldType::integer).value("moved", FieldType::integer).value("intersects", FieldType::boolean);
+        p.report.values(integer("steps"), integer("moved"), boolean("intersects"));
     }
 
     void run(Context&, Report& report) override {
@@ -33,16 +32,13 @@ public:
             touched = static_cast<std::size_t>(std::count(states.back().touched.begin(), states.back().touched.end(), true));
         }
         const bool intersects = !check_cage(moved, Mesh()).intersections.empty();
-        report.value("steps", states.size());
-        report.value("moved", touched);
-        report.value("intersects", intersects);
-        report.line(std::to_string(states.size()) + (states.size() == 1 ? " step, " : " steps, ") + std::to_string(touched) +
-                    " of " + std::to_string(moved.number_of_vertices()) + " vertices moved");
+        report("steps", states.size())("moved", touched)("intersects", intersects);
+        report.line(counted(states.size(), "step") + ", " + std::to_string(touched) + " of " +
+                    std::to_string(moved.number_of_vertices()) + " vertices moved");
         if (intersects) report.note("the moved cage intersects itself, which deforms a mesh all the same, but may fold it");
         output.write(std::move(moved), cage->extras);
     }
 
-private:
     /// A step may select by annotation, but not here.
     void refuse_annotations(const Json& document) const {
         const JsonValue* steps = document.IsObject() ? find_member(document, "steps") : nullptr;

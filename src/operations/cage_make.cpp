@@ -10,28 +10,21 @@ namespace ostraka {
 
 namespace {
 
-class CageMake final : public Operation {
-public:
+struct CageMake final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file; it may be open");
         p.output("output", Kind::cage, output, "cage to write (.ply, .obj, .off, .stl)");
-        p.input("annotations", Kind::annotations, annotations,
-                "annotations of the mesh (.ant.json): four times the vertices where points, lines and outlines are")
-            .optional()
-            .flag();
+        p.input_option("annotations", Kind::annotations, annotations,
+                       "annotations of the mesh (.ant.json): four times the vertices where points, lines and outlines are");
         options.describe(p.options);
         p.options("levels", levels,
                   "numbers of vertices with commas: nested cages, each around the finer one, written as output-NUMBER",
                   Range{4, 1000000});
         p.options("mirror", mirror, "a mirror-symmetric cage: auto, or a point and a normal as six numbers with commas");
         p.options("detail", details, "annotation=factor: so many times the vertices there, instead; may be given several times");
-        p.report.table("cages", {{"file", FieldType::text, "cage"},
-                                 {"vertices", FieldType::integer, "vertices"},
-                                 {"faces", FieldType::integer, "faces"},
-                                 {"reached", FieldType::boolean},
-                                 {"genus", FieldType::integer, "genus"},
-                                 {"clearance", FieldType::number, "clearance", "length"},
-                                 {"alpha", FieldType::number, "alpha"}});
+        p.report.table("cages", text("file", "cage"), integer("vertices", "vertices"), integer("faces", "faces"),
+                       boolean("reached"), integer("genus", "genus"), number("clearance", "clearance", "length"),
+                       number("alpha", "alpha"));
     }
 
     void check() const override {
@@ -89,7 +82,6 @@ public:
             else output.write_part(ending(sizes[i]), std::move(results[i].cage));
     }
 
-private:
     static std::string ending(std::uint64_t size) { return "-" + std::to_string(size); }
 
     /// Numbers of vertices, from fine to coarse.
@@ -142,8 +134,7 @@ private:
     std::vector<std::string> details;
 };
 
-class CheckOfCage final : public Operation {
-public:
+struct CheckOfCage final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("cage", Kind::cage, cage, "cage file");
@@ -152,7 +143,6 @@ public:
 
     void run(Context&, Report& report) override { report.findings(findings(check_cage(cage->mesh, mesh->mesh), "")); }
 
-private:
     MeshInput mesh, cage;
 };
 

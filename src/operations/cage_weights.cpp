@@ -19,18 +19,16 @@ const Mesh& triangles_of_cage(const MeshInput& cage, Report& report) {
     return cage->mesh;
 }
 
-class CageCoordinates final : public Operation {
-public:
+struct CageCoordinates final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("cage", Kind::cage, cage, "closed mesh around it (polygons are cut into triangles)");
         p.output("output", Kind::coordinates, output, "weights to write (.npy; a .coordinates.json goes beside it)");
         p.options("kind", kind, "mean-value, or green (strictly inside; without constraints only)", Choices(coordinate_kinds()));
         options.describe(p.options);
-        p.report.value("kind", FieldType::text, "coordinates").value("points", FieldType::integer, "points");
-        p.report.value("cageVertices", FieldType::integer, "cage vertices").value("cageFaces", FieldType::integer, "cage faces");
-        p.report.structure("certificate").value("holds", FieldType::boolean, "verdict");
-        p.report.table("", {{"", FieldType::text, "property"}, {"", FieldType::text, "value"}, {"", FieldType::text, "meaning"}});
+        p.report.values(text("kind", "coordinates"), integer("points", "points"), integer("cageVertices", "cage vertices"),
+                        integer("cageFaces", "cage faces"), any("certificate"), boolean("holds", "verdict"));
+        p.report.people_table("", {"property", "value", "meaning"});
     }
 
     void run(Context&, Report& report) override {
@@ -46,15 +44,11 @@ public:
         output.write(std::move(coordinates), subject, around, certificate);
     }
 
-private:
     static void tell(Report& report, const CoordinateCertificate& c) {
-        report.value("kind", c.kind);
-        report.value("points", c.points);
-        report.value("cageVertices", c.vertices);
-        report.value("cageFaces", c.faces);
-        report.value("certificate", to_json(c, report.allocator()));
+        report("kind", c.kind)("points", c.points)("cageVertices", c.vertices)("cageFaces", c.faces)(
+            "certificate", to_json(c, report.allocator()));
         const auto row = [&](const char* property, const std::string& value, const char* meaning) {
-            report.row("").shown("property", property).shown("value", value).shown("meaning", meaning);
+            report.row("", {property, value, meaning});
         };
         const auto share = [](double part) { return number(100 * part, 4) + " %"; };
         const auto on_cage = [&](const char* property, const std::optional<double>& value, const char* meaning) {
@@ -71,8 +65,8 @@ private:
         row("negative sum", number(c.negative_sum), "largest of a point");
         row("locality", number(c.carriers_mean, 4) + " mean, " + std::to_string(c.carriers_most) + " most",
             "weights that carry 95 % at a point");
-        report.value("holds", c.holds(),
-                     c.holds() ? "fit for deformation" : "not fit for deformation: partition or linear precision fails");
+        report("holds", c.holds(),
+               c.holds() ? "fit for deformation" : "not fit for deformation: partition or linear precision fails");
         if (!c.holds()) report.answer_no();
     }
 
@@ -82,8 +76,7 @@ private:
     CoordinateOptions options;
 };
 
-class CageInfluence final : public Operation {
-public:
+struct CageInfluence final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("cage", Kind::cage, cage, "its cage");
@@ -91,14 +84,13 @@ public:
         p.output("output", Kind::mesh, output,
                  "coloured mesh to write (PLY, with the numbers as the property quality): the cage for --annotation, else the "
                  "mesh; without a choice coloured by the number of cage vertices that carry 95 %");
-        p.input("annotations", Kind::annotations, annotations, "annotations of the mesh (.ant.json)").optional().flag();
+        p.input_option("annotations", Kind::annotations, annotations, "annotations of the mesh (.ant.json)");
         p.options("cage-vertex", cage_vertex, "the weights of this cage vertex on the mesh");
         p.options("annotation", annotation, "id or tag: the influence of each cage vertex on its vertices");
         p.options("by", by, "influence on an annotation: largest weight on its vertices, or their sum", Choices{"max", "sum"});
         p.options("threshold", threshold, "list the cage vertices with an influence above this");
-        p.report.value("what", FieldType::text, "what").value("on", FieldType::text, "on the");
-        p.report.value("min", FieldType::number, "min").value("max", FieldType::number, "max");
-        p.report.structure("above").structure("strongest");
+        p.report.values(text("what", "what"), text("on", "on the"), number("min", "min"), number("max", "max"), any("above"),
+                        any("strongest"));
     }
 
     void check() const override {
@@ -129,10 +121,7 @@ public:
             what = "cage vertices that carry 95 %";
         }
         const auto [low, high] = std::minmax_element(values.begin(), values.end());
-        report.value("what", what);
-        report.value("on", on_cage ? "cage" : "mesh");
-        report.value("min", *low);
-        report.value("max", *high);
+        report("what", what)("on", on_cage ? "cage" : "mesh")("min", *low)("max", *high);
         if (on_cage) list(report, values);
         const ColourScale scale = scale_of({&values}, "the weights");
         MeshExtras extras;
@@ -145,21 +134,20 @@ public:
         output.write(on_cage ? around : subject, std::move(extras), std::move(writing));
     }
 
-private:
     /// Cage vertices above the threshold, or the ten strongest.
     void list(Report& report, const std::vector<double>& values) const {
         std::vector<Index> order(values.size());
         std::iota(order.begin(), order.end(), Index{0});
         std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return values[a] > values[b]; });
-        JsonValue chosen(rapidjson::kArrayType);
-        std::string text;
+        std::vector<Index> chosen;
+        std::vector<std::string> texts;
         for (const Index v : order) {
-            if (threshold ? !(values[v] > *threshold) : chosen.Size() == 10) break;
-            text += (chosen.Empty() ? "" : ", ") + std::to_string(v);
-            chosen.PushBack(v, report.allocator());
+            if (threshold ? !(values[v] > *threshold) : chosen.size() == 10) break;
+            chosen.push_back(v);
+            texts.push_back(std::to_string(v));
         }
-        report.value(threshold ? "above" : "strongest", std::move(chosen));
-        report.people(threshold ? "cage vertices above" : "strongest cage vertices", text.empty() ? "none" : text);
+        report(threshold ? "above" : "strongest", chosen);
+        report.people(threshold ? "cage vertices above" : "strongest cage vertices", texts.empty() ? "none" : joined(texts));
     }
 
     MeshInput mesh, cage;

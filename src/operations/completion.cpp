@@ -1,6 +1,7 @@
 #include "ostraka/operations/pages.h"
 
 #include <algorithm>
+#include <map>
 #include <sstream>
 
 namespace ostraka {
@@ -9,33 +10,22 @@ namespace {
 
 /// Endings of the files of a kind; none: any file.
 std::vector<std::string> endings_of(Kind kind) {
-    switch (kind) {
-        case Kind::mesh:
-        case Kind::cage:
-            return {".ply", ".obj", ".off", ".stl", ".glb"};
-        case Kind::annotations:
-            return {".ant.json", ".ant"};
-        case Kind::graph:
-            return {".graph.json"};
-        case Kind::edit:
-            return {".edit.json", ".json"};
-        case Kind::recipe:
-            return {".recipe.json"};
-        case Kind::rules:
-            return {".rules.json"};
-        case Kind::template_package:
-            return {".template.json"};
-        case Kind::vocabulary:
-            return {".vocabulary.json", ".ttl", ".rdf"};
-        case Kind::shape_class:
-            return {".class.json"};
-        case Kind::assembly:
-            return {".assembly.json"};
-        case Kind::coordinates:
-            return {".npy"};
-        default:
-            return {};
-    }
+    static const std::map<Kind, std::vector<std::string>> endings{
+        {Kind::mesh, {".ply", ".obj", ".off", ".stl", ".glb"}},
+        {Kind::cage, {".ply", ".obj", ".off", ".stl", ".glb"}},
+        {Kind::annotations, {".ant.json", ".ant"}},
+        {Kind::graph, {".graph.json"}},
+        {Kind::edit, {".edit.json", ".json"}},
+        {Kind::recipe, {".recipe.json"}},
+        {Kind::rules, {".rules.json"}},
+        {Kind::template_package, {".template.json"}},
+        {Kind::vocabulary, {".vocabulary.json", ".ttl", ".rdf"}},
+        {Kind::shape_class, {".class.json"}},
+        {Kind::assembly, {".assembly.json"}},
+        {Kind::coordinates, {".npy"}},
+    };
+    const auto known = endings.find(kind);
+    return known == endings.end() ? std::vector<std::string>() : known->second;
 }
 
 /// Files and folders whose names begin with what was written.

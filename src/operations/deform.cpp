@@ -1,17 +1,15 @@
 // deform: an edit of a shape that keeps what its annotations and relations ask for.
-#include "operations.h"
+#include "constraint_report.h"
 
 #include "ostraka/geom/with_points.h"
 #include "ostraka/io/diagnose.h"
 #include "ostraka/measure/measure.h"
-#include "ostraka/semantic/deform.h"
 
 namespace ostraka {
 
 namespace {
 
-class Deform final : public Operation {
-public:
+struct Deform final : Operation {
     void describe(Parameters& p) override {
         p.input("template", Kind::template_package, bundle,
                 "template (.template.json), with its graph, cage and coordinates, in place of mesh and annotations")
@@ -22,42 +20,23 @@ public:
         p.output("output", Kind::mesh, output, "the deformed mesh to write");
         p.order({"mesh", "annotations", "edit", "output"});
         p.order({"template", "edit", "output"});
-        p.input("graph", Kind::graph, graph,
-                "relationships (.graph.json): those that are constraints are kept; instead of the template's")
-            .optional()
-            .flag();
-        p.input("cage", Kind::cage, cage, "cage whose vertices are the handles; without it, the mesh's own are")
-            .optional()
-            .flag();
-        p.input("weights", Kind::coordinates, weights, "weights of 'cage weights' (.npy)").optional().flag();
-        p.output("annotations-out", Kind::annotations, annotations_out, "annotations of the deformed mesh, measures taken anew")
-            .optional()
-            .flag();
-        p.output("cage-out", Kind::cage, cage_out, "the cage after the deformation").optional().flag();
+        p.input_option("graph", Kind::graph, graph,
+                       "relationships (.graph.json): those that are constraints are kept; instead of the template's");
+        p.input_option("cage", Kind::cage, cage, "cage whose vertices are the handles; without it, the mesh's own are");
+        p.input_option("weights", Kind::coordinates, weights, "weights of 'cage weights' (.npy)");
+        p.output_option("annotations-out", Kind::annotations, annotations_out,
+                        "annotations of the deformed mesh, measures taken anew");
+        p.output_option("cage-out", Kind::cage, cage_out, "the cage after the deformation");
         p.options("states", states, "also write the shape after each step of the edit, before constraints: output-step1 ...");
         options.describe(p.options);
         tolerances.describe(p.options);
-        p.report.value("acceptable", FieldType::boolean)
-            .value("iterations", FieldType::integer)
-            .value("rounds", FieldType::integer);
-        p.report.value("stopped", FieldType::text).value("passes", FieldType::integer);
-        p.report.value("selfIntersections", FieldType::integer);
-        p.report.table("constraints", {{"id", FieldType::integer, "id"},
-                                       {"type", FieldType::text, "constraint"},
-                                       {"weight", FieldType::number, "weight"},
-                                       {"hard", FieldType::boolean},
-                                       {"used", FieldType::boolean},
-                                       {"before", FieldType::text},
-                                       {"verdict", FieldType::text, "verdict"},
-                                       {"text", FieldType::text},
-                                       {"deviations", FieldType::any, "how well"},
-                                       {"residual.mean", FieldType::number},
-                                       {"residual.median", FieldType::number},
-                                       {"residual.min", FieldType::number},
-                                       {"residual.max", FieldType::number},
-                                       {"residual.greatest distance", FieldType::number},
-                                       {"residual.constraints", FieldType::integer}});
-        p.report.table("conflicts", {{"id", FieldType::integer}, {"freed", FieldType::numbers}, {"deviations", FieldType::any}});
+        p.report.values(boolean("acceptable"), integer("iterations"), integer("rounds"), text("stopped"), integer("passes"),
+                        integer("selfIntersections"));
+        p.report.table("constraints", integer("id", "id"), text("type", "constraint"), number("weight", "weight"),
+                       boolean("hard"), boolean("used"), text("before"), text("verdict", "verdict"), text("text"),
+                       any("deviations", "how well"), number("residual.mean"), number("residual.median"), number("residual.min"),
+                       number("residual.max"), number("residual.greatest distance"), integer("residual.constraints"));
+        p.report.table("conflicts", integer("id"), numbers("freed"), any("deviations"));
     }
 
     void check() const override {
@@ -116,12 +95,11 @@ public:
                                     (space.cage != nullptr ? " cage vertices" : " vertices");
         for (std::size_t i = 0; i < result.selected.size(); ++i)
             report.note("step " + std::to_string(i + 1) + ": " + std::to_string(result.selected[i]) + " of " + handles);
-        report.value("selfIntersections", crossing);
+        report("selfIntersections", crossing);
         tell(report, result);
         if (!result.acceptable) report.answer_no();
     }
 
-private:
     /// What is deformed, from files of its own or from a template.
     struct Subject {
         const MeshFile* object = nullptr;
@@ -170,31 +148,25 @@ private:
     }
 
     static JsonValue deviation_json(const Deviation& d, std::optional<double> before, JsonAllocator& allocator) {
-        JsonValue deviation(rapidjson::kObjectType);
-        add_member(deviation, "quantity", d.quantity, allocator);
-        if (before) add_member(deviation, "before", JsonValue(*before), allocator);
-        add_member(deviation, "value", JsonValue(*d.value), allocator);
-        add_member(deviation, "tolerance", JsonValue(*d.tolerance), allocator);
-        add_member(deviation, "unit", d.unit, allocator);
+        JsonValue deviation = json_object(allocator, "quantity", d.quantity);
+        if (before) add_members(deviation, allocator, "before", *before);
+        add_members(deviation, allocator, "value", *d.value, "tolerance", *d.tolerance, "unit", d.unit);
         return deviation;
     }
 
     static void tell(Report& report, const DeformResult& result) {
-        report.value("acceptable", result.acceptable);
-        report.value("iterations", result.summary.iterations);
-        report.value("rounds", result.rounds);
+        report("acceptable", result.acceptable)("iterations", result.summary.iterations)("rounds", result.rounds);
         const std::string stopped = result.passes > 0 ? std::string(ostraka::describe(result.summary.stop)) : "nothing to solve";
-        report.value("stopped", stopped);
-        report.value("passes", result.passes);
+        report("stopped", stopped)("passes", result.passes);
         report.empty_table("constraints", false);
         for (const ConstraintReport& constraint : result.constraints) tell(report, constraint);
         if (result.passes > 0)
-            report.line((result.rounds > 0 ? std::to_string(result.rounds) + (result.rounds == 1 ? " round" : " rounds") +
-                                                 " for the hard constraints, the last with "
-                                           : "") +
-                        std::to_string(result.summary.iterations) +
-                        (result.summary.iterations == 1 ? " iteration: " : " iterations: ") + stopped +
-                        (result.passes > 1 ? "; " + std::to_string(result.passes) + " passes" : ""));
+            report.line(
+                (result.rounds > 0
+                     ? counted(static_cast<std::size_t>(result.rounds), "round") + " for the hard constraints, the last with "
+                     : "") +
+                std::to_string(result.summary.iterations) + (result.summary.iterations == 1 ? " iteration: " : " iterations: ") +
+                stopped + (result.passes > 1 ? "; " + std::to_string(result.passes) + " passes" : ""));
         report.empty_table("conflicts");
         for (const ConstraintConflict& conflict : result.conflicts) tell(report, result, conflict);
         if (result.untried > 0)
@@ -206,28 +178,22 @@ private:
 
     static void tell(Report& report, const ConstraintReport& constraint) {
         JsonValue deviations(rapidjson::kArrayType);
-        std::string words;
-        for (std::size_t i = 0; i < constraint.deviations.size(); ++i) {
-            const Deviation& d = constraint.deviations[i];
-            const double before = i < constraint.before_values.size() ? constraint.before_values[i] : 0;
-            deviations.PushBack(deviation_json(d, before, report.allocator()), report.allocator());
-            words += (words.empty() ? "" : "; ") + d.quantity + " " + number(*d.value, 4) + " (was " + number(before, 4) +
-                     ", at most " + number(*d.tolerance, 4) + ")" + (d.unit.empty() ? "" : " " + d.unit);
-        }
-        if (!constraint.text.empty()) words += (words.empty() ? "" : "; ") + constraint.text;
+        for (std::size_t i = 0; i < constraint.deviations.size(); ++i)
+            deviations.PushBack(
+                deviation_json(constraint.deviations[i], i < constraint.before_values.size() ? constraint.before_values[i] : 0,
+                               report.allocator()),
+                report.allocator());
+        std::vector<std::string> words = deviation_texts(constraint);
+        if (!constraint.text.empty()) words.push_back(constraint.text);
         Report::Row row = report.row("constraints");
         row("id", constraint.id)("type", constraint.type);
         row("weight", constraint.weight, number(constraint.weight) + (constraint.hard ? ", hard" : ""));
         row("hard", constraint.hard)("used", constraint.used)("before", to_string(constraint.before));
         row("verdict", to_string(constraint.verdict), constraint.used ? to_string(constraint.verdict) : "left out");
-        row("text", constraint.text)("deviations", std::move(deviations)).shown("deviations", words);
-        for (const auto& [name, value] : {std::pair{"mean", constraint.mean},
-                                          {"median", constraint.median},
-                                          {"min", constraint.least},
-                                          {"max", constraint.most},
-                                          {"greatest distance", constraint.distance}})
-            row("residual." + std::string(name), value);
-        row("residual.constraints", constraint.low_level);
+        row("text", constraint.text)("deviations", std::move(deviations)).shown("deviations", joined(words, "; "));
+        row("residual.mean", constraint.mean)("residual.median", constraint.median)("residual.min", constraint.least)(
+            "residual.max", constraint.most)("residual.greatest distance", constraint.distance)("residual.constraints",
+                                                                                                constraint.low_level);
     }
 
     /// What fights with what.
@@ -237,23 +203,21 @@ private:
                 if (one.id == id) return std::to_string(id) + " (" + one.type + ")";
             return std::to_string(id);
         };
-        JsonValue freed(rapidjson::kArrayType), deviations(rapidjson::kArrayType);
-        std::string others, gives;
-        for (const int id : conflict.freed) {
-            freed.PushBack(id, report.allocator());
-            others += (others.empty() ? "" : ", ") + name(id);
-        }
+        JsonValue deviations(rapidjson::kArrayType);
+        std::vector<std::string> others, gives;
+        for (const int id : conflict.freed) others.push_back(name(id));
         for (const Deviation& d : conflict.deviations) {
             deviations.PushBack(deviation_json(d, {}, report.allocator()), report.allocator());
             if (*d.value > *d.tolerance)
-                gives += (gives.empty() ? "" : "; ") + d.quantity + " " + number(*d.value, 4) + " instead of at most " +
-                         number(*d.tolerance, 4) + (d.unit.empty() ? "" : " " + d.unit);
+                gives.push_back(d.quantity + " " + number(*d.value, 4) + " instead of at most " + number(*d.tolerance, 4) +
+                                (d.unit.empty() ? "" : " " + d.unit));
         }
         const std::string id = std::to_string(conflict.id);
-        report.row("conflicts")("id", conflict.id)("freed", std::move(freed))("deviations", std::move(deviations));
-        report.line(printable(name(conflict.id) + " fights with " + others + ": if " + id + " is left out, " +
-                              (conflict.freed.size() == 1 ? "the other holds" : "the others hold") +
-                              (gives.empty() ? ", and so does " + id : "; " + id + " would have to give: " + gives)));
+        report.row("conflicts")("id", conflict.id)("freed", conflict.freed)("deviations", std::move(deviations));
+        report.line(
+            printable(name(conflict.id) + " fights with " + joined(others) + ": if " + id + " is left out, " +
+                      (conflict.freed.size() == 1 ? "the other holds" : "the others hold") +
+                      (gives.empty() ? ", and so does " + id : "; " + id + " would have to give: " + joined(gives, "; "))));
     }
 
     TemplateInput bundle;

@@ -1,154 +1,118 @@
 #include "diagnosis.h"
 
+#include "ostraka/core/json_build.h"
+#include "ostraka/core/words.h"
+
 #include <algorithm>
 
 namespace ostraka {
 
+using namespace fields;
+
 namespace {
 
-constexpr std::size_t listed = 100;
+constexpr std::size_t most_listed = 100;
 
-JsonValue whole(std::size_t value) { return JsonValue(static_cast<std::uint64_t>(value)); }
-
-template <class Range>
-JsonValue numbers(const Range& values, JsonAllocator& allocator) {
-    JsonValue list(rapidjson::kArrayType);
-    for (const double value : values) list.PushBack(value, allocator);
-    return list;
-}
+struct DiagnosisCount {
+    const char* name;
+    std::size_t MeshDiagnosis::*count;
+};
+using M = MeshDiagnosis;
+constexpr DiagnosisCount diagnosis_counts[]{
+    {"vertices", &M::vertices},
+    {"edges", &M::edges},
+    {"triangles", &M::triangles},
+    {"isolated_vertices", &M::isolated_vertices},
+    {"duplicate_vertices", &M::duplicate_vertices},
+    {"repeated_corner_triangles", &M::repeated_corners},
+    {"degenerate_triangles", &M::degenerate_triangles},
+    {"thin_triangles", &M::thin_triangles},
+    {"duplicate_triangles", &M::duplicate_triangles},
+    {"border_edges", &M::border_edges},
+    {"nonmanifold_edges", &M::nonmanifold_edges},
+    {"nonmanifold_vertices", &M::nonmanifold_vertices},
+    {"misoriented_edges", &M::misoriented_edges},
+    {"nonorientable_components", &M::nonorientable_components},
+    {"inside_out_components", &M::inside_out_components},
+    {"cavities", &M::cavities},
+};
 
 JsonValue component_json(const ComponentDiagnosis& part, JsonAllocator& allocator) {
-    JsonValue value(rapidjson::kObjectType);
-    add_member(value, "first_vertex", whole(part.first_vertex), allocator);
-    add_member(value, "vertices", whole(part.vertices), allocator);
-    add_member(value, "triangles", whole(part.triangles), allocator);
-    add_member(value, "closed", JsonValue(part.closed()), allocator);
-    add_member(value, "manifold", JsonValue(part.manifold()), allocator);
-    add_member(value, "orientable", JsonValue(part.orientable), allocator);
-    add_member(value, "inside_out", JsonValue(part.inside_out), allocator);
-    add_member(value, "cavity", JsonValue(part.cavity), allocator);
-    add_member(value, "euler", JsonValue(static_cast<std::int64_t>(part.euler())), allocator);
-    add_member(value, "genus", part.genus() < 0 ? JsonValue() : JsonValue(static_cast<std::int64_t>(part.genus())), allocator);
-    add_member(value, "area", JsonValue(part.area), allocator);
-    add_member(value, "volume", part.closed() ? JsonValue(part.volume) : JsonValue(), allocator);
-    return value;
+    return json_object(allocator, "first_vertex", part.first_vertex, "vertices", part.vertices, "triangles", part.triangles,
+                       "closed", part.closed(), "manifold", part.manifold(), "orientable", part.orientable, "inside_out",
+                       part.inside_out, "cavity", part.cavity, "euler", part.euler(), "genus",
+                       part.genus() < 0 ? std::nullopt : std::optional(part.genus()), "area", part.area, "volume",
+                       part.closed() ? std::optional(part.volume) : std::nullopt);
 }
 
 JsonValue size_json(const MeshDiagnosis& d, JsonAllocator& allocator) {
-    JsonValue size(rapidjson::kObjectType);
-    add_member(size, "area", JsonValue(d.area), allocator);
-    add_member(size, "volume", JsonValue(d.volume), allocator);
+    JsonValue size = json_object(allocator, "area", d.area, "volume", d.volume);
     if (!d.closed() || !d.oriented())
-        add_member(size, "volume_note", "a signed sum only: the mesh is not closed and oriented", allocator);
-    add_member(size, "shortest_edge", JsonValue(d.shortest_edge), allocator);
-    add_member(size, "mean_edge", JsonValue(d.mean_edge), allocator);
-    add_member(size, "longest_edge", JsonValue(d.longest_edge), allocator);
-    if (d.edges > 0) {
-        JsonValue box(rapidjson::kObjectType), oriented(rapidjson::kObjectType), axes(rapidjson::kArrayType);
-        add_member(box, "min", numbers(std::array{d.box.xmin(), d.box.ymin(), d.box.zmin()}, allocator), allocator);
-        add_member(box, "max", numbers(std::array{d.box.xmax(), d.box.ymax(), d.box.zmax()}, allocator), allocator);
-        add_member(size, "box", std::move(box), allocator);
-        add_member(oriented, "centre", numbers(d.oriented_box.centre, allocator), allocator);
-        for (const auto& axis : d.oriented_box.axes) axes.PushBack(numbers(axis, allocator), allocator);
-        add_member(oriented, "axes", std::move(axes), allocator);
-        add_member(oriented, "sides", numbers(d.oriented_box.sides, allocator), allocator);
-        add_member(size, "oriented_box", std::move(oriented), allocator);
-    }
-    add_member(size, "diagonal", JsonValue(d.diagonal), allocator);
-    JsonValue unit(rapidjson::kObjectType);
-    add_member(unit, "guess", d.unit.unit, allocator);
-    add_member(unit, "reason", d.unit.reason, allocator);
-    add_member(size, "unit", std::move(unit), allocator);
+        add_members(size, allocator, "volume_note", "a signed sum only: the mesh is not closed and oriented");
+    add_members(size, allocator, "shortest_edge", d.shortest_edge, "mean_edge", d.mean_edge, "longest_edge", d.longest_edge);
+    if (d.edges > 0)
+        add_members(
+            size, allocator, "box",
+            json_object(allocator, "min", std::array{d.box.xmin(), d.box.ymin(), d.box.zmin()}, "max",
+                        std::array{d.box.xmax(), d.box.ymax(), d.box.zmax()}),
+            "oriented_box",
+            json_object(allocator, "centre", d.oriented_box.centre, "axes", d.oriented_box.axes, "sides", d.oriented_box.sides));
+    add_members(size, allocator, "diagonal", d.diagonal, "unit",
+                json_object(allocator, "guess", d.unit.unit, "reason", d.unit.reason));
     return size;
 }
 
 }  // namespace
 
 JsonValue to_json(const MeshDiagnosis& d, JsonAllocator& allocator) {
-    JsonValue result(rapidjson::kObjectType), defects(rapidjson::kArrayType), components(rapidjson::kArrayType),
-        loops(rapidjson::kArrayType), pairs(rapidjson::kArrayType);
-    for (const auto& defect : d.defects()) defects.PushBack(json_string(defect, allocator), allocator);
-    add_member(result, "sound", JsonValue(d.defects().empty()), allocator);
-    add_member(result, "defects", std::move(defects), allocator);
-    for (const auto& [name, count] :
-         std::initializer_list<std::pair<const char*, std::size_t>>{{"vertices", d.vertices},
-                                                                    {"edges", d.edges},
-                                                                    {"triangles", d.triangles},
-                                                                    {"isolated_vertices", d.isolated_vertices},
-                                                                    {"duplicate_vertices", d.duplicate_vertices},
-                                                                    {"repeated_corner_triangles", d.repeated_corners},
-                                                                    {"degenerate_triangles", d.degenerate_triangles},
-                                                                    {"thin_triangles", d.thin_triangles},
-                                                                    {"duplicate_triangles", d.duplicate_triangles},
-                                                                    {"border_edges", d.border_edges},
-                                                                    {"nonmanifold_edges", d.nonmanifold_edges},
-                                                                    {"nonmanifold_vertices", d.nonmanifold_vertices},
-                                                                    {"misoriented_edges", d.misoriented_edges},
-                                                                    {"nonorientable_components", d.nonorientable_components},
-                                                                    {"inside_out_components", d.inside_out_components},
-                                                                    {"cavities", d.cavities}})
-        add_member(result, name, whole(count), allocator);
-    add_member(result, "closed", JsonValue(d.closed()), allocator);
-    add_member(result, "manifold", JsonValue(d.manifold()), allocator);
-    add_member(result, "oriented", JsonValue(d.oriented()), allocator);
-    add_member(result, "euler", JsonValue(static_cast<std::int64_t>(d.euler())), allocator);
-    add_member(result, "self_intersections", d.self_intersections_checked ? whole(d.self_intersections) : JsonValue(), allocator);
-    add_member(result, "self_intersections_complete", JsonValue(d.self_intersections_complete), allocator);
-    for (const auto& [a, b] : d.self_intersection_examples) {
-        JsonValue pair(rapidjson::kArrayType);
-        pair.PushBack(a, allocator).PushBack(b, allocator);
-        pairs.PushBack(std::move(pair), allocator);
-    }
-    add_member(result, "self_intersection_examples", std::move(pairs), allocator);
-    add_member(result, "component_count", whole(d.components.size()), allocator);
-    for (std::size_t i = 0; i < std::min(listed, d.components.size()); ++i)
+    JsonValue result = json_object(allocator, "sound", d.defects().empty(), "defects", d.defects());
+    JsonValue components(rapidjson::kArrayType), loops(rapidjson::kArrayType), pairs(rapidjson::kArrayType);
+    for (const auto& [name, count] : diagnosis_counts) add_members(result, allocator, name, d.*count);
+    for (const auto& [a, b] : d.self_intersection_examples) pairs.PushBack(json_value(std::array{a, b}, allocator), allocator);
+    for (std::size_t i = 0; i < std::min(most_listed, d.components.size()); ++i)
         components.PushBack(component_json(d.components[i], allocator), allocator);
-    add_member(result, "components", std::move(components), allocator);
-    add_member(result, "border_loop_count", whole(d.border_loops.size()), allocator);
-    for (std::size_t i = 0; i < std::min(listed, d.border_loops.size()); ++i) {
-        JsonValue loop(rapidjson::kObjectType);
-        add_member(loop, "edges", whole(d.border_loops[i].edges), allocator);
-        add_member(loop, "length", JsonValue(d.border_loops[i].length), allocator);
-        loops.PushBack(std::move(loop), allocator);
-    }
-    add_member(result, "border_loops", std::move(loops), allocator);
-    add_member(result, "size", size_json(d, allocator), allocator);
+    for (std::size_t i = 0; i < std::min(most_listed, d.border_loops.size()); ++i)
+        loops.PushBack(json_object(allocator, "edges", d.border_loops[i].edges, "length", d.border_loops[i].length), allocator);
+    add_members(result, allocator, "closed", d.closed(), "manifold", d.manifold(), "oriented", d.oriented(), "euler", d.euler(),
+                "self_intersections", d.self_intersections_checked ? std::optional(d.self_intersections) : std::nullopt,
+                "self_intersections_complete", d.self_intersections_complete, "self_intersection_examples", std::move(pairs),
+                "component_count", d.components.size(), "components", std::move(components), "border_loop_count",
+                d.border_loops.size(), "border_loops", std::move(loops), "size", size_json(d, allocator));
     return result;
 }
 
 std::vector<std::pair<std::string, std::string>> rows_of(const MeshDiagnosis& d) {
     std::vector<std::pair<std::string, std::string>> rows;
-    const auto add = [&](const char* name, const std::string& value) { rows.emplace_back(name, value); };
-    const auto count = [&](const char* name, std::size_t value) { add(name, std::to_string(value)); };
+    const auto add = [&](const char* name, const ReportText& value) { rows.emplace_back(name, value.text); };
     const auto triple = [](const std::array<double, 3>& v) { return number(v[0]) + " x " + number(v[1]) + " x " + number(v[2]); };
-    count("vertices", d.vertices);
-    count("edges", d.edges);
-    count("triangles", d.triangles);
-    count("components", d.components.size());
-    add("Euler number", std::to_string(d.euler()));
-    std::string genus;
-    for (std::size_t i = 0; i < std::min<std::size_t>(8, d.components.size()); ++i)
-        genus += (i > 0 ? ", " : "") + (d.components[i].genus() < 0 ? std::string("-") : std::to_string(d.components[i].genus()));
-    add("genus", genus + (d.components.size() > 8 ? ", ..." : ""));
-    count("border loops", d.border_loops.size());
-    if (!d.border_loops.empty()) {
-        std::string loops;
-        for (std::size_t i = 0; i < std::min<std::size_t>(5, d.border_loops.size()); ++i)
-            loops += (i > 0 ? ", " : "") + std::string("length ") + number(d.border_loops[i].length) + " in " +
-                     std::to_string(d.border_loops[i].edges) + " edges";
-        add("the longest", loops);
-    }
-    count("non-manifold edges", d.nonmanifold_edges);
-    count("non-manifold vertices", d.nonmanifold_vertices);
-    count("inconsistently oriented edges", d.misoriented_edges);
-    if (d.nonorientable_components > 0) count("components that cannot be oriented", d.nonorientable_components);
-    count("components inside out", d.inside_out_components);
-    if (d.cavities > 0) count("cavities", d.cavities);
-    count("duplicate triangles", d.duplicate_triangles);
-    count("triangles without area", d.degenerate_triangles + d.repeated_corners);
-    count("thin triangles", d.thin_triangles);
-    count("duplicate vertices", d.duplicate_vertices);
-    count("isolated vertices", d.isolated_vertices);
+    const auto first = [](const auto& list, std::size_t most, const auto& text_of) {
+        std::vector<std::string> texts;
+        for (std::size_t i = 0; i < std::min(most, list.size()); ++i) texts.push_back(text_of(list[i]));
+        return joined(texts);
+    };
+    const auto genus = [](const auto& part) { return part.genus() < 0 ? "-" : std::to_string(part.genus()); };
+    const auto loop = [](const auto& one) {
+        return "length " + number(one.length) + " in " + std::to_string(one.edges) + " edges";
+    };
+    add("vertices", d.vertices);
+    add("edges", d.edges);
+    add("triangles", d.triangles);
+    add("components", d.components.size());
+    add("Euler number", d.euler());
+    add("genus", first(d.components, 8, genus) + (d.components.size() > 8 ? ", ..." : ""));
+    add("border loops", d.border_loops.size());
+    if (!d.border_loops.empty()) add("the longest", first(d.border_loops, 5, loop));
+    add("non-manifold edges", d.nonmanifold_edges);
+    add("non-manifold vertices", d.nonmanifold_vertices);
+    add("inconsistently oriented edges", d.misoriented_edges);
+    if (d.nonorientable_components > 0) add("components that cannot be oriented", d.nonorientable_components);
+    add("components inside out", d.inside_out_components);
+    if (d.cavities > 0) add("cavities", d.cavities);
+    add("duplicate triangles", d.duplicate_triangles);
+    add("triangles without area", d.degenerate_triangles + d.repeated_corners);
+    add("thin triangles", d.thin_triangles);
+    add("duplicate vertices", d.duplicate_vertices);
+    add("isolated vertices", d.isolated_vertices);
     add("self-intersections", !d.self_intersections_checked
                                   ? "not checked"
                                   : (d.self_intersections_complete ? "" : "at least ") + std::to_string(d.self_intersections));
@@ -162,8 +126,7 @@ std::vector<std::pair<std::string, std::string>> rows_of(const MeshDiagnosis& d)
     }
     add("diagonal", number(d.diagonal));
     add("unit, a guess", d.unit.unit + " (" + d.unit.reason + ")");
-    std::string verdict;
-    for (const auto& defect : d.defects()) verdict += (verdict.empty() ? "" : "; ") + defect;
+    const std::string verdict = joined(d.defects(), "; ");
     add("verdict", verdict.empty() ? (d.self_intersections_checked ? "closed, oriented, manifold, no self-intersection"
                                                                    : "closed, oriented, manifold; self-intersections not checked")
                                    : verdict);
@@ -171,22 +134,16 @@ std::vector<std::pair<std::string, std::string>> rows_of(const MeshDiagnosis& d)
 }
 
 void declare_diagnosis(ReportLayout& layout) {
-    layout.value("sound", FieldType::boolean).value("defects", FieldType::texts);
-    for (const char* name :
-         {"vertices", "edges", "triangles", "isolated_vertices", "duplicate_vertices", "repeated_corner_triangles",
-          "degenerate_triangles", "thin_triangles", "duplicate_triangles", "border_edges", "nonmanifold_edges",
-          "nonmanifold_vertices", "misoriented_edges", "nonorientable_components", "inside_out_components", "cavities", "euler",
-          "component_count", "border_loop_count"})
-        layout.value(name, FieldType::integer);
-    for (const char* name : {"closed", "manifold", "oriented", "self_intersections_complete"})
-        layout.value(name, FieldType::boolean);
-    for (const char* name : {"self_intersections", "self_intersection_examples", "components", "border_loops", "size"})
-        layout.structure(name);
+    layout.values(boolean("sound"), texts("defects"));
+    for (const auto& one : diagnosis_counts) layout.values(integer(one.name));
+    layout.values(integer("euler"), integer("component_count"), integer("border_loop_count"), boolean("closed"),
+                  boolean("manifold"), boolean("oriented"), boolean("self_intersections_complete"), any("self_intersections"),
+                  any("self_intersection_examples"), any("components"), any("border_loops"), any("size"));
 }
 
 void add_diagnosis(Report& report, const MeshDiagnosis& diagnosis) {
     JsonValue all = to_json(diagnosis, report.allocator());
-    for (auto& member : all.GetObject()) report.value(member.name.GetString(), std::move(member.value));
+    for (auto& member : all.GetObject()) report(member.name.GetString(), std::move(member.value));
 }
 
 }  // namespace ostraka

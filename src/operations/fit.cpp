@@ -1,5 +1,5 @@
 // fit: from fragments to the whole object.
-#include "operations.h"
+#include "constraint_report.h"
 
 #include "ostraka/measure/measure.h"
 #include "ostraka/reconstruction/assembly.h"
@@ -15,8 +15,7 @@ namespace ostraka {
 
 namespace {
 
-class Fit final : public Operation {
-public:
+struct Fit final : Operation {
     void describe(Parameters& p) override {
         p.input("template", Kind::template_package, known, "template of the object's class (.template.json)");
         p.input(
@@ -27,28 +26,21 @@ public:
         p.output("output", Kind::folder, output,
                  "folder for completed.ply, completed.ant.json and fit.assembly.json; made if it is missing")
             .flag();
-        p.input("assembly", Kind::assembly, assembly, "an assembly: its matches of annotations with \"stated\": true hold")
-            .optional()
-            .flag();
-        p.input("class", Kind::shape_class, class_file,
-                "a class learnt with this template (NAME.class.json of 'template learn'): what no fragment shows is as in its "
-                "members that look so where one does; thresholds that are not told are those of its members")
-            .optional()
-            .flag();
+        p.input_option("assembly", Kind::assembly, assembly,
+                       "an assembly: its matches of annotations with \"stated\": true hold");
+        p.input_option(
+            "class", Kind::shape_class, class_file,
+            "a class learnt with this template (NAME.class.json of 'template learn'): what no fragment shows is as in its "
+            "members that look so where one does; thresholds that are not told are those of its members");
         p.options("fresh", fresh, "search poses anew, whatever an earlier fit in the folder found").unrecorded();
         p.options("placed", placed, "also write each fragment where it lies: NAME.placed.ply");
         options.describe(p.options);
         reading.describe(p.options);
         for (const char* name : {"residual", "scale-tolerance", "slack"}) thresholds[name] = p.options.find(name);
         p.report.schema = "assembly";
-        const auto people = [](const std::vector<const char*>& titles) {
-            std::vector<Field> fields;
-            for (const char* title : titles) fields.push_back({"", FieldType::text, title});
-            return fields;
-        };
-        p.report.table("", people({"fragment", "place", "landmarks", "residual", "own scale", "wrong landmarks"}), "fragments");
-        p.report.table("", people({"breaks", "turn, degrees", "contact %", "rim %", "residual", "confidence", "turn"}), "joints");
-        p.report.table("", people({"id", "constraint", "verdict", "how well"}), "constraints");
+        p.report.people_table("fragments", {"fragment", "place", "landmarks", "residual", "own scale", "wrong landmarks"});
+        p.report.people_table("joints", {"breaks", "turn, degrees", "contact %", "rim %", "residual", "confidence", "turn"});
+        p.report.people_table("constraints", {"id", "constraint", "verdict", "how well"});
     }
 
     void check() const override {
@@ -108,7 +100,6 @@ public:
         if (result.verdict != Compatibility::compatible) report.answer_no();
     }
 
-private:
     /// What a person stated of each.
     std::vector<std::vector<StatedMatch>> read_fragments(Context& context, Report& report) {
         std::vector<std::vector<StatedMatch>> stated;
@@ -157,37 +148,31 @@ private:
     }
 
     void write(Context& context, Report& report, const Reconstruction& result, const PoseSearches& searches) const {
-        const Provenance provenance = context.provenance();
-        const auto write_document = [&](const char* name, JsonValue&& content, Json& document) {
-            add_member(content, "provenance", provenance.to_json(document.GetAllocator()), document.GetAllocator());
-            write_json(output.in(name), content);
-        };
         Json document;
         JsonValue content = assembly_to_json(result, names, document.GetAllocator());
-        add_member(content, "thresholds", thresholds_to_json(used, document.GetAllocator()), document.GetAllocator());
+        add_members(content, document.GetAllocator(), "thresholds", thresholds_to_json(used, document.GetAllocator()));
         report.values(content);
-        write_document("fit.assembly.json", std::move(content), document);
-        if (!searches.empty()) write_document(searches_file, searches.to_json(document.GetAllocator()), document);
-        WriteOptions how;
-        how.comment = provenance.to_line();
+        output.write("fit.assembly.json", content);
+        if (!searches.empty()) output.write(searches_file, searches.to_json(document.GetAllocator()));
         if (!result.points.empty()) {
-            write_object(result.object, how);
+            write_object(result.object);
             for (std::size_t k = 0; k < result.notes.size(); ++k) context.notes(names.fragments[k], result.notes[k]);
             for (const CompletionNote& note : result.object.notes)
                 report.note(names.fragments[static_cast<std::size_t>(note.fragment)] + ": " + note.text +
                             "; the template's triangles show what was seen of it");
             AnnotationSet carried = carry_annotations(known->mesh->mesh, *known->annotations, result);
             report.notes(refresh_measures(result.object.mesh, carried).notes);
-            write_annotations(output.in("completed.ant.json"), carried, result.object.mesh, "completed.ply", provenance);
+            output.write("completed.ant.json", carried, result.object.mesh, "completed.ply");
         }
         for (std::size_t k = 0; placed && k < fragments.size(); ++k)
             if (const FragmentPlacement& one = result.placement.fragments[k]; one.problem.empty())
-                write_mesh(output.in(names.fragments[k] + ".placed.ply"), moved(fragments[k]->mesh, one.pose), {}, how);
+                output.write(names.fragments[k] + ".placed.ply", moved(fragments[k]->mesh, one.pose));
     }
 
     /// Colours and labels say what was seen.
-    void write_object(const CompletedObject& object, WriteOptions how) const {
+    void write_object(const CompletedObject& object) const {
         MeshExtras extras;
+        WriteOptions how;
         FaceValues fragment{"fragment", {}}, distance{"distance", {}}, confidence{"confidence", {}};
         for (std::size_t f = 0; f < object.origin.size(); ++f) {
             const Origin origin = object.origin[f];
@@ -200,7 +185,7 @@ private:
             confidence.values.push_back(static_cast<float>(object.confidence[f]));
         }
         how.face_values = {std::move(fragment), std::move(distance), std::move(confidence)};
-        write_mesh(output.in("completed.ply"), object.mesh, extras, how);
+        output.write("completed.ply", object.mesh, extras, how);
     }
 
     void tell(Report& report, const Reconstruction& result) const {
@@ -235,55 +220,42 @@ private:
             count += landmark.used ? 1 : 0;
             if (!landmark.used && one.problem.empty() && search == nullptr) wrong += (wrong.empty() ? "" : ", ") + landmark.name;
         }
-        report.row("fragments")
-            .shown("fragment", names.fragments[k])
-            .shown("place", !one.problem.empty() ? "left out"
-                            : search == nullptr
-                                ? "placed"
-                                : "found, confidence " + number(search->confidence, 3) +
-                                      (search->freedom.kind == FreedomKind::none ? "" : "; open: " + search->freedom.text()))
-            .shown("landmarks", std::to_string(count) + " of " + std::to_string(one.landmarks.size()))
-            .shown("residual", one.problem.empty() ? number(one.residual, 3) : "-")
-            .shown("own scale", one.own_scale > 0 ? number(one.own_scale, 4) : "-")
-            .shown("wrong landmarks", wrong);
+        report.row(
+            "fragments",
+            {names.fragments[k],
+             !one.problem.empty() ? "left out"
+             : search == nullptr  ? "placed"
+                                  : "found, confidence " + number(search->confidence, 3) +
+                                       (search->freedom.kind == FreedomKind::none ? "" : "; open: " + search->freedom.text()),
+             std::to_string(count) + " of " + std::to_string(one.landmarks.size()),
+             one.problem.empty() ? number(one.residual, 3) : "-", one.own_scale > 0 ? number(one.own_scale, 4) : "-", wrong});
     }
 
     /// The joints by which turns were decided, and the fragments without one.
     void tell_turns(Report& report, const BreakTurns& turns) const {
         for (const BreakJoint& joint : turns.joints)
-            report.row("joints")
-                .shown("breaks", names.fragments[static_cast<std::size_t>(joint.first)] + " - " +
-                                     names.fragments[static_cast<std::size_t>(joint.second)])
-                .shown("turn, degrees", number(joint.turn, 4))
-                .shown("contact %", number(100 * joint.contact, 3))
-                .shown("rim %", number(100 * joint.rim, 3))
-                .shown("residual", number(joint.residual, 3))
-                .shown("confidence", joint.carries ? number(joint.confidence, 2) : "-")
-                .shown("turn", !joint.carries  ? "closes a cycle"
-                               : joint.decided ? "decided"
-                                               : "not decided");
+            report.row("joints", {names.fragments[static_cast<std::size_t>(joint.first)] + " - " +
+                                      names.fragments[static_cast<std::size_t>(joint.second)],
+                                  number(joint.turn, 4), number(100 * joint.contact, 3), number(100 * joint.rim, 3),
+                                  number(joint.residual, 3), joint.carries ? number(joint.confidence, 2) : "-",
+                                  !joint.carries  ? "closes a cycle"
+                                  : joint.decided ? "decided"
+                                                  : "not decided"});
         for (std::size_t k = 0; k < names.fragments.size() && k < turns.notes.size(); ++k)
             if (!turns.notes[k].empty()) report.line(printable(names.fragments[k]) + ": " + printable(turns.notes[k]));
     }
 
     static void tell_constraint(Report& report, const Reconstruction& result, const ConstraintReport& constraint) {
-        std::string words = constraint.text;
-        for (std::size_t i = 0; i < constraint.deviations.size(); ++i) {
-            const Deviation& d = constraint.deviations[i];
-            words += (words.empty() ? "" : "; ") + d.quantity + " " + number(d.value.value_or(0), 4) + " (was " +
-                     number(i < constraint.before_values.size() ? constraint.before_values[i] : 0, 4) + ", at most " +
-                     number(d.tolerance.value_or(0), 4) + ")" + (d.unit.empty() ? "" : " " + d.unit);
-        }
+        std::vector<std::string> words = deviation_texts(constraint);
+        if (!constraint.text.empty()) words.insert(words.begin(), constraint.text);
         const bool objected = std::any_of(result.objections.begin(), result.objections.end(), [&](const Objection& one) {
             return one.kind == ObjectionKind::constraint && one.constraint == constraint.id;
         });
-        report.row("constraints")
-            .shown("id", std::to_string(constraint.id))
-            .shown("constraint", constraint.type)
-            .shown("verdict", !constraint.used                                    ? "left out"
-                              : constraint.verdict == Verdict::fails && !objected ? "holds within --slack"
-                                                                                  : to_string(constraint.verdict))
-            .shown("how well", words);
+        report.row("constraints", {constraint.id, constraint.type,
+                                   !constraint.used                                    ? "left out"
+                                   : constraint.verdict == Verdict::fails && !objected ? "holds within --slack"
+                                                                                       : to_string(constraint.verdict),
+                                   joined(words, "; ")});
     }
 
     TemplateInput known;

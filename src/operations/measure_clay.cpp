@@ -10,50 +10,43 @@ namespace ostraka {
 
 namespace {
 
-class MeasureClay final : public Operation {
-public:
+struct MeasureClay final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file, closed or open");
         p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json): unit and upward direction")
             .optional();
-        p.options(
-            "up", up,
-            "x, y, z, -x, -y, -z or three numbers: direction that slices lie across; else as the annotations say, else 0,0,1");
+        up.describe(p,
+                    "x, y, z, -x, -y, -z or three numbers: direction that slices lie across; else as the annotations say, "
+                    "else 0,0,1");
         p.options("unit", unit, "unit of the mesh's coordinates, e.g. mm; else as the annotations say");
         options.describe(p.options);
-        for (const Figure& figure : figures_of({})) p.report.value(figure.name, FieldType::any, "", figure.unit);
-        p.report.value("unit", FieldType::text).value("volume of the mesh", FieldType::number, "", "length^3");
-    }
-
-    void check() const override {
-        if (!up.empty()) static_cast<void>(direction_of(up, "--up"));
+        for (const Figure& figure : figures_of({})) p.report.values(any(figure.name, "", figure.unit));
+        p.report.values(text("unit"), number("volume of the mesh", "", "length^3"));
     }
 
     void run(Context&, Report& report) override {
         std::array<double, 3> direction{0, 0, 1};
-        if (!up.empty()) direction = direction_of(up, "--up");
+        if (up) direction = *up.value();
         length_unit = unit;
         if (annotations) {
             const AnnotationSet& set = annotations.on(mesh->mesh);
             if (unit.empty()) length_unit = set.unit;
-            if (up.empty() && set.up) direction = *set.up;
+            if (!up && set.up) direction = *set.up;
         }
         const SliceFrame frame = slice_frame(Point(0, 0, 0), Vector(direction[0], direction[1], direction[2]));
         const ClayVolume clay = in_file(mesh.file(), [&] { return clay_volume(mesh->mesh, frame, options); });
         const double own = closed_volume(mesh->mesh);
         for (const Figure& figure : figures_of(clay)) {
             const bool known = !std::isnan(figure.value);
-            report.value(figure.name, known ? JsonValue(figure.value) : JsonValue());
+            report(figure.name, known ? JsonValue(figure.value) : JsonValue());
             report.people(figure.name, known ? number(figure.value) + unit_text(figure.unit) : "unknown");
         }
-        report.value("unit", length_unit);
-        report.value("volume of the mesh", own);
+        report("unit", length_unit)("volume of the mesh", own);
         report.line(sentence(clay, own));
         add_notes(report, clay);
         if (std::isnan(clay.most)) report.answer_no();
     }
 
-private:
     struct Figure {
         std::string name;
         double value;
@@ -116,8 +109,8 @@ private:
 
     MeshInput mesh;
     AnnotationsInput annotations;
-    std::string up, unit;
-    std::string length_unit;  ///< the unit asked for, or that of the annotations
+    DirectionOption up;
+    std::string unit, length_unit;  ///< the unit asked for, or that of the annotations
     ClayOptions options;
 };
 

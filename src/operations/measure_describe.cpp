@@ -9,23 +9,16 @@ namespace ostraka {
 
 namespace {
 
-class MeasureDescribe final : public Operation {
-public:
+struct MeasureDescribe final : Operation {
     void describe(Parameters& p) override {
         object.describe(p);
-        p.input("map", Kind::values, maps, "NAME=FILE: a map of one value a vertex (.npy, or text with a number a line)")
-            .optional()
-            .flag()
+        p.input_option("map", Kind::values, maps, "NAME=FILE: a map of one value a vertex (.npy, or text with a number a line)")
             .many()
             .named();
         p.options("annotation", chosen, "id or tag of an annotation; once for each, all if left out");
         options.describe(p.options);
-        p.report.table("annotations", {{"id", FieldType::integer}, {"tag", FieldType::text}, {"quantities", FieldType::any}});
-        p.report.table("", {{"", FieldType::text, "id"},
-                            {"", FieldType::text, "tag"},
-                            {"", FieldType::text, "quantity"},
-                            {"", FieldType::text, "value"},
-                            {"", FieldType::text, "unit"}});
+        p.report.table("annotations", integer("id"), text("tag"), any("quantities"));
+        p.report.people_table("", {"id", "tag", "quantity", "value", "unit"});
     }
 
     void run(Context&, Report& report) override {
@@ -43,7 +36,6 @@ public:
         object.write(std::move(set));
     }
 
-private:
     [[nodiscard]] std::vector<NamedMap> read_maps(const Mesh& mesh) const {
         std::vector<NamedMap> named;
         for (std::size_t i = 0; i < maps.size(); ++i) {
@@ -86,25 +78,17 @@ private:
         auto& allocator = report.allocator();
         JsonValue list(rapidjson::kArrayType);
         for (const Quantity& quantity : quantities) {
-            JsonValue item(rapidjson::kObjectType), numbers(rapidjson::kArrayType);
             std::string text;
             const bool axes = quantity.name == "box axes" && quantity.values.size() == 9;  // three vectors
-            for (std::size_t i = 0; i < quantity.values.size(); ++i) {
-                numbers.PushBack(quantity.values[i], allocator);
+            for (std::size_t i = 0; i < quantity.values.size(); ++i)
                 text += (text.empty() ? "" : " ") + std::string(axes && i % 3 == 0 ? "(" : "") + number(quantity.values[i], 6) +
                         (axes && i % 3 == 2 ? ")" : "");
-            }
-            add_member(item, "name", quantity.name, allocator);
-            if (quantity.is_list) add_member(item, "value", std::move(numbers), allocator);
-            else add_member(item, "value", JsonValue(quantity.values.front()), allocator);
-            add_member(item, "unit", unit_of(quantity, unit), allocator);
+            JsonValue item = json_object(allocator, "name", quantity.name);
+            if (quantity.is_list) add_members(item, allocator, "value", quantity.values);
+            else add_members(item, allocator, "value", quantity.values.front());
+            add_members(item, allocator, "unit", unit_of(quantity, unit));
             list.PushBack(item, allocator);
-            report.row("")
-                .shown("id", std::to_string(annotation.id))
-                .shown("tag", annotation.tag)
-                .shown("quantity", quantity.name)
-                .shown("value", text)
-                .shown("unit", unit_of(quantity, unit));
+            report.row("", {annotation.id, annotation.tag, quantity.name, text, unit_of(quantity, unit)});
         }
         report.row("annotations")("id", annotation.id)("tag", annotation.tag)("quantities", std::move(list));
     }

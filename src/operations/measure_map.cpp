@@ -11,8 +11,7 @@ namespace ostraka {
 
 namespace {
 
-class MeasureMap final : public Operation {
-public:
+struct MeasureMap final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.output("output", Kind::values, output, "one value a vertex or face (.npy, or text)");
@@ -23,9 +22,8 @@ public:
         options.curvature_options.describe(p.options);
         options.thickness_options.describe(p.options);
         what = p.options.find("of");
-        p.report.value("values", FieldType::integer).value("without", FieldType::integer);
-        for (const char* figure : {"min", "5 %", "median", "mean", "95 %", "max"})
-            p.report.value(figure, FieldType::number, figure);
+        p.report.values(integer("values"), integer("without"));
+        for (const char* figure : {"min", "5 %", "median", "mean", "95 %", "max"}) p.report.values(number(figure, figure));
     }
 
     void check() const override {
@@ -46,18 +44,11 @@ public:
             fail_input(mesh.file(), "has no " + what->text() + " anywhere", "is it empty, or open on the side that rays run to?");
         const Statistics s = statistics(finite, std::vector<double>(finite.size(), 1), what->text());
         report.people(what->text(), std::to_string(finite.size()) + " of " + std::to_string(values.size()) + " values");
-        report.value("values", values.size());
-        report.value("without", values.size() - finite.size());
-        report.value("min", s.min);
-        report.value("5 %", s.percentile_5);
-        report.value("median", s.median);
-        report.value("mean", s.mean);
-        report.value("95 %", s.percentile_95);
-        report.value("max", s.max);
+        report("values", values.size())("without", values.size() - finite.size())("min", s.min)("5 %", s.percentile_5)(
+            "median", s.median)("mean", s.mean)("95 %", s.percentile_95)("max", s.max);
         output.write(std::move(values));
     }
 
-private:
     enum class Of { mean_curvature, gaussian_curvature, thickness, geodesic };
     enum class On { vertex, face };
 

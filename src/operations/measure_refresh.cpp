@@ -7,21 +7,15 @@ namespace ostraka {
 
 namespace {
 
-class MeasureRefresh final : public Operation {
-public:
+struct MeasureRefresh final : Operation {
     void describe(Parameters& p) override {
         Slot& annotations = object.describe(p);
         annotations.needed = true;
         annotations.help = "its annotations (.ant.json)";
         p.options("merge-pickings", merge, "measures of one name become pickings of one measure");
-        for (const char* count : {"computed", "stale", "merged"}) p.report.value(count, FieldType::integer);
-        p.report.table("measures", {{"annotation", FieldType::integer, "id"},
-                                    {"", FieldType::text, "tag"},
-                                    {"name", FieldType::text, "measure"},
-                                    {"value", FieldType::number, "value"},
-                                    {"uncertainty", FieldType::number, "uncertainty"},
-                                    {"", FieldType::text, "unit"},
-                                    {"pickings", FieldType::integer, "pickings"}});
+        for (const char* count : {"computed", "stale", "merged"}) p.report.values(integer(count));
+        p.report.table("measures", integer("annotation", "id"), people("tag"), text("name", "measure"), number("value", "value"),
+                       number("uncertainty", "uncertainty"), people("unit"), integer("pickings", "pickings"));
     }
 
     void run(Context&, Report& report) override {
@@ -31,9 +25,7 @@ public:
             for (Annotation& annotation : set.annotations) merged += merge_pickings(annotation);
         const RefreshResult refreshed = refresh_measures(object.mesh->mesh, set, true);
         report.notes(refreshed.notes);
-        report.value("computed", refreshed.computed);
-        report.value("stale", refreshed.stale);
-        report.value("merged", merged);
+        report("computed", refreshed.computed)("stale", refreshed.stale)("merged", merged);
         report.empty_table("measures");
         for (const Annotation& annotation : set.annotations)
             for (const Attribute& attribute : annotation.attributes) {
@@ -49,7 +41,6 @@ public:
         object.write(std::move(set));
     }
 
-private:
     MeasuredObject object;
     bool merge = false;
 };

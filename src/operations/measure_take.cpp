@@ -14,8 +14,7 @@ namespace ostraka {
 
 namespace {
 
-class MeasureTake final : public Operation {
-public:
+struct MeasureTake final : Operation {
     void describe(Parameters& p) override {
         object.describe(p);
         p.options("tool", tool, "ruler (straight), tape (over the surface) or bounding (between two planes)",
@@ -33,10 +32,9 @@ public:
                   "the value is the mean");
         p.options("annotation", annotation, "id or tag of the annotation that gets it; the whole object if left out");
         p.options("name", name, "name of the attribute; the tool if left out");
-        p.report.value("name", FieldType::text).value("annotation", FieldType::integer).value("tool", FieldType::text);
-        p.report.structure("points").value("value", FieldType::number).value("unit", FieldType::text);
-        for (const char* figure : {"uncertainty", "resolution", "spread"}) p.report.value(figure, FieldType::number);
-        p.report.value("pickings", FieldType::integer);
+        p.report.values(text("name"), integer("annotation"), text("tool"), any("points"), number("value"), text("unit"));
+        for (const char* figure : {"uncertainty", "resolution", "spread"}) p.report.values(number(figure));
+        p.report.values(integer("pickings"));
     }
 
     void check() const override {
@@ -68,7 +66,6 @@ public:
         object.write(std::move(set));
     }
 
-private:
     enum class Geodesic { edges, exact };
     static constexpr int largest_index = std::numeric_limits<int>::max();
 
@@ -137,18 +134,9 @@ private:
     }
 
     void tell(Report& report, const Annotation& holder, const Measure& measure, const Evaluated& taken) const {
-        JsonValue pins(rapidjson::kArrayType);
-        for (const Index v : measure.points) pins.PushBack(v, report.allocator());
-        report.value("name", called());
-        report.value("annotation", holder.id);
-        report.value("tool", tool);
-        report.value("points", std::move(pins));
-        report.value("value", taken.value);
-        report.value("unit", measure.unit);
-        report.value("uncertainty", taken.uncertainty);
-        report.value("resolution", taken.resolution);
-        report.value("spread", taken.spread);
-        report.value("pickings", taken.pickings);
+        report("name", called())("annotation", holder.id)("tool", tool)("points", measure.points)("value", taken.value)(
+            "unit", measure.unit)("uncertainty", taken.uncertainty)("resolution", taken.resolution)("spread", taken.spread)(
+            "pickings", taken.pickings);
         std::string line = printable(called(), 60) + " " + number(taken.value, 9) + " " + printable(measure.unit, 20) +
                            (measure.unit.empty() ? "" : " ") + "+- " + number(taken.uncertainty, 3);
         if (taken.pickings > 1)

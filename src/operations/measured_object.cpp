@@ -4,13 +4,9 @@ namespace ostraka {
 
 Slot& MeasuredObject::describe(Parameters& p) {
     p.input("mesh", Kind::mesh, mesh, "mesh file");
-    Slot& named =
-        p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json); without, the whole object is meant")
-            .optional()
-            .flag();
-    p.output("output", Kind::annotations, output, "annotations to write, with the values as attributes (.ant.json)")
-        .optional()
-        .flag();
+    Slot& named = p.input_option("annotations", Kind::annotations, annotations,
+                                 "its annotations (.ant.json); without, the whole object is meant");
+    p.output_option("output", Kind::annotations, output, "annotations to write, with the values as attributes (.ant.json)");
     p.options("unit", unit, "unit of the coordinates, where the annotations do not say (any text, such as mm)");
     return named;
 }

@@ -12,19 +12,17 @@ namespace ostraka {
 
 namespace {
 
-class MeshBreak final : public Operation {
-public:
+struct MeshBreak final : Operation {
     void describe(Parameters& p) override {
         p.input("input", Kind::mesh, input, "mesh file");
         p.output("output", Kind::mesh, output, "mesh file of the fragment to write");
-        p.input("annotations", Kind::annotations, annotations, "annotations of the whole (.ant.json)").optional().flag();
-        p.output("annotations-out", Kind::annotations, annotations_out, "those of the fragment to write").optional().flag();
-        p.output("pose-out", Kind::pose, pose_out, "4 x 4 matrix (JSON) that carries the fragment back to its place on the whole")
-            .optional()
-            .flag();
+        p.input_option("annotations", Kind::annotations, annotations, "annotations of the whole (.ant.json)");
+        p.output_option("annotations-out", Kind::annotations, annotations_out, "those of the fragment to write");
+        p.output_option("pose-out", Kind::pose, pose_out,
+                        "4 x 4 matrix (JSON) that carries the fragment back to its place on the whole");
         options.describe(p.options);
         p.options("at", at, "middle of the fragment: a place x,y,z, or the tag of an annotation").required();
-        p.report.value("vertices", FieldType::integer).value("faces", FieldType::integer).structure("pose");
+        p.report.values(integer("vertices"), integer("faces"), any("pose"));
     }
 
     void check() const override {
@@ -37,11 +35,10 @@ public:
         const AnnotationSet* set = annotations ? &annotations.on(whole) : nullptr;
         BrokenPiece piece = in_file(input.file(), [&] { return break_off(whole, place(whole, set), options); });
 
-        report.value("vertices", piece.vertices.size());
-        report.value("faces", piece.faces.size());
+        report("vertices", piece.vertices.size())("faces", piece.faces.size());
         JsonValue pose = pose_to_json(piece.pose, report.allocator());
         if (pose_out) pose_out.write(pose);
-        report.value("pose", std::move(pose));
+        report("pose", std::move(pose));
         report.line((output.file().empty() ? "fragment" : printable(output.file())) + ": " +
                     std::to_string(piece.vertices.size()) + " vertices, " + std::to_string(piece.faces.size()) + " faces");
         if (annotations_out) {
@@ -61,7 +58,6 @@ public:
         output.write(std::move(piece.mesh), std::move(extras));
     }
 
-private:
     [[nodiscard]] Point place(const Mesh& mesh, const AnnotationSet* set) const {
         if (set != nullptr)
             for (const Annotation& one : set->annotations) {

@@ -5,16 +5,13 @@ namespace ostraka {
 
 namespace {
 
-class MeshConvert final : public Operation {
-public:
+struct MeshConvert final : Operation {
     void describe(Parameters& p) override {
         p.input("input", Kind::mesh, input, "mesh to read: .ply, .obj, .off, .stl");
         p.output("output", Kind::mesh, output.with_encoding(), "mesh to write: .ply, .obj, .off, .stl, .glb");
-        p.output("map", Kind::index_map, map, "JSON file to write: for each triangle the polygon it was cut from")
-            .optional()
-            .flag();
+        p.output_option("map", Kind::index_map, map, "JSON file to write: for each triangle the polygon it was cut from");
         p.options("binary", binary, "write PLY and STL as bytes (the default)");
-        for (const char* count : {"vertices", "polygons", "triangles"}) p.report.value(count, FieldType::integer, count);
+        for (const char* count : {"vertices", "polygons", "triangles"}) p.report.values(integer(count, count));
     }
 
     void check() const override {
@@ -34,13 +31,10 @@ public:
             map.write(
                 {"face", std::move(origin), polygon_count, "for each triangle written the polygon of the input it was cut from"});
         }
-        report.value("vertices", triangles.soup.points.size());
-        report.value("polygons", polygon_count);
-        report.value("triangles", count);
+        report("vertices", triangles.soup.points.size())("polygons", polygon_count)("triangles", count);
         output.write(std::move(triangles.soup), std::move(triangles.extras));
     }
 
-private:
     MeshInput input;
     MeshOutput output;
     IndexMapOutput map;

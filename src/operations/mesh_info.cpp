@@ -32,14 +32,12 @@ std::size_t count_degenerate(const PolygonSoup& soup) {
     return count;
 }
 
-class MeshInfo final : public Operation {
-public:
+struct MeshInfo final : Operation {
     void describe(Parameters& p) override {
         p.input("input", Kind::mesh, input, "mesh to read: .ply, .obj, .off, .stl");
         options.describe(p.options);
         declare_diagnosis(p.report);
-        p.report.value("polygons", FieldType::integer).value("degenerate_polygons", FieldType::integer);
-        p.report.value("holds", FieldType::texts);
+        p.report.values(integer("polygons"), integer("degenerate_polygons"), texts("holds"));
     }
 
     void run(Context& context, Report& report) override {
@@ -60,23 +58,17 @@ public:
         context.notes("", triangles.notes);
         add_diagnosis(report, diagnosis);
         const bool sound = diagnosis.defects().empty() && degenerate == 0;
-        report.value("sound", sound);
-        report.value("polygons", polygon_count);
-        report.value("degenerate_polygons", degenerate);
-        report.value("holds", extras);
+        report("sound", sound)("polygons", polygon_count)("degenerate_polygons", degenerate)("holds", extras);
         for (const auto& [part, time] : seconds) report.run("seconds." + part, time);
 
         auto rows = rows_of(diagnosis);
         rows.insert(rows.begin() + 2, {{"polygons", std::to_string(polygon_count)},
                                        {"polygons with fewer than three corners", std::to_string(degenerate)}});
-        std::string held;
-        for (const auto& name : extras) held += (held.empty() ? "" : ", ") + name;
-        rows.insert(rows.end() - 1, {"holds", held.empty() ? "nothing but the geometry" : held});
+        rows.insert(rows.end() - 1, {"holds", extras.empty() ? "nothing but the geometry" : joined(extras)});
         for (const auto& [what, value] : rows) report.people(what, value);
         if (!sound) report.answer_no();
     }
 
-private:
     MeshInput input;
     DiagnoseOptions options;
 };

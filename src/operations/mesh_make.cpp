@@ -8,43 +8,23 @@ namespace ostraka {
 
 namespace {
 
-class MeshMake final : public Operation {
-public:
+struct MeshMake final : Operation {
     void describe(Parameters& p) override {
         p.options("object", wanted, "what to make (see --list)").positional();
         p.output("output", Kind::mesh, output, "mesh file to write; PLY keeps labels and colours of faces and vertices")
             .optional();
-        p.output("labels", Kind::labels, labels, "text file to write: the label of each face, one a line").optional().flag();
+        p.output_option("labels", Kind::labels, labels, "text file to write: the label of each face, one a line");
         p.order({"object", "output"});
         p.options("list", list, "show the objects, their parts and labels").unrecorded();
         options.describe(p.options);
 
-        p.report.value("object", FieldType::text)
-            .value("class", FieldType::text)
-            .value("unit", FieldType::text)
-            .value("vertices", FieldType::integer)
-            .value("faces", FieldType::integer)
-            .value("genus", FieldType::integer)
-            .value("area", FieldType::number, "", "length^2")
-            .value("meanEdgeLength", FieldType::number, "", "length");
-        p.report.table("parts", {{"label", FieldType::integer, "label"},
-                                 {"name", FieldType::text, "part"},
-                                 {"faces", FieldType::integer, "faces"},
-                                 {"vertices", FieldType::integer},
-                                 {"area", FieldType::number, "area", "length^2"},
-                                 {"", FieldType::number, "% of area"}});
-        p.report.table("objects", {{"name", FieldType::text},
-                                   {"class", FieldType::text},
-                                   {"description", FieldType::text},
-                                   {"unit", FieldType::text},
-                                   {"genus", FieldType::integer},
-                                   {"minimumVertices", FieldType::integer},
-                                   {"parts", FieldType::texts}});
-        p.report.table("", {{"", FieldType::text, "object"},
-                            {"", FieldType::integer, "genus"},
-                            {"", FieldType::integer, "least vertices"},
-                            {"", FieldType::integer, "label"},
-                            {"", FieldType::text, "part"}});
+        p.report.values(text("object"), text("class"), text("unit"), integer("vertices"), integer("faces"), integer("genus"),
+                        number("area", "", "length^2"), number("meanEdgeLength", "", "length"));
+        p.report.table("parts", integer("label", "label"), text("name", "part"), integer("faces", "faces"), integer("vertices"),
+                       number("area", "area", "length^2"), people("% of area", FieldType::number));
+        p.report.table("objects", text("name"), text("class"), text("description"), text("unit"), integer("genus"),
+                       integer("minimumVertices"), texts("parts"));
+        p.report.people_table("", {"object", "genus", "least vertices", "label", "part"});
     }
 
     void check() const override {
@@ -80,7 +60,6 @@ public:
         output.write(std::move(made.mesh), std::move(extras));
     }
 
-private:
     static void show(Report& report, const MadeObject& object) {
         report.row("objects")("name", object.name)("class", object.object_class)("description", object.description)(
             "unit", object.unit)("genus", object.genus)("minimumVertices", object.minimum_vertices)("parts", object.parts);
@@ -111,14 +90,8 @@ private:
         const double edge = mean_edge_length(made.mesh);
         const std::size_t vertices = made.mesh.number_of_vertices(), faces = made.mesh.number_of_faces();
         report.set_unit(object.unit);
-        report.value("object", object.name);
-        report.value("class", object.object_class);
-        report.value("unit", object.unit);
-        report.value("vertices", vertices);
-        report.value("faces", faces);
-        report.value("genus", object.genus);
-        report.value("area", area);
-        report.value("meanEdgeLength", edge);
+        report("object", object.name)("class", object.object_class)("unit", object.unit)("vertices", vertices)("faces", faces)(
+            "genus", object.genus)("area", area)("meanEdgeLength", edge);
         report.line(object.object_class + ": " + std::to_string(vertices) + " vertices, " + std::to_string(faces) +
                     " faces, genus " + std::to_string(object.genus) + ", mean edge " + number(edge, 3) + " " + object.unit);
         for (std::size_t i = 0; i < parts.size(); ++i)

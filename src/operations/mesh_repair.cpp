@@ -8,22 +8,19 @@ namespace ostraka {
 
 namespace {
 
-class MeshRepair final : public Operation {
-public:
+struct MeshRepair final : Operation {
     void describe(Parameters& p) override {
         p.input("input", Kind::mesh, input, "mesh to read: .ply, .obj, .off, .stl");
         p.output("output", Kind::mesh, output, "mesh to write: .ply, .obj, .off, .stl, .glb");
-        p.output("vertex-map", Kind::index_map, vertex_map, "JSON file to write: old vertex to new vertex, -1 for dropped")
-            .optional()
-            .flag();
-        p.output("face-map", Kind::index_map, face_map, "JSON file to write: old triangle to new triangle, -1 for dropped")
-            .optional()
-            .flag();
-        p.output("report", Kind::report, written, "JSON file to write: the report of --json").optional().flag();
+        p.output_option("vertex-map", Kind::index_map, vertex_map,
+                        "JSON file to write: old vertex to new vertex, -1 for dropped");
+        p.output_option("face-map", Kind::index_map, face_map,
+                        "JSON file to write: old triangle to new triangle, -1 for dropped");
+        p.output_option("report", Kind::report, written, "JSON file to write: the report of --json");
         options.describe(p.options);
-        p.report.value("sound", FieldType::boolean).value("maps", FieldType::text).structure("after");
-        p.report.table("steps", {{"step", FieldType::text}, {"counts", FieldType::any}});
-        p.report.table("", {{"", FieldType::text, "step"}, {"", FieldType::text, "what"}, {"", FieldType::integer, "count"}});
+        p.report.values(boolean("sound"), text("maps"), any("after"));
+        p.report.table("steps", text("step"), any("counts"));
+        p.report.people_table("", {"step", "what", "count"});
     }
 
     void run(Context& context, Report& report) override {
@@ -33,9 +30,8 @@ public:
         report.notes(repaired.notes);
         const bool sound = repaired.after.defects().empty();
         if (!sound) report.answer_no();
-        report.value("sound", sound);
-        report.value("maps", repaired.maps_by_distance ? "nearest" : "exact");
-        report.value("after", to_json(repaired.after, report.allocator()));
+        report("sound", sound)("maps", repaired.maps_by_distance ? "nearest" : "exact")(
+            "after", to_json(repaired.after, report.allocator()));
         report.empty_table("steps");
         for (const RepairStep& step : repaired.steps) tell(report, step);
         report.line("after");
@@ -54,17 +50,16 @@ public:
         written.write(report.to_json());
     }
 
-private:
     static void tell(Report& report, const RepairStep& step) {
         JsonValue counts(rapidjson::kObjectType);
         std::string name = step.name;  // once, beside its first count
         for (const auto& [what, count] : step.counts) {
-            add_member(counts, what, JsonValue(static_cast<std::uint64_t>(count)), report.allocator());
+            add_members(counts, report.allocator(), what, count);
             if (count == 0) continue;
-            report.row("").shown("step", name).shown("what", what).shown("count", std::to_string(count));
+            report.row("", {name, what, count});
             name.clear();
         }
-        if (!name.empty()) report.row("").shown("step", name).shown("what", "nothing to do").shown("count", "-");
+        if (!name.empty()) report.row("", {name, "nothing to do", "-"});
         report.row("steps")("step", step.name)("counts", std::move(counts));
     }
 

@@ -10,30 +10,19 @@ namespace ostraka {
 namespace {
 
 /// What all three declare and tell.
-class MeshResize : public Operation {
-protected:
+struct MeshResize : Operation {
     void describe_meshes(Parameters& p) {
         p.input("input", Kind::mesh, input, "mesh to read: .ply, .obj, .off, .stl");
         p.output("output", Kind::mesh, output.with_encoding(), "mesh to write: .ply, .obj, .off, .stl, .glb");
         for (const std::string mesh : {"input", "output"})
-            p.report.value(mesh + ".vertices", FieldType::integer)
-                .value(mesh + ".faces", FieldType::integer)
-                .value(mesh + ".area", FieldType::number, "", "length^2");
-        p.report.table("", {{"", FieldType::text, "mesh"},
-                            {"", FieldType::integer, "vertices"},
-                            {"", FieldType::integer, "faces"},
-                            {"", FieldType::number, "area"}});
+            p.report.values(integer(mesh + ".vertices"), integer(mesh + ".faces"), number(mesh + ".area", "", "length^2"));
+        p.report.people_table("", {"mesh", "vertices", "faces", "area"});
     }
     static void tell_totals(Report& report, const BoundMesh::Totals& before, const BoundMesh::Totals& after) {
         for (const auto& [mesh, when, totals] : {std::tuple{"input.", "before", before}, {"output.", "after", after}}) {
-            report.value(std::string(mesh) + "vertices", totals.vertices);
-            report.value(std::string(mesh) + "faces", totals.faces);
-            report.value(std::string(mesh) + "area", totals.area);
-            report.row("")
-                .shown("mesh", when)
-                .shown("vertices", std::to_string(totals.vertices))
-                .shown("faces", std::to_string(totals.faces))
-                .shown("area", number(totals.area));
+            report(std::string(mesh) + "vertices", totals.vertices)(std::string(mesh) + "faces", totals.faces)(
+                std::string(mesh) + "area", totals.area);
+            report.row("", {when, totals.vertices, totals.faces, number(totals.area)});
         }
     }
 
@@ -42,8 +31,7 @@ protected:
 };
 
 /// What annotations, labels and colours follow.
-class MeshResizeBound : public MeshResize {
-public:
+struct MeshResizeBound : MeshResize {
     void check() const override {
         if (static_cast<bool>(annotations) != static_cast<bool>(annotations_out))
             fail_usage("annotations are read from one file and written to another",
@@ -54,29 +42,18 @@ public:
                        "write the mesh as .ply, .obj or .off");
     }
 
-protected:
     void describe_bound(Parameters& p) {
         describe_meshes(p);
-        p.input("annotations", Kind::annotations, annotations, "annotations of the input mesh (.ant.json)").optional().flag();
-        p.output("annotations-out", Kind::annotations, annotations_out, "where to write the annotations of the output mesh")
-            .optional()
-            .flag();
-        p.output("labels-out", Kind::labels, labels_out, "where to write the face labels that the input mesh carries, one a line")
-            .optional()
-            .flag();
-        p.report.table("annotations", {{"id", FieldType::integer, "id"},
-                                       {"tag", FieldType::text, "tag"},
-                                       {"type", FieldType::text, "type"},
-                                       {"before.elements", FieldType::integer, "elements"},
-                                       {"after.elements", FieldType::integer, "after"},
-                                       {"before.area", FieldType::number, "area", "length^2"},
-                                       {"after.area", FieldType::number, "", "length^2"},
-                                       {"", FieldType::text, "change of area"},
-                                       {"before.length", FieldType::number, "length", "length"},
-                                       {"after.length", FieldType::number, "", "length"},
-                                       {"", FieldType::text, "change of length"},
-                                       {"degenerate", FieldType::boolean},
-                                       {"note", FieldType::text, "note"}});
+        p.input_option("annotations", Kind::annotations, annotations, "annotations of the input mesh (.ant.json)");
+        p.output_option("annotations-out", Kind::annotations, annotations_out,
+                        "where to write the annotations of the output mesh");
+        p.output_option("labels-out", Kind::labels, labels_out,
+                        "where to write the face labels that the input mesh carries, one a line");
+        p.report.table("annotations", integer("id", "id"), text("tag", "tag"), text("type", "type"),
+                       integer("before.elements", "elements"), integer("after.elements", "after"),
+                       number("before.area", "area", "length^2"), number("after.area", "", "length^2"), people("change of area"),
+                       number("before.length", "length", "length"), number("after.length", "", "length"),
+                       people("change of length"), boolean("degenerate"), text("note", "note"));
     }
 
     /// Calls `resize(mesh)` in between, tells of it and writes.
@@ -101,7 +78,6 @@ protected:
         return result;
     }
 
-private:
     static void tell_changes(Report& report, const std::vector<BoundMesh::Change>& changes) {
         const auto percent = [](double before, double after) {
             return before > 0 ? number(100 * (after / before - 1), 3) + " %" : std::string();
@@ -125,25 +101,18 @@ private:
     FileOutput labels_out{".txt"};
 };
 
-class MeshSimplify final : public MeshResizeBound {
-public:
+struct MeshSimplify final : MeshResizeBound {
     void describe(Parameters& p) override {
         describe_bound(p);
-        p.output("vertex-map", Kind::index_map, vertex_map, "JSON file to write: the new vertex of each old one")
-            .optional()
-            .flag();
-        p.output("face-map", Kind::index_map, face_map, "JSON file to write: the new face of each old one, -1 where it vanished")
-            .optional()
-            .flag();
+        p.output_option("vertex-map", Kind::index_map, vertex_map, "JSON file to write: the new vertex of each old one");
+        p.output_option("face-map", Kind::index_map, face_map,
+                        "JSON file to write: the new face of each old one, -1 where it vanished");
         options.describe(p.options);
         p.options.find("vertices")->required();
         outlines = p.options.find("outlines");
         p.options("protect-outlines", protect, "the same as --outlines protect; pins of measures stay too").unrecorded();
-        p.report.value("reached", FieldType::boolean)
-            .value("stop_reason", FieldType::text)
-            .value("collapses", FieldType::integer)
-            .value("outlines_broken", FieldType::boolean)
-            .value("isolated_dropped", FieldType::integer);
+        p.report.values(boolean("reached"), text("stop_reason"), integer("collapses"), boolean("outlines_broken"),
+                        integer("isolated_dropped"));
     }
 
     void check() const override {
@@ -159,11 +128,8 @@ public:
             vertices = bound.mesh.number_of_vertices(), faces = bound.mesh.number_of_faces();
             return simplified;
         });
-        report.value("reached", result.reached);
-        report.value("stop_reason", result.stop_reason);
-        report.value("collapses", result.collapses);
-        report.value("outlines_broken", result.outlines_broken);
-        report.value("isolated_dropped", result.isolated_dropped);
+        report("reached", result.reached)("stop_reason", result.stop_reason)("collapses", result.collapses)(
+            "outlines_broken", result.outlines_broken)("isolated_dropped", result.isolated_dropped);
         if (!result.reached) {
             report.note("the wanted number could not be reached: " + result.stop_reason);
             report.answer_no();
@@ -174,41 +140,34 @@ public:
         if (face_map) face_map.write({"face", std::move(result.face_map), faces});
     }
 
-private:
     IndexMapOutput vertex_map, face_map;
     SimplifyOptions options;
     bool protect = false;
     const Option* outlines = nullptr;
 };
 
-class MeshRefine final : public MeshResizeBound {
-public:
+struct MeshRefine final : MeshResizeBound {
     void describe(Parameters& p) override {
         describe_bound(p);
         options.describe(p.options);
-        p.report.value("levels", FieldType::integer).value("bisections", FieldType::integer);
+        p.report.values(integer("levels"), integer("bisections"));
     }
 
     void run(Context& context, Report& report) override {
         const RefineResult result = resize(context, report, [&](BoundMesh& bound) { return bound.refine(options); });
-        report.value("levels", result.levels);
-        report.value("bisections", result.bisections);
+        report("levels", result.levels)("bisections", result.bisections);
     }
 
-private:
     RefineOptions options;
 };
 
-class MeshRemesh final : public MeshResize {
-public:
+struct MeshRemesh final : MeshResize {
     void describe(Parameters& p) override {
         describe_meshes(p);
         options.describe(p.options);
         p.options.find("vertices")->required();
-        p.report.value("reached", FieldType::boolean)
-            .value("target_edge_length", FieldType::number, "", "length")
-            .value("vertices_before_adjustment", FieldType::integer)
-            .value("deviation", FieldType::number, "", "length");
+        p.report.values(boolean("reached"), number("target_edge_length", "", "length"), integer("vertices_before_adjustment"),
+                        number("deviation", "", "length"));
     }
 
     void run(Context&, Report& report) override {
@@ -222,10 +181,8 @@ public:
         report.run("seconds", stopwatch.seconds());
         tell_totals(report, {mesh.number_of_vertices(), mesh.number_of_faces(), surface_area(mesh)},
                     {result.mesh.number_of_vertices(), result.mesh.number_of_faces(), surface_area(result.mesh)});
-        report.value("reached", result.reached);
-        report.value("target_edge_length", result.target_edge_length);
-        report.value("vertices_before_adjustment", result.remeshed);
-        report.value("deviation", result.deviation);
+        report("reached", result.reached)("target_edge_length", result.target_edge_length)(
+            "vertices_before_adjustment", result.remeshed)("deviation", result.deviation);
         if (!result.reached) {
             report.note("the wanted number could not be reached: stopped at " + std::to_string(result.mesh.number_of_vertices()) +
                         " vertices, fewer would change the topology or turn faces over");
@@ -234,7 +191,6 @@ public:
         output.write(std::move(result.mesh));
     }
 
-private:
     RemeshOptions options;
 };
 

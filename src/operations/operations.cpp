@@ -3,28 +3,18 @@
 
 #include "ostraka/operations/pages.h"
 
-#include <algorithm>
-
 namespace ostraka {
 
 namespace {
 
-class Operations final : public Operation {
-public:
+struct Operations final : Operation {
     void describe(Parameters& p) override {
         p.options("name", name, "only the operations whose names begin with this").positional();
-        p.output("pages", Kind::folder, pages, "write a page of Markdown for each first word of the names").optional().flag();
-        p.output("manuals", Kind::folder, manuals, "write a manual page for each operation").optional().flag();
-        p.output("completions", Kind::folder, shells, "write what bash, zsh and fish read to complete commands")
-            .optional()
-            .flag();
-        p.report.table("operations", {{"name", FieldType::text, "operation"},
-                                      {"help", FieldType::text, "what it does"},
-                                      {"inputs", FieldType::any},
-                                      {"outputs", FieldType::any},
-                                      {"options", FieldType::any},
-                                      {"arguments", FieldType::any},
-                                      {"result", FieldType::any}});
+        p.output_option("pages", Kind::folder, pages, "write a page of Markdown for each first word of the names");
+        p.output_option("manuals", Kind::folder, manuals, "write a manual page for each operation");
+        p.output_option("completions", Kind::folder, shells, "write what bash, zsh and fish read to complete commands");
+        p.report.table("operations", text("name", "operation"), text("help", "what it does"), any("inputs"), any("outputs"),
+                       any("options"), any("arguments"), any("result"));
     }
 
     void run(Context&, Report& report) override {
@@ -44,11 +34,7 @@ public:
         if (pages)
             for (const std::string& word : command_pages()) put(pages, word + ".md", commands_page(word));
         if (manuals)
-            for (const OperationEntry& entry : operations()) {
-                std::string file = "ostraka-" + std::string(entry.name) + ".1";
-                std::replace(file.begin(), file.end(), ' ', '-');
-                put(manuals, file, manual_page(entry));
-            }
+            for (const OperationEntry& entry : operations()) put(manuals, manual_name(entry) + ".1", manual_page(entry));
         if (shells) {
             put(shells, "ostraka", completion_script(Shell::bash));
             put(shells, "_ostraka", completion_script(Shell::zsh));
@@ -56,7 +42,6 @@ public:
         }
     }
 
-private:
     /// Others may keep files of their own in these folders.
     static void put(const FolderOutput& folder, const std::string& file, const std::string& text) {
         folder.open(0, false);

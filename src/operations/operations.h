@@ -5,9 +5,14 @@
 
 #include "arguments.h"
 
+#include "ostraka/core/json_build.h"
+#include "ostraka/core/words.h"
+
 #include <chrono>
 
 namespace ostraka {
+
+using namespace fields;
 
 /// Seconds since it was made.
 class Stopwatch {

@@ -1,6 +1,7 @@
 #include "ostraka/operations/pages.h"
 
 #include "ostraka/core/text.h"
+#include "ostraka/core/words.h"
 
 #include <algorithm>
 
@@ -14,27 +15,10 @@ std::string first_word_of(const std::string& name) { return name.substr(0, name.
 std::string allowed_for_page(const Option& option) {
     if (const auto* range = std::get_if<Range>(&option.rule))
         return ostraka::digits(range->min, 6) + " to " + ostraka::digits(range->max, 6);
-    if (const auto* choices = std::get_if<Choices>(&option.rule)) {
-        std::string list;
-        for (const auto& name : choices->names) list += (list.empty() ? "" : ", ") + name;
-        return list;
-    }
-    switch (option.type()) {
-        case OptionType::boolean:
-            return option.initial == "true" ? "on, `--no-" + option.name + "`" : "switch";
-        case OptionType::integer:
-            return "whole number";
-        case OptionType::number:
-            return "number";
-        case OptionType::numbers:
-            return "numbers";
-        case OptionType::integers:
-            return "whole numbers";
-        case OptionType::texts:
-            return "texts";
-        default:
-            return "text";
-    }
+    if (const auto* choices = std::get_if<Choices>(&option.rule)) return joined(choices->names);
+    if (option.type() == OptionType::boolean) return option.initial == "true" ? "on, `--no-" + option.name + "`" : "switch";
+    static constexpr const char* types[]{"", "whole number", "number", "text", "text", "texts", "numbers", "whole numbers"};
+    return types[static_cast<std::size_t>(option.type())];
 }
 
 std::string initial_for_page(const Option& option) {
@@ -61,12 +45,6 @@ std::string usage_of(const Call& call, const std::vector<std::string>& order) {
     return text + " [options]";
 }
 
-bool in_some_order(const Call& call, const std::string& name) {
-    const auto& orders = call.parameters().orders;
-    return std::any_of(orders.begin(), orders.end(),
-                       [&](const auto& order) { return std::find(order.begin(), order.end(), name) != order.end(); });
-}
-
 /// Lines of at most 120 characters.
 std::string wrapped(const std::string& text, const std::string& indent = {}) {
     std::string result, line;
@@ -81,13 +59,17 @@ std::string wrapped(const std::string& text, const std::string& indent = {}) {
     return result + line + "\n";
 }
 
+std::string sentence(std::string help) {
+    help[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(help[0])));
+    return wrapped(help + ".");
+}
+
 void add_fields(std::string& page, const std::vector<Field>& fields, const std::string& indent) {
     static constexpr const char* types[]{"boolean", "whole number", "number", "text", "numbers", "texts", "structure"};
     for (const Field& field : fields) {
         if (field.key.empty()) continue;
         std::string about = types[static_cast<std::size_t>(field.type)];
         if (!field.unit.empty()) about += ", " + field.unit;
-        if (!field.schema.empty()) about += ", as " + field.schema + ".schema.json has it";
         page += wrapped(indent + "- `" + field.key + "`: " + about, indent + "  ");
     }
 }
@@ -95,13 +77,11 @@ void add_fields(std::string& page, const std::vector<Field>& fields, const std::
 std::string operation_section(const OperationEntry& entry) {
     const Call call(entry);
     std::string page = "## " + std::string(entry.name) + "\n\n";
-    std::string help = entry.help;
-    help[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(help[0])));
-    page += wrapped(help + ".") + "\n```sh\n";
+    page += sentence(entry.help) + "\n```sh\n";
     for (const auto& order : call.parameters().orders) page += usage_of(call, order) + "\n";
     page += "```\n\n";
     for (const Slot* slot : call.parameters().slots()) {
-        const bool named = !in_some_order(call, slot->name);
+        const bool named = !call.parameters().in_some_order(slot->name);
         page += wrapped("- `" + std::string(named ? "--" : "") + slot->name + "` (" +
                             (slot->role == Role::input ? "input" : "output") + ", " + to_string(slot->kind) +
                             (slot->needed ? "" : ", optional") + (slot->repeated ? ", repeatable" : "") + "): " + slot->help,
@@ -122,7 +102,7 @@ std::string operation_section(const OperationEntry& entry) {
     page += "\nReport (`--json`, member `result`):";
     if (!report.schema.empty()) page += " as `doc/schema/" + report.schema + ".schema.json` has it.";
     page += "\n\n";
-    add_fields(page, report.values, "");
+    add_fields(page, report.of_values, "");
     if (report.checks) page += "- `sound`, `defects`, `findings`: what the check found\n";
     for (const auto& table : report.tables) {
         if (table.key.empty()) continue;
@@ -158,11 +138,7 @@ std::vector<std::string> command_pages() {
 std::string commands_page(const std::string& first_word) {
     std::string page = "# ostraka " + first_word + "\n\n";
     for (const OperationGroup& group : operation_groups())
-        if (group.name == first_word) {
-            std::string help = group.help;
-            help[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(help[0])));
-            page += wrapped(help + ".") + "\n";
-        }
+        if (group.name == first_word) page += sentence(group.help) + "\n";
     page += wrapped(
         "Made from the table of operations; `--json`, `--show`, `--quiet`, `--threads` and `--help` go with each. Exit codes: 0 "
         "done, 1 failed, 2 wrong usage, 3 done but the answer is \"no\", 130 cancelled.");
@@ -171,17 +147,22 @@ std::string commands_page(const std::string& first_word) {
     return page;
 }
 
-std::string manual_page(const OperationEntry& entry) {
-    const Call call(entry);
+std::string manual_name(const OperationEntry& entry) {
     std::string name = "ostraka-" + std::string(entry.name);
     std::replace(name.begin(), name.end(), ' ', '-');
+    return name;
+}
+
+std::string manual_page(const OperationEntry& entry) {
+    const Call call(entry);
+    const std::string name = manual_name(entry);
     std::string page = ".TH " + name + " 1 \"\" \"ostraka " + version() + "\" \"Ostraka\"\n.SH NAME\n" + troff(name) + " \\- " +
                        troff(entry.help) + "\n.SH SYNOPSIS\n";
     for (const auto& order : call.parameters().orders) page += ".B " + troff(usage_of(call, order)) + "\n.br\n";
     page += ".SH FILES AND OBJECTS\n";
     for (const Slot* slot : call.parameters().slots())
         page +=
-            ".TP\n.B " + troff((in_some_order(call, slot->name) ? "" : "--") + slot->name) + "\n" +
+            ".TP\n.B " + troff((call.parameters().in_some_order(slot->name) ? "" : "--") + slot->name) + "\n" +
             troff(std::string(slot->role == Role::input ? "Input, " : "Output, ") + to_string(slot->kind) + ": " + slot->help) +
             "\n";
     page += ".SH OPTIONS\n";

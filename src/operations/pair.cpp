@@ -8,8 +8,7 @@ namespace ostraka {
 
 namespace {
 
-class PairFragments final : public Operation {
-public:
+struct PairFragments final : Operation {
     void describe(Parameters& p) override {
         p.input("first", Kind::mesh, first, "mesh file, or points without faces; it stays where it is");
         p.input("second", Kind::mesh, second, "the fragment that is moved");
@@ -20,10 +19,7 @@ public:
         options.describe(p.options);
         reading.describe(p.options);
         p.report.schema = "pair";
-        std::vector<Field> columns;
-        for (const char* title : {"pose", "score", "contact %", "rim %", "residual", "penetration %"})
-            columns.push_back({"", FieldType::number, title});
-        p.report.table("", std::move(columns));
+        p.report.people_table("", {"pose", "score", "contact %", "rim %", "residual", "penetration %"});
     }
 
     void run(Context& context, Report& report) override {
@@ -32,11 +28,9 @@ public:
             context.check_outputs({folder / "first.ply", folder / "second.ply", folder / "pair.json"});
         const FragmentFile &a = read(first), &b = read(second);
         const BreakPair pair = pair_breaks(a.fragment, b.fragment, options);
-        JsonAllocator& allocator = report.allocator();
-        JsonValue result = pair_to_json(pair, first.file_name(), second.file_name(), allocator);
+        const JsonValue result = pair_to_json(pair, first.file_name(), second.file_name(), report.allocator());
         report.values(result);
-        add_member(result, "provenance", context.provenance().to_json(allocator), allocator);
-        write_json(output.in("pair.json"), result);
+        output.write("pair.json", result);
         if (!pair.candidates.empty()) write("second.ply", b.fragment, pair.candidates.front().pose);
         if (a.points) write("first.ply", a.fragment, Motion());
 
@@ -45,10 +39,8 @@ public:
             report.line(printable(slot->file()) + ": facets by " + file->facets_from + ", fracture " + number(fracture, 4));
         std::size_t count = 0;
         for (const PairCandidate& one : pair.candidates) {
-            Report::Row row = report.row("");
-            row.shown("pose", std::to_string(++count)).shown("score", number(one.score, 3));
-            row.shown("contact %", number(100 * one.contact, 3)).shown("rim %", number(100 * one.rim, 3));
-            row.shown("residual", number(one.residual, 3)).shown("penetration %", number(100 * one.penetration, 2));
+            report.row("", {++count, number(one.score, 3), number(100 * one.contact, 3), number(100 * one.rim, 3),
+                            number(one.residual, 3), number(100 * one.penetration, 2)});
         }
         const std::string confidence = "confidence " + number(pair.confidence, 2);
         report.line(pair.decided() ? "they go together as in pose 1, " + confidence
@@ -56,7 +48,6 @@ public:
         if (!pair.decided()) report.answer_no();
     }
 
-private:
     [[nodiscard]] const FragmentFile& read(const FileInput& slot) const {
         const auto& file =
             slot.load<FragmentFile>([&](const Path& path) { return read_fragment(path, reading); }, 0, options_text(reading));
@@ -67,9 +58,7 @@ private:
     void write(const std::string& name, const Fragment& fragment, const Motion& pose) const {
         MeshExtras extras;
         for (const Facet facet : fragment.facets) extras.face_labels.push_back(static_cast<std::int32_t>(facet));
-        WriteOptions how;
-        how.comment = output.context->provenance().to_line();
-        write_mesh(output.in(name), moved(fragment.mesh, pose), extras, how);
+        output.write(name, moved(fragment.mesh, pose), extras);
     }
 
     FileInput first, second;

@@ -13,8 +13,7 @@ namespace ostraka {
 namespace {
 
 /// What all of them read and tell.
-class RelationOperation : public Operation {
-protected:
+struct RelationOperation : Operation {
     void describe_inputs(Parameters& p) {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)");
@@ -23,16 +22,12 @@ protected:
     void describe_output(Parameters& p) { p.output("output", Kind::graph, output, "graph to write (.graph.json)"); }
     /// The table of relationships, with what became of each where they were checked.
     static void describe_relationships(ReportLayout& report, bool checked = false) {
-        std::vector<Field> columns{{"id", FieldType::integer, "id"}};
-        if (checked) columns.push_back({"verdict", FieldType::text, "verdict"});
-        columns.push_back({"type", FieldType::text, "type"});
-        columns.push_back({"origin", FieldType::text, checked ? "" : "origin"});
-        columns.push_back({"annotations", FieldType::numbers, "annotations"});
-        columns.push_back({"parameters", FieldType::any, "measured"});
-        if (checked) columns.push_back({"text", FieldType::text, "remark"});
-        for (const char* key : {"isDirected", "isConstraint"}) columns.push_back({key, FieldType::boolean});
-        columns.push_back({"weight", FieldType::number});
-        columns.push_back({"constraint", FieldType::any});
+        std::vector<Field> columns{integer("id", "id")};
+        if (checked) columns.push_back(text("verdict", "verdict"));
+        columns.insert(columns.end(), {text("type", "type"), text("origin", checked ? "" : "origin"),
+                                       numbers("annotations", "annotations"), any("parameters", "measured")});
+        if (checked) columns.push_back(text("text", "remark"));
+        columns.insert(columns.end(), {boolean("isDirected"), boolean("isConstraint"), number("weight"), any("constraint")});
         report.table("relationships", std::move(columns));
     }
 
@@ -62,17 +57,13 @@ protected:
     GraphInput graph;
     GraphOutput output;
 
-private:
     [[nodiscard]] std::string members_of(const Relationship& relationship) const {
-        std::string text;
+        std::vector<std::string> members;
         for (const int id : relationship.annotations) {
             const Annotation* annotation = set().find(id);
-            text += (text.empty()            ? ""
-                     : relationship.directed ? " > "
-                                             : ", ") +
-                    std::to_string(id) + (annotation == nullptr ? "" : " " + annotation->tag);
+            members.push_back(std::to_string(id) + (annotation == nullptr ? "" : " " + annotation->tag));
         }
-        return text;
+        return joined(members, relationship.directed ? " > " : ", ");
     }
 
     /// The type, of "equal attributes" with the attribute, of constraints with the weight.
@@ -95,18 +86,14 @@ private:
     }
 };
 
-class RelationExtract final : public RelationOperation {
-public:
+struct RelationExtract final : RelationOperation {
     void describe(Parameters& p) override {
         describe_inputs(p);
         describe_output(p);
-        p.input("graph", Kind::graph, graph, "graph whose stated relationships are kept").optional().flag();
+        p.input_option("graph", Kind::graph, graph, "graph whose stated relationships are kept");
         p.options("type", types, "type to look for, once for each; all without it").words();
         tolerances.describe(p.options);
-        p.report.table("tree", {{"annotation", FieldType::integer},
-                                {"tag", FieldType::text},
-                                {"depth", FieldType::integer},
-                                {"parent", FieldType::integer}});
+        p.report.table("tree", integer("annotation"), text("tag"), integer("depth"), integer("parent"));
         describe_relationships(p.report);
     }
 
@@ -122,10 +109,8 @@ public:
             const auto known = std::find_if(list.begin(), list.end(), [&](const auto& one) { return one.id == id; });
             report.note("relationship " + std::to_string(id) + " (" + known->type + ") is stated already");
         }
-        std::string left_out;
-        for (const std::string& type : found.not_looked_for) left_out += (left_out.empty() ? "" : ", ") + type;
-        if (!left_out.empty())
-            report.note("not looked for, as the annotations do not say what is up: " + left_out +
+        if (!found.not_looked_for.empty())
+            report.note("not looked for, as the annotations do not say what is up: " + joined(found.not_looked_for) +
                         " ('ostraka annotation edit --set-up x,y,z' says it)");
         report.empty_table("tree");
         std::string text = "the whole shape\n";
@@ -142,17 +127,15 @@ public:
         output.write(std::move(found.graph), set());
     }
 
-private:
     std::vector<std::string> types;
     RelationOptions tolerances;
 };
 
-class RelationAdd final : public RelationOperation {
-public:
+struct RelationAdd final : RelationOperation {
     void describe(Parameters& p) override {
         describe_inputs(p);
         describe_output(p);
-        p.input("graph", Kind::graph, graph, "graph it is added to; without it a new one begins").optional().flag();
+        p.input_option("graph", Kind::graph, graph, "graph it is added to; without it a new one begins");
         p.options("type", type, "type, e.g. adjacency, \"mirror symmetry\", proportion").required();
         p.options("annotation", members, "id or tag of a member, once for each; the first is the subject").words().required();
         p.options("own-type", own_type, "the type is one of your own");
@@ -223,7 +206,6 @@ public:
         tell(report, std::vector{relationship});
     }
 
-private:
     struct Tolerance {
         std::string quantity;
         double value;
@@ -247,12 +229,9 @@ private:
         if (value < 0) fail_usage("the tolerance '" + printable(text, 60) + "' is negative", "use 0 or more");
         const std::string quantity = text.substr(0, sign);
         const auto measured = measured_quantities(own_name());
-        if (std::find(measured.begin(), measured.end(), quantity) == measured.end()) {
-            std::string list;
-            for (const auto& name : measured) list += (list.empty() ? "" : ", ") + name;
+        if (std::find(measured.begin(), measured.end(), quantity) == measured.end())
             fail_usage("'" + own_name() + "' does not measure '" + quantity + "'",
-                       list.empty() ? "leave the tolerance out" : "it measures " + list);
-        }
+                       measured.empty() ? "leave the tolerance out" : "it measures " + joined(measured));
         const bool length = quantity == "distance" || quantity == "height", angle = quantity == "angle" || quantity == "tilt";
         if (percent && angle) fail_usage("'" + text + "' is not a tolerance", "give an angle in degrees, without '%'");
         return {quantity, value, percent && length, length, angle};
@@ -264,8 +243,7 @@ private:
     bool directed = false, is_constraint = false, own_type = false;
 };
 
-class RelationRemove final : public RelationOperation {
-public:
+struct RelationRemove final : RelationOperation {
     void describe(Parameters& p) override {
         describe_inputs(p);
         describe_graph(p);
@@ -291,12 +269,10 @@ public:
         tell(report, removed);
     }
 
-private:
     std::vector<int> ids;
 };
 
-class RelationList final : public RelationOperation {
-public:
+struct RelationList final : RelationOperation {
     void describe(Parameters& p) override {
         describe_inputs(p);
         describe_graph(p);
@@ -305,14 +281,13 @@ public:
     void run(Context&, Report& report) override { tell(report, read_relations().relationships); }
 };
 
-class RelationCheckAll final : public RelationOperation {
-public:
+struct RelationCheckAll final : RelationOperation {
     void describe(Parameters& p) override {
         describe_inputs(p);
         describe_graph(p);
         tolerances.describe(p.options);
         describe_relationships(p.report, true);
-        for (const char* verdict : {"holds", "fails", "unknown"}) p.report.value(verdict, FieldType::integer);
+        for (const char* verdict : {"holds", "fails", "unknown"}) p.report.values(integer(verdict));
     }
 
     void run(Context&, Report& report) override {
@@ -328,23 +303,21 @@ public:
             tell(report, relationship)("verdict", to_string(checks[i].verdict))("text", checks[i].text);
         }
         for (const Verdict verdict : {Verdict::holds, Verdict::fails, Verdict::unknown})
-            report.value(to_string(verdict), counts.at(static_cast<std::size_t>(verdict)));
+            report(to_string(verdict), counts.at(static_cast<std::size_t>(verdict)));
         report.line(std::to_string(counts[0]) + " hold, " + std::to_string(counts[1]) + " fail, " + std::to_string(counts[2]) +
                     " unknown");
         if (counts[1] > 0) report.answer_no();
     }
 
-private:
     RelationOptions tolerances;
 };
 
-class RelationExport final : public RelationOperation {
-public:
+struct RelationExport final : RelationOperation {
     void describe(Parameters& p) override {
         describe_inputs(p);
         describe_graph(p);
         p.output("output", Kind::text, dot, "file to write (.dot, .gv)");
-        for (const char* count : {"relationships", "annotations"}) p.report.value(count, FieldType::integer, count);
+        for (const char* count : {"relationships", "annotations"}) p.report.values(integer(count, count));
     }
 
     void check() const override {
@@ -355,11 +328,9 @@ public:
     void run(Context&, Report& report) override {
         const RelationGraph relations = read_relations();
         dot.write(graph_to_dot(relations, set()));
-        report.value("relationships", relations.relationships.size());
-        report.value("annotations", set().annotations.size());
+        report("relationships", relations.relationships.size())("annotations", set().annotations.size());
     }
 
-private:
     FileOutput dot{".dot"};
 };
 

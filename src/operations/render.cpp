@@ -14,21 +14,16 @@ namespace ostraka {
 
 namespace {
 
-class Render final : public Operation {
-public:
+struct Render final : Operation {
     void describe(Parameters& p) override {
         p.input("meshes", Kind::mesh, meshes, "one or more meshes").many();
         p.output("picture", Kind::picture, picture, "picture to write (PNG)");
         p.order({"meshes", "picture"});
-        p.input("annotations", Kind::annotations, annotations, "annotation file; once a mesh, 'none' for a mesh without")
-            .many_or_none()
-            .optional()
-            .flag();
-        p.input("map", Kind::values, maps,
-                "one number a vertex or face (.npy, or text with a number a line); once a mesh, 'none' for a mesh without")
-            .many_or_none()
-            .optional()
-            .flag();
+        p.input_option("annotations", Kind::annotations, annotations, "annotation file; once a mesh, 'none' for a mesh without")
+            .many_or_none();
+        p.input_option("map", Kind::values, maps,
+                       "one number a vertex or face (.npy, or text with a number a line); once a mesh, 'none' for a mesh without")
+            .many_or_none();
         p.options("title", titles, "written under the object; once a mesh, 'none' for a mesh without");
         p.options("map-on", map_on, "what the map's numbers belong to; auto: as their count says",
                   Choices{"auto", "vertex", "face"});
@@ -38,17 +33,10 @@ public:
                   Choices{"auto", "labels", "colours", "none"});
         p.options("unit", unit, "unit of the mesh, for the scale bar");
         options.describe(p.options);
-        p.report.value("picture", FieldType::text);
-        for (const char* side : {"width", "height"}) p.report.value(side, FieldType::integer, "", "pixels");
-        p.report.table("panes", {{"object", FieldType::integer},
-                                 {"view", FieldType::text},
-                                 {"vertices", FieldType::integer},
-                                 {"faces", FieldType::integer},
-                                 {"pixelsPerUnit", FieldType::number},
-                                 {"scaleBar", FieldType::number},
-                                 {"markers", FieldType::integer},
-                                 {"markersShown", FieldType::integer},
-                                 {"camera", FieldType::any}});
+        p.report.values(text("picture"));
+        for (const char* side : {"width", "height"}) p.report.values(integer(side, "", "pixels"));
+        p.report.table("panes", integer("object"), text("view"), integer("vertices"), integer("faces"), number("pixelsPerUnit"),
+                       number("scaleBar"), integer("markers"), integer("markersShown"), any("camera"));
     }
 
     void check() const override {
@@ -85,22 +73,18 @@ public:
         write_png(picture.path(), rendering.picture);
         report.run("writeSeconds", writing.seconds());
         report.run("threads", threads());
-        report.value("picture", picture.file_name());
-        report.value("width", rendering.picture.width);
-        report.value("height", rendering.picture.height);
+        report("picture", picture.file_name())("width", rendering.picture.width)("height", rendering.picture.height);
         report.empty_table("panes");
         for (const Pane& pane : rendering.panes) {
             const Scene& scene = scenes[pane.scene];
-            Report::Row row = report.row("panes");
-            row("object", pane.scene)("view", pane.view)("vertices", scene.mesh.points.size());
-            row("faces", scene.mesh.triangles.size())("pixelsPerUnit", pane.pixels_per_unit);
-            if (pane.bar_length > 0) row("scaleBar", pane.bar_length);
-            row("markers", scene.markers.size())("markersShown", pane.markers_shown);
-            row("camera", camera_json(pane, rendering.picture, report.allocator()));
+            const auto bar = pane.bar_length > 0 ? std::optional(pane.bar_length) : std::nullopt;
+            report.row("panes")("object", pane.scene)("view", pane.view)("vertices", scene.mesh.points.size())(
+                "faces", scene.mesh.triangles.size())("pixelsPerUnit", pane.pixels_per_unit)("scaleBar", bar)(
+                "markers", scene.markers.size())("markersShown", pane.markers_shown)(
+                "camera", camera_json(pane, rendering.picture, report.allocator()));
         }
     }
 
-private:
     enum class MapOn { automatic, vertex, face };
     enum class ColourBy { automatic, labels, colours, none };
 
@@ -227,24 +211,14 @@ private:
     /// As recipes take it, so that pixels of this picture can be picked.
     static JsonValue camera_json(const Pane& pane, const Picture& picture, JsonAllocator& allocator) {
         const PictureCamera& camera = pane.camera;
-        const auto list = [&](const auto& numbers) {
-            JsonValue array(rapidjson::kArrayType);
-            for (const auto x : numbers) array.PushBack(x, allocator);
-            return array;
-        };
-        const auto triple = [&](const auto& v) { return list(std::array{v.x(), v.y(), v.z()}); };
+        const auto triple = [](const auto& v) { return std::array{v.x(), v.y(), v.z()}; };
         const bool parallel = camera.distance == 0;
         const double distance = parallel ? std::max(pane.width, pane.height) / camera.scale : camera.distance;
-        JsonValue result(rapidjson::kObjectType);
-        add_member(result, "frame", "mesh", allocator);
-        add_member(result, "eye", triple(camera.centre + distance * camera.toward), allocator);
-        add_member(result, "target", triple(camera.centre), allocator);
-        add_member(result, "up", triple(camera.up), allocator);
-        add_member(result, "projection", parallel ? "orthographic" : "perspective", allocator);
-        add_member(result, "pixelsPerUnit", JsonValue(camera.scale), allocator);
-        add_member(result, "picture", list(std::array{picture.width, picture.height}), allocator);
-        add_member(result, "pane", list(std::array{pane.left, pane.top, pane.width, pane.height}), allocator);
-        return result;
+        return json_object(allocator, "frame", "mesh", "eye", triple(camera.centre + distance * camera.toward), "target",
+                           triple(camera.centre), "up", triple(camera.up), "projection",
+                           parallel ? "orthographic" : "perspective", "pixelsPerUnit", camera.scale, "picture",
+                           std::array{picture.width, picture.height}, "pane",
+                           std::array{pane.left, pane.top, pane.width, pane.height});
     }
 
     MeshInput meshes;

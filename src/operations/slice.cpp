@@ -59,24 +59,22 @@ private:
     }
 };
 
-class SliceObject final : public Operation {
-public:
+struct SliceObject final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json): unit, upward direction, parts")
             .optional();
-        p.output("output", Kind::folder, output,
-                 "a folder for everything, or .json (all), .csv (descriptors), .svg, .png (drawing), .ply (slices on the mesh); "
-                 "repeatable")
-            .optional()
-            .flag()
+        p.output_option(
+             "output", Kind::folder, output,
+             "a folder for everything, or .json (all), .csv (descriptors), .svg, .png (drawing), .ply (slices on the mesh); "
+             "repeatable")
             .many();
-        p.output("profile", Kind::picture, profile, "write a profile drawing (.svg, .png)").optional().flag();
+        p.output_option("profile", Kind::picture, profile, "write a profile drawing (.svg, .png)");
         p.options("annotation", names, "id or tag of a region: slice that part only; more than one: all together").words();
         p.options.group("Planes");
         p.options("direction", direction,
                   "across what: up, principal, rotation, skeleton, an axis such as y or -z, or three numbers like 0,1,0");
-        p.options("up", up, "x, y, z, -x, -y, -z or three numbers: upward direction; else as the annotations say, else 0,0,1");
+        up.describe(p, "x, y, z, -x, -y, -z or three numbers: upward direction; else as the annotations say, else 0,0,1");
         p.options("count", count, "number of slices, in the middles of as many layers (default 50)", Range{1, 1e6});
         p.options("spacing", spacing, "distance of the slices, from the lowest place up", Anything{}, "the mesh's unit");
         p.options("heights", heights, "heights over the lowest place, with commas between them", Anything{}, "the mesh's unit");
@@ -127,7 +125,6 @@ public:
         if (!cut.met()) report.answer_no();
     }
 
-private:
     void check_planes() const {
         const int ways = (count ? 1 : 0) + (spacing ? 1 : 0) + (heights.empty() ? 0 : 1);
         if (ways > 1) fail_usage("heights are asked for in more than one way", "give one of --count, --spacing and --heights");
@@ -144,7 +141,7 @@ private:
             fail_usage("--range is '" + listed(range) + "'", "give two shares of the height, the lower one first, like 0,0.4");
         if (!plane.empty()) static_cast<void>(frame_of_plane());
         if (!up.empty()) static_cast<void>(direction_of(up, "--up"));
-        if (direction != "up" && !own_axis()) static_cast<void>(asked_direction());
+        if (direction != "up" && !is_by_axis()) static_cast<void>(asked_direction());
     }
 
     static std::string listed(const std::vector<double>& numbers) {
@@ -153,10 +150,8 @@ private:
         return text;
     }
 
-    [[nodiscard]] std::optional<AxisMethod> own_axis() const {
-        for (const AxisMethod method : {AxisMethod::principal, AxisMethod::rotation, AxisMethod::skeleton})
-            if (direction == to_string(method)) return method;
-        return std::nullopt;
+    [[nodiscard]] bool is_by_axis() const {
+        return direction == "principal" || direction == "rotation" || direction == "skeleton";
     }
 
     [[nodiscard]] std::array<double, 3> asked_direction() const {
@@ -197,7 +192,7 @@ private:
             std::sort(faces.begin(), faces.end());
             faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
         }
-        if (!up.empty()) upward = direction_of(up, "--up"), up_known = true;
+        if (up) upward = *up.value(), up_known = true;
         upwards = {upward[0], upward[1], upward[2]};
     }
 
@@ -209,8 +204,9 @@ private:
             CutOptions options;
             options.up = upwards;
             options.places = {heights, spacing, count.value_or(50), range[0], range[1]};
-            options.direction = own_axis();
-            if (!options.direction && direction != "up") {
+            if (is_by_axis()) {
+                options.direction = direction;
+            } else if (direction != "up") {
                 const auto along = asked_direction();
                 options.up = {along[0], along[1], along[2]};
             }
@@ -247,13 +243,11 @@ private:
 
     /// The result so far, as a file.
     static Json document(const Context& context, const Report& report) {
-        Json document(rapidjson::kObjectType);
+        Json document = json_document("slices");
         auto& allocator = document.GetAllocator();
-        add_member(document, "format", "ostraka-slices", allocator);
-        add_member(document, "version", JsonValue(1), allocator);
         for (const auto& member : report.result().GetObject())
-            add_member(document, member.name.GetString(), JsonValue(member.value, allocator), allocator);
-        add_member(document, "provenance", context.provenance().to_json(allocator), allocator);
+            add_members(document, allocator, member.name.GetString(), member.value);
+        add_members(document, allocator, "provenance", context.provenance().to_json(allocator));
         return document;
     }
 
@@ -318,7 +312,8 @@ private:
     SliceOutput output;
     FileOutput profile{".svg"};
     std::vector<std::string> names;
-    std::string direction = "up", up, unit, title, colour_by = "height";
+    std::string direction = "up", unit, title, colour_by = "height";
+    DirectionOption up;
     std::optional<int> count;
     std::optional<double> spacing, angle;
     std::vector<double> heights, range{0, 1}, plane, residues;

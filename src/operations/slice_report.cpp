@@ -1,6 +1,7 @@
 #include "slice_report.h"
 
 #include "ostraka/core/csv.h"
+#include "ostraka/core/json_build.h"
 #include "ostraka/render/colour_scale.h"
 
 #include <algorithm>
@@ -9,6 +10,8 @@
 #include <numeric>
 
 namespace ostraka {
+
+using namespace fields;
 
 namespace {
 
@@ -38,18 +41,18 @@ bool is_slice_count(std::string_view name) { return name == "components" || name
 
 Field descriptor_field(const NamedDescriptor& entry) {
     const ShownDescriptor* shown = shown_descriptor(entry.name);
-    const std::string unit = entry.unit;
     return {"descriptors." + std::string(entry.name), is_slice_count(entry.name) ? FieldType::integer : FieldType::number,
-            std::string(shown == nullptr ? "" : shown->title), unit == "area" ? "length^2" : unit};
+            std::string(shown == nullptr ? "" : shown->title), std::string(entry.unit) == "area" ? "length^2" : entry.unit};
 }
 
 std::vector<double> slice_triple(const Vector& v) { return {v.x(), v.y(), v.z()}; }
 std::vector<double> slice_triple(const Point& p) { return {p.x(), p.y(), p.z()}; }
 
-JsonValue slice_list(const std::vector<double>& numbers, JsonAllocator& allocator) {
-    JsonValue list(rapidjson::kArrayType);
-    for (const double x : numbers) list.PushBack(std::isfinite(x) ? JsonValue(x) : JsonValue(), allocator);
-    return list;
+/// Numbers that are not finite are null.
+JsonValue slice_list(const std::vector<double>& values, JsonAllocator& allocator) {
+    std::vector<std::optional<double>> list;
+    for (const double x : values) list.push_back(std::isfinite(x) ? std::optional(x) : std::nullopt);
+    return json_value(list, allocator);
 }
 JsonValue slice_points(const std::vector<Eigen::Vector2d>& points, JsonAllocator& allocator) {
     JsonValue list(rapidjson::kArrayType);
@@ -58,47 +61,35 @@ JsonValue slice_points(const std::vector<Eigen::Vector2d>& points, JsonAllocator
 }
 
 JsonValue slice_json(const SliceFrame& frame, JsonAllocator& allocator) {
-    JsonValue object(rapidjson::kObjectType);
-    add_member(object, "origin", slice_list(slice_triple(frame.origin), allocator), allocator);
-    add_member(object, "u", slice_list(slice_triple(frame.u), allocator), allocator);
-    add_member(object, "v", slice_list(slice_triple(frame.v), allocator), allocator);
-    add_member(object, "normal", slice_list(slice_triple(frame.normal), allocator), allocator);
-    return object;
+    const auto list = [&](const auto& of) { return slice_list(slice_triple(of), allocator); };
+    return json_object(allocator, "origin", list(frame.origin), "u", list(frame.u), "v", list(frame.v), "normal",
+                       list(frame.normal));
 }
 
 JsonValue slice_json(const Contour& contour, JsonAllocator& allocator) {
-    JsonValue object(rapidjson::kObjectType);
-    add_member(object, "closed", JsonValue(contour.closed), allocator);
+    JsonValue object = json_object(allocator, "closed", contour.closed);
     if (contour.closed) {
-        add_member(object, "hole", JsonValue(contour.hole), allocator);
-        add_member(object, "parent", JsonValue(contour.parent), allocator);
-        add_member(object, "depth", JsonValue(contour.depth), allocator);
-        add_member(object, "area", JsonValue(contour.area), allocator);
-        if (contour.crosses) add_member(object, "crosses", JsonValue(true), allocator);
-        if (contour.turned) add_member(object, "turned", JsonValue(true), allocator);
+        add_members(object, allocator, "hole", contour.hole, "parent", contour.parent, "depth", contour.depth, "area",
+                    contour.area);
+        if (contour.crosses) add_members(object, allocator, "crosses", true);
+        if (contour.turned) add_members(object, allocator, "turned", true);
     } else {
-        add_member(object, "gap", JsonValue(contour.gap), allocator);
-        add_member(object, "share", JsonValue(contour.length / (contour.length + contour.gap)), allocator);
+        add_members(object, allocator, "gap", contour.gap, "share", contour.length / (contour.length + contour.gap));
     }
-    add_member(object, "length", JsonValue(contour.length), allocator);
-    add_member(object, "points", slice_points(contour.points, allocator), allocator);
+    add_members(object, allocator, "length", contour.length, "points", slice_points(contour.points, allocator));
     return object;
 }
 
 JsonValue slice_json(const MedialAxis& medial, JsonAllocator& allocator) {
     JsonValue levels(rapidjson::kArrayType);
     for (const auto& level : medial.levels) {
-        JsonValue object(rapidjson::kObjectType), branches(rapidjson::kArrayType);
-        add_member(object, "residue", JsonValue(level.residue), allocator);
-        add_member(object, "length", JsonValue(level.length), allocator);
-        for (const auto& branch : level.branches) {
-            JsonValue entry(rapidjson::kObjectType);
-            add_member(entry, "points", slice_points(branch.points, allocator), allocator);
-            add_member(entry, "radii", slice_list(branch.radii, allocator), allocator);
-            branches.PushBack(entry, allocator);
-        }
-        add_member(object, "branches", std::move(branches), allocator);
-        levels.PushBack(object, allocator);
+        JsonValue branches(rapidjson::kArrayType);
+        for (const auto& branch : level.branches)
+            branches.PushBack(json_object(allocator, "points", slice_points(branch.points, allocator), "radii",
+                                          slice_list(branch.radii, allocator)),
+                              allocator);
+        levels.PushBack(json_object(allocator, "residue", level.residue, "length", level.length, "branches", std::move(branches)),
+                        allocator);
     }
     return levels;
 }
@@ -161,12 +152,8 @@ void add_compared_axis(Report& report, const ComparedAxis& axis) {
 
 void add_slice_thickness(Report& report, const SliceFindings& found) {
     const ThicknessHomogeneity& t = found.thickness;
-    report.value("thickness.slices", t.slices);
-    report.value("thickness.slices_with_parts_beside", t.beside);
-    report.value("thickness.mean", t.mean);
-    report.value("thickness.variation_within", t.within);
-    report.value("thickness.variation_across", t.across);
-    report.value("thickness.variation_overall", t.overall);
+    report("thickness.slices", t.slices)("thickness.slices_with_parts_beside", t.beside)("thickness.mean", t.mean)(
+        "thickness.variation_within", t.within)("thickness.variation_across", t.across)("thickness.variation_overall", t.overall);
     const auto percent = [](double share) { return std::isfinite(share) ? number(100 * share, 3) : std::string("-"); };
     if (std::isfinite(t.mean))
         report.line(
@@ -180,75 +167,61 @@ void add_slice_thickness(Report& report, const SliceFindings& found) {
 
 void add_slice_tube(Report& report, const SliceFindings& found) {
     const Tube& tube = found.tube;
-    report.value("tube.found", tube.found);
+    report("tube.found", tube.found);
     if (tube.found) {
         const auto heights = found.cut.sorted_heights();
-        report.value("tube.lowest", heights[tube.first]);
-        report.value("tube.highest", heights[tube.last]);
+        report("tube.lowest", heights[tube.first])("tube.highest", heights[tube.last]);
         report.line("\ntubular from " + number(heights[tube.first]) + " to " + number(heights[tube.last]) +
                     (found.unit.empty() ? "" : " " + found.unit) + " (" + std::to_string(tube.last - tube.first + 1) +
                     " slices)");
     } else {
-        report.value("tube.reason", tube.reason);
+        report("tube.reason", tube.reason);
         report.line("\nno tubular part: " + tube.reason);
     }
-    JsonValue groups(rapidjson::kArrayType);
-    for (const int group : tube.cluster) groups.PushBack(group, report.allocator());
-    report.value("tube.groups_by_height", std::move(groups));
+    report("tube.groups_by_height", json_value(tube.cluster, report.allocator()));
 }
 
 }  // namespace
 
 void declare_slices(ReportLayout& layout) {
-    layout.value("unit", FieldType::text).value("planes", FieldType::text).value("reversed", FieldType::boolean);
-    layout.value("heights_of_the_mesh", FieldType::numbers, "", "length");
-    std::vector<Field> columns{{"", FieldType::integer, "slice"},
-                               {"height", FieldType::number, "height", "length"},
-                               {"", FieldType::integer, "contours"},
-                               {"frame", FieldType::any},
-                               {"completeness.empty", FieldType::boolean},
-                               {"completeness.complete", FieldType::boolean},
-                               {"completeness.closed_share", FieldType::number},
-                               {"completeness.angle_degrees", FieldType::number, "", "degrees"},
-                               {"completeness.crossing_contours", FieldType::integer},
-                               {"completeness.turned_contours", FieldType::integer},
-                               {"completeness.doubtful_share", FieldType::number}};
+    layout.values(text("unit"), text("planes"), boolean("reversed"), numbers("heights_of_the_mesh", "", "length"));
+    std::vector<Field> columns{people("slice"),
+                               number("height", "height", "length"),
+                               people("contours"),
+                               any("frame"),
+                               boolean("completeness.empty"),
+                               boolean("completeness.complete"),
+                               number("completeness.closed_share"),
+                               number("completeness.angle_degrees", "", "degrees"),
+                               integer("completeness.crossing_contours"),
+                               integer("completeness.turned_contours"),
+                               number("completeness.doubtful_share")};
     const auto descriptors = list_descriptors({});
     for (const ShownDescriptor& shown : shown_descriptors)
-        columns.push_back(descriptor_field(
-            *std::find_if(descriptors.begin(), descriptors.end(), [&](const auto& entry) { return entry.name == shown.name; })));
+        for (const auto& entry : descriptors)
+            if (entry.name == shown.name) columns.push_back(descriptor_field(entry));
     for (const auto& entry : descriptors)
         if (shown_descriptor(entry.name) == nullptr) columns.push_back(descriptor_field(entry));
-    columns.push_back({"completeness.share", FieldType::number, "complete %"});
-    for (const char* structure : {"thickness_profile", "contours", "medial_axis"}) columns.push_back({structure, FieldType::any});
+    columns.insert(columns.end(),
+                   {number("completeness.share", "complete %"), any("thickness_profile"), any("contours"), any("medial_axis")});
     layout.table("slices", std::move(columns));
-    layout.table("axes", {{"name", FieldType::text, "axis"},
-                          {"found", FieldType::boolean},
-                          {"reason", FieldType::text},
-                          {"point", FieldType::numbers, "", "length"},
-                          {"direction", FieldType::numbers},
-                          {"polyline", FieldType::any},
-                          {"straightness.mean_distance", FieldType::number, "mean distance", "length"},
-                          {"straightness.deviation", FieldType::number, "", "length"},
-                          {"straightness.largest_distance", FieldType::number, "largest", "length"},
-                          {"straightness.length", FieldType::number, "length", "length"},
-                          {"straightness.relative", FieldType::number, "mean / length %"}});
-    layout.value("thickness.slices", FieldType::integer).value("thickness.slices_with_parts_beside", FieldType::integer);
-    layout.value("thickness.mean", FieldType::number, "", "length");
-    for (const char* part : {"within", "across", "overall"})
-        layout.value("thickness.variation_" + std::string(part), FieldType::number);
-    layout.value("tube.found", FieldType::boolean).value("tube.reason", FieldType::text);
-    layout.value("tube.lowest", FieldType::number, "", "length").value("tube.highest", FieldType::number, "", "length");
-    layout.structure("tube.groups_by_height");
+    layout.table("axes", text("name", "axis"), boolean("found"), text("reason"), numbers("point", "", "length"),
+                 numbers("direction"), any("polyline"), number("straightness.mean_distance", "mean distance", "length"),
+                 number("straightness.deviation", "", "length"), number("straightness.largest_distance", "largest", "length"),
+                 number("straightness.length", "length", "length"), number("straightness.relative", "mean / length %"));
+    layout.values(integer("thickness.slices"), integer("thickness.slices_with_parts_beside"),
+                  number("thickness.mean", "", "length"));
+    for (const char* part : {"within", "across", "overall"}) layout.values(number("thickness.variation_" + std::string(part)));
+    layout.values(boolean("tube.found"), text("tube.reason"), number("tube.lowest", "", "length"),
+                  number("tube.highest", "", "length"), any("tube.groups_by_height"));
 }
 
 void add_slices(Report& report, const SliceFindings& found) {
     const CutObject& cut = found.cut;
     report.set_unit(found.unit);
-    if (!found.unit.empty()) report.value("unit", found.unit);
-    report.value("planes", cut.parallel ? "parallel" : "across a curve");
-    report.value("reversed", cut.reversed);
-    if (cut.parallel && !found.one_plane) report.value("heights_of_the_mesh", std::vector{cut.lowest, cut.highest});
+    if (!found.unit.empty()) report("unit", found.unit);
+    report("planes", cut.parallel ? "parallel" : "across a curve")("reversed", cut.reversed);
+    if (cut.parallel && !found.one_plane) report("heights_of_the_mesh", std::vector{cut.lowest, cut.highest});
     for (std::size_t i = 0; i < cut.slices.size(); ++i) add_one_slice(report, cut, i);
     if (!cut.parallel) report.line("height: length along the curve");
     report.line(

@@ -12,9 +12,9 @@ void StudyFiles::describe(Parameters& p, bool labels, const std::string& collect
     p.options("plots", plots_, "format of the plots", Choices{"svg", "png"}).unrecorded();
     declare_failures(p.report);
     if (!labels) return;
-    p.input("truth", Kind::table, truth_, "known answers: CSV with the columns name and label").optional().flag();
+    p.input_option("truth", Kind::table, truth_, "known answers: CSV with the columns name and label");
     p.options("truth-column", truth_column_, "the column of the answers, if not 'label'");
-    for (const char* count : {"labelled", "objects", "kinds"}) p.report.value(std::string("truth.") + count, FieldType::integer);
+    p.report.values(integer("truth.labelled"), integer("truth.objects"), integer("truth.kinds"));
 }
 
 void StudyFiles::check() const {
@@ -36,7 +36,7 @@ Collection StudyFiles::read(Context& context) const {
     return result;
 }
 
-void declare_failures(ReportLayout& layout) { layout.table("failed", {{"name", FieldType::text}, {"problem", FieldType::text}}); }
+void declare_failures(ReportLayout& layout) { layout.table("failed", text("name"), text("problem")); }
 
 std::size_t report_failures(Report& report, const Collection& collection, const std::vector<ObjectResult>& results) {
     std::size_t count = 0;
@@ -70,20 +70,14 @@ void KnownAnswers::tell(Report& report) const {
 }
 
 void KnownAnswers::add_to(Report& report) const {
-    if (labelled == 0) return;
-    for (const auto& [name, count] : {std::pair{"labelled", labelled}, {"objects", objects}, {"kinds", kinds}})
-        report.value(std::string("truth.") + name, count);
+    if (labelled > 0) report("truth.labelled", labelled)("truth.objects", objects)("truth.kinds", kinds);
 }
 
 void write_study_report(const Path& file, const std::string& kind, const JsonValue& result, const Provenance& provenance) {
-    Json document(rapidjson::kObjectType);
+    Json document = json_document(kind);
     auto& allocator = document.GetAllocator();
-    add_member(document, "format", "ostraka-" + kind, allocator);
-    add_member(document, "version", JsonValue(1), allocator);
-    for (const auto& member : result.GetObject())
-        add_member(document, std::string_view(member.name.GetString(), member.name.GetStringLength()),
-                   JsonValue(member.value, allocator), allocator);
-    add_member(document, "provenance", provenance.to_json(allocator), allocator);
+    for (const auto& member : result.GetObject()) add_members(document, allocator, member.name.GetString(), member.value);
+    add_members(document, allocator, "provenance", provenance.to_json(allocator));
     validate(document, kind, file.string());
     write_json(file, document);
 }

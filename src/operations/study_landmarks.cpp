@@ -14,15 +14,14 @@ namespace ostraka {
 
 namespace {
 
-class StudyLandmarks final : public Operation {
-public:
+struct StudyLandmarks final : Operation {
     void describe(Parameters& p) override {
         files.describe(p, true);
         p.options("components", components, "principal components to write", Range{1, 1000});
         options.describe(p.options);
-        for (const char* count : {"objects", "landmarks", "iterations"}) p.report.value(count, FieldType::integer);
-        for (const char* size : {"meanCentroidSize", "meanNorm", "sumOfSquares"}) p.report.value(size, FieldType::number);
-        p.report.value("converged", FieldType::boolean).value("components", FieldType::numbers);
+        for (const char* count : {"objects", "landmarks", "iterations"}) p.report.values(integer(count));
+        for (const char* size : {"meanCentroidSize", "meanNorm", "sumOfSquares"}) p.report.values(number(size));
+        p.report.values(boolean("converged"), numbers("components"));
     }
 
     void check() const override { files.check(); }
@@ -48,18 +47,14 @@ public:
         write(shapes, shape, principal);
 
         const Summary sizes = summarise(shape.centroid_sizes, "centroid sizes");
-        report.value("objects", shapes.objects.size());
+        report("objects", shapes.objects.size());
         KnownAnswers(shapes.labels).add_to(report);
-        report.value("landmarks", shapes.names.size());
-        report.value("meanCentroidSize", sizes.mean);
-        report.value("meanNorm", shape.mean.norm());
-        report.value("sumOfSquares", shape.sum_of_squares);
-        report.value("iterations", shape.iterations);
-        report.value("converged", shape.converged);
+        report("landmarks", shapes.names.size())("meanCentroidSize", sizes.mean)("meanNorm", shape.mean.norm())(
+            "sumOfSquares", shape.sum_of_squares)("iterations", shape.iterations)("converged", shape.converged);
         std::vector<double> shares;
         for (const double variance : principal.variances)
             shares.push_back(principal.total_variance > 0 ? variance / principal.total_variance : 0);
-        report.value("components", shares);
+        report("components", shares);
         TextTable table({"landmarks", "of", "mean centroid size", "size of the mean", "sum of squares"});
         table.add({std::to_string(shapes.names.size()), std::to_string(shapes.objects.size()) + " objects",
                    significant(sizes.mean, 10) + (shapes.unit.empty() ? "" : " " + shapes.unit),
@@ -67,7 +62,6 @@ public:
         report.table(table);
     }
 
-private:
     /// The table of objects and the plot of the first two components.
     void write(const LandmarkShapes& shapes, const GeneralisedProcrustes& shape, const PrincipalComponents& principal) const {
         const Eigen::MatrixXd& scores = principal.scores;

@@ -14,8 +14,7 @@ namespace ostraka {
 namespace {
 
 /// The folder that all of them fill.
-class StudyMake : public Operation {
-protected:
+struct StudyMake : Operation {
     void describe_folder(Parameters& p, const std::string& help) { p.output("folder", Kind::collection, folder, help); }
 
     /// Makes the folder, which holds no objects yet, and each of them, several at a time.
@@ -43,8 +42,7 @@ protected:
 };
 
 /// Those that make statuettes.
-class StudyMakeStatuettes : public StudyMake {
-protected:
+struct StudyMakeStatuettes : StudyMake {
     /// "statuette-07" of more than nine.
     static std::string name_of(std::size_t i, std::size_t count) {
         const std::string number = std::to_string(i + 1);
@@ -85,12 +83,11 @@ constexpr const char* statuette_measures = R"({
 }
 )";
 
-class StudyMakeProportions final : public StudyMakeStatuettes {
-public:
+struct StudyMakeProportions final : StudyMakeStatuettes {
     void describe(Parameters& p) override {
         describe_folder(p, "folder to write meshes, annotations, measures and truth.csv to");
         options.describe(p.options);
-        p.report.value("folder", FieldType::text).value("objects", FieldType::integer).value("fixed", FieldType::text);
+        p.report.values(text("folder"), integer("objects"), text("fixed"));
     }
 
     void run(Context& context, Report& report) override {
@@ -110,25 +107,21 @@ public:
         std::string fixed;
         for (const std::string size : ProportionedOptions::size_names)
             if (options.is_fixed(size)) fixed += (fixed.empty() ? "" : ", ") + size;
-        report.value("folder", folder.path().string());
-        report.value("objects", list.size());
-        report.value("fixed", fixed);
+        report("folder", folder.path().string())("objects", list.size())("fixed", fixed);
         report.line(std::to_string(list.size()) + " statuettes with truth.csv and statuettes.measures.json in " +
                     printable(folder.path().string()) + "; in fixed proportion: right arm and left arm" +
                     (fixed.empty() ? "" : "; " + fixed));
     }
 
-private:
     ProportionedOptions options;
 };
 
-class StudyMakeTechnique final : public StudyMakeStatuettes {
-public:
+struct StudyMakeTechnique final : StudyMakeStatuettes {
     void describe(Parameters& p) override {
         describe_folder(p, "folder to write meshes, annotations and truth.csv to");
         options.describe(p.options);
-        p.report.value("folder", FieldType::text);
-        for (const char* count : {"objects", "wheel", "hand"}) p.report.value(count, FieldType::integer);
+        p.report.values(text("folder"));
+        for (const char* count : {"objects", "wheel", "hand"}) p.report.values(integer(count));
     }
 
     void run(Context& context, Report& report) override {
@@ -137,7 +130,7 @@ public:
         std::vector<std::vector<std::string>> rows(list.size());
         make_each("statuettes", list.size(), [&](std::size_t i) {
             const std::string name = name_of(i, list.size());
-            rows[i] = {name, option_text(list[i], "technique")};
+            rows[i] = {name, list[i].technique};
             for (const auto& [key, value] : list_options(list[i]))
                 if (key != "technique") rows[i].push_back(value);
             make_one(name, list[i], command, true, [&](const Statuette& made) {
@@ -153,29 +146,24 @@ public:
         for (const auto& row : rows) truth += csv_row(row);
         write_file(folder.in("truth.csv"), truth);
 
-        const auto wheel = static_cast<std::size_t>(std::count_if(
-            list.begin(), list.end(), [](const auto& one) { return one.technique == StatuetteParameters::Technique::wheel; }));
-        report.value("folder", folder.path().string());
-        report.value("objects", list.size());
-        report.value("wheel", wheel);
-        report.value("hand", list.size() - wheel);
+        const auto wheel = static_cast<std::size_t>(
+            std::count_if(list.begin(), list.end(), [](const auto& one) { return one.technique == StatuetteParameters::Technique::wheel; }));
+        report("folder", folder.path().string())("objects", list.size())("wheel", wheel)("hand", list.size() - wheel);
         report.line(std::to_string(list.size()) + " statuettes of level " + std::to_string(options.level) + ", " +
                     std::to_string(wheel) + " wheel-made and " + std::to_string(list.size() - wheel) +
                     " hand-made, and truth.csv in " + printable(folder.path().string()));
     }
 
-private:
     PopulationOptions options;
 };
 
-class StudyMakeMoulds final : public StudyMake {
-public:
+struct StudyMakeMoulds final : StudyMake {
     void describe(Parameters& p) override {
         describe_folder(p, "folder to write to: a PLY mesh with labelled faces each, and truth.csv");
         population.describe(p.options);
         cast.describe(p.options);
-        p.report.value("objects", FieldType::integer).value("parts", FieldType::texts);
-        p.report.table("", {{"", FieldType::integer, "label"}, {"", FieldType::text, "part"}});
+        p.report.values(integer("objects"), texts("parts"));
+        p.report.people_table("", {"label", "part"});
     }
 
     void run(Context& context, Report& report) override {
@@ -199,15 +187,12 @@ public:
         write_file(folder.in("truth.csv"), truth);
 
         const std::vector<std::string> parts = head_part_names();
-        report.value("objects", plan.size());
-        report.value("parts", parts);
+        report("objects", plan.size())("parts", parts);
         report.line(std::to_string(plan.size()) + " heads in " + printable(folder.path().string()) +
                     ", their moulds in truth.csv");
-        for (std::size_t part = 0; part < parts.size(); ++part)
-            report.row("").shown("label", std::to_string(part)).shown("part", parts[part]);
+        for (std::size_t part = 0; part < parts.size(); ++part) report.row("", {part, parts[part]});
     }
 
-private:
     MouldPopulationOptions population;
     CastOptions cast;
 };

@@ -14,8 +14,7 @@ namespace ostraka {
 
 namespace {
 
-class StudyMoulds final : public Operation {
-public:
+struct StudyMoulds final : Operation {
     void describe(Parameters& p) override {
         files.describe(p, true);
         p.options("similarity", similarity, "what the groups are found by", Choices(mould_similarities()));
@@ -24,21 +23,12 @@ public:
         compare.describe(p.options);
         group.describe(p.options);
         stability.describe(p.options);
-        for (const char* word : {"similarity", "method", "epsilonRule"}) p.report.value(word, FieldType::text);
-        for (const char* figure : {"epsilon", "featureSize", "silhouette", "adjustedRandIndex"})
-            p.report.value(figure, FieldType::number);
-        p.report.value("clear", FieldType::boolean);
-        p.report.table("groups", {{"group", FieldType::integer},
-                                  {"heads", FieldType::texts},
-                                  {"stability", FieldType::number},
-                                  {"recovered", FieldType::number},
-                                  {"dissolved", FieldType::number}});
-        p.report.table("heads", {{"name", FieldType::text},
-                                 {"group", FieldType::integer},
-                                 {"silhouette", FieldType::number},
-                                 {"secondGroup", FieldType::integer},
-                                 {"relativeSize", FieldType::number},
-                                 {"label", FieldType::text}});
+        for (const char* word : {"similarity", "method", "epsilonRule"}) p.report.values(text(word));
+        for (const char* figure : {"epsilon", "featureSize", "silhouette", "adjustedRandIndex"}) p.report.values(number(figure));
+        p.report.values(boolean("clear"));
+        p.report.table("groups", integer("group"), texts("heads"), number("stability"), number("recovered"), number("dissolved"));
+        p.report.table("heads", text("name"), integer("group"), number("silhouette"), integer("secondGroup"),
+                       number("relativeSize"), text("label"));
     }
 
     void check() const override { files.check(); }
@@ -68,22 +58,17 @@ public:
         if (choices)
             choice_table(study, answers, known).write(files.output.path(), "choices", "Groups by every similarity and epsilon");
 
-        report.value("similarity", similarity);
-        report.value("method", option_text(group, "method"));
-        report.value("epsilonRule", group.epsilon);
-        report.value("epsilon", study.groups.epsilon);
-        report.value("featureSize", prepared.options.features.size);
-        report.value("silhouette", study.groups.silhouette);
-        report.value("clear", study.groups.clear);
+        report("similarity", similarity)("method", option_text(group, "method"))("epsilonRule", group.epsilon)("epsilon", study.groups.epsilon)(
+            "featureSize", prepared.options.features.size)("silhouette", study.groups.silhouette)("clear", study.groups.clear);
         known.add_to(report);
         const double agreement = known.scorable() ? agreement_with_answers(study.groups.labels, answers) : 0;
-        if (known.scorable()) report.value("adjustedRandIndex", agreement);
+        if (known.scorable()) report("adjustedRandIndex", agreement);
         const std::string single = tell_groups(report, study, answers);
         write_report(report, context.provenance());
 
         report.table(groups);
         const int count = study.group_count();
-        report.line(std::to_string(count) + (count == 1 ? " group of " : " groups of ") + std::to_string(answers.size()) +
+        report.line(counted(static_cast<std::size_t>(count), "group") + " of " + std::to_string(answers.size()) +
                     " heads at epsilon " + number(study.groups.epsilon, 3) + ", mean silhouette " +
                     number(study.groups.silhouette, 3) +
                     (known.scorable() ? ", adjusted Rand index " + number(agreement, 4) : ""));
@@ -100,7 +85,6 @@ public:
         if (failed > 0) report.line(std::to_string(failed) + " objects were left out");
     }
 
-private:
     /// Returns the heads that are alone in their group.
     [[nodiscard]] std::string tell_groups(Report& report, const MouldStudy& study,
                                           const std::vector<std::string>& answers) const {
@@ -108,16 +92,14 @@ private:
         std::size_t at = 0;
         for (const MouldGroupSummary& each : summarise_groups(study)) {
             const ClusterStability& resampled = study.stability[at++];
-            Report::Row row = report.row("groups");
-            row("group", at)("heads", each.members);
+            Report::Row row = report.row("groups")("group", at)("heads", each.members);
             if (each.members.size() == 1) single += (single.empty() ? "" : ", ") + each.members.front();
             else if (resampled.resamples > 0)
                 row("stability", resampled.jaccard)("recovered", resampled.recovered)("dissolved", resampled.dissolved);
         }
         for (std::size_t i = 0; i < answers.size(); ++i) {
-            Report::Row row = report.row("heads");
-            row("name", study.matrices.names[i])("group", study.groups.labels[i] + 1)("silhouette",
-                                                                                      study.groups.head_silhouettes[i]);
+            Report::Row row = report.row("heads")("name", study.matrices.names[i])("group", study.groups.labels[i] + 1)(
+                "silhouette", study.groups.head_silhouettes[i]);
             if (const int second = study.second_group(i).first; second >= 0) row("secondGroup", second + 1);
             if (compare.consistent.shrinkage > 0) row("relativeSize", study.sizes[i]);
             if (!answers[i].empty()) row("label", answers[i]);
@@ -126,15 +108,12 @@ private:
     }
 
     void write_report(const Report& report, const Provenance& provenance) const {
-        Json document(rapidjson::kObjectType);
+        Json document = json_document("mould-study");
         auto& allocator = document.GetAllocator();
-        add_member(document, "format", "ostraka-mould-study", allocator);
-        add_member(document, "version", JsonValue(1), allocator);
-        add_member(document, "provenance", provenance.to_json(allocator), allocator);
         JsonValue result(report.result(), allocator), failed(result["failed"], allocator);
         result.EraseMember("failed");
-        add_member(result, "failed", std::move(failed), allocator);  // the last one in the file
-        add_member(document, "result", std::move(result), allocator);
+        add_members(result, allocator, "failed", std::move(failed));  // the last one in the file
+        add_members(document, allocator, "provenance", provenance.to_json(allocator), "result", std::move(result));
         validate(document, "mould-study", "moulds.json");
         write_json(files.in("moulds.json"), document);
     }
@@ -163,13 +142,11 @@ private:
             const ClusterStability& stability = study.stability[group++];
             const bool resampled = stability.resamples > 0 && each.members.size() > 1;
             const auto if_resampled = [&](double value) { return resampled ? std::optional(value) : std::nullopt; };
-            std::string members;
-            for (const std::string& name : each.members) members += (members.empty() ? "" : " ") + name;
             table.add({std::to_string(group), std::to_string(each.members.size()), number_cell(each.within, 3),
                        number_cell(each.nearest ? std::optional<double>(*each.nearest + 1) : std::nullopt, 6),
                        number_cell(each.to_nearest, 3), number_cell(each.silhouette, 3),
                        number_cell(if_resampled(stability.jaccard), 3), percent_cell(if_resampled(stability.dissolved), 0),
-                       members});
+                       joined(each.members, " ")});
         }
         return table;
     }
@@ -207,9 +184,9 @@ private:
             for (const char* method : {"linkage", "dbscan", "embedding"}) {
                 for (const char* epsilon : {"0.1", "knn", "volume", "knee", "silhouette", "nested"}) {
                     GroupOptions options = group;
-                    set_option(options, "method", method);
+                    options.method = method;
                     options.epsilon = epsilon;
-                    if (options.epsilon == "volume" && options.method != GroupOptions::Method::embedding) continue;
+                    if (options.epsilon == "volume" && options.method != "embedding") continue;
                     const MouldGroups found = group_heads(distances, options);
                     const int count = *std::max_element(found.labels.begin(), found.labels.end()) + 1;
                     std::vector<TableCell> cells{each,
@@ -246,12 +223,11 @@ private:
         write_plot(files.plot("distances"), map);
 
         Dendrogram tree;
-        tree.title = group.method == GroupOptions::Method::linkage ? "Average linkage of the distances"
-                                                                   : "Single linkage, which DBSCAN goes by";
+        tree.title = group.method == "linkage" ? "Average linkage of the distances" : "Single linkage, which DBSCAN goes by";
         tree.tree = study.groups.tree;
         tree.names = names;
         tree.groups = study.groups.labels;
-        if (group.method != GroupOptions::Method::embedding) {  // whose epsilon is no distance of this tree
+        if (group.method != "embedding") {  // whose epsilon is no distance of this tree
             tree.cut = study.groups.epsilon;
             tree.cut_label = "epsilon " + significant(study.groups.epsilon, 3);
         }

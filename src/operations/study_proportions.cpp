@@ -105,35 +105,30 @@ Plot variation_plot(const ProportionStudy& study, const std::string& title) {
     return plot;
 }
 
-class StudyProportions final : public Operation {
-public:
+struct StudyProportions final : Operation {
     void describe(Parameters& p) override {
         files.describe(p, false, "folder of meshes, a list of objects (.study.json), or a table of measures (.csv)");
-        p.input("measures", Kind::text, measures, "the measures to take on every object (.measures.json)").optional().flag();
-        p.input("template-mesh", Kind::mesh, mesh, "mesh of the template that proportions are proposed for").optional().flag();
-        p.input("template-annotations", Kind::annotations, annotations, "its annotations").optional().flag();
-        p.input("template-graph", Kind::graph, graph_in, "its relationships, to which proposals are added").optional().flag();
-        p.output("graph", Kind::graph, graph, "graph to write: fixed proportions as constraints on the template")
-            .optional()
-            .flag();
-        p.output("annotations-out", Kind::annotations, annotations_out,
-                 "the template's annotations, with the measures that the constraints name")
-            .optional()
-            .flag();
+        p.input_option("measures", Kind::text, measures, "the measures to take on every object (.measures.json)");
+        p.input_option("template-mesh", Kind::mesh, mesh, "mesh of the template that proportions are proposed for");
+        p.input_option("template-annotations", Kind::annotations, annotations, "its annotations");
+        p.input_option("template-graph", Kind::graph, graph_in, "its relationships, to which proposals are added");
+        p.output_option("graph", Kind::graph, graph, "graph to write: fixed proportions as constraints on the template");
+        p.output_option("annotations-out", Kind::annotations, annotations_out,
+                        "the template's annotations, with the measures that the constraints name");
         options.describe(p.options);
         proposals.describe(p.options);
-        p.report.value("objects", FieldType::integer);
-        std::vector<Field> columns{{"name", FieldType::text}, {"unit", FieldType::text}, {"objects", FieldType::integer}};
-        for (const char* name : {"average", "min", "max", "median", "ownDeviation"}) columns.push_back({name, FieldType::number});
-        for (const char* name : {"deviation", "deviationInterval", "variation", "variationInterval"})
-            columns.push_back({name, FieldType::any});
+        p.report.values(integer("objects"));
+        std::vector<Field> columns{text("name"),       text("unit"),
+                                   integer("objects"), number("average"),
+                                   number("min"),      number("max"),
+                                   number("median"),   number("ownDeviation"),
+                                   any("deviation"),   any("deviationInterval"),
+                                   any("variation"),   any("variationInterval")};
         p.report.table("measures", columns);
-        for (const char* name : {"numerator", "denominator", "verdict"}) columns.push_back({name, FieldType::text});
-        for (const char* name : {"logDeviation", "pPairing", "pOthers", "q"}) columns.push_back({name, FieldType::number});
-        for (const char* name : {"range", "pSize"}) columns.push_back({name, FieldType::any});
+        columns.insert(columns.end(), {text("numerator"), text("denominator"), text("verdict"), number("logDeviation"),
+                                       number("pPairing"), number("pOthers"), number("q"), any("range"), any("pSize")});
         p.report.table("ratios", columns);
-        p.report.structure("sizeDeviation");
-        p.report.value("proposed", FieldType::integer, "proposed constraints");
+        p.report.values(any("sizeDeviation"), integer("proposed", "proposed constraints"));
     }
 
     void check() const override {
@@ -182,25 +177,21 @@ public:
                     (failures > 0 ? " (" + std::to_string(failures) + " failed)" : ""));
         if (study.size_deviation) report.line("common size varies by " + percent(*study.size_deviation));
         if (count == 0) report.answer_no();
-        report.value("objects", table.objects.size());
+        report("objects", table.objects.size());
         tell(report, study);
         if (graph) propose(report, study, notes);
         write_report(report, notes, context.provenance());
     }
 
-private:
     [[nodiscard]] bool from_table() const { return extension(files.collection.file()) == ".csv"; }
     [[nodiscard]] const MeasureDefinitions& definitions() const {
         return measures.load<MeasureDefinitions>([](const Path& file) { return read_measure_definitions(file); });
     }
 
     static void tell(Report& report, const ProportionStudy& study) {
-        const auto optional = [](const std::optional<double>& value) { return value ? JsonValue(*value) : JsonValue(); };
+        const auto optional = [&](const auto& value) { return json_value(value, report.allocator()); };
         const auto interval = [&](const std::optional<Interval>& of) {
-            if (!of) return JsonValue();
-            JsonValue list(rapidjson::kArrayType);
-            list.PushBack(of->low, report.allocator()).PushBack(of->high, report.allocator());
-            return list;
+            return optional(of ? std::optional(std::array{of->low, of->high}) : std::nullopt);
         };
         const auto describe = [&](Report::Row row, const MeasureRow& of) {
             row("name", of.name);
@@ -224,7 +215,7 @@ private:
             row("pPairing", ratio.p_pairing)("pOthers", ratio.p_others)("pSize", optional(ratio.p_size))("q", ratio.q)(
                 "verdict", to_string(ratio.fixedness));
         }
-        report.value("sizeDeviation", optional(study.size_deviation));
+        report("sizeDeviation", optional(study.size_deviation));
     }
 
     void propose(Report& report, const ProportionStudy& study, std::vector<std::string>& notes) const {
@@ -234,18 +225,15 @@ private:
         Proposals made = propose_proportions(mesh->mesh, set, std::move(before), definitions(), study, proposals);
         report.notes(made.notes);
         notes.insert(notes.end(), made.notes.begin(), made.notes.end());
-        report.value("proposed", made.proposed);
+        report("proposed", made.proposed);
         graph.write(std::move(made.graph), made.set);
         annotations_out.write(std::move(made.set), mesh->mesh, mesh.file());
     }
 
     void write_report(const Report& report, const std::vector<std::string>& notes, const Provenance& provenance) const {
         Json result;
-        auto& allocator = result.GetAllocator();
-        result.CopyFrom(report.result(), allocator);
-        JsonValue list(rapidjson::kArrayType);
-        for (const auto& note : notes) list.PushBack(json_string(note, allocator), allocator);
-        add_member(result, "notes", std::move(list), allocator);
+        result.CopyFrom(report.result(), result.GetAllocator());
+        add_members(result, result.GetAllocator(), "notes", notes);
         write_study_report(files.in("proportions.json"), "proportions", result, provenance);
     }
 

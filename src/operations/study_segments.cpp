@@ -12,48 +12,31 @@ namespace ostraka {
 
 namespace {
 
-class StudySegments final : public Operation {
-public:
+struct StudySegments final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.output("output", Kind::annotations, output, "annotations to write (.ant.json)");
-        p.output("curve", Kind::picture, curve, "plot of the criterion over the number of clusters (.svg, .png)")
-            .optional()
-            .flag();
-        p.input("compare", Kind::annotations, compare,
-                "annotations with the known parts; else the mesh file's labels, if it has any")
-            .optional()
-            .flag();
-        p.options("up", up,
-                  "x, y, z, -x, -y, -z or three numbers: upward direction; else as the annotations of --compare say, else 0,0,1");
+        p.output_option("curve", Kind::picture, curve, "plot of the criterion over the number of clusters (.svg, .png)");
+        p.input_option("compare", Kind::annotations, compare,
+                       "annotations with the known parts; else the mesh file's labels, if it has any");
+        up.describe(
+            p, "x, y, z, -x, -y, -z or three numbers: upward direction; else as the annotations of --compare say, else 0,0,1");
         p.options("unit", unit, "unit of the mesh; else as the annotations of --compare say");
         options.describe(p.options);
-        p.report.value("unit", FieldType::text).value("clusters", FieldType::integer);
-        p.report.value("proposed", FieldType::integer).value("criterion", FieldType::text);
-        p.report.table("curve", {{"clusters", FieldType::integer, "clusters"},
-                                 {"cost", FieldType::number, "cost"},
-                                 {"silhouette", FieldType::number, "silhouette"},
-                                 {"gap", FieldType::number, "gap"},
-                                 {"gapError", FieldType::number, "gap error"}});
-        p.report.table("segments", {{"tag", FieldType::text, "segment"},
-                                    {"cluster", FieldType::integer, "cluster"},
-                                    {"low", FieldType::number, "from", "length"},
-                                    {"high", FieldType::number, "to", "length"},
-                                    {"slices", FieldType::integer, "slices"},
-                                    {"faces", FieldType::integer},
-                                    {"area", FieldType::number, "area", "length^2"}});
-        p.report.value("adjustedRandIndex", FieldType::number);
-    }
-
-    void check() const override {
-        if (!up.empty()) direction_of(up, "--up");
+        p.report.values(text("unit"), integer("clusters"), integer("proposed"), text("criterion"));
+        p.report.table("curve", integer("clusters", "clusters"), number("cost", "cost"), number("silhouette", "silhouette"),
+                       number("gap", "gap"), number("gapError", "gap error"));
+        p.report.table("segments", text("tag", "segment"), integer("cluster", "cluster"), number("low", "from", "length"),
+                       number("high", "to", "length"), integer("slices", "slices"), integer("faces"),
+                       number("area", "area", "length^2"));
+        p.report.values(number("adjustedRandIndex"));
     }
 
     void run(Context&, Report& report) override {
         const Mesh& surface = mesh->mesh;
         const AnnotationSet* parts = compare ? &compare.on(surface) : nullptr;
         std::optional<std::array<double, 3>> way = parts != nullptr ? parts->up : std::nullopt;
-        if (!up.empty()) way = direction_of(up, "--up");
+        if (up) way = up.value();
         if (!way) report.note("no upward direction is known, z is taken; else give --up");
         const Vector upward = way ? Vector((*way)[0], (*way)[1], (*way)[2]) : Vector(0, 0, 1);
         const SliceSegments segments = in_file(mesh.file(), [&] { return segment_by_slices(surface, upward, options); });
@@ -64,16 +47,14 @@ public:
             segment_agreement(segments, parts != nullptr ? labels_of(surface, *parts) : mesh->extras.face_labels);
 
         report.set_unit(set.unit);
-        if (!set.unit.empty()) report.value("unit", set.unit);
-        report.value("clusters", segments.clusters);
-        report.value("proposed", segments.count.proposed);
-        report.value("criterion", option_text(options.count, "criterion"));
+        if (!set.unit.empty()) report("unit", set.unit);
+        report("clusters", segments.clusters)("proposed", segments.count.proposed)("criterion", option_text(options.count, "criterion"));
         report.empty_table("curve");
         for (const ClusterCount::Row& row : segments.count.rows)
             report.row("curve")("clusters", row.clusters)("cost", row.cost)("silhouette", row.silhouette)("gap", row.gap)(
                 "gapError", row.gap_error);
-        report.line(std::to_string(segments.count.proposed) + " clusters proposed by " + option_text(options.count, "criterion") +
-                    ", " + std::to_string(segments.clusters) + " used\n");
+        report.line(std::to_string(segments.count.proposed) + " clusters proposed by " + options.count.criterion + ", " +
+                    std::to_string(segments.clusters) + " used\n");
         for (std::size_t i = 0; i < segments.segments.size(); ++i) {
             const SliceSegment& each = segments.segments[i];
             const Annotation* region = set.find(static_cast<int>(i));
@@ -83,7 +64,7 @@ public:
         }
         tell_clusters(report, segments);
         if (agreement) {
-            report.value("adjustedRandIndex", *agreement);
+            report("adjustedRandIndex", *agreement);
             report.line("adjusted Rand index against the known parts, over the faces: " + number(*agreement, 3));
         }
         if (curve && segments.count.rows.size() > 2) draw(segments);
@@ -91,7 +72,6 @@ public:
         output.write(std::move(set), surface, mesh.file());
     }
 
-private:
     /// Clusters without a segment, and those with several.
     void tell_clusters(Report& report, const SliceSegments& segments) const {
         std::string gone, again;
@@ -118,7 +98,7 @@ private:
 
     void draw(const SliceSegments& segments) const {
         Plot plot;
-        const bool gap = options.count.criterion == ClusterCountOptions::Criterion::gap;
+        const bool gap = options.count.criterion == "gap";
         plot.title = "Number of clusters: " + std::to_string(segments.count.proposed) + " proposed";
         plot.x = {"clusters"};
         plot.y = {gap ? "gap statistic" : "mean silhouette"};
@@ -137,7 +117,8 @@ private:
     AnnotationsInput compare;
     AnnotationsOutput output;
     FileOutput curve{".svg"};
-    std::string up, unit;
+    DirectionOption up;
+    std::string unit;
     SliceSegmentOptions options;
 };
 

@@ -11,47 +11,34 @@ namespace ostraka {
 
 namespace {
 
-class StudyOfTechnique final : public Operation {
-public:
+struct StudyOfTechnique final : Operation {
     void describe(Parameters& p) override {
         files.describe(p, true);
-        p.options(
-            "up", up,
+        up.describe(
+            p,
             "x, y, z, -x, -y, -z or three numbers: upward direction of all objects; else as their annotations say, else 0,0,1");
         slices.describe(p.options);
         options.describe(p.options);
-        for (const char* word : {"positive", "negative", "answeredBy"}) p.report.value(word, FieldType::text);
-        for (const char* answer : {"learned", "separated"}) p.report.value(answer, FieldType::boolean);
-        std::vector<Field> columns{{"name", FieldType::text},       {"descriptors", FieldType::texts},
-                                   {"objects", FieldType::integer}, {"f1Interval", FieldType::numbers},
-                                   {"better", FieldType::boolean},  {"positiveAbove", FieldType::boolean},
-                                   {"roc", FieldType::any}};
-        for (const char* score : {"f1", "f1Deviation", "trivialF1", "error", "precision", "recall", "area", "threshold"})
-            columns.push_back({score, FieldType::number});
-        p.report.table("classifiers", columns);
-        columns = {{"descriptor", FieldType::text}, {"objects", FieldType::integer}, {"lower", FieldType::integer}};
-        for (const char* figure : {"threshold", "shareBetween", "p", "f1"}) columns.push_back({figure, FieldType::number});
-        p.report.table("divisions", columns);
-        columns = {{"resamples", FieldType::integer},      {"unlike.descriptor", FieldType::text},
-                   {"unlike.value", FieldType::number},    {"unlike.labelled", FieldType::numbers},
-                   {"unlike.distance", FieldType::number}, {"score", FieldType::number},
-                   {"agreement", FieldType::number},       {"roundnessInterval", FieldType::numbers},
-                   {"descriptors", FieldType::any}};
-        for (const char* word : {"name", "label", "answer", "certainty", "words"}) columns.push_back({word, FieldType::text});
-        for (const char* count : {"asked", "used", "open", "tooOpen", "empty"})
-            columns.push_back({std::string("slices.") + count, FieldType::integer});
-        p.report.table("objects", columns);
+        for (const char* word : {"positive", "negative", "answeredBy"}) p.report.values(text(word));
+        for (const char* answer : {"learned", "separated"}) p.report.values(boolean(answer));
+        p.report.table("classifiers", text("name"), texts("descriptors"), integer("objects"), numbers("f1Interval"),
+                       boolean("better"), boolean("positiveAbove"), any("roc"), number("f1"), number("f1Deviation"),
+                       number("trivialF1"), number("error"), number("precision"), number("recall"), number("area"),
+                       number("threshold"));
+        p.report.table("divisions", text("descriptor"), integer("objects"), integer("lower"), number("threshold"),
+                       number("shareBetween"), number("p"), number("f1"));
+        p.report.table("objects", integer("resamples"), text("unlike.descriptor"), number("unlike.value"),
+                       numbers("unlike.labelled"), number("unlike.distance"), number("score"), number("agreement"),
+                       numbers("roundnessInterval"), any("descriptors"), text("name"), text("label"), text("answer"),
+                       text("certainty"), text("words"), integer("slices.asked"), integer("slices.used"), integer("slices.open"),
+                       integer("slices.tooOpen"), integer("slices.empty"));
     }
 
-    void check() const override {
-        files.check();
-        if (!up.empty()) direction_of(up, "--up");
-    }
+    void check() const override { files.check(); }
 
     void run(Context& context, Report& report) override {
         const Collection collection = files.read(context);
-        const auto measured = measure_technique(collection, up.empty() ? std::nullopt : std::optional(direction_of(up, "--up")),
-                                                slices, files.store());
+        const auto measured = measure_technique(collection, up.value(), slices, files.store());
         report.notes(notes_on_directions(collection, measured));
         const std::vector<TechniqueObject> objects = technique_objects(collection, measured);
         const std::size_t left_out = report_failures(report, collection, measured);
@@ -76,15 +63,11 @@ public:
         if (!study.separated) report.answer_no();
     }
 
-private:
     static void fill(Report& report, const TechniqueStudy& study, const std::vector<TechniqueObject>& objects,
                      const KnownAnswers& known) {
-        report.value("positive", study.positive);
-        report.value("negative", study.negative);
-        report.value("learned", study.learned);
+        report("positive", study.positive)("negative", study.negative)("learned", study.learned);
         known.add_to(report);
-        report.value("answeredBy", study.answered_by);
-        report.value("separated", study.separated);
+        report("answeredBy", study.answered_by)("separated", study.separated);
         for (const char* table : {"classifiers", "divisions", "objects"}) report.empty_table(table);
         for (const ClassifierResult& each : study.classifiers) {
             Report::Row row = report.row("classifiers");
@@ -95,20 +78,14 @@ private:
                 "better", each.better)("error", each.error)("precision", each.validation.mean_precision)(
                 "recall", each.validation.mean_recall)("area", each.roc.area);
             if (each.threshold) row("threshold", each.threshold->value)("positiveAbove", each.threshold->above);
-            JsonValue roc(rapidjson::kArrayType);
-            for (const RocPoint& point : each.roc.points) {
-                JsonValue pair(rapidjson::kArrayType);
-                pair.PushBack(point.false_positive_rate, report.allocator())
-                    .PushBack(point.true_positive_rate, report.allocator());
-                roc.PushBack(pair, report.allocator());
-            }
-            row("roc", std::move(roc));
+            std::vector<std::array<double, 2>> roc;
+            for (const RocPoint& point : each.roc.points) roc.push_back({point.false_positive_rate, point.true_positive_rate});
+            row("roc", json_value(roc, report.allocator()));
         }
         for (const TechniqueSplit& each : study.splits) {
             Report::Row row = report.row("divisions");
             row("descriptor", each.descriptor)("objects", each.objects)("lower", each.lower)("threshold", each.threshold)(
-                "shareBetween", each.share)("p", each.p_value);
-            if (each.f1) row("f1", *each.f1);
+                "shareBetween", each.share)("p", each.p_value)("f1", each.f1);
         }
         for (std::size_t i = 0; i < objects.size(); ++i)
             fill_answer(report.row("objects"), study.answers[i], objects[i].measures, study.learned, report.allocator());
@@ -129,7 +106,7 @@ private:
             "slices.tooOpen", measures.too_open)("slices.empty", measures.empty);
         JsonValue descriptors(rapidjson::kObjectType);
         for (const TechniqueDescriptor& d : measures.descriptors)
-            add_member(descriptors, d.name, std::isfinite(d.value) ? JsonValue(d.value) : JsonValue(), allocator);
+            add_members(descriptors, allocator, d.name, std::isfinite(d.value) ? std::optional(d.value) : std::nullopt);
         row("descriptors", std::move(descriptors))("words", each.words);
     }
 
@@ -219,7 +196,7 @@ private:
     }
 
     StudyFiles files;
-    std::string up;
+    DirectionOption up;
     TechniqueOptions slices;
     TechniqueStudyOptions options;
 };

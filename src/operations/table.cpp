@@ -8,72 +8,24 @@
 namespace ostraka {
 
 // clang-format off
-std::unique_ptr<Operation> make_mesh_info();
-std::unique_ptr<Operation> make_mesh_convert();
-std::unique_ptr<Operation> make_mesh_repair();
-std::unique_ptr<Operation> make_mesh_simplify();
-std::unique_ptr<Operation> make_mesh_refine();
-std::unique_ptr<Operation> make_mesh_remesh();
-std::unique_ptr<Operation> make_mesh_break();
-std::unique_ptr<Operation> make_mesh_make();
-std::unique_ptr<Operation> make_annotation_apply();
-std::unique_ptr<Operation> make_annotation_list();
-std::unique_ptr<Operation> make_annotation_check();
-std::unique_ptr<Operation> make_annotation_remap();
-std::unique_ptr<Operation> make_annotation_select();
-std::unique_ptr<Operation> make_annotation_creases();
-std::unique_ptr<Operation> make_annotation_facets();
-std::unique_ptr<Operation> make_annotation_segment();
-std::unique_ptr<Operation> make_annotation_transfer();
-std::unique_ptr<Operation> make_annotation_survival();
-std::unique_ptr<Operation> make_annotation_export();
-std::unique_ptr<Operation> make_annotation_import();
-std::unique_ptr<Operation> make_annotation_edit();
-std::unique_ptr<Operation> make_annotation_diff();
-std::unique_ptr<Operation> make_annotation_merge();
-std::unique_ptr<Operation> make_annotation_infer();
-std::unique_ptr<Operation> make_relation_extract();
-std::unique_ptr<Operation> make_relation_add();
-std::unique_ptr<Operation> make_relation_remove();
-std::unique_ptr<Operation> make_relation_list();
-std::unique_ptr<Operation> make_relation_check();
-std::unique_ptr<Operation> make_relation_export();
-std::unique_ptr<Operation> make_measure_take();
-std::unique_ptr<Operation> make_measure_describe();
-std::unique_ptr<Operation> make_measure_refresh();
-std::unique_ptr<Operation> make_measure_map();
-std::unique_ptr<Operation> make_measure_clay();
-std::unique_ptr<Operation> make_vocabulary_check();
-std::unique_ptr<Operation> make_vocabulary_show();
-std::unique_ptr<Operation> make_vocabulary_convert();
-std::unique_ptr<Operation> make_template_pack();
-std::unique_ptr<Operation> make_template_check();
-std::unique_ptr<Operation> make_template_show();
-std::unique_ptr<Operation> make_template_learn();
-std::unique_ptr<Operation> make_template_classify();
-std::unique_ptr<Operation> make_template_sample();
-std::unique_ptr<Operation> make_template_propagate();
-std::unique_ptr<Operation> make_template_turn();
-std::unique_ptr<Operation> make_cage_make();
-std::unique_ptr<Operation> make_cage_edit();
-std::unique_ptr<Operation> make_cage_check();
-std::unique_ptr<Operation> make_cage_weights();
-std::unique_ptr<Operation> make_cage_influence();
-std::unique_ptr<Operation> make_study_make_proportions();
-std::unique_ptr<Operation> make_study_make_moulds();
-std::unique_ptr<Operation> make_study_make_technique();
-std::unique_ptr<Operation> make_study_landmarks();
-std::unique_ptr<Operation> make_study_proportions();
-std::unique_ptr<Operation> make_study_moulds();
-std::unique_ptr<Operation> make_study_technique();
-std::unique_ptr<Operation> make_study_segments();
-std::unique_ptr<Operation> make_axis();
-std::unique_ptr<Operation> make_slice();
-std::unique_ptr<Operation> make_deform();
-std::unique_ptr<Operation> make_fit();
-std::unique_ptr<Operation> make_pair();
-std::unique_ptr<Operation> make_render();
-std::unique_ptr<Operation> make_operations();
+std::unique_ptr<Operation> make_mesh_info(), make_mesh_convert(), make_mesh_repair(), make_mesh_simplify(),
+    make_mesh_refine(), make_mesh_remesh(), make_mesh_break(), make_mesh_make();
+std::unique_ptr<Operation> make_annotation_apply(), make_annotation_list(), make_annotation_check(), make_annotation_remap(),
+    make_annotation_select(), make_annotation_creases(), make_annotation_facets(), make_annotation_segment(),
+    make_annotation_transfer(), make_annotation_survival(), make_annotation_export(), make_annotation_import(),
+    make_annotation_edit(), make_annotation_diff(), make_annotation_merge(), make_annotation_infer();
+std::unique_ptr<Operation> make_relation_extract(), make_relation_add(), make_relation_remove(), make_relation_list(),
+    make_relation_check(), make_relation_export();
+std::unique_ptr<Operation> make_measure_take(), make_measure_describe(), make_measure_refresh(), make_measure_map(),
+    make_measure_clay();
+std::unique_ptr<Operation> make_vocabulary_check(), make_vocabulary_show(), make_vocabulary_convert();
+std::unique_ptr<Operation> make_template_pack(), make_template_check(), make_template_show(), make_template_learn(),
+    make_template_classify(), make_template_sample(), make_template_propagate(), make_template_turn();
+std::unique_ptr<Operation> make_cage_make(), make_cage_edit(), make_cage_check(), make_cage_weights(), make_cage_influence();
+std::unique_ptr<Operation> make_study_make_proportions(), make_study_make_moulds(), make_study_make_technique(),
+    make_study_landmarks(), make_study_proportions(), make_study_moulds(), make_study_technique(), make_study_segments();
+std::unique_ptr<Operation> make_axis(), make_slice(), make_deform(), make_fit(), make_pair(), make_render(),
+    make_operations();
 
 namespace {
 constexpr OperationEntry entries[]{

@@ -9,22 +9,15 @@ namespace ostraka {
 
 namespace {
 
-class TemplateClassify final : public Operation {
-public:
+struct TemplateClassify final : Operation {
     void describe(Parameters& p) override {
         p.input("files", Kind::shape_class, files,
                 "classes (.class.json), then a mesh file for each object (of landmarks for classes of landmarks)")
             .many();
-        p.output("report", Kind::report, answer, "write the whole answer as JSON (doc/schema/classification.schema.json)")
-            .optional()
-            .flag();
+        p.output_option("report", Kind::report, answer, "write the whole answer as JSON (doc/schema/classification.schema.json)");
         options.describe(p.options);
         p.report.schema = "classification";
-        p.report.table("", {{"", FieldType::text, "object"},
-                            {"", FieldType::text, "class"},
-                            {"", FieldType::text, "verdict"},
-                            {"", FieldType::text, "score"},
-                            {"", FieldType::text, "against"}});
+        p.report.people_table("", {"object", "class", "verdict", "score", "against"});
     }
 
     void check() const override {
@@ -47,7 +40,6 @@ public:
             report.answer_no();
     }
 
-private:
     [[nodiscard]] bool is_class(std::size_t i) const { return files.file(i).ends_with(".class.json"); }
 
     void read_classes() {
@@ -95,23 +87,17 @@ private:
     }
 
     void tell(Report& report, const std::vector<Classification>& answers) const {
-        Json document(rapidjson::kObjectType);
+        Json document = json_document("classification");
         auto& allocator = document.GetAllocator();
         JsonValue objects(rapidjson::kArrayType);
         for (const Classification& one : answers) objects.PushBack(classification_to_json(one, allocator), allocator);
-        add_member(document, "format", "ostraka-classification", allocator);
-        add_member(document, "version", JsonValue(1), allocator);
-        add_member(document, "objects", std::move(objects), allocator);
+        add_members(document, allocator, "objects", std::move(objects));
         report.values(document);
         if (answer) answer.write(std::move(document));
         for (const Classification& object : answers)
             for (const ClassAnswer& one : object.answers)
-                report.row("")
-                    .shown("object", object.object)
-                    .shown("class", one.name)
-                    .shown("verdict", to_string(one.verdict))
-                    .shown("score", one.fit.problem.empty() ? number(one.score, 4) : "-")
-                    .shown("against", std::to_string(one.against.size()));
+                report.row("", {object.object, one.name, to_string(one.verdict),
+                                one.fit.problem.empty() ? number(one.score, 4) : "-", one.against.size()});
         for (const Classification& object : answers) {
             report.line("\n" + printable(object.object) + " " + printable(object.text));
             for (const ClassAnswer& one : object.answers) {

@@ -11,8 +11,7 @@ namespace ostraka {
 
 namespace {
 
-class TemplateLearn final : public Operation {
-public:
+struct TemplateLearn final : Operation {
     void describe(Parameters& p) override {
         p.input("template", Kind::template_package, known,
                 "the template (.template.json), or the first member of a class of landmarks (.mrk.json, .fcsv, .tps, .pp), which "
@@ -25,17 +24,11 @@ public:
         p.options("name", name, "of the class; else as the template says");
         p.options("given", given, "the same as --correspondence given");
         options.describe(p.options);
-        p.report.value("class", FieldType::text).value("members", FieldType::integer).value("archetype", FieldType::text);
-        p.report.value("meanSize", FieldType::number, "", "length").value("diversity", FieldType::number);
-        p.report.value("varianceShares", FieldType::numbers);
-        const auto people = [](const std::vector<const char*>& titles) {
-            std::vector<Field> fields;
-            for (const char* title : titles) fields.push_back({"", FieldType::number, title});
-            return fields;
-        };
-        p.report.table("", people({"member", "laid on by", "scale", "centroid size", "from the mean %", "archetype"}), "members");
-        p.report.table("", people({"quantity", "n", "min", "median", "max", "mean", "sd", "from", "to", "unit"}), "ranges");
-        p.report.table("", people({"mode", "deviation", "% of variance", "together"}), "modes");
+        p.report.values(text("class"), integer("members"), text("archetype"), number("meanSize", "", "length"),
+                        number("diversity"), numbers("varianceShares"));
+        p.report.people_table("members", {"member", "laid on by", "scale", "centroid size", "from the mean %", "archetype"});
+        p.report.people_table("ranges", {"quantity", "n", "min", "median", "max", "mean", "sd", "from", "to", "unit"});
+        p.report.people_table("modes", {"mode", "deviation", "% of variance", "together"});
     }
 
     void check() const override {
@@ -54,7 +47,6 @@ public:
         tell(report, learnt);
     }
 
-private:
     [[nodiscard]] bool of_landmarks() const { return is_landmark_file(known.file()); }
 
     ShapeClass learn_meshes(Context& context) {
@@ -83,9 +75,7 @@ private:
             for (const TemplatePart& part : package.file.parts) check_copy(part.file);
             static_cast<void>(copy_template(package.file, output.open(), result.template_file, context.provenance()));
         }
-        WriteOptions how;
-        how.comment = context.provenance().to_line();
-        write_mesh(output.in(name + ".mean.ply"), with_points(package.mesh->mesh, points_of(result.modes.mean)), {}, how);
+        output.write(name + ".mean.ply", with_points(package.mesh->mesh, points_of(result.modes.mean)));
         write_class(output.open(), result, context.provenance());
         return result;
     }
@@ -127,45 +117,26 @@ private:
         const ShapeModes& modes = learnt.modes;
         std::vector<double> shares;
         for (const double variance : modes.variances) shares.push_back(modes.total > 0 ? variance / modes.total : 0);
-        report.value("class", learnt.name);
-        report.value("members", learnt.members.size());
-        report.value("archetype", learnt.members[modes.archetype].name);
-        report.value("meanSize", modes.mean_size);
-        report.value("diversity", learnt.diversity);
-        report.value("varianceShares", shares);
+        report("class", learnt.name)("members", learnt.members.size())("archetype", learnt.members[modes.archetype].name)(
+            "meanSize", modes.mean_size)("diversity", learnt.diversity)("varianceShares", shares);
         for (std::size_t i = 0; i < learnt.members.size(); ++i)
-            report.row("members")
-                .shown("member", learnt.members[i].name)
-                .shown("laid on by", learnt.members[i].placed_by)
-                .shown("scale", number(learnt.members[i].scale, 4))
-                .shown("centroid size", number(modes.centroid_sizes[i], 5))
-                .shown("from the mean %", number(100 * modes.distances[i], 3))
-                .shown("archetype", i == modes.archetype ? "archetype" : "");
+            report.row("members", {learnt.members[i].name, learnt.members[i].placed_by, number(learnt.members[i].scale, 4),
+                                   number(modes.centroid_sizes[i], 5), number(100 * modes.distances[i], 3),
+                                   i == modes.archetype ? "archetype" : ""});
         report.line("");
         for (const LearntRange& range : learnt.ranges) {
             if (range.count == 0) continue;
             const auto text = [](const std::optional<double>& x, int digits = 4) { return x ? number(*x, digits) : "-"; };
-            report.row("ranges")
-                .shown("quantity", range.quantity.text())
-                .shown("n", std::to_string(range.count))
-                .shown("min", text(range.min))
-                .shown("median", text(range.median))
-                .shown("max", text(range.max))
-                .shown("mean", text(range.mean))
-                .shown("sd", text(range.deviation, 3))
-                .shown("from", text(range.low))
-                .shown("to", text(range.high))
-                .shown("unit", range.quantity.unit);
+            report.row("ranges",
+                       {range.quantity.text(), range.count, text(range.min), text(range.median), text(range.max),
+                        text(range.mean), text(range.deviation, 3), text(range.low), text(range.high), range.quantity.unit});
         }
         if (!modes.variances.empty()) report.line("");
         double sum = 0;
         for (std::size_t k = 0; k < modes.variances.size() && k < 10; ++k) {
             sum += modes.variances[k];
-            report.row("modes")
-                .shown("mode", std::to_string(k + 1))
-                .shown("deviation", number(std::sqrt(modes.variances[k]), 4))
-                .shown("% of variance", number(100 * modes.variances[k] / modes.total, 3))
-                .shown("together", number(100 * sum / modes.total, 3));
+            report.row("modes", {k + 1, number(std::sqrt(modes.variances[k]), 4),
+                                 number(100 * modes.variances[k] / modes.total, 3), number(100 * sum / modes.total, 3)});
         }
         report.line(std::to_string(learnt.members.size()) + " members of '" + printable(learnt.name) + "', archetype " +
                     printable(learnt.members[modes.archetype].name));

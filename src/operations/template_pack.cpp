@@ -12,18 +12,15 @@ namespace {
 /// What a template holds and what is wrong with it; `contents`: for people as well.
 void declare_template(ReportLayout& layout, bool contents) {
     const auto title = [&](const char* text) { return contents ? text : ""; };
-    layout.value("class", FieldType::text).value("unit", FieldType::text);
-    layout.table("parts", {{"role", FieldType::text, title("part")},
-                           {"file", FieldType::text, title("file")},
-                           {"bytes", FieldType::integer, title("bytes")},
-                           {"text", FieldType::text, title("what")}});
+    layout.values(text("class"), text("unit"));
+    layout.table("parts", text("role", title("part")), text("file", title("file")), integer("bytes", title("bytes")),
+                 text("text", title("what")));
     layout.checks = true;
 }
 
 void add_template(Report& report, const Template& known, bool contents) {
     const std::string &object_class = known.file.object_class, &unit = known.file.unit;
-    report.value("class", object_class);
-    report.value("unit", unit);
+    report("class", object_class)("unit", unit);
     if (contents && (!object_class.empty() || !unit.empty()))
         report.line(printable(object_class + (unit.empty() ? "" : ", in " + unit)));
     report.empty_table("parts");
@@ -33,12 +30,11 @@ void add_template(Report& report, const Template& known, bool contents) {
     report.findings(known.findings, "part");
 }
 
-class TemplatePack final : public Operation {
-public:
+struct TemplatePack final : Operation {
     void describe(Parameters& p) override {
         p.output("output", Kind::template_package, output, "template to write (.template.json)");
         const auto part = [&](const char* role, Kind kind, const char* help) -> Slot& {
-            return p.input(role, kind, parts[role], help).optional().flag();
+            return p.input_option(role, kind, parts[role], help);
         };
         part("mesh", Kind::mesh, "mesh").needed = true;
         part("annotations", Kind::annotations, "its annotations (.ant.json)");
@@ -51,14 +47,13 @@ public:
         part("landmarks", Kind::landmarks, "landmarks (.ant.json)");
         p.options("class", object_class, "class of the object; else as the annotations say");
         p.options("unit", unit, "unit of the coordinates, any text such as mm; else as the annotations say");
-        p.options("up", up, "upward direction: x, y, z, -x, -y, -z or three numbers; else as the annotations say");
+        up.describe(p, "upward direction: x, y, z, -x, -y, -z or three numbers; else as the annotations say");
         p.options("copy", copy, "copy the parts into the template's folder");
         options.describe(p.options);
         declare_template(p.report, true);
     }
 
     void check() const override {
-        if (!up.empty()) static_cast<void>(direction_of(up, "--up"));
         if (copy && output.file().empty())
             fail_usage("there is no folder to copy the parts to", "give the template's file, or leave --copy out");
     }
@@ -68,7 +63,7 @@ public:
         TemplateFile file;
         file.object_class = object_class;
         file.unit = unit;
-        if (!up.empty()) file.up = direction_of(up, "--up");
+        file.up = up.value();
         std::vector<Path> inputs, outputs{place};
         std::map<Path, Path> copies;  // and what they are of
         for (const std::string& role : template_roles())
@@ -98,16 +93,15 @@ public:
         output.write(std::move(known));
     }
 
-private:
     TemplateOutput output;
     std::map<std::string, FileInput> parts;  ///< by role
-    std::string object_class, unit, up;
+    std::string object_class, unit;
+    DirectionOption up;
     bool copy = false;
     TemplateOptions options;
 };
 
-class TemplateShow final : public Operation {
-public:
+struct TemplateShow final : Operation {
     explicit TemplateShow(bool shows_contents) : contents(shows_contents) {}
 
     void describe(Parameters& p) override {
@@ -117,7 +111,6 @@ public:
 
     void run(Context&, Report& report) override { add_template(report, *input, contents); }
 
-private:
     bool contents;
     TemplateInput input;
 };

@@ -9,8 +9,7 @@ namespace ostraka {
 
 namespace {
 
-class TemplatePropagate final : public Operation {
-public:
+struct TemplatePropagate final : Operation {
     void describe(Parameters& p) override {
         p.input("template", Kind::template_package, known, "template (.template.json)");
         p.input("members", Kind::mesh, members, "a mesh file for each member; NAME.ant.json beside it are its annotations")
@@ -25,20 +24,10 @@ public:
             "have to be in correspondence (given); it is fitted to all (fitted)",
             Choices{"auto", "given", "fitted"});
         options.fit.describe(p.options);
-        p.report.table("members", {{"name", FieldType::text, "member"},
-                                   {"placedBy", FieldType::text, "laid on by"},
-                                   {"distance", FieldType::number, "distance %"},
-                                   {"distanceBack", FieldType::number},
-                                   {"unmatched", FieldType::number, "unmatched %"},
-                                   {"unexplained", FieldType::number, "unexplained %"},
-                                   {"stretch", FieldType::number},
-                                   {"bend", FieldType::number},
-                                   {"annotations", FieldType::integer, "annotations"},
-                                   {"lost", FieldType::integer, "lost"},
-                                   {"notes", FieldType::texts, "notes"},
-                                   {"liesOn", FieldType::boolean},
-                                   {"problem", FieldType::text},
-                                   {"", FieldType::text, "remarks"}});
+        p.report.table("members", text("name", "member"), text("placedBy", "laid on by"), number("distance", "distance %"),
+                       number("distanceBack"), number("unmatched", "unmatched %"), number("unexplained", "unexplained %"),
+                       number("stretch"), number("bend"), integer("annotations", "annotations"), integer("lost", "lost"),
+                       texts("notes", "notes"), boolean("liesOn"), text("problem"), people("remarks"));
     }
 
     void check() const override {
@@ -47,7 +36,7 @@ public:
         check_object_names(names);
     }
 
-    void run(Context& context, Report& report) override {
+    void run(Context&, Report& report) override {
         if (given) options.correspondence = CorrespondenceChoice::given;
         if (is_landmark_file(known.file()))
             fail_input(known.file(), "is a file of landmarks, and a template with a mesh is needed",
@@ -65,21 +54,17 @@ public:
         for (std::size_t i = 0; i < objects.size(); ++i, progress.advance()) {
             const Propagated result =
                 in_file(members.file(i), [&] { return propagate(class_template(*known), *objects[i], options); });
-            if (result.fit.problem.empty()) write(context, members.file_name(i), *objects[i], result);
+            if (result.fit.problem.empty()) write(members.file_name(i), *objects[i], result);
             tell(report, objects[i]->name, result);
         }
     }
 
-private:
-    void write(Context& context, const std::string& file, const WholeObject& member, const Propagated& result) const {
-        const Provenance provenance = context.provenance();
+    void write(const std::string& file, const WholeObject& member, const Propagated& result) const {
         const std::string fitted_name = member.name + ".fitted.ply";
         const Mesh fitted = with_points(known->mesh->mesh, result.fit.points);
-        WriteOptions how;
-        how.comment = provenance.to_line();
-        write_mesh(output.in(fitted_name), fitted, {}, how);
-        write_annotations(output.in(member.name + ".fitted.ant.json"), result.on_template, fitted, fitted_name, provenance);
-        write_annotations(output.in(member.name + ".ant.json"), *result.on_member, member.mesh, file, provenance);
+        output.write(fitted_name, fitted);
+        output.write(member.name + ".fitted.ant.json", result.on_template, fitted, fitted_name);
+        output.write(member.name + ".ant.json", *result.on_member, member.mesh, file);
     }
 
     static void tell(Report& report, const std::string& name, const Propagated& result) {

@@ -10,8 +10,7 @@ namespace ostraka {
 
 namespace {
 
-class TemplateSample final : public Operation {
-public:
+struct TemplateSample final : Operation {
     void describe(Parameters& p) override {
         p.input("class", Kind::shape_class, file, "class (.class.json), as 'template learn' writes it");
         p.output("output", Kind::folder, output, "folder for meshes, annotations and NAME.samples.json; made if it is missing")
@@ -20,7 +19,7 @@ public:
         p.report.schema = "samples";
     }
 
-    void run(Context& context, Report& report) override {
+    void run(Context&, Report& report) override {
         const KnownClass& known = file.load<KnownClass>(read_known_class);
         if (known.landmarks)
             fail_input(known.learnt.template_file, "is a file of landmarks, and a template with a mesh is needed",
@@ -33,67 +32,44 @@ public:
             const std::string last = std::to_string(result.samples.size()), here = std::to_string(i + 1);
             names.push_back(known.learnt.name + "-" + std::string(last.size() - here.size(), '0') + here);
         }
-        write(context, known, result, names, report);
+        write(known, result, names, report);
         tell(report, known.learnt.name, result);
         if (names.size() < static_cast<std::size_t>(options.count)) report.answer_no();
     }
 
-private:
-    void write(Context& context, const KnownClass& known, const Sampling& result, const std::vector<std::string>& names,
-               Report& report) const {
-        const Provenance provenance = context.provenance();
-        WriteOptions how;
-        how.comment = provenance.to_line();
+    void write(const KnownClass& known, const Sampling& result, const std::vector<std::string>& names, Report& report) const {
         const ClassTemplate of_class = known.known();
         for (std::size_t i = 0; i < names.size(); ++i) {
             const Mesh mesh = with_points(of_class.mesh, result.samples[i].points);
             AnnotationSet set = of_class.set;
             static_cast<void>(refresh_measures(mesh, set));
-            write_mesh(output.in(names[i] + ".ply"), mesh, {}, how);
-            write_annotations(output.in(names[i] + ".ant.json"), set, mesh, names[i] + ".ply", provenance);
+            output.write(names[i] + ".ply", mesh);
+            output.write(names[i] + ".ant.json", set, mesh, names[i] + ".ply");
         }
-        Json document(rapidjson::kObjectType);
-        add_samples(document, known.learnt.name, result, names);
+        const Json document = samples_document(known.learnt.name, result, names);
         report.values(document);
-        add_member(document, "provenance", provenance.to_json(document.GetAllocator()), document.GetAllocator());
-        write_json(output.in(known.learnt.name + ".samples.json"), document);
+        output.write(known.learnt.name + ".samples.json", document);
     }
 
     /// doc/schema/samples.schema.json
-    static void add_samples(Json& document, const std::string& name, const Sampling& result,
-                            const std::vector<std::string>& names) {
+    static Json samples_document(const std::string& name, const Sampling& result, const std::vector<std::string>& names) {
+        Json document = json_document("samples");
         auto& allocator = document.GetAllocator();
-        const auto count = [](std::size_t n) { return JsonValue(static_cast<std::uint64_t>(n)); };
-        const auto texts = [&](const std::vector<std::string>& list) {
-            JsonValue array(rapidjson::kArrayType);
-            for (const std::string& text : list) array.PushBack(json_string(text, allocator), allocator);
-            return array;
-        };
-        JsonValue samples(rapidjson::kArrayType), rejected(rapidjson::kObjectType);
-        add_member(rejected, "constraints", count(result.by_constraints), allocator);
-        add_member(rejected, "ranges", count(result.by_ranges), allocator);
-        add_member(rejected, "selfIntersections", count(result.by_intersections), allocator);
+        JsonValue samples(rapidjson::kArrayType);
         for (std::size_t i = 0; i < names.size(); ++i) {
             const ClassSample& sample = result.samples[i];
-            JsonValue item(rapidjson::kObjectType), coefficients(rapidjson::kArrayType);
-            add_member(item, "name", names[i], allocator);
-            add_member(item, "moved", JsonValue(sample.moved), allocator);
-            for (const double b : sample.coefficients) coefficients.PushBack(b, allocator);
-            if (!sample.coefficients.empty()) add_member(item, "coefficients", std::move(coefficients), allocator);
-            if (!sample.edits.empty()) add_member(item, "edits", texts(sample.edits), allocator);
+            JsonValue item = json_object(allocator, "name", names[i], "moved", sample.moved);
+            if (!sample.coefficients.empty()) add_members(item, allocator, "coefficients", sample.coefficients);
+            if (!sample.edits.empty()) add_members(item, allocator, "edits", sample.edits);
             samples.PushBack(item, allocator);
         }
-        add_member(document, "format", "ostraka-samples", allocator);
-        add_member(document, "version", JsonValue(1), allocator);
-        add_member(document, "class", name, allocator);
-        add_member(document, "tried", count(result.tried), allocator);
-        add_member(document, "accepted", count(result.samples.size()), allocator);
-        add_member(document, "acceptance", JsonValue(result.acceptance()), allocator);
-        add_member(document, "rejected", std::move(rejected), allocator);
-        add_member(document, "examples", texts(result.examples), allocator);
-        add_member(document, "diversity", JsonValue(result.diversity), allocator);
-        add_member(document, "diversityOfMembers", JsonValue(result.of_members), allocator);
-        add_member(document, "samples", std::move(samples), allocator);
+        add_members(document, allocator, "class", name, "tried", result.tried, "accepted", result.samples.size(), "acceptance",
+                    result.acceptance(), "rejected",
+                    json_object(allocator, "constraints", result.by_constraints, "ranges", result.by_ranges, "selfIntersections",
+                                result.by_intersections),
+                    "examples", result.examples, "diversity", result.diversity, "diversityOfMembers", result.of_members,
+                    "samples", std::move(samples));
+        return document;
     }
 
     static void tell(Report& report, const std::string& name, const Sampling& result) {

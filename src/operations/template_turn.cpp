@@ -9,25 +9,19 @@ namespace ostraka {
 
 namespace {
 
-class TemplateTurn final : public Operation {
-public:
+struct TemplateTurn final : Operation {
     void describe(Parameters& p) override {
         p.input("sherds", Kind::mesh, files, "closed meshes of sherds, all where they lay in the vessel").many();
         p.output("output", Kind::folder, output, "folder to write the template to").flag();
         p.options("unit", unit, "unit of the coordinates, any text such as mm");
         options.describe(p.options);
         p.report.schema = "turned";
-        p.report.table("sherds", {{"name", FieldType::text, "sherd"},
-                                  {"axis", FieldType::boolean},
-                                  {"lean", FieldType::number, "own axis leans, degrees"},
-                                  {"aside", FieldType::number, "aside"},
-                                  {"lowest", FieldType::number, "from height"},
-                                  {"highest", FieldType::number, "to"},
-                                  {"residual", FieldType::number, "off the template"}});
-        p.report.value("format", FieldType::text).value("version", FieldType::integer);
-        p.report.value("through", FieldType::numbers).value("direction", FieldType::numbers);
-        p.report.value("height", FieldType::number, "", "length").value("largestDiameter", FieldType::number, "", "length");
-        p.report.value("base", FieldType::boolean).value("rim", FieldType::boolean).value("vertices", FieldType::integer);
+        p.report.table("sherds", text("name", "sherd"), boolean("axis"), number("lean", "own axis leans, degrees"),
+                       number("aside", "aside"), number("lowest", "from height"), number("highest", "to"),
+                       number("residual", "off the template"));
+        p.report.values(text("format"), integer("version"), numbers("through"), numbers("direction"),
+                        number("height", "", "length"), number("largestDiameter", "", "length"), boolean("base"), boolean("rim"),
+                        integer("vertices"));
     }
 
     void run(Context& context, Report& report) override {
@@ -40,7 +34,6 @@ public:
         tell(report, turned);
     }
 
-private:
     /// With the facets that the annotations beside it say.
     static Fragment read_sherd(const Path& file) {
         Fragment sherd;
@@ -89,15 +82,9 @@ private:
         const auto triple = [](const auto& v) { return std::vector<double>{v.x(), v.y(), v.z()}; };
         double height = 0, widest = 0;
         for (const auto& p : turned.profile) height = std::max(height, p.y()), widest = std::max(widest, p.x());
-        report.value("format", "ostraka-turned");
-        report.value("version", 1);
-        report.value("through", triple(turned.axis.point));
-        report.value("direction", triple(turned.axis.direction));
-        report.value("height", height);
-        report.value("largestDiameter", 2 * widest);
-        report.value("base", turned.base);
-        report.value("rim", turned.rim);
-        report.value("vertices", turned.mesh.number_of_vertices());
+        report("format", "ostraka-turned")("version", 1)("through", triple(turned.axis.point))(
+            "direction", triple(turned.axis.direction))("height", height)("largestDiameter", 2 * widest)("base", turned.base)(
+            "rim", turned.rim)("vertices", turned.mesh.number_of_vertices());
         for (const SherdOnProfile& one : turned.sherds) {
             const bool found = one.axis.found;
             report.row("sherds")("name", one.name)("axis", found)("lean", one.lean,

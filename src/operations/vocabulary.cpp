@@ -13,8 +13,7 @@ namespace {
 constexpr const char* vocabulary_file = "vocabulary (.vocabulary.json, .ttl, .rdf)";
 constexpr const char* scheme_help = "URI of the concept scheme, where a SKOS file has several";
 
-class VocabularyCheck final : public Operation {
-public:
+struct VocabularyCheck final : Operation {
     void describe(Parameters& p) override {
         p.input("vocabulary", Kind::vocabulary, file, vocabulary_file);
         p.options("scheme", scheme, scheme_help);
@@ -40,22 +39,17 @@ public:
         report.findings(findings);
     }
 
-private:
     FileInput file;
     std::string scheme;
 };
 
-class VocabularyShow final : public Operation {
-public:
+struct VocabularyShow final : Operation {
     void describe(Parameters& p) override {
         p.input("vocabulary", Kind::vocabulary, file, vocabulary_file);
         p.options("language", language, "language of the labels");
         p.options("under", under, "only this concept (id or label) and narrower ones");
-        p.report.table("concepts", {{"label", FieldType::text, "concept"},
-                                    {"id", FieldType::text, "id"},
-                                    {"depth", FieldType::integer},
-                                    {"", FieldType::text, "other languages"},
-                                    {"attributes", FieldType::texts, "attributes"}});
+        p.report.table("concepts", text("label", "concept"), text("id", "id"), integer("depth"), people("other languages"),
+                       texts("attributes", "attributes"));
     }
 
     void run(Context&, Report& report) override {
@@ -83,7 +77,7 @@ public:
             if (!again)
                 for (auto next = narrower[i].rbegin(); next != narrower[i].rend(); ++next) stack.emplace_back(*next, depth + 1);
         }
-        if (const std::string common = joined(texts_of(vocabulary.attributes)); !common.empty())
+        if (const std::string common = joined(texts_of(vocabulary.attributes), "; "); !common.empty())
             report.line("every concept: " + printable(common));
         // Of those about the concepts shown, and of all.
         const auto about = std::count_if(vocabulary.rules.begin(), vocabulary.rules.end(), [&](const InferenceRule& rule) {
@@ -94,14 +88,14 @@ public:
                         (all == 1 ? " rule" : " rules") + (under.empty() ? "" : " may apply to them"));
     }
 
-private:
     [[nodiscard]] std::size_t named_concept(const VocabularySearch& search) const {
         const auto found = search.concepts_of(under);
         if (found.size() == 1) return found.front();
-        std::string known;
-        for (const auto& name : search.suggestions(under)) known += (known.empty() ? "close to it: " : ", ") + name;
+        const auto near = search.suggestions(under);
         fail_input(file.file(), "'" + under + "' names " + (found.empty() ? "no concept" : "several concepts"),
-                   found.empty() ? known : "use an id");
+                   !found.empty() ? "use an id"
+                   : near.empty() ? ""
+                                  : "close to it: " + joined(near));
     }
 
     void tell(Report& report, const VocabularySearch& search, std::size_t i, std::size_t depth, bool again) const {
@@ -113,7 +107,7 @@ private:
         const auto attributes = texts_of(entry.attributes);
         Report::Row row = report.row("concepts");
         row("label", label, std::string(2 * std::min<std::size_t>(depth, 30), ' ') + label + (again ? " (see above)" : ""))(
-            "id", entry.id)("depth", depth)("attributes", attributes, joined(attributes));
+            "id", entry.id)("depth", depth)("attributes", attributes, joined(attributes, "; "));
         row.shown("other languages", others);
     }
 
@@ -124,9 +118,7 @@ private:
             for (const auto& [tongue, text] : entry.labels) known.insert(tongue);
         known.erase("");
         if (known.empty() || known.contains(language)) return;
-        std::string list;
-        for (const auto& tongue : known) list += (list.empty() ? "" : ", ") + tongue;
-        report.note("no label is in the language '" + language + "'; there are " + list);
+        report.note("no label is in the language '" + language + "'; there are " + joined(known));
     }
 
     static std::vector<std::string> texts_of(const std::vector<AllowedAttribute>& attributes) {
@@ -146,23 +138,17 @@ private:
         }
         return texts;
     }
-    static std::string joined(const std::vector<std::string>& texts) {
-        std::string list;
-        for (const auto& text : texts) list += (list.empty() ? "" : "; ") + text;
-        return list;
-    }
 
     FileInput file;
     std::string language = "en", under;
 };
 
-class VocabularyConvert final : public Operation {
-public:
+struct VocabularyConvert final : Operation {
     void describe(Parameters& p) override {
         p.input("input", Kind::vocabulary, input, vocabulary_file);
         p.output("output", Kind::vocabulary, output, "vocabulary to write (.vocabulary.json, .ttl, .rdf)");
         p.options("scheme", scheme, scheme_help);
-        p.report.value("concepts", FieldType::integer).value("rules", FieldType::integer);
+        p.report.values(integer("concepts"), integer("rules"));
     }
 
     void check() const override {
@@ -190,13 +176,11 @@ public:
                        error.remedy());
         }
         report.notes(vocabulary.notes);
-        report.value("concepts", vocabulary.concepts.size());
-        report.value("rules", vocabulary.rules.size());
+        report("concepts", vocabulary.concepts.size())("rules", vocabulary.rules.size());
         report.line(std::to_string(vocabulary.concepts.size()) + " concepts, " + std::to_string(vocabulary.rules.size()) +
                     " rules");
     }
 
-private:
     FileInput input;
     FileOutput output{".vocabulary.json"};
     std::string scheme;

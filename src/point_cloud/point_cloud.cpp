@@ -61,7 +61,7 @@ std::vector<Vector> estimate_normals(const std::vector<Point>& points, const Clo
 void CloudOptions::describe(OptionList& visit) {
     visit("cloud-neighbours", neighbours, "points without faces: neighbours that a normal comes from", Range{6, 1000});
     visit("cloud-edge", longest, "longest edge of the surface, as a multiple of the points' spacing; 0: any", Range{0, 1e6});
-    visit("cloud-holes", close_holes, "widest hole of the surface that is closed, as a share of the diagonal", Range{0, 1});
+    visit("cloud-holes", close_holes, "widest hole of the surface that is closed", Range{0, 1}, "share of the diagonal");
 }
 
 }  // namespace ostraka

@@ -1,5 +1,6 @@
 #include "ostraka/reconstruction/assembly.h"
 
+#include "ostraka/core/json_build.h"
 #include "ostraka/fracture/rotational_report.h"
 
 #include "ostraka/core/error.h"
@@ -17,15 +18,11 @@ JsonValue placement_of(const FragmentPlacement& one, JsonAllocator& allocator) {
     if (!one.problem.empty()) {
         add_member(entry, "problem", one.problem, allocator);
     } else {
-        add_member(entry, "pose", pose_to_json(one.pose, allocator), allocator);
-        add_member(entry, "residual", JsonValue(one.residual), allocator);
+        add_members(entry, allocator, "pose", pose_to_json(one.pose, allocator), "residual", one.residual);
     }
     if (one.own_scale > 0) add_member(entry, "ownScale", JsonValue(one.own_scale), allocator);
     for (const LandmarkResidual& landmark : one.landmarks) {
-        JsonValue item(rapidjson::kObjectType);
-        add_member(item, "name", landmark.name, allocator);
-        add_member(item, "distance", JsonValue(landmark.distance), allocator);
-        add_member(item, "used", JsonValue(landmark.used), allocator);
+        JsonValue item = json_object(allocator, "name", landmark.name, "distance", landmark.distance, "used", landmark.used);
         landmarks.PushBack(item, allocator);
     }
     add_member(entry, "landmarks", std::move(landmarks), allocator);
@@ -40,25 +37,18 @@ JsonValue search_of(const PoseSearchResult& one, JsonAllocator& allocator) {
         for (int i = 0; i < 3; ++i) list.PushBack(v[i], allocator);
         return list;
     };
-    add_member(entry, "decided", JsonValue(one.decided), allocator);
-    add_member(entry, "confidence", JsonValue(one.confidence), allocator);
-    add_member(entry, "margin", JsonValue(one.margin), allocator);
+    add_members(entry, allocator, "decided", one.decided, "confidence", one.confidence, "margin", one.margin);
     if (!one.candidates.empty()) {
-        add_member(entry, "score", JsonValue(one.candidates.front().score), allocator);
-        add_member(entry, "share", JsonValue(one.candidates.front().share), allocator);
+        add_members(entry, allocator, "score", one.candidates.front().score, "share", one.candidates.front().share);
     }
     if (!one.reason.empty()) add_member(entry, "reason", one.reason, allocator);
     add_member(freedom, "kind", to_string(one.freedom.kind), allocator);
     if (one.freedom.kind != FreedomKind::none) {
-        add_member(freedom, "text", one.freedom.text(), allocator);
-        add_member(freedom, "point", triple(one.freedom.point), allocator);
-        add_member(freedom, "direction", triple(one.freedom.direction), allocator);
+        add_members(freedom, allocator, "text", one.freedom.text(), "point", triple(one.freedom.point), "direction",
+                    triple(one.freedom.direction));
     }
     for (const FreeWay& way : one.ways) {
-        JsonValue item(rapidjson::kObjectType);
-        add_member(item, "turns", JsonValue(way.turns), allocator);
-        add_member(item, "least", JsonValue(way.least), allocator);
-        add_member(item, "most", JsonValue(way.most), allocator);
+        JsonValue item = json_object(allocator, "turns", way.turns, "least", way.least, "most", way.most);
         ways.PushBack(item, allocator);
     }
     add_member(freedom, "ways", std::move(ways), allocator);
@@ -68,12 +58,8 @@ JsonValue search_of(const PoseSearchResult& one, JsonAllocator& allocator) {
 
 JsonValue constraint_of(const ConstraintReport& constraint, JsonAllocator& allocator) {
     JsonValue entry(rapidjson::kObjectType), deviations(rapidjson::kArrayType);
-    add_member(entry, "id", JsonValue(constraint.id), allocator);
-    add_member(entry, "type", constraint.type, allocator);
-    add_member(entry, "used", JsonValue(constraint.used), allocator);
-    add_member(entry, "before", to_string(constraint.before), allocator);
-    add_member(entry, "verdict", to_string(constraint.verdict), allocator);
-    add_member(entry, "text", constraint.text, allocator);
+    add_members(entry, allocator, "id", constraint.id, "type", constraint.type, "used", constraint.used, "before",
+                to_string(constraint.before), "verdict", to_string(constraint.verdict), "text", constraint.text);
     for (std::size_t i = 0; i < constraint.deviations.size(); ++i) {
         const Deviation& d = constraint.deviations[i];
         JsonValue item(rapidjson::kObjectType);
@@ -93,10 +79,8 @@ JsonValue constraint_of(const ConstraintReport& constraint, JsonAllocator& alloc
 JsonValue assembly_to_json(const Reconstruction& result, const AssemblyNames& names, JsonAllocator& allocator) {
     JsonValue assembly(rapidjson::kObjectType), fragments(rapidjson::kArrayType), constraints(rapidjson::kArrayType),
         objections(rapidjson::kArrayType), levels(rapidjson::kArrayType);
-    add_member(assembly, "format", "ostraka-assembly", allocator);
-    add_member(assembly, "version", JsonValue(1), allocator);
-    add_member(assembly, "template", names.template_file, allocator);
-    add_member(assembly, "scale", JsonValue(result.placement.scale), allocator);
+    add_members(assembly, allocator, "format", "ostraka-assembly", "version", 1, "template", names.template_file, "scale",
+                result.placement.scale);
     for (std::size_t k = 0; k < result.placement.fragments.size(); ++k) {
         JsonValue entry = placement_of(result.placement.fragments[k], allocator), matches(rapidjson::kArrayType),
                   notes(rapidjson::kArrayType);
@@ -109,15 +93,9 @@ JsonValue assembly_to_json(const Reconstruction& result, const AssemblyNames& na
             add_member(entry, "turn", turn_to_json(*result.turns, k, names.fragments, allocator), allocator);
         if (k < result.annotations.size())
             for (const AnnotationMatch& match : result.annotations[k]) {
-                JsonValue item(rapidjson::kObjectType);
-                add_member(item, "ofFragment", JsonValue(match.of_fragment), allocator);
-                add_member(item, "ofTemplate", JsonValue(match.of_template), allocator);
-                add_member(item, "score", JsonValue(match.score), allocator);
-                add_member(item, "attributes", JsonValue(match.attributes), allocator);
-                add_member(item, "containers", JsonValue(match.containers), allocator);
-                add_member(item, "place", JsonValue(match.place), allocator);
-                add_member(item, "extent", JsonValue(match.extent), allocator);
-                add_member(item, "stated", JsonValue(match.stated), allocator);
+                JsonValue item = json_object(allocator, "ofFragment", match.of_fragment, "ofTemplate", match.of_template, "score",
+                                             match.score, "attributes", match.attributes, "containers", match.containers, "place",
+                                             match.place, "extent", match.extent, "stated", match.stated);
                 matches.PushBack(item, allocator);
             }
         add_member(entry, "annotations", std::move(matches), allocator);
@@ -130,20 +108,16 @@ JsonValue assembly_to_json(const Reconstruction& result, const AssemblyNames& na
     }
     add_member(assembly, "fragments", std::move(fragments), allocator);
     if (result.turns) {
-        add_member(assembly, "joints", joints_to_json(*result.turns, names.fragments, allocator), allocator);
-        add_member(assembly, "wall", JsonValue(result.turns->wall), allocator);
+        add_members(assembly, allocator, "joints", joints_to_json(*result.turns, names.fragments, allocator), "wall",
+                    result.turns->wall);
     }
     for (const NonRigidFit::Level& level : result.fit.levels) {
-        JsonValue item(rapidjson::kObjectType);
-        add_member(item, "smoothing", JsonValue(level.smoothing), allocator);
-        add_member(item, "matched", JsonValue(static_cast<std::uint64_t>(level.matched)), allocator);
-        add_member(item, "residual", JsonValue(level.residual), allocator);
-        add_member(item, "steps", JsonValue(level.steps), allocator);
+        JsonValue item = json_object(allocator, "smoothing", level.smoothing, "matched", level.matched, "residual",
+                                     level.residual, "steps", level.steps);
         levels.PushBack(item, allocator);
     }
-    add_member(assembly, "levels", std::move(levels), allocator);
-    add_member(assembly, "observedShare", JsonValue(result.observed_share), allocator);
-    add_member(assembly, "crossings", JsonValue(static_cast<std::uint64_t>(result.crossings)), allocator);
+    add_members(assembly, allocator, "levels", std::move(levels), "observedShare", result.observed_share, "crossings",
+                result.crossings);
     JsonValue completion(rapidjson::kArrayType);
     for (const CompletionNote& note : result.object.notes)
         completion.PushBack(JsonValue(names.fragments[static_cast<std::size_t>(note.fragment)] + ": " + note.text, allocator),
@@ -162,9 +136,8 @@ JsonValue assembly_to_json(const Reconstruction& result, const AssemblyNames& na
         add_member(item, "text", objection.text, allocator);
         objections.PushBack(item, allocator);
     }
-    add_member(assembly, "objections", std::move(objections), allocator);
-    add_member(assembly, "strain", JsonValue(result.strain), allocator);
-    add_member(assembly, "verdict", to_string(result.verdict), allocator);
+    add_members(assembly, allocator, "objections", std::move(objections), "strain", result.strain, "verdict",
+                to_string(result.verdict));
     if (!result.undecided.empty()) add_member(assembly, "undecided", result.undecided, allocator);
     return assembly;
 }

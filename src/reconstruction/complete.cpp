@@ -183,11 +183,12 @@ CompletedObject complete(const Mesh& fitted, const std::vector<PlacedFragment>& 
 }
 
 void CompleteOptions::describe(OptionList& visit) {
-    visit("seam-angle", angle, "normals of a fragment and of the fitted template differ by at most this, degrees", Range{0, 90});
-    visit("seam-width", blend, "width over which the template gives way to a fragment's edge, as a share of the diagonal",
-          Range{0, 1});
-    visit("confidence-length", halving,
-          "length over which confidence halves away from what was observed, as a share of the diagonal", Range{1e-6, 1e6});
+    visit("seam-angle", angle, "normals of a fragment and of the fitted template differ by at most this", Range{0, 90},
+          "degrees");
+    visit("seam-width", blend, "width over which the template gives way to a fragment's edge", Range{0, 1},
+          "share of the diagonal");
+    visit("confidence-length", halving, "length over which confidence halves away from what was observed", Range{1e-6, 1e6},
+          "share of the diagonal");
     visit("join", join, "the completed mesh has the fragments' own triangles where they lie", Anything{});
     visit("least-piece", least, "pieces of a fragment's surface below this share of its area are left out", Range{0, 1});
 }

@@ -507,18 +507,17 @@ void NonRigidOptions::describe(OptionList& visit) {
           "face "
           "folds by noise), or those of the cage and in the last level the template's (both)",
           Choices{"mesh", "cage", "both"});
-    visit("smoothing", start, "length below which the first level fits no detail, as a share of the template's diagonal",
-          Range{1e-3, 10});
+    visit("smoothing", start, "length below which the first level fits no detail", Range{1e-3, 10},
+          "share of the template's diagonal");
     visit("detail", end, "the same of the last level", Range{1e-4, 10});
     visit("levels", levels, "levels of stiffness", Range{1, 100});
     visit("steps", steps, "matches and solutions in each level, at most", Range{1, 1000});
-    visit("transition", stay,
-          "length over which the deformation of the first level fades where nothing is observed, as a share of the diagonal",
-          Range{1e-3, 1e3});
+    visit("transition", stay, "length over which the deformation of the first level fades where nothing is observed",
+          Range{1e-3, 1e3}, "share of the diagonal");
     visit("fade", fade, "what a later level adds fades over so many of its smoothing lengths", Range{0.1, 1e3});
-    visit("reach", reach, "farthest match in the first level, as a share of the diagonal", Range{0, 10});
+    visit("reach", reach, "farthest match in the first level", Range{0, 10}, "share of the diagonal");
     visit("last-reach", last_reach, "farthest match in the last level", Range{0, 10});
-    visit("match-angle", angle, "normals of matches differ by at most this, degrees", Range{0, 180});
+    visit("match-angle", angle, "normals of matches differ by at most this", Range{0, 180}, "degrees");
     visit("counterparts", counterparts,
           "of vertices in matched annotations: closest places of the surface (surface), or vertices by distance, outline and "
           "position along it (equation 5.1): the best of each (best), or each given once (one-to-one)",

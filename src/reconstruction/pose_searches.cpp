@@ -2,6 +2,7 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/file.h"
+#include "ostraka/core/json_build.h"
 #include "ostraka/core/provenance.h"
 
 #include <algorithm>
@@ -57,41 +58,26 @@ JsonValue to_json(const Eigen::Vector3d& v, JsonAllocator& allocator) { return t
 JsonValue to_json(const Motion& motion, JsonAllocator& allocator) {
     JsonValue entry(rapidjson::kObjectType);
     const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> rows = motion.turn;
-    add_member(entry, "turn", to_array(rows.data(), 9, allocator), allocator);
-    add_member(entry, "shift", to_json(motion.shift, allocator), allocator);
-    add_member(entry, "scale", JsonValue(motion.scale), allocator);
+    add_members(entry, allocator, "turn", to_array(rows.data(), 9, allocator), "shift", to_json(motion.shift, allocator), "scale",
+                motion.scale);
     return entry;
 }
 JsonValue to_json(const PoseSearchResult& result, JsonAllocator& allocator) {
     JsonValue entry(rapidjson::kObjectType), candidates(rapidjson::kArrayType), freedom(rapidjson::kObjectType),
         ways(rapidjson::kArrayType);
     for (const PoseCandidate& one : result.candidates) {
-        JsonValue item(rapidjson::kObjectType);
-        add_member(item, "pose", to_json(one.pose, allocator), allocator);
-        add_member(item, "scale", JsonValue(one.scale), allocator);
-        add_member(item, "score", JsonValue(one.score), allocator);
-        add_member(item, "share", JsonValue(one.share), allocator);
-        add_member(item, "inside", JsonValue(one.inside), allocator);
-        add_member(item, "residual", JsonValue(one.residual), allocator);
+        JsonValue item = json_object(allocator, "pose", to_json(one.pose, allocator), "scale", one.scale, "score", one.score,
+                                     "share", one.share, "inside", one.inside, "residual", one.residual);
         candidates.PushBack(item, allocator);
     }
-    add_member(entry, "candidates", std::move(candidates), allocator);
-    add_member(entry, "margin", JsonValue(result.margin), allocator);
-    add_member(entry, "confidence", JsonValue(result.confidence), allocator);
-    add_member(entry, "decided", JsonValue(result.decided), allocator);
-    add_member(entry, "reason", result.reason, allocator);
-    add_member(freedom, "kind", to_string(result.freedom.kind), allocator);
-    add_member(freedom, "point", to_json(result.freedom.point, allocator), allocator);
-    add_member(freedom, "direction", to_json(result.freedom.direction, allocator), allocator);
-    add_member(freedom, "pitch", JsonValue(result.freedom.pitch), allocator);
+    add_members(entry, allocator, "candidates", std::move(candidates), "margin", result.margin, "confidence", result.confidence,
+                "decided", result.decided, "reason", result.reason);
+    add_members(freedom, allocator, "kind", to_string(result.freedom.kind), "point", to_json(result.freedom.point, allocator),
+                "direction", to_json(result.freedom.direction, allocator), "pitch", result.freedom.pitch);
     add_member(entry, "freedom", std::move(freedom), allocator);
     for (const FreeWay& way : result.ways) {
-        JsonValue item(rapidjson::kObjectType);
-        add_member(item, "point", to_json(way.point, allocator), allocator);
-        add_member(item, "direction", to_json(way.direction, allocator), allocator);
-        add_member(item, "turns", JsonValue(way.turns), allocator);
-        add_member(item, "least", JsonValue(way.least), allocator);
-        add_member(item, "most", JsonValue(way.most), allocator);
+        JsonValue item = json_object(allocator, "point", to_json(way.point, allocator), "direction",
+                                     to_json(way.direction, allocator), "turns", way.turns, "least", way.least, "most", way.most);
         ways.PushBack(item, allocator);
     }
     add_member(entry, "ways", std::move(ways), allocator);
@@ -137,15 +123,11 @@ PoseSearchResult result_from(const JsonValue& entry) {
 
 JsonValue PoseSearches::to_json(JsonAllocator& allocator) const {
     JsonValue document(rapidjson::kObjectType), list(rapidjson::kArrayType);
-    add_member(document, "format", "ostraka-searches", allocator);
-    add_member(document, "version", JsonValue(1), allocator);
-    add_member(document, "template", of_template_, allocator);
+    add_members(document, allocator, "format", "ostraka-searches", "version", 1, "template", of_template_);
     for (const auto& [key, known] : known_) {
         JsonValue entry(rapidjson::kObjectType), result = ostraka::to_json(known.result, allocator);
-        add_member(entry, "fragment", known.fragment, allocator);
-        add_member(entry, "key", key, allocator);
-        add_member(entry, "checksum", sha256(to_text(result)), allocator);
-        add_member(entry, "result", std::move(result), allocator);
+        add_members(entry, allocator, "fragment", known.fragment, "key", key, "checksum", sha256(to_text(result)), "result",
+                    std::move(result));
         list.PushBack(entry, allocator);
     }
     add_member(document, "searches", std::move(list), allocator);

@@ -450,8 +450,8 @@ void ReconstructOptions::describe(OptionList& visit) {
           "per cent that a constraint in per cent may be off before it speaks against the fragments: what scans and "
           "measuring leave",
           Range{0, 1000});
-    visit("residual", residual,
-          "root mean square of a fragment's landmarks, as a share of their spread, above which it does not fit", Range{0, 10});
+    visit("residual", residual, "root mean square of a fragment's landmarks above which it does not fit", Range{0, 10},
+          "share of their spread");
     visit("lying", lying, "per cent of a fragment's outer surface that lies on the fitted template, at least", Range{0, 100});
     visit("overlap", overlap, "per cent of a fragment's outer surface that lies where another one is seen, at most",
           Range{0, 100});

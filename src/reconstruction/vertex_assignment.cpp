@@ -262,10 +262,10 @@ void VertexAssignmentOptions::describe(OptionList& visit) {
     visit("distance-weight", distance, "of the distance of counterparts", Range{0, 1e6});
     visit("outline-weight", outline, "of the positions along the outline, from landmark to landmark", Range{0, 1e6});
     visit("assignment-reach", reach, "farthest counterpart, in the meshes' unit; 0: any", Range{0, 1e60});
-    visit("assignment-angle", angle, "of the normals of counterparts, degrees", Range{0, 180});
+    visit("assignment-angle", angle, "of the normals of counterparts", Range{0, 180}, "degrees");
     visit("candidates", candidates, "one-to-one: counterparts tried for each vertex", Range{1, 1000});
-    visit("unassigned", unassigned, "one-to-one: cost of a vertex without counterpart, as a share of the weights' sum",
-          Range{0, 1e6});
+    visit("unassigned", unassigned, "one-to-one: cost of a vertex without counterpart", Range{0, 1e6},
+          "share of the weights' sum");
 }
 
 }  // namespace ostraka

@@ -163,7 +163,7 @@ Alignment align(const AlignSurface& a, const AlignSurface& b, const std::vector<
 void AlignOptions::describe(OptionList& visit) {
     visit("shrinkage", shrinkage, "surfaces may differ in size by up to this share; 0: rigid", Range{0, 0.5});
     visit("trim", trim, "share of the pairs of points that count, the nearest ones", Range{0.1, 1});
-    visit("pair-angle", angle, "pairs whose normals differ by more are left out, degrees", Range{1, 180});
+    visit("pair-angle", angle, "pairs whose normals differ by more are left out", Range{1, 180}, "degrees");
     visit("samples", samples, "points on each surface that are laid onto the other", Range{10, 1e6});
     visit("iterations", iterations, "most steps of a registration", Range{1, 10000});
 }

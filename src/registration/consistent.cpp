@@ -97,8 +97,8 @@ ConsistentMatches consistent_matches(const FeatureSet& a, const FeatureSet& b, c
 }
 
 void ConsistentOptions::describe(OptionList& visit) {
-    visit("tolerance", tolerance, "matched features lie this near to each other once moved, as a share of the size", Range{0, 1});
-    visit("normal-angle", angle, "and their normals differ by at most this, degrees", Range{0, 180});
+    visit("tolerance", tolerance, "matched features lie this near to each other once moved", Range{0, 1}, "share of the size");
+    visit("normal-angle", angle, "and their normals differ by at most this", Range{0, 180}, "degrees");
     visit("shrinkage", shrinkage, "objects may differ in size by up to this share; 0: rigid", Range{0, 0.5});
 }
 

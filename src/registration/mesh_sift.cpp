@@ -304,9 +304,9 @@ std::vector<FeatureMatch> match_features(const FeatureSet& a, const FeatureSet& 
 }
 
 void SiftOptions::describe(OptionList& visit) {
-    visit("feature-size", size, "length that scales are shares of, in the mesh's unit; 0 = the square root of its area",
-          Range{0, 1e60});
-    visit("first-scale", first_scale, "standard deviation of the first smoothing, as a share of the size", Range{1e-4, 0.5});
+    visit("feature-size", size, "length that scales are shares of; 0 = the square root of its area", Range{0, 1e60},
+          "the mesh's unit");
+    visit("first-scale", first_scale, "standard deviation of the first smoothing", Range{1e-4, 0.5}, "share of the size");
     visit("scales", scales, "levels of smoothing", Range{4, 20});
     visit("scales-per-octave", per_octave, "levels in which the standard deviation doubles", Range{1, 8});
     visit("border", border, "no features within this many standard deviations of the border", Range{0, 10});

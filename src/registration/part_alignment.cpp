@@ -111,8 +111,8 @@ PartAlignment align_part(const Mesh& part, const std::vector<bool>& of_part, con
 
 void PartAlignmentOptions::describe(OptionList& visit) {
     visit("icp-trim", trim, "share of the pairs of points that count, the nearest ones", Range{0.1, 1});
-    visit("icp-reach", reach, "farthest pair, as a share of the whole's diagonal", Range{0, 10});
-    visit("icp-angle", angle, "pairs whose normals differ by more are left out, degrees", Range{1, 180});
+    visit("icp-reach", reach, "farthest pair", Range{0, 10}, "share of the whole's diagonal");
+    visit("icp-angle", angle, "pairs whose normals differ by more are left out", Range{1, 180}, "degrees");
     visit("icp-landmarks", anchors, "weight of all landmarks together against that of the surface", Range{0, 1e9});
     visit("icp-samples", samples, "points of a fragment that are laid onto the template", Range{10, 1e7});
     visit("icp-iterations", iterations, "most steps of a registration", Range{0, 10000});

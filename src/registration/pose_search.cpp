@@ -452,8 +452,7 @@ PoseSearchResult PoseSearch::find(const Mesh& part, const std::vector<bool>& of_
 void PoseSearchOptions::describe(OptionList& visit) {
     visit("search-least-scale", least_scale, "smallest scale of the template that is searched", Range{1e-6, 1e6});
     visit("search-most-scale", most_scale, "largest scale of the template that is searched", Range{1e-6, 1e6});
-    visit("search-tolerance", tolerance, "what lies nearer is on the template, as a share of the fragment's size",
-          Range{1e-6, 1});
+    visit("search-tolerance", tolerance, "what lies nearer is on the template", Range{1e-6, 1}, "share of the fragment's size");
     visit("least-confidence", least_confidence, "of a pose that was searched; below it the fragment is not placed", Range{0, 1});
     visit("search-points", points, "points spread over the template", Range{50, 4000});
     visit("search-references", references, "points of a fragment for which places are sought", Range{1, 4000});

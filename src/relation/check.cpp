@@ -109,8 +109,8 @@ std::vector<RelationCheck> check_relations(const Mesh& mesh, const AnnotationSet
 }
 
 void RelationOptions::describe(OptionList& visit) {
-    visit("distance", distance, "tolerance of distances and heights, as a share of the mesh's diagonal: 0.01 is one per cent",
-          Range{0, 1});
+    visit("distance", distance, "tolerance of distances and heights: 0.01 is one per cent", Range{0, 1},
+          "share of the mesh's diagonal");
     visit("angle", angle, "tolerance of angles between axes", Range{0, 90}, "degrees");
     visit("tilt", tilt, "tolerance of the tilt of a contact", Range{0, 90}, "degrees");
     visit("ratio", ratio, "tolerance of areas, shapes and values of attributes", Range{0, 100}, "per cent");

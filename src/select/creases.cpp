@@ -343,14 +343,14 @@ AnnotationSet annotate_creases(const std::vector<Crease>& creases, bool regions,
 
 void CreaseOptions::describe(OptionList& visit) {
     visit("kind", kind, "ridges (clay that stands out), hollows (where parts meet), or both", Choices{"ridge", "hollow", "both"});
-    visit("scale", scale, "radius over which curvature is averaged, as a share of the box diagonal; about the width looked for",
-          Range{1e-6, 0.5});
+    visit("scale", scale, "radius over which curvature is averaged; about the width looked for", Range{1e-6, 0.5},
+          "share of the box diagonal");
     visit("wide", wide, "radius of the surroundings that it is compared with, in multiples of the scale", Range{1.1, 20});
     visit("weak", weak, "response that belongs to a crease, in robust deviations of the response over the surface",
           Range{0, 1000});
     visit("strong", strong, "response that a crease reaches somewhere, in robust deviations", Range{0, 1000});
     visit("floor", floor, "response (curvature times scale) below which nothing is a crease", Range{0, 100});
-    visit("shortest", shortest, "least length, as a share of the box diagonal", Range{0, 10});
+    visit("shortest", shortest, "least length", Range{0, 10}, "share of the box diagonal");
 }
 
 }  // namespace ostraka

@@ -1,6 +1,7 @@
 #include "ostraka/shape_classes/class_file.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/json_build.h"
 #include "ostraka/core/npy.h"
 
 #include <algorithm>
@@ -51,8 +52,7 @@ JsonValue range_to_json(const LearntRange& range, JsonAllocator& allocator) {
     add_member(object, "count", JsonValue(static_cast<std::uint64_t>(range.count)), allocator);
     if (range.count > 0)
         for (const Field& field : fields) add_member(object, field.name, JsonValue(range.*field.value), allocator);
-    add_member(object, "logarithm", JsonValue(range.logarithm), allocator);
-    add_member(object, "falseReject", JsonValue(range.reject), allocator);
+    add_members(object, allocator, "logarithm", range.logarithm, "falseReject", range.reject);
     if (range.deviation) add_member(object, "deviation", JsonValue(*range.deviation), allocator);
     if (range.low) add_member(object, "low", JsonValue(*range.low), allocator);
     if (range.high) add_member(object, "high", JsonValue(*range.high), allocator);
@@ -144,21 +144,13 @@ void write_class(const Path& folder, const ShapeClass& learnt, const Provenance&
     const ShapeModes& modes = learnt.modes;
     Json document(rapidjson::kObjectType);
     auto& allocator = document.GetAllocator();
-    add_member(document, "format", "ostraka-class", allocator);
-    add_member(document, "version", JsonValue(1), allocator);
-    add_member(document, "name", learnt.name, allocator);
-    add_member(document, "template", learnt.template_file, allocator);
-    add_member(document, "topology", learnt.topology, allocator);
-    add_member(document, "sizes", JsonValue(learnt.sizes), allocator);
+    add_members(document, allocator, "format", "ostraka-class", "version", 1, "name", learnt.name, "template",
+                learnt.template_file, "topology", learnt.topology, "sizes", learnt.sizes);
     JsonValue members(rapidjson::kArrayType);
     for (std::size_t i = 0; i < learnt.members.size(); ++i) {
         const ClassMember& member = learnt.members[i];
-        JsonValue object(rapidjson::kObjectType);
-        add_member(object, "name", member.name, allocator);
-        add_member(object, "placedBy", member.placed_by, allocator);
-        add_member(object, "scale", JsonValue(member.scale), allocator);
-        add_member(object, "centroidSize", JsonValue(modes.centroid_sizes[i]), allocator);
-        add_member(object, "fromMean", JsonValue(modes.distances[i]), allocator);
+        JsonValue object = json_object(allocator, "name", member.name, "placedBy", member.placed_by, "scale", member.scale,
+                                       "centroidSize", modes.centroid_sizes[i], "fromMean", modes.distances[i]);
         std::vector<double> row;
         for (Eigen::Index k = 0; k < modes.coefficients.cols(); ++k)
             row.push_back(modes.coefficients(static_cast<Eigen::Index>(i), k));
@@ -166,11 +158,8 @@ void write_class(const Path& folder, const ShapeClass& learnt, const Provenance&
         if (!member.notes.empty()) add_member(object, "notes", texts(member.notes, allocator), allocator);
         members.PushBack(object, allocator);
     }
-    add_member(document, "falseReject", JsonValue(learnt.reject), allocator);
-    add_member(document, "resolution", JsonValue(learnt.resolution), allocator);
-    add_member(document, "members", std::move(members), allocator);
-    add_member(document, "archetype", learnt.members[modes.archetype].name, allocator);
-    add_member(document, "diversity", JsonValue(learnt.diversity), allocator);
+    add_members(document, allocator, "falseReject", learnt.reject, "resolution", learnt.resolution, "members", std::move(members),
+                "archetype", learnt.members[modes.archetype].name, "diversity", learnt.diversity);
 
     JsonValue shape(rapidjson::kObjectType);
     std::vector<double> values;
@@ -187,16 +176,12 @@ void write_class(const Path& folder, const ShapeClass& learnt, const Provenance&
                   {static_cast<std::size_t>(modes.modes.rows()), static_cast<std::size_t>(modes.modes.cols())});
         add_member(shape, "modes", rows, allocator);
     }
-    add_member(shape, "variances", numbers(modes.variances, allocator), allocator);
-    add_member(shape, "totalVariance", JsonValue(modes.total), allocator);
-    add_member(shape, "meanSize", JsonValue(modes.mean_size), allocator);
-    add_member(document, "shape", std::move(shape), allocator);
-    add_member(document, "ranges", list_of(learnt.ranges, allocator, [&](const auto& r) { return range_to_json(r, allocator); }),
-               allocator);
-    add_member(document, "fragments",
-               list_of(learnt.fragments, allocator, [&](const auto& r) { return range_to_json(r, allocator); }), allocator);
-    add_member(document, "notes", texts(learnt.notes, allocator), allocator);
-    add_member(document, "provenance", provenance.to_json(allocator), allocator);
+    add_members(shape, allocator, "variances", numbers(modes.variances, allocator), "totalVariance", modes.total, "meanSize",
+                modes.mean_size);
+    add_members(document, allocator, "shape", std::move(shape), "ranges",
+                list_of(learnt.ranges, allocator, [&](const auto& r) { return range_to_json(r, allocator); }), "fragments",
+                list_of(learnt.fragments, allocator, [&](const auto& r) { return range_to_json(r, allocator); }), "notes",
+                texts(learnt.notes, allocator), "provenance", provenance.to_json(allocator));
     write_json(folder / (learnt.name + ".class.json"), document);
 }
 
@@ -270,23 +255,18 @@ ShapeClass read_class(const Path& file) {
 
 JsonValue classification_to_json(const Classification& answer, JsonAllocator& allocator) {
     JsonValue report(rapidjson::kObjectType), answers(rapidjson::kArrayType);
-    add_member(report, "object", answer.object, allocator);
-    add_member(report, "verdict", to_string(answer.verdict), allocator);
-    add_member(report, "text", answer.text, allocator);
+    add_members(report, allocator, "object", answer.object, "verdict", to_string(answer.verdict), "text", answer.text);
     const auto name = [&](int k) { return answer.answers[static_cast<std::size_t>(k)].name; };
     if (answer.best >= 0) add_member(report, "class", name(answer.best), allocator);
     if (answer.nearest >= 0) add_member(report, "nearest", name(answer.nearest), allocator);
     for (const ClassAnswer& one : answer.answers) {
         JsonValue object(rapidjson::kObjectType), checks(rapidjson::kArrayType);
-        add_member(object, "class", one.name, allocator);
-        add_member(object, "verdict", to_string(one.verdict), allocator);
+        add_members(object, allocator, "class", one.name, "verdict", to_string(one.verdict));
         if (!one.undecided.empty()) add_member(object, "undecided", one.undecided, allocator);
         if (one.fit.problem.empty()) {
-            add_member(object, "score", JsonValue(one.score), allocator);
-            add_member(object, "placedBy", one.fit.placed_by, allocator);
-            add_member(object, "scale", JsonValue(one.fit.scale), allocator);
-            add_member(object, "coefficients", numbers(one.coordinates.coefficients, allocator), allocator);
-            add_member(object, "mahalanobis", JsonValue(one.coordinates.mahalanobis), allocator);
+            add_members(object, allocator, "score", one.score, "placedBy", one.fit.placed_by, "scale", one.fit.scale,
+                        "coefficients", numbers(one.coordinates.coefficients, allocator), "mahalanobis",
+                        one.coordinates.mahalanobis);
         }
         add_member(object, "against", texts(one.reasons(), allocator), allocator);
         for (const QuantityCheck& check : one.checks) {
@@ -295,9 +275,7 @@ JsonValue classification_to_json(const Classification& answer, JsonAllocator& al
             if (check.quantity.value) add_member(item, "value", JsonValue(*check.quantity.value), allocator);
             if (check.low) add_member(item, "low", JsonValue(*check.low), allocator);
             if (check.high) add_member(item, "high", JsonValue(*check.high), allocator);
-            add_member(item, "decides", JsonValue(check.decides), allocator);
-            add_member(item, "off", JsonValue(check.off), allocator);
-            add_member(item, "excess", JsonValue(check.excess), allocator);
+            add_members(item, allocator, "decides", check.decides, "off", check.off, "excess", check.excess);
             if (!check.most.empty()) add_member(item, "most", check.most, allocator);
             checks.PushBack(item, allocator);
         }

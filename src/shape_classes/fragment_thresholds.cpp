@@ -2,6 +2,7 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/file.h"
+#include "ostraka/core/json_build.h"
 #include "ostraka/registration/procrustes.h"
 #include "ostraka/shape_classes/thresholds.h"
 
@@ -117,10 +118,7 @@ std::vector<UsedThreshold> take_thresholds(ReconstructOptions& options, const Sh
 JsonValue thresholds_to_json(const std::vector<UsedThreshold>& thresholds, JsonAllocator& allocator) {
     JsonValue list(rapidjson::kArrayType);
     for (const UsedThreshold& threshold : thresholds) {
-        JsonValue one(rapidjson::kObjectType);
-        add_member(one, "option", threshold.option, allocator);
-        add_member(one, "value", JsonValue(threshold.value), allocator);
-        add_member(one, "from", threshold.from, allocator);
+        JsonValue one = json_object(allocator, "option", threshold.option, "value", threshold.value, "from", threshold.from);
         if (threshold.members > 0)
             add_member(one, "members", JsonValue(static_cast<std::uint64_t>(threshold.members)), allocator);
         list.PushBack(one, allocator);

@@ -267,7 +267,8 @@ void MemberFitOptions::describe(OptionList& visit) {
           "without landmarks: placements that are fitted, the nearest ones of those by principal axes and as the files have "
           "it; the best fit is kept",
           Range{1, 5});
-    visit("observed", observed, "surfaces farther apart than this share of the diagonal do not lie on each other", Range{0, 1});
+    visit("observed", observed, "surfaces farther apart than this do not lie on each other", Range{0, 1},
+          "share of the diagonal");
     visit("most-off", most_off,
           "a template does not lie on an object if a larger share of both surfaces (mean of unmatched and unexplained) is off "
           "the other after the fit",

@@ -380,7 +380,7 @@ void LearnOptions::describe(OptionList& visit) {
           "share of members that are refused, at most, where what is measured of them is normal or log-normal: all thresholds "
           "together",
           Range{1e-6, 0.5});
-    visit("resolution", resolution, "standard deviation of what is measured of one member, as a share of its value", Range{0, 1});
+    visit("resolution", resolution, "standard deviation of what is measured of one member", Range{0, 1}, "share of its value");
 }
 
 }  // namespace ostraka

@@ -147,9 +147,8 @@ ClayVolume clay_volume(const Mesh& mesh, const SliceFrame& frame, const ClayOpti
 
 void ClayOptions::describe(OptionList& visit) {
     visit("slices", slices, "layers that the object is cut into", Range{2, 1000000});
-    visit("wall", wall,
-          "least wall that the clay is taken to have where it is not seen, in the mesh's unit; 0: a thin one of those seen",
-          Range{0, 1e60});
+    visit("wall", wall, "least wall that the clay is taken to have where it is not seen; 0: a thin one of those seen",
+          Range{0, 1e60}, "the mesh's unit");
 }
 
 }  // namespace ostraka

@@ -194,8 +194,8 @@ Tube tubular_part(const SliceStack& stack, const std::vector<SliceDescriptors>& 
 
 void TubeOptions::describe(OptionList& visit) {
     visit("least-eccentricity", least_eccentricity, "tube: least breadth / length of a slice's rectangle", Range{0, 1});
-    visit("most-roundness", most_roundness,
-          "tube: largest mean distance of a slice's outline from its circle, share of the radius", Range{0, 10});
+    visit("most-roundness", most_roundness, "tube: largest mean distance of a slice's outline from its circle", Range{0, 10},
+          "share of the radius");
     visit("similarity", similarity, "tube: largest rms distance of a group's slices from its centre", Range{1e-6, 1e6});
     visit("tube-seed", seed, "tube: seed of the grouping", Range{0, 1e18});
 }

@@ -86,9 +86,9 @@ BrokenPiece break_off(const Mesh& whole, const Point& centre, const BreakOptions
 
 void BreakOptions::describe(OptionList& visit) {
     visit("share", share, "of the surface that the fragment has", Range{0.001, 1});
-    visit("roughness", roughness, "waves of the break, as a share of the fragment's size", Range{0, 1});
-    visit("noise", noise, "standard deviation along the normal, as a share of the whole's diagonal", Range{0, 0.1});
-    visit("erosion", erosion, "width of the rim that is worn away, as a share of the whole's diagonal", Range{0, 0.5});
+    visit("roughness", roughness, "waves of the break", Range{0, 1}, "share of the fragment's size");
+    visit("noise", noise, "standard deviation along the normal", Range{0, 0.1}, "share of the whole's diagonal");
+    visit("erosion", erosion, "width of the rim that is worn away", Range{0, 0.5}, "share of the whole's diagonal");
     visit("moved", moved, "turned and shifted at random", Anything{});
     visit("seed", seed, "of the break, the noise and the motion", Range{0, 9007199254740992.0});
 }

@@ -193,13 +193,13 @@ std::vector<PlannedHead> plan_heads(const MouldPopulationOptions& population, co
 
 void CastOptions::describe(OptionList& visit) {
     visit("wear", wear,
-          "how worn a cast is at most: standard deviation of a Gaussian that smooths its surface, as a share of the head's "
-          "height; each cast has half of it to all of it, and half of that at some places",
-          Range{0, 0.1});
+          "how worn a cast is at most: standard deviation of a Gaussian that smooths its surface; each cast has half of it to "
+          "all of it, and half of that at some places",
+          Range{0, 0.1}, "share of the head's height");
     visit("pressure", pressure, "soft clay gives way: standard deviation of stretches along the axes and of a bend, as a share",
           Range{0, 0.1});
     visit("shrinkage", shrinkage, "casts are smaller than their archetype by up to this share", Range{0, 0.3});
-    visit("noise", noise, "scan noise: standard deviation along the normal, as a share of the head's height", Range{0, 0.01});
+    visit("noise", noise, "scan noise: standard deviation along the normal", Range{0, 0.01}, "share of the head's height");
     visit("beard", beard, "share of the casts that bear a beard added by hand", Range{0, 1});
     visit("chunk", chunk, "share of the casts that miss a piece of the face", Range{0, 1});
     visit("dents", dents, "small dents in the front, up to", Range{0, 20});

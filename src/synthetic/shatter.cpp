@@ -295,9 +295,9 @@ void PotOptions::describe(OptionList& visit) {
 
 void ShatterOptions::describe(OptionList& visit) {
     visit("pieces", pieces, "at least so many pieces", Range{1, 1000});
-    visit("roughness", roughness, "height of the breaks' waves, share of the piece's extent", Range{0, 0.2});
-    visit("erosion", erosion, "what is worn off breaks and their edges, share of the diagonal", Range{0, 0.1});
-    visit("noise", noise, "standard deviation along the normal, share of the diagonal", Range{0, 0.1});
+    visit("roughness", roughness, "height of the breaks' waves", Range{0, 0.2}, "share of the piece's extent");
+    visit("erosion", erosion, "what is worn off breaks and their edges", Range{0, 0.1}, "share of the diagonal");
+    visit("noise", noise, "standard deviation along the normal", Range{0, 0.1}, "share of the diagonal");
     visit("seed", seed, "of cuts and noise", Range{0, 9007199254740992.0});
 }
 

@@ -307,23 +307,23 @@ std::unique_ptr<const MadeObject> statuette_object(const StatuetteParameters& pa
 
 void StatuetteParameters::describe(OptionList& visit) {
     visit("technique", technique, "wheel or hand", Choices{"wheel", "hand"});
-    visit("height", height, "from the base to the topmost point, mm", Range{100, 500});
-    visit("base-diameter", base_diameter, "mm", Range{20, 200});
-    visit("arm-length", arm_length, "from the joint along the outside to the end of the hand, mm", Range{30, 250});
-    visit("head-height", head_height, "from the joint at the back of the neck to the topmost point, mm", Range{20, 150});
-    visit("ovality", ovality, "of the body, relative to its radius", Range{0, 0.15});
-    visit("ovality-drift", ovality_drift, "degrees by which its direction turns", Range{0, 360});
-    visit("finger-marks", finger_marks, "root mean square, relative to the radius", Range{0, 0.05});
-    visit("sway", sway, "root mean square of the centres, relative to the tube's radius", Range{0, 0.2});
-    visit("grooves", grooves, "height of throwing grooves, mm", Range{0, 1});
-    visit("wall", wall, "mean thickness, mm; 0: solid", Range{0, 12});
-    visit("wall-noise", wall_noise, "root mean square, relative to the wall", Range{0, 0.25});
-    visit("off-centre", off_centre, "of the cavity, relative to the wall", Range{0, 0.4});
+    visit("height", height, "from the base to the topmost point", Range{100, 500}, "mm");
+    visit("base-diameter", base_diameter, "of the base", Range{20, 200}, "mm");
+    visit("arm-length", arm_length, "from the joint along the outside to the end of the hand", Range{30, 250}, "mm");
+    visit("head-height", head_height, "from the joint at the back of the neck to the topmost point", Range{20, 150}, "mm");
+    visit("ovality", ovality, "of the body", Range{0, 0.15}, "share of its radius");
+    visit("ovality-drift", ovality_drift, "turn of its direction", Range{0, 360}, "degrees");
+    visit("finger-marks", finger_marks, "root mean square", Range{0, 0.05}, "share of the radius");
+    visit("sway", sway, "root mean square of the centres", Range{0, 0.2}, "share of the tube's radius");
+    visit("grooves", grooves, "height of throwing grooves", Range{0, 1}, "mm");
+    visit("wall", wall, "mean thickness; 0: solid", Range{0, 12}, "mm");
+    visit("wall-noise", wall_noise, "root mean square", Range{0, 0.25}, "share of the wall");
+    visit("off-centre", off_centre, "of the cavity", Range{0, 0.4}, "share of the wall");
     visit("cavity-seen", cavity_seen, "share of the cavity's depth", Range{0.1, 1});
     visit("interior", interior, "what the mesh does where the scanner's sight ends", Choices{"closed", "open"});
-    visit("scan-noise", scan_noise, "standard deviation along the normal, mm", Range{0, 0.5});
+    visit("scan-noise", scan_noise, "standard deviation along the normal", Range{0, 0.5}, "mm");
     visit("holes", holes, "patches that the scan misses", Range{0, 20});
-    visit("hole-radius", hole_radius, "mm", Range{1, 20});
+    visit("hole-radius", hole_radius, "of those patches", Range{1, 20}, "mm");
     visit("pose", pose, "of the arms", Choices{"forward", "offering", "raised", "down"});
     visit("hat", hat, "on the head", Choices{"cone", "cap", "none"});
     visit("beard", beard, "a piece of clay under the chin", Anything{});
@@ -336,7 +336,7 @@ void PopulationOptions::describe(OptionList& visit) {
     visit("level", level, "difficulty: 1, the techniques far apart, to 5, nearly alike", Range{1, 5});
     visit("seed", seed, "of the whole population", Range{0, 1e9});
     visit("vertices", vertices, "of each mesh", Range{4000, 5e6});
-    visit("scan-noise", scan_noise, "standard deviation of each vertex along its normal, mm", Range{0, 0.5});
+    visit("scan-noise", scan_noise, "standard deviation of each vertex along its normal", Range{0, 0.5}, "mm");
     visit("interior", interior, "of hollow bodies, where the scanner's sight ends", Choices{"mixed", "closed", "open"});
     visit("cavity-seen", cavity_seen, "least share of a cavity's depth that the scanner saw; the most is all", Range{0.1, 1});
     visit("holes", holes, "most patches that a scan misses", Range{0, 20});

@@ -1,6 +1,7 @@
 // *.template.json
 #include "ostraka/core/error.h"
 #include "ostraka/core/inside.h"
+#include "ostraka/core/json_build.h"
 #include "ostraka/template_package/template.h"
 
 #include <algorithm>
@@ -83,8 +84,7 @@ TemplateFile read_template(const Path& file, const TemplateOptions& options) {
 Json template_to_json(const TemplateFile& file, const Provenance& provenance) {
     Json document(rapidjson::kObjectType);
     auto& allocator = document.GetAllocator();
-    add_member(document, "format", "ostraka-template", allocator);
-    add_member(document, "version", JsonValue(1), allocator);
+    add_members(document, allocator, "format", "ostraka-template", "version", 1);
     if (!file.object_class.empty()) add_member(document, "class", file.object_class, allocator);
     if (!file.unit.empty()) add_member(document, "unit", file.unit, allocator);
     if (file.up) {

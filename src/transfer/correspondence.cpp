@@ -216,8 +216,8 @@ Agreement compare_alignment(const Mesh& source, const Mesh& target) {
 }
 
 void CorrespondenceOptions::describe(OptionList& visit) {
-    visit("max-distance", max_distance, "farthest a corresponding place may lie, as a share of the box diagonal", Range{1e-9, 1});
-    visit("max-angle", max_angle, "largest angle between the normals of vertex and target face, in degrees", Range{0, 180});
+    visit("max-distance", max_distance, "farthest a corresponding place may lie", Range{1e-9, 1}, "share of the box diagonal");
+    visit("max-angle", max_angle, "largest angle between the normals of vertex and target face", Range{0, 180}, "degrees");
     visit("vertex", vertex,
           "which corner of the face that is hit corresponds: the one nearest to the projection or to the source vertex",
           Choices{"projection", "source"});

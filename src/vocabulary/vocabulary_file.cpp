@@ -3,6 +3,7 @@
 #include "skos_terms.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/json_build.h"
 #include "ostraka/vocabulary/skos.h"
 
 #include "words.h"
@@ -165,8 +166,7 @@ public:
     Json document{rapidjson::kObjectType};
 
     explicit Writer(const Vocabulary& vocabulary) {
-        add_member(document, "format", "ostraka-vocabulary", allocator_);
-        add_member(document, "version", JsonValue(1), allocator_);
+        add_members(document, allocator_, "format", "ostraka-vocabulary", "version", 1);
         text(document, "uri", vocabulary.uri);
         labels(document, "title", vocabulary.title);
         attributes(document, vocabulary.attributes);
@@ -244,9 +244,8 @@ private:
         if (value.empty()) return;
         JsonValue list(rapidjson::kArrayType);
         for (const ForeignStatement& statement : value) {
-            JsonValue entry(rapidjson::kObjectType);
-            add_member(entry, "property", statement.property, allocator_);
-            add_member(entry, statement.is_uri ? "uri" : "value", statement.value, allocator_);
+            JsonValue entry =
+                json_object(allocator_, "property", statement.property, statement.is_uri ? "uri" : "value", statement.value);
             text(entry, "language", statement.language);
             text(entry, "datatype", statement.datatype);
             list.PushBack(entry, allocator_);
@@ -272,9 +271,7 @@ private:
     }
     JsonValue json_of(const Operand& operand) {
         if (operand.concept_id.empty()) return json_string(operand.attribute, allocator_);
-        JsonValue object(rapidjson::kObjectType);
-        add_member(object, "attribute", operand.attribute, allocator_);
-        add_member(object, "concept", operand.concept_id, allocator_);
+        JsonValue object = json_object(allocator_, "attribute", operand.attribute, "concept", operand.concept_id);
         return object;
     }
     JsonValue json_of(const InferenceRule& rule) {
@@ -301,8 +298,7 @@ private:
             conditions.PushBack(entry, allocator_);
         }
         add_member(object, "if", std::move(conditions), allocator_);
-        add_member(then, "attribute", rule.attribute, allocator_);
-        add_member(then, "value", rule.value, allocator_);
+        add_members(then, allocator_, "attribute", rule.attribute, "value", rule.value);
         add_member(object, "then", std::move(then), allocator_);
         return object;
     }
@@ -313,10 +309,8 @@ private:
 std::vector<InferenceRule> rules_from_json(const JsonValue& list, const std::string& where) {
     Json document(rapidjson::kObjectType);
     auto& allocator = document.GetAllocator();
-    add_member(document, "format", "ostraka-vocabulary", allocator);
-    add_member(document, "version", JsonValue(1), allocator);
-    add_member(document, "concepts", JsonValue(rapidjson::kArrayType), allocator);
-    add_member(document, "rules", JsonValue(list, allocator), allocator);
+    add_members(document, allocator, "format", "ostraka-vocabulary", "version", 1, "concepts", JsonValue(rapidjson::kArrayType),
+                "rules", JsonValue(list, allocator));
     validate(document, "vocabulary", where);
     std::vector<InferenceRule> rules;
     for (rapidjson::SizeType i = 0; i < list.Size(); ++i)

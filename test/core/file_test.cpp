@@ -1,6 +1,8 @@
 #include "ostraka/core/file.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
+#include "ostraka/core/transaction.h"
 
 #include "scratch.h"
 
@@ -72,6 +74,24 @@ TEST(OutputTransaction, ShowsAllFilesOrNone) {
     EXPECT_EQ(test::count_files(scratch.path()), 2U);
 }
 
+TEST(OutputTransaction, HoldsWhatParallelLoopsWrite) {
+    const Scratch scratch;
+    const auto write_all = [&] {
+        parallel_for(
+            8, [&](std::size_t i) { write_file(scratch / (std::to_string(i) + ".txt"), "new"); }, 1);
+    };
+    {
+        const OutputTransaction broken;
+        write_all();
+        EXPECT_FALSE(std::filesystem::exists(scratch / "0.txt"));
+    }
+    EXPECT_EQ(test::count_files(scratch.path()), 0U);
+    OutputTransaction all;
+    write_all();
+    all.commit();
+    EXPECT_EQ(test::count_files(scratch.path()), 8U);
+}
+
 namespace {
 
 void write_outputs(const Path& folder, const std::vector<std::pair<std::string, std::string>>& files,
@@ -102,6 +122,21 @@ TEST(ReplaceOutputs, LeavesWhatTheLastRunWroteAndWhatOthersWrote) {
     write_outputs(scratch.path(), {});
     EXPECT_TRUE(std::filesystem::exists(scratch / "edited.csv"));
     EXPECT_FALSE(std::filesystem::exists(scratch / "a.png"));
+}
+
+TEST(ReplaceOutputs, LeavesInputs) {
+    const Scratch scratch;
+    write_outputs(scratch.path(), {{"a.ply", "1"}, {"b.ply", "2"}});
+    {
+        const KeptFiles kept({scratch.path() / "." / "a.ply"});
+        write_outputs(scratch.path(), {{"c.ply", "3"}});
+    }
+    EXPECT_TRUE(std::filesystem::exists(scratch / "a.ply"));
+    EXPECT_FALSE(std::filesystem::exists(scratch / "b.ply"));
+    // What was an input once is the user's from then on.
+    write_outputs(scratch.path(), {});
+    EXPECT_TRUE(std::filesystem::exists(scratch / "a.ply"));
+    EXPECT_FALSE(std::filesystem::exists(scratch / "c.ply"));
 }
 
 TEST(ReplaceOutputs, RemovesNothingBeforeAllIsThere) {

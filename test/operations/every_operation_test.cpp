@@ -2,12 +2,14 @@
 // the same bytes as from files.
 #include "ostraka/core/json.h"
 #include "ostraka/operations/pages.h"
+#include "ostraka/vocabulary/vocabulary.h"
 #include "scratch.h"
 
 #include <rapidjson/schema.h>
 #include <rapidjson/stringbuffer.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <regex>
 #include <set>
@@ -420,4 +422,131 @@ TEST(Calls, ReadEachFileOnceInAChain) {
     }
     write_file(mesh, read_file(Path(OSTRAKA_SOURCE_DIR) / "data/vase.ply"));
     EXPECT_NE(clay(), first) << "a changed file was not read again";
+}
+
+namespace {
+
+/// Writes a file of this name into a folder.
+class Fill final : public Operation {
+public:
+    void describe(Parameters& p) override {
+        p.input_option("input", Kind::text, input_, "a file that is read");
+        p.output("output", Kind::folder, output_, "folder to write to").flag();
+        p.options("name", name_, "of the file");
+    }
+    void run(Context&, Report&) override {
+        output_.open();
+        if (input_) static_cast<void>(read_file(input_.path()));
+        write_file(output_.in(name_), "made");
+    }
+
+private:
+    FileInput input_;
+    FolderOutput output_;
+    std::string name_;
+};
+
+/// Annotations, and then a template, which have an option in common.
+class TakesBoth final : public Operation {
+public:
+    void describe(Parameters& p) override {
+        p.input_option("annotations", Kind::annotations, annotations_, "annotations");
+        p.input("template", Kind::template_package, template_, "template");
+        p.report.values(fields::boolean("forced"));
+    }
+    void run(Context&, Report& report) override {
+        static_cast<void>(*template_);
+        report("forced", template_.options.force_mesh);
+    }
+
+private:
+    AnnotationsInput annotations_;
+    TemplateInput template_;
+};
+
+template <class Work>
+OperationEntry entry_of(const char* name) {
+    return {name, "an operation of this test", [] { return std::unique_ptr<Operation>(std::make_unique<Work>()); }};
+}
+
+}  // namespace
+
+TEST(Calls, NeverRemoveAnInputThatAnEarlierRunWrote) {
+    const Scratch scratch;
+    const OperationEntry entry = entry_of<Fill>("test fill");
+    const auto fill = [&](const std::string& name, const Path& input) {
+        Call call(entry);
+        call.set("name", name);
+        call.set_file("output", scratch.path());
+        if (!input.empty()) call.set_file("input", input);
+        Context context;
+        static_cast<void>(call.run(context));
+    };
+    fill("a.txt", {});
+    fill("b.txt", scratch / "a.txt");
+    EXPECT_TRUE(std::filesystem::exists(scratch / "a.txt"));
+    fill("c.txt", {});
+    EXPECT_FALSE(std::filesystem::exists(scratch / "b.txt"));
+}
+
+TEST(Calls, ShareOptionsOfInputsInEitherOrder) {
+    const OperationEntry entry = entry_of<TakesBoth>("test both");
+    for (const bool forced : {false, true}) {
+        Call call(entry);
+        Object made = Object::of(Template(), "t.template.json");
+        made.sha256 = "known";
+        call.set_object("template", made);
+        call.set("force-mesh", forced);
+        Context context;
+        EXPECT_EQ(call.run(context).result()["forced"].GetBool(), forced);
+    }
+}
+
+TEST(Calls, AskForTheChecksumOfObjects) {
+    const auto show = [](const std::string& sha256) {
+        Call call(find_operation("vocabulary show"));
+        Object words = Object::of(Vocabulary(), "words.vocabulary.json");
+        words.sha256 = sha256;
+        call.set_object("vocabulary", words);
+        Context context;
+        return call.run(context);
+    };
+    EXPECT_THROW(static_cast<void>(show("")), Error);
+    const auto inputs = show("of these words").provenance().inputs;
+    ASSERT_EQ(inputs.size(), 1U);
+    EXPECT_EQ(inputs[0].second, "of these words");
+}
+
+TEST(Calls, MakeNoPartOfACollectionThatIsCancelled) {
+    const Scratch scratch;
+    Context context;
+    context.watch.on_progress = [&](const std::string&, double share) {
+        if (share > 0) context.watch.cancel();
+    };
+    Call call(find_operation("study make technique"));
+    call.set_file("folder", scratch / "statuettes");
+    call.set("objects", 60.0);
+    call.set("vertices", 4000.0);
+    EXPECT_THROW(static_cast<void>(call.run(context)), Error);
+    if (std::filesystem::exists(scratch / "statuettes")) {
+        EXPECT_EQ(count_files(scratch / "statuettes"), 0U);
+    }
+}
+
+TEST(Reports, KnowTheirColumns) {
+    ReportLayout layout;
+    layout.values(fields::number("size", "size"));
+    layout.table("rows", fields::integer("id", "id"), fields::number("area"), fields::people("remarks"), fields::people("area"));
+    layout.people_table("seen", {"what", "count"});
+    Report report({"test", {}, {}}, layout);
+    report("size", 1.5)("size", std::optional<double>());
+    report.row("rows")("id", 7)("area", std::numeric_limits<double>::infinity()).shown("remarks", "odd").shown("area", "none");
+    report.row("seen", {"holes", 3});
+    EXPECT_EQ(to_text(report.result()), to_text(parse_json(R"({"size": 1.5, "rows": [{"id": 7}]})", "expected")));
+    EXPECT_EQ(report.to_text(ReportFormat::table),
+              "size  1.5\nid  remarks  area\n 7  odd      none\nseen\nwhat   count\nholes      3\n");
+    EXPECT_THROW(report("length", 1), std::logic_error);
+    EXPECT_THROW(report.row("rows")("length", 1), std::logic_error);
+    EXPECT_THROW(report.row("rows").shown("length", "-"), std::logic_error);
+    EXPECT_THROW(report.row("seen", {"holes"}), std::logic_error);
 }

@@ -101,7 +101,11 @@ TEST(SelectCommand, HelpSaysDefaultsAndUnits) {
     const std::string help = run_command("annotation select --help").out;
     for (const char* words : {"=30,20", "=1200x900", "=orthographic", "=mesh", "in degrees", "in pixels", "any text"})
         EXPECT_NE(help.find(words), std::string::npos) << words << "\n" << help;
-    EXPECT_NE(run_command("annotation apply --help").out.find("mesh recipe output; or mesh output"), std::string::npos);
+    // Every order of the arguments, and each argument by its name.
+    const std::string orders = run_command("annotation apply --help").out;
+    for (const char* words : {"[OPTIONS] mesh recipe output\n", "[OPTIONS] mesh output\n", "\n  mesh FILE", "\n  recipe FILE"})
+        EXPECT_NE(orders.find(words), std::string::npos) << words << "\n" << orders;
+    EXPECT_EQ(orders.find("files"), std::string::npos) << orders;
 }
 
 TEST(SelectCommand, EditsBegunWithoutARecipeReplayOnWhatWasThere) {

@@ -76,8 +76,9 @@ private:
     std::string memory_;  ///< of a file in memory
 };
 
-/// Several outputs that appear together or not at all: while one is open on this thread, files that AtomicFile commits are on
-/// the disk but wait under their temporary names until `commit` renames them all; without it they are removed.
+/// Several outputs that appear together or not at all: while one is open on this thread, files that AtomicFile commits on it and
+/// in parallel loops that it starts are on the disk but wait under their temporary names until `commit` renames them all; without
+/// it they are removed.
 class OutputTransaction {
 public:
     OutputTransaction();

@@ -3,6 +3,7 @@
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/coords/coordinate_file.h"
+#include "ostraka/core/options.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/relation/graph.h"
 #include "ostraka/template_package/template.h"
@@ -146,6 +147,15 @@ public:
     [[nodiscard]] virtual bool fills_folder(std::size_t /*i*/) const { return false; }
     /// After `run`: what was written to a file in memory becomes the object.
     virtual void finish() {}
+
+protected:
+    /// Declares the slot's own options; those that another slot declared under the same name are shared with it.
+    void describe_shared(OptionList& options, const OptionList& own);
+    /// Takes the values of shared options over; before `own` are used.
+    void take_shared() const;
+
+private:
+    std::vector<std::pair<OptionValue, OptionValue>> shared_;  ///< of the list, own
 };
 
 // ---- inputs ----
@@ -164,6 +174,9 @@ public:
     [[nodiscard]] PolygonSoup take_polygons(std::size_t i = 0) const;
 };
 
+/// Of annotations in memory: that of their file without a provenance.
+std::string checksum_of(const AnnotationSet& set, const Mesh& mesh);
+
 /// Annotations; with them comes the option --force-mesh.
 class AnnotationsInput : public Slot {
 public:
@@ -172,9 +185,6 @@ public:
     void describe(OptionList& options) override;
 
     ReadAnnotationsOptions reading;
-
-private:
-    const bool* shared_ = nullptr;  ///< --force-mesh of an input that was declared before
 };
 
 class GraphInput : public Slot {
@@ -217,14 +227,18 @@ public:
     /// depends on, such as options_text(options) of the reader.
     template <class T>
     [[nodiscard]] const T& load(const std::function<T(const Path&)>& read, std::size_t i = 0, const std::string& key = {}) const {
-        if (const auto object = sources.at(i).object.as<T>()) return *object;
+        if (const auto object = sources.at(i).object.as<T>()) return check_checksum(i), *object;
         return *std::static_pointer_cast<const T>(
             load_any(typeid(T), i, key, [&](const Path& path) { return std::make_shared<const T>(read(path)); }));
     }
+    /// Annotations of the mesh that were given in memory, unchecked; null where there are none.
+    [[nodiscard]] std::shared_ptr<const AnnotationSet> annotations_on(const Mesh& mesh) const;
     /// The name of the file (of an object in memory: of one in memory that was written for it).
     [[nodiscard]] Path path(std::size_t i = 0) const;
 
 private:
+    /// Throws Error (usage) where an object in memory does not say which bytes it is of: provenance names them.
+    void check_checksum(std::size_t i) const;
     using ReadAny = std::function<std::shared_ptr<const void>(const Path&)>;
     [[nodiscard]] std::shared_ptr<const void> load_any(std::type_index type, std::size_t i, const std::string& key,
                                                        const ReadAny& read) const;
@@ -251,6 +265,7 @@ public:
 
 private:
     void keep(Mesh mesh, MeshExtras extras, WriteOptions options, const std::string& ending) const;
+    [[nodiscard]] WriteOptions written(WriteOptions options) const;
     bool encoded_ = false, ascii_ = false;
 };
 
@@ -287,8 +302,7 @@ public:
 /// A JSON document; what is written has the provenance as its last member if it is an object.
 class JsonOutput : public Slot {
 public:
-    void write(Json document) const;
-    void write(const JsonValue& value) const;
+    void write(const JsonValue& document) const;
 };
 
 /// Old index -> new index, `no_index` for what is gone (doc/schema/map.schema.json): the one writer of such maps.
@@ -328,6 +342,10 @@ public:
     /// A file in it.
     [[nodiscard]] Path in(const std::string& name, std::size_t i = 0) const;
     [[nodiscard]] Path path() const;
+    /// Writes such a file, with the provenance.
+    void write(const std::string& name, const Mesh& mesh, const MeshExtras& extras = {}, WriteOptions options = {}) const;
+    void write(const std::string& name, const AnnotationSet& set, const Mesh& mesh, const std::string& mesh_name) const;
+    void write(const std::string& name, const JsonValue& document) const;
     void check() const override;
     [[nodiscard]] bool fills_folder(std::size_t /*i*/) const override { return true; }
     void finish() override;

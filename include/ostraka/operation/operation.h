@@ -30,13 +30,24 @@ class Parameters {
 public:
     Slot& input(std::string name, Kind kind, Slot& slot, std::string help);
     Slot& output(std::string name, Kind kind, Slot& slot, std::string help);
+    /// The same for what may be left out, and is given by its name: --name FILE.
+    Slot& input_option(std::string name, Kind kind, Slot& slot, std::string help) {
+        return input(std::move(name), kind, slot, std::move(help)).optional().flag();
+    }
+    Slot& output_option(std::string name, Kind kind, Slot& slot, std::string help) {
+        return output(std::move(name), kind, slot, std::move(help)).optional().flag();
+    }
     OptionList options;
     ReportLayout report;
+    std::vector<std::function<void()>> checks;  ///< of single options; run before Operation::check, and throw as it does
 
     /// Names, in the order in which the command line gives them, where that is not the order of the declarations; several where
     /// there are several ways, told apart by how many there are. A name that may repeat takes what is left.
     std::vector<std::vector<std::string>> orders;
     void order(std::vector<std::string> names) { orders.push_back(std::move(names)); }
+
+    /// It is given by its place, in one of the orders at least.
+    [[nodiscard]] bool in_some_order(const std::string& name) const;
 
     [[nodiscard]] std::vector<Slot*> slots() const { return slots_; }
     [[nodiscard]] Slot* slot(const std::string& name) const;
@@ -95,6 +106,8 @@ public:
     void record_input(const std::string& name, const std::string& sha256);
     /// The object in memory has this checksum, if it says none itself.
     void record_object(const Slot& slot, std::size_t i, const std::string& sha256);
+    /// That of an object in memory; empty where nothing says it.
+    std::string checksum_of_object(const Slot& slot, std::size_t i);
     /// Notes for the report of the call under way.
     void note(const std::string& text);
     void notes(const std::string& file, const std::vector<std::string>& texts);

@@ -7,10 +7,13 @@
 #include <concepts>
 #include <deque>
 #include <functional>
+#include <initializer_list>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <variant>
 #include <vector>
 
 namespace ostraka {
@@ -24,30 +27,107 @@ enum class FieldType { boolean, integer, number, text, numbers, texts, any };
 struct Field {
     std::string key;  ///< in JSON, '.' for a member of a member; empty: for people only
     FieldType type = FieldType::text;
-    std::string title = {};   ///< for people; empty: for programs only
-    std::string unit = {};    ///< "length", "length^2", ... stand for the unit of the report (Report::set_unit)
-    std::string schema = {};  ///< of type any: name of a schema (doc/schema) that the structure keeps
+    std::string title = {};  ///< for people; empty: for programs only
+    std::string unit = {};   ///< "length", "length^2", ... stand for the unit of the report (Report::set_unit)
 };
 
-/// The layout of a report, declared with the operation.
+/// How operations declare fields: `report.table("parts", integer("id", "id"), number("area", "area", "length^2"))`.
+namespace fields {
+inline Field boolean(std::string key, std::string title = {}) { return {std::move(key), FieldType::boolean, std::move(title)}; }
+inline Field integer(std::string key, std::string title = {}, std::string unit = {}) {
+    return {std::move(key), FieldType::integer, std::move(title), std::move(unit)};
+}
+inline Field number(std::string key, std::string title = {}, std::string unit = {}) {
+    return {std::move(key), FieldType::number, std::move(title), std::move(unit)};
+}
+inline Field text(std::string key, std::string title = {}) { return {std::move(key), FieldType::text, std::move(title)}; }
+inline Field numbers(std::string key, std::string title = {}, std::string unit = {}) {
+    return {std::move(key), FieldType::numbers, std::move(title), std::move(unit)};
+}
+inline Field texts(std::string key, std::string title = {}) { return {std::move(key), FieldType::texts, std::move(title)}; }
+inline Field any(std::string key, std::string title = {}, std::string unit = {}) {
+    return {std::move(key), FieldType::any, std::move(title), std::move(unit)};
+}
+/// A column for people only; one of numbers shows "-" where there is none.
+inline Field people(std::string title, FieldType type = FieldType::text, std::string unit = {}) {
+    return {{}, type, std::move(title), std::move(unit)};
+}
+}  // namespace fields
+
+/// The layout of a report, declared with the operation: its values, and tables of rows.
 struct ReportLayout {
-    std::vector<Field> values;
+    std::vector<Field> of_values;
     struct Table {
         std::string key;  ///< an array of objects in JSON; empty: for people only
         std::vector<Field> columns;
-        std::string title;  ///< a line above it, for people
+        std::string title = {};  ///< a line above it, for people
     };
     std::deque<Table> tables;
     std::string schema;   ///< name of a schema (doc/schema) that the whole result keeps; empty: only what is declared
     bool checks = false;  ///< Report::findings is called
 
-    ReportLayout& value(std::string key, FieldType type, std::string title = {}, std::string unit = {});
-    /// A structure that only programs read; `schema`: that of a file format it keeps.
-    ReportLayout& structure(std::string key, std::string schema = {});
-    ReportLayout& table(std::string key, std::vector<Field> columns, std::string title = {});
+    template <std::same_as<Field>... Columns>
+    void values(Columns... columns) {
+        (of_values.push_back(std::move(columns)), ...);
+    }
+    template <std::same_as<Field>... Columns>
+    void table(std::string key, Columns... columns) {
+        table(std::move(key), std::vector<Field>{std::move(columns)...});
+    }
+    void table(std::string key, std::vector<Field> columns) { tables.push_back({std::move(key), std::move(columns)}); }
+    /// For people only; rows are filled under its title.
+    void people_table(std::string title, std::initializer_list<const char*> columns) {
+        tables.push_back({{}, {}, std::move(title)});
+        for (const char* column : columns) tables.back().columns.push_back(fields::people(column));
+    }
 
     /// JSON schema (draft 4) of the member "result" of a report.
     [[nodiscard]] JsonValue to_schema(JsonAllocator& allocator) const;
+};
+
+/// What people read: text, or a number as numbers usually are (five significant digits).
+struct ReportText {
+    // NOLINTBEGIN(google-explicit-constructor): any of these is meant to be handed over as it is
+    ReportText(std::string value) : text(std::move(value)) {}
+    ReportText(const char* value) : text(value) {}
+    ReportText(double value);
+    template <std::integral Number>
+    ReportText(Number value) : text(std::to_string(value)) {}
+    // NOLINTEND(google-explicit-constructor)
+    std::string text;
+};
+
+/// A value of a report. Numbers that are not finite, and what is optional and not there, are absent.
+class ReportValue {
+public:
+    // NOLINTBEGIN(google-explicit-constructor): any of these is meant to be handed over as it is
+    ReportValue(bool value) : value_(value) {}
+    ReportValue(double value);
+    ReportValue(std::string value) : value_(std::move(value)) {}
+    ReportValue(const char* value) : value_(std::string(value)) {}
+    ReportValue(std::vector<double> values) : value_(std::move(values)) {}
+    ReportValue(std::vector<std::string> values) : value_(std::move(values)) {}
+    ReportValue(JsonValue value) : value_(std::move(value)) {}
+    template <std::integral Number>
+    ReportValue(Number value) : value_(static_cast<std::int64_t>(value)) {}
+    template <std::integral Number>
+    ReportValue(const std::vector<Number>& values) : value_(std::vector<std::int64_t>(values.begin(), values.end())) {}
+    template <class Value>
+    ReportValue(const std::optional<Value>& value) {
+        if (value) *this = ReportValue(*value);
+    }
+    // NOLINTEND(google-explicit-constructor)
+
+    [[nodiscard]] bool absent() const { return std::holds_alternative<std::monostate>(value_); }
+    /// As people read it; empty for structures.
+    [[nodiscard]] std::string text() const;
+    /// As programs read it; may be called once.
+    JsonValue json(JsonAllocator& allocator);
+
+private:
+    std::variant<std::monostate, bool, std::int64_t, double, std::string, std::vector<double>, std::vector<std::int64_t>,
+                 std::vector<std::string>, JsonValue>
+        value_;
 };
 
 /// How a report is shown.
@@ -62,49 +142,27 @@ public:
     /// Unit of length of the objects at hand, which the titles of columns show.
     void set_unit(const std::string& unit) { unit_ = unit; }
 
-    /// A value; `shown`: how people read it, where not as numbers usually are (five significant digits).
-    void value(const std::string& key, bool value, std::optional<std::string> shown = {});
-    void value(const std::string& key, double value, std::optional<std::string> shown = {});
-    void value(const std::string& key, const std::string& value, std::optional<std::string> shown = {});
-    void value(const std::string& key, const char* value) { this->value(key, std::string(value)); }
-    void value(const std::string& key, const std::vector<double>& value, std::optional<std::string> shown = {});
-    void value(const std::string& key, const std::vector<std::string>& value, std::optional<std::string> shown = {});
-    void value(const std::string& key, JsonValue value);
+    /// A value; `shown`: how people read it, where not as usual.
+    Report& operator()(std::string_view key, ReportValue value, std::optional<std::string> shown = {});
     /// All members of an object that keeps the schema of the report.
     void values(const JsonValue& object);
-    template <std::integral Number>
-    requires(!std::same_as<Number, bool>) void value(const std::string& key, Number value,
-                                                     std::optional<std::string> shown = {}) {
-        integer(key, static_cast<std::int64_t>(value), std::move(shown));
-    }
 
-    /// A row of a table, filled cell by cell. Numbers that are not finite, and cells that are not filled, are absent.
+    /// A row of a table, filled cell by cell. Cells that are absent or not filled are left out.
     class Row {
     public:
-        Row& operator()(const std::string& key, bool value, std::optional<std::string> shown = {});
-        Row& operator()(const std::string& key, double value, std::optional<std::string> shown = {});
-        Row& operator()(const std::string& key, const std::string& value, std::optional<std::string> shown = {});
-        Row& operator()(const std::string& key, const char* value) { return (*this)(key, std::string(value)); }
-        Row& operator()(const std::string& key, const std::vector<double>& value, std::optional<std::string> shown = {});
-        Row& operator()(const std::string& key, const std::vector<std::string>& value, std::optional<std::string> shown = {});
-        Row& operator()(const std::string& key, JsonValue value);
-        template <std::integral Number>
-        requires(!std::same_as<Number, bool>) Row& operator()(const std::string& key, Number value,
-                                                              std::optional<std::string> shown = {}) {
-            return integer(key, static_cast<std::int64_t>(value), std::move(shown));
-        }
+        Row& operator()(std::string_view key, ReportValue value, std::optional<std::string> shown = {});
         /// The cell of a column for people only, named by its title; or what people read of a cell that is absent.
-        Row& shown(const std::string& title_or_key, const std::string& text);
+        Row& shown(std::string_view title_or_key, ReportText text);
 
     private:
         friend class Report;
         Row(Report& report, std::size_t table, std::size_t row) : report_(report), table_(table), row_(row) {}
-        Row& integer(const std::string& key, std::int64_t value, std::optional<std::string> shown);
-        Row& put(const std::string& key, JsonValue value, std::string text);
         Report& report_;
         std::size_t table_, row_;
     };
     Row row(const std::string& table);
+    /// A row of a table for people only: a cell a column.
+    void row(const std::string& table, std::initializer_list<ReportText> cells);
     /// A table that is there although it has no rows; `shown`: people see its header.
     void empty_table(const std::string& table, bool shown = true);
 
@@ -148,6 +206,9 @@ public:
 private:
     struct ShownTable {
         std::size_t layout = 0;
+        std::map<std::string, int, std::less<>> places;  ///< of keys in the rows, -1 of what only programs read
+        std::map<std::string, int, std::less<>> shown;   ///< of keys, or titles for people only
+        std::vector<std::string> empty;                  ///< a row without values
         std::vector<std::vector<std::string>> rows;
     };
     /// What people see, in order: a line, a value (title and text), or a table.
@@ -158,8 +219,6 @@ private:
         std::shared_ptr<const TextTable> text_table = {};
     };
     friend class Row;
-    void integer(const std::string& key, std::int64_t value, std::optional<std::string> shown);
-    void put(const std::string& key, JsonValue value, std::string text);
     ShownTable& table_of(const std::string& key);
     [[nodiscard]] std::string in_unit(const Field& field) const;
     [[nodiscard]] std::string shown_table(const ShownTable& table, ReportFormat format) const;

@@ -11,7 +11,8 @@ std::string commands_page(const std::string& first_word);
 /// The first words of all names, in the order of the table: one page each.
 std::vector<std::string> command_pages();
 
-/// A manual page (troff, section 1) on one operation.
+/// "ostraka-mesh-info": a manual page (troff, section 1) on one operation.
+std::string manual_name(const OperationEntry& entry);
 std::string manual_page(const OperationEntry& entry);
 
 enum class Shell { bash, zsh, fish };

@@ -1,0 +1,188 @@
+#include "run.h"
+
+#include <algorithm>
+#include <atomic>
+#include <stdexcept>
+
+namespace ostraka {
+
+const std::string& Context::Run::know(const Slot& slot, std::size_t i) {
+    const Object& object = slot.sources[i].object;
+    std::string& sum = checksums[{&slot, i}];
+    if (!sum.empty()) return sum;
+    sum = object.sha256;
+    if (sum.empty() && object.write) {
+        static std::atomic<std::size_t> count{0};
+        const Path file = "memory:.checksum/" + std::to_string(++count) + "/" + Path(object.name).filename().string();
+        OutputTransaction own;
+        object.write(file);
+        own.commit();
+        sum = sha256_of_file(file);
+        for (const std::string& beside : files_in(file.parent_path()))  // such as the header of coordinates
+            if (beside != file.filename()) named.emplace_back(beside, sha256_of_file(file.parent_path() / beside));
+        forget_memory(file.parent_path());
+    } else if (const auto bytes = object.as<std::string>(); sum.empty() && bytes) {
+        sum = sha256(*bytes);
+    } else if (const auto document = object.as<Json>(); sum.empty() && document) {
+        sum = sha256(to_text(*document));
+    }
+    return sum;
+}
+
+void Context::Run::add(const std::vector<ReadRecord::Entry>& files) {
+    for (const auto& entry : files)
+        if (std::none_of(read.begin(), read.end(), [&](const auto& known) { return known.file == entry.file; }))
+            read.push_back(entry);
+}
+
+std::vector<Path> Context::Run::inputs() const {
+    std::vector<Path> files;
+    for (const auto& entry : read) files.push_back(entry.file);
+    for (const Slot* slot : parameters->slots())
+        if (parameters->updated_in_place(*slot)) std::erase(files, slot->sources.front().file);
+    return files;
+}
+
+struct Context::Kept {
+    struct File {
+        ReadRecord::Entry entry;
+        std::uintmax_t size = 0;
+        std::filesystem::file_time_type time;
+        [[nodiscard]] bool unchanged() const {
+            std::error_code code;
+            return is_memory(entry.file) || (std::filesystem::file_size(entry.file, code) == size &&
+                                             std::filesystem::last_write_time(entry.file, code) == time);
+        }
+    };
+    struct Entry {
+        std::vector<File> files;
+        std::shared_ptr<const void> data;
+    };
+    std::map<std::tuple<std::string, std::type_index, std::string>, Entry> objects;
+};
+
+Context::Context() : kept_(std::make_unique<Kept>()) {}
+
+Context::~Context() {
+    for (const Path& file : memory_) forget_memory(file);
+}
+
+Provenance Context::provenance() const {
+    if (run_ == nullptr) throw std::logic_error("no operation is under way");
+    Provenance provenance;
+    provenance.command = run_->command;
+    provenance.options = run_->parameters->options.values();
+    std::erase_if(provenance.options, [](const auto& option) { return option.second.empty(); });
+    std::vector<Path> listed;
+    for (const Slot* slot : run_->parameters->slots()) {
+        if (slot->role != Role::input) continue;
+        for (std::size_t i = 0; i < slot->sources.size(); ++i) {
+            const Source& source = slot->sources[i];
+            if (source.object.as<Path>()) continue;  // a folder, whose files are recorded
+            if (source.object) {
+                provenance.inputs.emplace_back(Path(source.object.name).filename().string(), run_->know(*slot, i));
+                continue;
+            }
+            listed.push_back(source.file);
+            const std::string called = (source.label.empty() ? "" : source.label + "=") + source.file.filename().string();
+            const auto read =
+                std::find_if(run_->read.begin(), run_->read.end(), [&](const auto& entry) { return entry.file == source.file; });
+            if (read == run_->read.end()) {  // not read yet, or a folder, whose files are read
+                if (!file_exists(source.file)) continue;
+                run_->read.push_back({source.file, sha256_of_file(source.file)});
+                provenance.inputs.emplace_back(called, run_->read.back().sha256);
+            } else {
+                provenance.inputs.emplace_back(called, read->sha256);
+            }
+        }
+    }
+    for (const auto& entry : run_->read)
+        if (!is_memory(entry.file) && std::find(listed.begin(), listed.end(), entry.file) == listed.end())
+            provenance.inputs.emplace_back(entry.file.filename().string(), entry.sha256);
+    provenance.inputs.insert(provenance.inputs.end(), run_->named.begin(), run_->named.end());
+    return provenance;
+}
+
+std::shared_ptr<const void> Context::load(const Slot& slot, std::size_t i, std::type_index type, const std::string& key,
+                                          const Read& read) {
+    if (run_ == nullptr) throw std::logic_error("no operation is under way");
+    if (i >= slot.sources.size()) throw std::logic_error("nothing was given for " + slot.name);
+    const auto place = std::tuple(&slot, i, type, key);
+    if (const auto known = run_->loaded.find(place); known != run_->loaded.end()) return known->second;
+    check_cancelled();
+    const Source& source = slot.sources[i];
+    if (source.object) run_->know(slot, i);
+    const bool shared = keep_objects && !source.object;
+    const auto name = std::tuple(source.file.string(), type, key);
+    if (shared)
+        if (const auto known = kept_->objects.find(name); known != kept_->objects.end()) {
+            const auto& files = known->second.files;
+            if (std::all_of(files.begin(), files.end(), [](const Kept::File& file) { return file.unchanged(); })) {
+                for (const auto& file : files) run_->add({file.entry});
+                return run_->loaded[place] = known->second.data;
+            }
+            kept_->objects.erase(known);
+        }
+    std::vector<ReadRecord::Entry> files;
+    std::shared_ptr<const void> data;
+    {
+        const ReadRecord record;
+        data = read(source.file);
+        files = record.files;
+    }
+    run_->add(files);
+    if (shared) {
+        Kept::Entry entry{{}, data};
+        for (const auto& file : files) {
+            std::error_code code;
+            if (is_memory(file.file)) entry.files.push_back({file, 0, {}});
+            else
+                entry.files.push_back(
+                    {file, std::filesystem::file_size(file.file, code), std::filesystem::last_write_time(file.file, code)});
+        }
+        kept_->objects[name] = std::move(entry);
+    }
+    return run_->loaded[place] = data;
+}
+
+void Context::record(const std::function<void()>& read) {
+    const ReadRecord record;
+    read();
+    run_->add(record.files);
+}
+
+void Context::record_input(const std::string& name, const std::string& sha256) { run_->named.emplace_back(name, sha256); }
+
+void Context::record_object(const Slot& slot, std::size_t i, const std::string& sha256) { run_->checksums[{&slot, i}] = sha256; }
+
+std::string Context::checksum_of_object(const Slot& slot, std::size_t i) { return run_->know(slot, i); }
+
+void Context::note(const std::string& text) { run_->report->note(text); }
+
+void Context::notes(const std::string& file, const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) {
+        if (std::find(run_->noted.begin(), run_->noted.end(), std::pair(file, text)) != run_->noted.end()) continue;
+        run_->noted.emplace_back(file, text);
+        run_->report->note(file.empty() ? text : file + ": " + text);
+    }
+}
+
+Path Context::memory(const std::string& name) {
+    static std::atomic<std::size_t> count{0};
+    const Path folder = "memory:" + std::to_string(++count);
+    memory_.push_back(folder);
+    return folder / name;
+}
+
+void Context::check_output(const Path& file) const { ostraka::check_outputs(run_->inputs(), {file}); }
+
+void Context::check_outputs(const std::vector<Path>& further) const {
+    std::vector<Path> inputs = run_->inputs(), outputs;
+    for (const Slot* slot : run_->parameters->slots())
+        if (dynamic_cast<const FolderOutput*>(slot) == nullptr && !run_->parameters->updated_in_place(*slot))
+            for (const Source& source : slot->sources) (slot->role == Role::input ? inputs : outputs).push_back(source.file);
+    outputs.insert(outputs.end(), further.begin(), further.end());
+    ostraka::check_outputs(inputs, outputs);
+}
+
+}  // namespace ostraka

@@ -1,0 +1,210 @@
+#include "polygons.h"
+
+#include "ostraka/core/json_build.h"
+#include "ostraka/operation/operation.h"
+#include "ostraka/render/values.h"
+
+namespace ostraka {
+
+namespace {
+
+MeshFile mesh_of(PolygonSoup soup) {
+    TriangulatedSoup triangles = triangulate(std::move(soup));
+    return {build_mesh(triangles.soup), std::move(triangles.extras), std::move(triangles.triangle_polygon),
+            std::move(triangles.notes)};
+}
+
+/// Of an object in memory that another operation made, or that is bytes or a folder.
+Path in_memory(Context& context, const Object& object, const std::string& slot) {
+    if (const auto folder = object.as<Path>()) return *folder;
+    const Path path = context.memory(object.name.empty() ? slot : Path(object.name).filename().string());
+    OutputTransaction own;  // it is read before the outputs of the call are complete
+    if (object.write) object.write(path);
+    else if (const auto bytes = object.as<std::string>()) write_file(path, *bytes);
+    else if (const auto document = object.as<Json>()) write_json(path, *document);
+    else throw Error(ErrorKind::usage, slot, "is given as an object that cannot be read as a file", "give a file, or its bytes");
+    own.commit();
+    return path;
+}
+
+/// Says the checksum of an object that came without one and without a file that it would be.
+void tell_checksum(const Slot& slot, std::size_t i, const std::function<std::string()>& sum) {
+    const Object& object = slot.sources[i].object;
+    if (object.sha256.empty() && !object.write) slot.context->record_object(slot, i, sum());
+}
+
+/// The i-th object of a slot: what `read` makes of its file; an object in memory itself if it is a T, with the checksum that
+/// `sum` says and once `check` has seen it; else what `convert` makes of it, if anything, or `read` of the file that it would be.
+template <class T, class Read, class Sum>
+const T& loaded(const Slot& slot, std::size_t i, const std::string& key, const Read& read, const Sum& sum,
+                const std::function<std::optional<T>(const Object&)>& convert = {},
+                const std::function<void(const T&)>& check = {}) {
+    const Object& object = slot.sources.at(i).object;
+    return *std::static_pointer_cast<const T>(
+        slot.context->load(slot, i, typeid(T), key, [&](const Path& file) -> std::shared_ptr<const void> {
+            if (auto data = object.as<T>()) {
+                if (check) check(*data);
+                tell_checksum(slot, i, [&] { return sum(*data); });
+                return data;
+            }
+            if (auto made = object && convert ? convert(object) : std::nullopt)
+                return std::make_shared<const T>(std::move(*made));
+            return std::make_shared<const T>(read(object ? in_memory(*slot.context, object, slot.name) : file));
+        }));
+}
+
+/// Provenance names the bytes of every input.
+[[noreturn]] std::string unknown_checksum(const Slot& slot) {
+    throw Error(ErrorKind::usage, slot.name, "is given as an object that does not say of which bytes",
+                "say its checksum (Object::sha256), or give a file, or its bytes");
+}
+
+/// Of an object that is what it is for another one only.
+std::string address(const void* object) { return std::to_string(reinterpret_cast<std::uintptr_t>(object)); }
+
+/// A copy, or the object itself where nobody else has it.
+template <class T>
+T taken(const Slot& slot, std::size_t i, const T& object) {
+    if (slot.context->keep_objects || slot.sources.at(i).object) return object;
+    return std::move(const_cast<T&>(object));
+}
+
+}  // namespace
+
+std::string to_string(Kind kind) {
+    static constexpr const char* names[]{"mesh",       "annotations", "graph",     "cage",     "coordinates", "values",
+                                         "labels",     "index map",   "edit",      "recipe",   "rules",       "template",
+                                         "vocabulary", "class",       "landmarks", "assembly", "pose",        "collection",
+                                         "picture",    "table",       "report",    "text",     "folder"};
+    return names[static_cast<std::size_t>(kind)];
+}
+
+Slot::~Slot() = default;
+
+bool Slot::exists(std::size_t i) const { return i < size() && (sources[i].object || file_exists(sources[i].file)); }
+
+const MeshFile& MeshInput::get(std::size_t i) const {
+    const auto convert = [&](const Object& object) -> std::optional<MeshFile> {
+        const auto mesh = object.as<Mesh>();
+        const auto soup = object.as<PolygonSoup>();
+        if (!mesh && !soup) return {};
+        MeshFile file = mesh ? MeshFile{*mesh, {}, {}, {}} : in_file(object.name, [&] { return mesh_of(*soup); });
+        context->record_object(*this, i, mesh_checksum(file.mesh));
+        return file;
+    };
+    const auto& file = loaded<MeshFile>(
+        *this, i, "", read_mesh, [](const MeshFile& one) { return mesh_checksum(one.mesh); }, convert);
+    context->notes(size() > 1 || role != Role::input ? sources[i].name() : std::string(), file.notes);
+    return file;
+}
+
+MeshFile MeshInput::take(std::size_t i) const { return taken(*this, i, get(i)); }
+
+const PolygonSoup& MeshInput::polygons(std::size_t i) const {
+    const auto convert = [&](const Object& object) -> std::optional<PolygonSoup> {
+        const auto file = object.as<MeshFile>();
+        const auto mesh = object.as<Mesh>();
+        if (!file && !mesh) return {};
+        tell_checksum(*this, i, [&] { return mesh_checksum(file ? file->mesh : *mesh); });
+        return as_polygons(to_soup(file ? file->mesh : *mesh), file ? file->extras : MeshExtras());
+    };
+    const auto sum = [](const PolygonSoup& soup) {
+        const auto bytes = [](const auto& list) {
+            return std::string_view(reinterpret_cast<const char*>(list.data()), list.size() * sizeof(list[0]));
+        };
+        return sha256(sha256(bytes(soup.points)) + sha256(bytes(soup.polygon_begin)) + sha256(bytes(soup.corners)));
+    };
+    return loaded<PolygonSoup>(*this, i, "", read_polygons, sum, convert);
+}
+
+PolygonSoup MeshInput::take_polygons(std::size_t i) const { return taken(*this, i, polygons(i)); }
+
+void Slot::describe_shared(OptionList& options, const OptionList& own) {
+    for (const Option& option : own)
+        if (const Option* known = options.find(option.name)) shared_.emplace_back(known->value, option.value);
+        else options(option.name, option.value, option.help, option.rule, option.unit);
+}
+
+void Slot::take_shared() const {
+    for (const auto& [from, to] : shared_)
+        std::visit(
+            [](auto& known, auto& own) {
+                if constexpr (std::same_as<decltype(known), decltype(own)> && requires { *own = *known; }) *own = *known;
+            },
+            from.place, to.place);
+}
+
+void AnnotationsInput::describe(OptionList& options) { describe_shared(options, options_of(reading)); }
+
+std::string checksum_of(const AnnotationSet& set, const Mesh& mesh) {
+    return sha256(to_text(annotations_to_json(set, mesh, "", {})));
+}
+
+const AnnotationSet& AnnotationsInput::on(const Mesh& mesh, std::size_t i) const {
+    take_shared();
+    const Object& object = sources.at(i).object;
+    const std::string key =
+        context->keep_objects && !object ? mesh_checksum(mesh) + (reading.force_mesh ? " forced" : "") : address(&mesh);
+    const auto& set = loaded<AnnotationSet>(
+        *this, i, key, [&](const Path& path) { return read_annotations(path, mesh, reading); },
+        [&](const AnnotationSet& known) { return checksum_of(known, mesh); }, {},
+        [&](const AnnotationSet& known) { check_annotations(known, mesh, object.name); });
+    context->notes(size() > 1 ? sources[i].name() : std::string(), set.notes);
+    return set;
+}
+
+const RelationGraph& GraphInput::on(const AnnotationSet& set) const {
+    return loaded<RelationGraph>(
+        *this, 0, address(&set), [&](const Path& path) { return read_graph(path, set); },
+        [](const RelationGraph& graph) { return sha256(to_text(graph_to_json(graph, {}))); });
+}
+
+const Coordinates& CoordinatesInput::of(const Mesh& mesh, const Mesh& cage) const {
+    return loaded<Coordinates>(
+        *this, 0, address(&mesh), [&](const Path& path) { return read_coordinates(path, mesh, cage); },
+        [&](const Coordinates&) { return unknown_checksum(*this); });
+}
+
+const std::vector<double>& ValuesInput::get(std::size_t i) const {
+    return loaded<std::vector<double>>(*this, i, "", read_values, [](const std::vector<double>& values) {
+        return sha256({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double)});
+    });
+}
+
+const Json& JsonInput::operator*() const {
+    return loaded<Json>(*this, 0, "", read_json, [](const Json& document) { return sha256(to_text(document)); });
+}
+
+void TemplateInput::describe(OptionList& list) { describe_shared(list, options_of(options)); }
+
+const Template& TemplateInput::operator*() const {
+    take_shared();
+    return loaded<Template>(
+        *this, 0, options_text(options), [&](const Path& path) { return load_template(read_template(path, options), options); },
+        [&](const Template&) { return unknown_checksum(*this); });
+}
+
+Path FileInput::path(std::size_t i) const {
+    const Source& source = sources.at(i);
+    if (!source.object) return source.file;
+    const Path file = in_memory(*context, source.object, name);
+    if (source.object.sha256.empty() && file_exists(file)) context->record_object(*this, i, sha256_of_file(file));
+    return file;
+}
+
+std::shared_ptr<const AnnotationSet> FileInput::annotations_on(const Mesh& mesh) const {
+    auto set = sources.at(0).object.as<AnnotationSet>();
+    if (set) tell_checksum(*this, 0, [&] { return checksum_of(*set, mesh); });
+    return set;
+}
+
+void FileInput::check_checksum(std::size_t i) const {
+    if (context->checksum_of_object(*this, i).empty()) unknown_checksum(*this);
+}
+
+std::shared_ptr<const void> FileInput::load_any(std::type_index type, std::size_t i, const std::string& key,
+                                                const ReadAny& read) const {
+    return context->load(*this, i, type, key, [&](const Path& file) { return read(sources.at(i).object ? path(i) : file); });
+}
+
+}  // namespace ostraka

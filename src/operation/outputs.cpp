@@ -1,0 +1,254 @@
+#include "polygons.h"
+
+#include "ostraka/core/json_build.h"
+#include "ostraka/operation/operation.h"
+#include "ostraka/render/values.h"
+
+#include <unistd.h>
+
+#include <stdexcept>
+
+namespace ostraka {
+
+namespace {
+
+/// The name with this before its extension.
+Path with_ending(const Path& file, const std::string& ending) {
+    return ending.empty() ? file : file.parent_path() / (file.stem().string() + ending + file.extension().string());
+}
+
+bool goes_to_file(const Slot& slot) { return !slot.sources.empty() && !slot.sources.front().file.empty(); }
+
+/// Writes the slot's file by `write(file, made)`, or keeps what was made with that way to write it. `ending`: of one of several,
+/// before the extension.
+template <class T, class Write>
+void put(const Slot& slot, T made, Write write, const std::string& ending = {}) {
+    auto& sources = const_cast<std::vector<Source>&>(slot.sources);
+    if (sources.empty()) throw std::logic_error("output " + slot.name + " was not asked for");
+    if (goes_to_file(slot)) {
+        const Path file = with_ending(sources.front().file, ending);
+        slot.context->check_output(file);
+        write(file, made);
+        return;
+    }
+    if (!ending.empty() && sources.back().object) sources.emplace_back();
+    Source& source = sources.back();
+    const auto kept = std::make_shared<const T>(std::move(made));
+    Object object(kept, (source.object.name.empty() ? slot.name : source.object.name) + ending);
+    object.write = [kept, write = std::move(write)](const Path& file) { write(file, *kept); };
+    source.object = std::move(object);
+}
+
+/// What the folder would lie in is no file.
+void check_can_be_made(const Path& folder) {
+    std::error_code code;
+    Path known = std::filesystem::absolute(folder, code);
+    while (known.has_relative_path() && !std::filesystem::exists(known, code)) known = known.parent_path();
+    if (!is_folder(known))
+        throw Error(ErrorKind::failure, folder.string(), "the folder cannot be made: '" + known.string() + "' is no folder",
+                    "name another one");
+}
+
+}  // namespace
+
+void MeshOutput::describe(OptionList& options) {
+    if (encoded_) options("ascii", ascii_, "write PLY and STL as text");
+}
+
+void MeshOutput::check() const {
+    for (const Source& source : sources)
+        if (!source.file.empty()) check_mesh_extension(source.file);
+}
+
+void MeshOutput::write(Mesh mesh, MeshExtras extras, WriteOptions options) const {
+    keep(std::move(mesh), std::move(extras), std::move(options), {});
+}
+
+void MeshOutput::write_part(const std::string& ending, Mesh mesh, MeshExtras extras) const {
+    keep(std::move(mesh), std::move(extras), {}, ending);
+}
+
+std::string MeshOutput::part_file(const std::string& ending) const {
+    return file().empty() ? std::string() : with_ending(file(), ending).string();
+}
+
+void MeshOutput::keep(Mesh mesh, MeshExtras extras, WriteOptions options, const std::string& ending) const {
+    // In memory it is as its file would be read: loops over edges go the same way.
+    if (!goes_to_file(*this)) mesh = build_mesh(to_soup(mesh));
+    options = written(std::move(options));
+    put(
+        *this, MeshFile{std::move(mesh), std::move(extras), {}, {}},
+        [options, context = goes_to_file(*this) ? context : nullptr](const Path& path, const MeshFile& file) {
+            const auto notes = write_mesh(path, file.mesh, file.extras, options);
+            if (context != nullptr) context->notes({}, notes);
+        },
+        ending);
+}
+
+WriteOptions MeshOutput::written(WriteOptions options) const {
+    if (ascii_) options.encoding = Encoding::ascii;
+    options.comment = context->provenance().to_line();
+    return options;
+}
+
+void MeshOutput::write(TriangleSoup soup, MeshExtras extras, WriteOptions options) const {
+    PolygonSoup polygons = as_polygons(soup, extras);
+    put(*this, std::move(polygons),
+        [soup = std::move(soup), extras = std::move(extras), options = written(std::move(options)),
+         context = goes_to_file(*this) ? context : nullptr](const Path& path, const PolygonSoup&) {
+            const auto notes = write_triangles(path, soup, extras, options);
+            if (context != nullptr) context->notes({}, notes);
+        });
+}
+
+void AnnotationsOutput::write(AnnotationSet set, const Mesh& mesh, const std::string& mesh_name,
+                              const std::optional<Provenance>& own) const {
+    const Provenance provenance = own ? *own : context->provenance();
+    if (goes_to_file(*this)) {  // no copy of the mesh
+        context->check_output(sources.front().file);
+        write_annotations(sources.front().file, set, mesh, mesh_name, provenance);
+        return;
+    }
+    set.provenance.CopyFrom(provenance.to_json(set.provenance.GetAllocator()), set.provenance.GetAllocator());  // as if read
+    put(*this, std::move(set), [mesh, mesh_name, provenance](const Path& path, const AnnotationSet& made) {
+        write_annotations(path, made, mesh, mesh_name, provenance);
+    });
+}
+
+void TemplateOutput::write(Template known) const {
+    put(*this, std::move(known),
+        [to_file = goes_to_file(*this), provenance = context->provenance()](const Path& path, const Template& made) {
+            if (to_file) write_json(path, template_to_json(made.file, provenance));
+            else static_cast<void>(copy_template(made.file, path.parent_path(), path.filename().string(), provenance));
+        });
+}
+
+void GraphOutput::write(RelationGraph graph, const AnnotationSet& set) const {
+    put(*this, std::move(graph), [set, provenance = context->provenance()](const Path& path, const RelationGraph& made) {
+        write_graph(path, made, set, provenance);
+    });
+}
+
+void CoordinatesOutput::check() const {
+    for (const Source& source : sources)
+        if (!source.file.empty() && extension(source.file) != ".npy")
+            throw Error(ErrorKind::usage, source.file.string(), "is no name for a NumPy array", "end it in .npy");
+}
+
+void CoordinatesOutput::write(Coordinates coordinates, const Mesh& mesh, const Mesh& cage,
+                              const CoordinateCertificate& certificate) const {
+    put(*this, std::move(coordinates),
+        [mesh, cage, certificate, provenance = context->provenance()](const Path& path, const Coordinates& made) {
+            write_coordinates(path, made, mesh, cage, certificate, provenance);
+        });
+}
+
+void ValuesOutput::write(std::vector<double> values) const { put(*this, std::move(values), write_values); }
+
+namespace {
+/// With the provenance as its last member, if it is an object.
+Json signed_document(const JsonValue& value, const Context& context) {
+    Json document;
+    auto& allocator = document.GetAllocator();
+    document.CopyFrom(value, allocator);
+    if (document.IsObject() && find_member(document, "provenance") == nullptr)
+        add_members(document, allocator, "provenance", context.provenance().to_json(allocator));
+    return document;
+}
+}  // namespace
+
+void JsonOutput::write(const JsonValue& value) const { put(*this, signed_document(value, *context), write_json); }
+
+void IndexMapOutput::write(IndexMap map) const {
+    Json document = json_document("map");
+    auto& allocator = document.GetAllocator();
+    add_members(document, allocator, "kind", map.kind);
+    if (!map.description.empty()) add_members(document, allocator, "description", map.description);
+    add_members(document, allocator, "from", map.map.size(), "to", map.to);
+    if (map.nearest) add_members(document, allocator, "method", "nearest");
+    JsonValue list(rapidjson::kArrayType);
+    list.Reserve(static_cast<rapidjson::SizeType>(map.map.size()), allocator);
+    for (const Index i : map.map) list.PushBack(i == no_index ? std::int64_t{-1} : static_cast<std::int64_t>(i), allocator);
+    add_members(document, allocator, "map", std::move(list), "provenance", context->provenance().to_json(allocator));
+    validate(document, "map", name);
+    const auto written = std::make_shared<const Json>(std::move(document));
+    put(*this, std::move(map), [written](const Path& path, const IndexMap&) { write_json(path, *written); });
+}
+
+Path FileOutput::path() const {
+    const Source& source = sources.at(0);
+    if (!source.file.empty()) {
+        context->check_output(source.file);
+        return source.file;
+    }
+    if (memory_.empty()) {
+        const std::string called = Path(source.object.name).filename().string();
+        memory_ = context->memory(called.empty() ? name + extension_ : called);
+    }
+    return memory_;
+}
+
+void FileOutput::finish() {
+    if (!memory_.empty() && file_exists(memory_))
+        sources.front().object = Object::of(read_file(memory_), memory_.filename().string());
+}
+
+Path FolderOutput::path() const {
+    const auto known = opened_.find(0);
+    return known == opened_.end() ? sources.at(0).file : known->second;
+}
+
+void FolderOutput::check() const {
+    for (std::size_t i = 0; i < sources.size(); ++i) check_folder(i);
+}
+
+void FolderOutput::check_folder(std::size_t i) const {
+    const Path& folder = sources[i].file;
+    if (!is_memory(folder) && !folder.empty() && std::filesystem::exists(folder) && !is_folder(folder))
+        fail_usage((is_positional ? "" : "--") + name + " '" + folder.string() + "' is a file",
+                   "name a folder, which is made if it is missing");
+    if (!is_memory(folder) && !folder.empty()) check_can_be_made(folder);
+}
+
+const Path& FolderOutput::open(std::size_t i, bool replaces) const {
+    if (const auto known = opened_.find(i); known != opened_.end()) return known->second;
+    const Path folder = sources.at(i).file.empty() ? context->memory(name) : sources.at(i).file;
+    make_folder(folder);
+    if (!is_memory(folder)) {
+        // Known before the work, not after the first object of many hours.
+        if (::access(folder.c_str(), W_OK | X_OK) != 0)
+            throw Error(ErrorKind::failure, folder.string(), "the folder cannot be written to",
+                        "check its rights, or name another");
+        remove_stale_temporaries(folder);
+    }
+    std::string owner = context->provenance().command;
+    for (char& c : owner)
+        if (c == ' ') c = '-';
+    if (replaces) replace_outputs(folder, owner);
+    return opened_[i] = folder;
+}
+
+Path FolderOutput::in(const std::string& file, std::size_t i) const {
+    const Path path = open(i) / file;
+    context->check_output(path);
+    return path;
+}
+
+void FolderOutput::write(const std::string& name_there, const Mesh& mesh, const MeshExtras& extras, WriteOptions options) const {
+    options.comment = context->provenance().to_line();
+    write_mesh(in(name_there), mesh, extras, options);
+}
+void FolderOutput::write(const std::string& name_there, const AnnotationSet& set, const Mesh& mesh,
+                         const std::string& mesh_name) const {
+    write_annotations(in(name_there), set, mesh, mesh_name, context->provenance());
+}
+void FolderOutput::write(const std::string& name_there, const JsonValue& document) const {
+    write_json(in(name_there), signed_document(document, *context));
+}
+
+void FolderOutput::finish() {
+    for (const auto& [i, folder] : opened_)
+        if (is_memory(folder)) sources[i].object = Object::of(folder, folder.string());
+}
+
+}  // namespace ostraka
