@@ -72,7 +72,7 @@ Motion published_pose(const Path& file) {
             if (at == std::string::npos) return motion;
             char* end = nullptr;
             const double value = std::strtod(text.c_str() + at, &end);
-            (j < 3 ? motion.turn(i, j) : motion.shift[i]) = value;
+            (j < 3 ? motion.rotation(i, j) : motion.translation[i]) = value;
             at = static_cast<std::size_t>(end - text.c_str());
         }
     return motion;
@@ -91,7 +91,7 @@ void bottle(const BreakExperiment& options, std::ostream& csv) {
     for (unsigned i = 0; i < 3; ++i)
         for (unsigned j = 0; j < 4; ++j) {
             const double value = solution["T"][i][j].GetDouble();
-            (j < 3 ? applied.turn(i, j) : applied.shift[i]) = value;
+            (j < 3 ? applied.rotation(i, j) : applied.translation[i]) = value;
         }
     const Motion truth = applied.inverse(), published = published_pose(folder / "best_registration.csv");
     const Stopwatch watch;

@@ -108,9 +108,10 @@ void broken_pots(const BreakExperiment& options) {
                 // But for the turn about the axis.
                 const Motion back = placement.fragments[k].pose.after(motions[k]);
                 Motion turn;
-                turn.turn = Eigen::AngleAxisd(std::atan2(back.turn(0, 1) - back.turn(1, 0), back.turn(0, 0) + back.turn(1, 1)),
-                                              Vector3d::UnitZ())
-                                .toRotationMatrix();
+                turn.rotation = Eigen::AngleAxisd(std::atan2(back.rotation(0, 1) - back.rotation(1, 0),
+                                                             back.rotation(0, 0) + back.rotation(1, 1)),
+                                                  Vector3d::UnitZ())
+                                    .toRotationMatrix();
                 const double off = off_of(moved(fragments[k].mesh, motions[k].inverse()), turn.after(back));
                 well += off < 0.02 * box_diagonal(whole) ? 1 : 0;
             }

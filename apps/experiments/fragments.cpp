@@ -189,7 +189,7 @@ Row run(const Canon& canon, const ShapePrior* prior, const TemplateCage* cage, c
     }
     // Where it would lie best as a whole.
     const Motion best = fit_motion(truth, laid);
-    row.angle = Eigen::AngleAxisd(best.turn).angle() * 180 / std::numbers::pi;
+    row.angle = Eigen::AngleAxisd(best.rotation).angle() * 180 / std::numbers::pi;
     Vector3d mean = Vector3d::Zero();
     for (const Vector3d& p : truth) mean += p / static_cast<double>(truth.size());
     row.shift = (best(mean) - mean).norm() / diagonal;

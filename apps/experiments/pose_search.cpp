@@ -59,7 +59,7 @@ PoseError error_of(const Motion& found, const Motion& truth, const Vector3d& mid
     // What the shape leaves open does not count: the turn about a line, where there is one.
     const Motion between = found.after(truth.inverse());
     const Vector3d there = truth(middle);
-    PoseError error{Eigen::AngleAxisd(between.turn).angle() * 180 / std::numbers::pi,
+    PoseError error{Eigen::AngleAxisd(between.rotation).angle() * 180 / std::numbers::pi,
                     100 * (between(there) - there).norm() / diagonal};
     if (freedom.kind != FreedomKind::none && freedom.contains(between, there, 5 * std::numbers::pi / 180, 0.02 * diagonal))
         error = {0, 0};

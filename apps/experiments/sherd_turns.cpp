@@ -29,12 +29,12 @@ Motion random_motion(Random& random, double far) {
     Motion motion;
     Eigen::Vector4d q(random.normal(), random.normal(), random.normal(), random.normal());
     q.normalize();
-    motion.turn = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).toRotationMatrix();
-    motion.shift = far * Vector3d(random.normal(), random.normal(), random.normal());
+    motion.rotation = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).toRotationMatrix();
+    motion.translation = far * Vector3d(random.normal(), random.normal(), random.normal());
     return motion;
 }
 
-double degrees_of(const Motion& motion) { return 180 / std::numbers::pi * Eigen::AngleAxisd(motion.turn).angle(); }
+double degrees_of(const Motion& motion) { return 180 / std::numbers::pi * Eigen::AngleAxisd(motion.rotation).angle(); }
 
 double off_of(const Mesh& mesh, const Motion& motion) {
     double squares = 0;
@@ -133,7 +133,7 @@ void sherd_turns(const BreakExperiment& options) {
             const double d = degrees_of(off), p = 100 * off_of(given[k].mesh, off) / diagonal,
                          shared = result.turns ? result.turns->overlap[k] : 0;
             degrees = std::max(degrees, d), percent = std::max(percent, p), overlap = std::max(overlap, 100 * shared);
-            const Vector3d turned_axis = back[k].turn * axis;
+            const Vector3d turned_axis = back[k].rotation * axis;
             csv << round << ',' << given[k].name << ',' << result.placement.fragments[k].problem.empty() << ',' << d << ',' << p
                 << ',' << 180 / std::numbers::pi * std::acos(std::min(1.0, std::abs(turned_axis.dot(axis)))) << ','
                 << (back[k](eigen(turned.axis.point)) - eigen(turned.axis.point)).dot(axis) << ',' << shared << '\n';

@@ -56,7 +56,7 @@ Motion BreakAligner::align(const Motion& start, std::size_t samples, int steps, 
         double all = 0;
         for (std::size_t i = 0; i < count; ++i) {
             const std::size_t k = (2 * i + 1) * b_.fracture.places.size() / (2 * count);
-            const Vector3d p = pose(b_.fracture.places[k]), n = pose.turn * b_.fracture.normals[k];
+            const Vector3d p = pose(b_.fracture.places[k]), n = pose.rotation * b_.fracture.normals[k];
             const PointTree::Near near = fractures_.nearest(point_of(p), reach);
             if (near.index == no_index) continue;
             const Vector3d& normal = a_.fracture.normals[near.index];
@@ -73,8 +73,8 @@ Motion BreakAligner::align(const Motion& start, std::size_t samples, int steps, 
             const PointTree::Near near = frames_.nearest(point_of(p), 1.5 * reach);
             if (near.index == no_index) continue;
             const RimFrame& other = a_.frames[near.index];
-            if (other.facet != frame.facet || other.side.dot(pose.turn * frame.side) < continued ||
-                other.fracture.dot(pose.turn * frame.fracture) > -min_facing)
+            if (other.facet != frame.facet || other.side.dot(pose.rotation * frame.side) < continued ||
+                other.fracture.dot(pose.rotation * frame.fracture) > -min_facing)
                 continue;
             const double weight = std::pow(1 - near.squared / (2.25 * reach * reach), 2);
             rims.push_back({p, other.side, other.side.dot(other.place - p), weight});
@@ -92,7 +92,7 @@ Motion BreakAligner::align(const Motion& start, std::size_t samples, int steps, 
         const std::size_t held = hold > 0 ? std::min<std::size_t>(200, b_.intact.places.size()) : 0;
         for (std::size_t i = 0; i < held; ++i) {
             const std::size_t k = (2 * i + 1) * b_.intact.places.size() / (2 * held);
-            const Vector3d p = pose(b_.intact.places[k]), normal = start.turn * b_.intact.normals[k];
+            const Vector3d p = pose(b_.intact.places[k]), normal = start.rotation * b_.intact.normals[k];
             planes.push_back({p, normal, normal.dot(start(b_.intact.places[k]) - p), hold * total / static_cast<double>(held)});
         }
         total = 0;
@@ -110,8 +110,8 @@ Motion BreakAligner::align(const Motion& start, std::size_t samples, int steps, 
         for (const Plane& plane : planes) system.add(plane.point, plane.normal, plane.off, plane.weight);
         const PlaneMotion::Step move = system.solve(1e-3 / 6);
         pose = system.motion(move).after(pose);
-        pose.turn = Eigen::Quaterniond(pose.turn).normalized().toRotationMatrix();
-        if (share >= 1 && move.turn.norm() < 1e-7 && move.shift.norm() < 1e-7 * unit) break;
+        pose.rotation = Eigen::Quaterniond(pose.rotation).normalized().toRotationMatrix();
+        if (share >= 1 && move.rotation.norm() < 1e-7 && move.translation.norm() < 1e-7 * unit) break;
     }
     return pose;
 }
@@ -124,7 +124,7 @@ PairCandidate BreakAligner::judge(const Motion& pose, std::size_t samples, doubl
         const std::size_t count = std::min(samples, from.places.size());
         for (std::size_t i = 0; i < count; ++i) {
             const std::size_t k = (2 * i + 1) * from.places.size() / (2 * count);
-            visit(pose(from.places[k]), Vector3d(pose.turn * from.normals[k]), from.area / static_cast<double>(count));
+            visit(pose(from.places[k]), Vector3d(pose.rotation * from.normals[k]), from.area / static_cast<double>(count));
         }
     };
     double touching = 0, square = 0, inside = 0;
@@ -160,8 +160,8 @@ PairCandidate BreakAligner::judge(const Motion& pose, std::size_t samples, doubl
         const PointTree::Near near = frames_.nearest(point_of(p), 1.5 * last_reach_);
         if (near.index == no_index) continue;
         const RimFrame& other = a_.frames[near.index];
-        if (other.facet != frame.facet || other.side.dot(pose.turn * frame.side) < continued ||
-            other.fracture.dot(pose.turn * frame.fracture) > -min_facing)
+        if (other.facet != frame.facet || other.side.dot(pose.rotation * frame.side) < continued ||
+            other.fracture.dot(pose.rotation * frame.fracture) > -min_facing)
             continue;
         // Across the side's plane counts, along the rim does not.
         const double step = other.side.dot(p - other.place) / last_reach_;

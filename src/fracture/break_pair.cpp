@@ -42,7 +42,7 @@ std::vector<std::size_t> thinned(std::size_t size, std::size_t count) {
 /// Poses that are alike: turned by little, and moved by little where the second fragment is.
 bool alike(const Motion& a, const Motion& b, const Vector3d& middle, double shift, double angle) {
     if ((a(middle) - b(middle)).norm() > shift) return false;
-    return Eigen::AngleAxisd(a.turn.transpose() * b.turn).angle() < angle;
+    return Eigen::AngleAxisd(a.rotation.transpose() * b.rotation).angle() < angle;
 }
 
 struct Scored {
@@ -84,7 +84,7 @@ public:
             const Vector3d off = p - target_.places[i];
             const double above = target_.normals[i].dot(off), squared = off.squaredNorm() / (reach_ * reach_);
             if (fracture && i < target_.fractures && squared < 1) {
-                const double against = -target_.normals[i].dot(pose.turn * normal);
+                const double against = -target_.normals[i].dot(pose.rotation * normal);
                 if (against > 0.3) score += area * (1 - squared) * against;
             }
             if (above < -0.5 * reach_) score -= area * std::min(1.0, -above / reach_ - 0.5);

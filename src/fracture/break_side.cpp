@@ -46,8 +46,8 @@ Motion RimFrame::onto(const RimFrame& other) const {
     Eigen::Matrix3d goal;
     goal << other.side, -other.fracture, -other.side.cross(other.fracture);
     Motion motion;
-    motion.turn = goal * axes().transpose();
-    motion.shift = other.place - motion.turn * place;
+    motion.rotation = goal * axes().transpose();
+    motion.translation = other.place - motion.rotation * place;
     return motion;
 }
 
@@ -134,12 +134,12 @@ BreakSide BreakSide::moved(const Motion& motion) const {
     BreakSide result = *this;
     for (RimFrame& frame : result.frames) {
         frame.place = motion(frame.place);
-        frame.side = motion.turn * frame.side;
-        frame.fracture = motion.turn * frame.fracture;
+        frame.side = motion.rotation * frame.side;
+        frame.fracture = motion.rotation * frame.fracture;
     }
     for (SurfaceSamples* samples : {&result.fracture, &result.intact}) {
         for (Vector3d& p : samples->places) p = motion(p);
-        for (Vector3d& n : samples->normals) n = motion.turn * n;
+        for (Vector3d& n : samples->normals) n = motion.rotation * n;
     }
     return result;
 }

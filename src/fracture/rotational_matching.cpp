@@ -25,8 +25,8 @@ public:
     TurnDecider(const Mesh& whole, const Vector3d& point, const Vector3d& direction, const std::vector<TurnableSherd>& sherds,
                 const BreakTurnOptions& options)
         : given_(sherds), options_(options) {
-        upright_.turn = rotation_between(direction, Vector3d::UnitZ()).toRotationMatrix();
-        upright_.shift = -(upright_.turn * point);
+        upright_.rotation = rotation_between(direction, Vector3d::UnitZ()).toRotationMatrix();
+        upright_.translation = -(upright_.rotation * point);
         whole_ = moved(whole, upright_);
     }
 

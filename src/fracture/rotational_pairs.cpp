@@ -34,7 +34,7 @@ std::vector<double> contacts(const TurningSherd& a, const TurningSherd& b, int s
                 const Index near = grid.near(p);
                 if (near == no_index) continue;
                 const double share = (p - a.side.fracture.places[near]).squaredNorm() / (reach * reach),
-                             facing = -a.side.fracture.normals[near].dot(turn.turn * b.side.fracture.normals[k]);
+                             facing = -a.side.fracture.normals[near].dot(turn.rotation * b.side.fracture.normals[k]);
                 if (share < 1 && facing > 0.3) area[t] += each * (1 - share) * facing;
             }
         },
@@ -48,12 +48,12 @@ double wrapped(double angle) { return std::remainder(angle, 2 * pi); }
 
 Motion turned_by(double angle) {
     Motion motion;
-    motion.turn = Eigen::AngleAxisd(angle, Vector3d::UnitZ()).toRotationMatrix();
+    motion.rotation = Eigen::AngleAxisd(angle, Vector3d::UnitZ()).toRotationMatrix();
     return motion;
 }
 
 double turn_of(const Motion& motion) {
-    return std::atan2(motion.turn(1, 0) - motion.turn(0, 1), motion.turn(0, 0) + motion.turn(1, 1));
+    return std::atan2(motion.rotation(1, 0) - motion.rotation(0, 1), motion.rotation(0, 0) + motion.rotation(1, 1));
 }
 
 double TurnPair::shared_at(double turn) const { return shared.empty() ? 0 : shared[step_of(turn, shared.size())]; }

@@ -13,14 +13,14 @@ using Eigen::Vector3d;
 
 Motion Motion::inverse() const {
     Motion back;
-    back.turn = turn.transpose();
+    back.rotation = rotation.transpose();
     back.scale = 1 / scale;
-    back.shift = -back.scale * (back.turn * shift);
+    back.translation = -back.scale * (back.rotation * translation);
     return back;
 }
 
 Motion Motion::after(const Motion& other) const {
-    return {turn * other.turn, scale * (turn * other.shift) + shift, scale * other.scale};
+    return {rotation * other.rotation, scale * (rotation * other.translation) + translation, scale * other.scale};
 }
 
 Motion fit_motion(const std::vector<Vector3d>& from, const std::vector<Vector3d>& to, const std::vector<double>& weights,
@@ -43,10 +43,10 @@ Motion fit_motion(const std::vector<Vector3d>& from, const std::vector<Vector3d>
     const Svd3 svd(m);
     Vector3d sign(1, 1, svd.matrixU().determinant() * svd.matrixV().determinant() < 0 ? -1 : 1);
     Motion result;
-    result.turn = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
+    result.rotation = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
     if (options.scale && spread > 0)
         result.scale = std::clamp(svd.singularValues().dot(sign) / spread, options.least_scale, options.most_scale);
-    result.shift = b - result.scale * (result.turn * a);
+    result.translation = b - result.scale * (result.rotation * a);
     return result;
 }
 

@@ -148,7 +148,7 @@ std::vector<VertexMatch> MatchSearch::matches(const Points& now, const Mesh& con
                 const auto k = static_cast<std::size_t>(one.fragment);
                 const Motion& there = to_fragment_[k];
                 const auto hit = part.search->closest_compatible(
-                    point_of(there(place)), vector_of(there.turn * normals[i] / length), min_cosine, nearest * there.scale);
+                    point_of(there(place)), vector_of(there.rotation * normals[i] / length), min_cosine, nearest * there.scale);
                 if (!hit) continue;
                 // Beyond the end of what is there, everything is nearest to its rim.
                 constexpr double on_edge = 1e-6;
@@ -174,7 +174,7 @@ std::vector<VertexMatch> MatchSearch::matches(const Points& now, const Mesh& con
 
 Vector3d MatchSearch::normal(const VertexMatch& match) const {
     const auto k = static_cast<std::size_t>(match.fragment);
-    return (to_template_[k].turn * eigen(area_vector(trees_[k]->mesh(), Face(match.face)))).normalized();
+    return (to_template_[k].rotation * eigen(area_vector(trees_[k]->mesh(), Face(match.face)))).normalized();
 }
 
 std::vector<FragmentSample> MatchSearch::samples(int count) const {
@@ -191,7 +191,7 @@ std::vector<FragmentSample> MatchSearch::samples(int count) const {
             for (const Face face : mesh.faces()) {
                 sum += face_area(mesh, face);
                 if (next >= sum) continue;
-                const Vector3d normal = motion.turn * eigen(area_vector(mesh, face));
+                const Vector3d normal = motion.rotation * eigen(area_vector(mesh, face));
                 samples.push_back({motion(eigen(centroid(mesh, face))), normal.normalized(), label});
                 while (next < sum) next += each;
             }

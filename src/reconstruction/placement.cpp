@@ -107,9 +107,9 @@ public:
     [[nodiscard]] Motion similarity(bool proper = true) const {
         const Moments m = moments();
         Motion motion;
-        motion.turn = rotation(m.cross.transpose(), proper);
-        motion.scale = m.spread_from > 0 ? (motion.turn * m.cross).trace() / m.spread_from : 1;
-        motion.shift = m.to - motion.scale * (motion.turn * m.from);
+        motion.rotation = rotation(m.cross.transpose(), proper);
+        motion.scale = m.spread_from > 0 ? (motion.rotation * m.cross).trace() / m.spread_from : 1;
+        motion.translation = m.to - motion.scale * (motion.rotation * m.from);
         return motion;
     }
 
@@ -260,7 +260,7 @@ CommonPlacement place_by_landmarks(const std::vector<std::vector<LandmarkPair>>&
                 const double spread = landmarks.moments().spread_to / static_cast<double>(count);
                 const double with = landmarks.mean_square(proper), without = landmarks.mean_square(any);
                 // Three landmarks fit their mirror image as well as themselves, and nearly flat ones nearly so.
-                one.mirrored = count > 3 && any.turn.determinant() < 0 && with > 1e-4 * spread && without < with / 9;
+                one.mirrored = count > 3 && any.rotation.determinant() < 0 && with > 1e-4 * spread && without < with / 9;
                 if (one.mirrored)
                     one.problem = "its mirror image fits the template, and itself it does not (residual " +
                                   digits(std::sqrt(without), 3) + " against " + digits(std::sqrt(with), 3) +
@@ -304,8 +304,8 @@ CommonPlacement place_by_landmarks(const std::vector<std::vector<LandmarkPair>>&
             continue;
         }
         const Landmarks::Moments m = all[k].moments();
-        one.pose.turn = turns[k];
-        one.pose.shift = placement.scale * m.from - turns[k] * m.to;
+        one.pose.rotation = turns[k];
+        one.pose.translation = placement.scale * m.from - turns[k] * m.to;
         one.swapped = all[k].swapped();
         double sum = 0;
         for (std::size_t i = 0; i < pairs[k].size(); ++i) {

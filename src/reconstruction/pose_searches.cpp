@@ -57,9 +57,9 @@ JsonValue to_array(const double* numbers, int count, JsonAllocator& allocator) {
 JsonValue to_json(const Eigen::Vector3d& v, JsonAllocator& allocator) { return to_array(v.data(), 3, allocator); }
 JsonValue to_json(const Motion& motion, JsonAllocator& allocator) {
     JsonValue entry(rapidjson::kObjectType);
-    const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> rows = motion.turn;
-    add_members(entry, allocator, "turn", to_array(rows.data(), 9, allocator), "shift", to_json(motion.shift, allocator), "scale",
-                motion.scale);
+    const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> rows = motion.rotation;
+    add_members(entry, allocator, "turn", to_array(rows.data(), 9, allocator), "shift", to_json(motion.translation, allocator),
+                "scale", motion.scale);
     return entry;
 }
 JsonValue to_json(const PoseSearchResult& result, JsonAllocator& allocator) {
@@ -88,8 +88,8 @@ JsonValue to_json(const PoseSearchResult& result, JsonAllocator& allocator) {
 Eigen::Vector3d vector_from(const JsonValue& list) { return {list[0].GetDouble(), list[1].GetDouble(), list[2].GetDouble()}; }
 Motion motion_from(const JsonValue& entry) {
     Motion motion;
-    for (int i = 0; i < 9; ++i) motion.turn(i / 3, i % 3) = entry["turn"][static_cast<rapidjson::SizeType>(i)].GetDouble();
-    motion.shift = vector_from(entry["shift"]);
+    for (int i = 0; i < 9; ++i) motion.rotation(i / 3, i % 3) = entry["turn"][static_cast<rapidjson::SizeType>(i)].GetDouble();
+    motion.translation = vector_from(entry["shift"]);
     motion.scale = entry["scale"].GetDouble();
     return motion;
 }

@@ -33,7 +33,9 @@ bool inside_out(const Mesh& mesh) {
     return volume < 0;
 }
 
-bool same(const Motion& a, const Motion& b) { return a.turn == b.turn && a.shift == b.shift && a.scale == b.scale; }
+bool same(const Motion& a, const Motion& b) {
+    return a.rotation == b.rotation && a.translation == b.translation && a.scale == b.scale;
+}
 bool same(const std::vector<Anchor>& a, const std::vector<Anchor>& b) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                       [](const Anchor& x, const Anchor& y) { return x.of_part == y.of_part && x.of_whole == y.of_whole; });

@@ -86,10 +86,10 @@ bool close_by_landmarks(const std::vector<LandmarkPair>& pairs, double scale, do
         if (way.turns) {
             const bool round = way.most - way.least >= 2 * pi - 0.2;
             const double angle = std::atan2(sine, cosine);
-            move.turn = Eigen::AngleAxisd(round ? angle : std::clamp(angle, way.least, way.most), d).toRotationMatrix();
-            move.shift = way.point - move.turn * way.point;
+            move.rotation = Eigen::AngleAxisd(round ? angle : std::clamp(angle, way.least, way.most), d).toRotationMatrix();
+            move.translation = way.point - move.rotation * way.point;
         } else {
-            move.shift = std::clamp(along, way.least, way.most) * d;
+            move.translation = std::clamp(along, way.least, way.most) * d;
         }
         pose = move.after(pose);
     }

@@ -198,7 +198,7 @@ private:
         const Eigen::Index modes = coefficients_.size(), unknowns = 7 + modes;
         MatrixXd normal = MatrixXd::Zero(unknowns, unknowns);
         VectorXd right = VectorXd::Zero(unknowns), row(unknowns);
-        const Matrix3d linear = place_.scale * place_.turn;
+        const Matrix3d linear = place_.scale * place_.rotation;
         const auto add = [&](const Residual& one) {
             const Vector3d arm = (one.place - centre) / spread;
             row.head<3>() = arm.cross(one.normal);
@@ -249,9 +249,9 @@ private:
         const Vector3d turn = x.head<3>() / spread;
         const double angle = turn.norm();
         Motion about;
-        if (angle > 0) about.turn = Eigen::AngleAxisd(std::min(angle, 0.5), turn / angle).toRotationMatrix();
+        if (angle > 0) about.rotation = Eigen::AngleAxisd(std::min(angle, 0.5), turn / angle).toRotationMatrix();
         about.scale = std::clamp(1 + x[3] / spread, 0.8, 1.25);
-        about.shift = centre + x.segment<3>(4) - about.scale * (about.turn * centre);
+        about.translation = centre + x.segment<3>(4) - about.scale * (about.rotation * centre);
         place_ = about.after(place_);
         return true;
     }

@@ -73,8 +73,8 @@ std::vector<Motion> principal_starts(const AlignSurface& a, const AlignSurface& 
     std::vector<Motion> starts;
     for (const Vector3d& signs : {Vector3d(1, 1, 1), Vector3d(1, -1, -1), Vector3d(-1, 1, -1), Vector3d(-1, -1, 1)}) {
         Motion motion;
-        motion.turn = b.state().axes * signs.asDiagonal() * a.state().axes.transpose();
-        motion.shift = b.state().centre - motion.turn * a.state().centre;
+        motion.rotation = b.state().axes * signs.asDiagonal() * a.state().axes.transpose();
+        motion.translation = b.state().centre - motion.rotation * a.state().centre;
         starts.push_back(motion);
     }
     return starts;
@@ -113,7 +113,7 @@ private:
     void collect(const AlignSurface::State& from, const AlignSurface::State& to, const Motion& there, const Motion& back,
                  bool forward) {
         for (std::size_t i = 0; i < from.sample_points.size(); ++i) {
-            const Vector3d p = there(from.sample_points[i]), n = there.turn * from.sample_normals[i];
+            const Vector3d p = there(from.sample_points[i]), n = there.rotation * from.sample_normals[i];
             const std::size_t v = to.nearest(p);
             if (v == no_index || to.border[v] || n.dot(to.normals[v]) < cosine_) continue;  // none: the pose is not finite
             // Lengths and planes are compared where the second surface is.
@@ -121,7 +121,7 @@ private:
                 pairs_.list.push_back({p, to.points[v], to.normals[v], (p - to.points[v]).squaredNorm()});
             } else {
                 const Vector3d q = back(to.points[v]);
-                const Vector3d normal = back.turn * to.normals[v];
+                const Vector3d normal = back.rotation * to.normals[v];
                 pairs_.list.push_back({q, from.sample_points[i], normal, (q - from.sample_points[i]).squaredNorm()});
             }
         }

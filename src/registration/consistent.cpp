@@ -34,7 +34,7 @@ public:
         for (std::size_t i = 0; i < matches_.size(); ++i) {
             const Feature &from = a_.features[matches_[i].a], &to = b_.features[matches_[i].b];
             if ((motion(from.point) - to.point).squaredNorm() > tolerance_ * tolerance_) continue;
-            if ((motion.turn * from.normal).dot(to.normal) < cosine_) continue;
+            if ((motion.rotation * from.normal).dot(to.normal) < cosine_) continue;
             if (taken_a_[from.vertex] == stamp_ || taken_b_[to.vertex] == stamp_) continue;
             taken_a_[from.vertex] = taken_b_[to.vertex] = stamp_;
             explained_.push_back(i);
@@ -67,8 +67,8 @@ ConsistentMatches consistent_matches(const FeatureSet& a, const FeatureSet& b, c
     for (const FeatureMatch& match : matches) {
         const Feature &from = a.features[match.a], &to = b.features[match.b];
         Motion motion;
-        motion.turn = frame(to) * frame(from).transpose();
-        motion.shift = to.point - motion.turn * from.point;
+        motion.rotation = frame(to) * frame(from).transpose();
+        motion.translation = to.point - motion.rotation * from.point;
         const auto& explained = judge.explained(motion);
         if (explained.size() <= best.size()) continue;
         best = explained;

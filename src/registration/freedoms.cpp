@@ -30,8 +30,8 @@ namespace {
 
 Motion turned(const Vector3d& point, const Vector3d& direction, double angle, double along = 0) {
     Motion motion;
-    motion.turn = Eigen::AngleAxisd(angle, direction).toRotationMatrix();
-    motion.shift = point - motion.turn * point + along * direction;
+    motion.rotation = Eigen::AngleAxisd(angle, direction).toRotationMatrix();
+    motion.translation = point - motion.rotation * point + along * direction;
     return motion;
 }
 
@@ -55,7 +55,7 @@ std::vector<std::vector<Freedom::Step>> Freedom::ways(double turn, double shift,
         for (int k = 1; k <= steps; ++k) {
             const double length = sign * shift * k / steps;
             Motion motion;
-            motion.shift = length * axis;
+            motion.translation = length * axis;
             way.push_back({false, motion, length});
         }
     };
@@ -90,9 +90,9 @@ std::vector<std::vector<Freedom::Step>> Freedom::ways(double turn, double shift,
 }
 
 bool Freedom::contains(const Motion& motion, const Vector3d& around, double angle, double length) const {
-    const Vector3d moved = motion(point) - point, image = motion.turn * direction;
+    const Vector3d moved = motion(point) - point, image = motion.rotation * direction;
     const double lean = std::acos(std::clamp(image.dot(direction), -1.0, 1.0)), along = moved.dot(direction);
-    const Eigen::AngleAxisd turn(motion.turn);
+    const Eigen::AngleAxisd turn(motion.rotation);
     switch (kind) {
         case FreedomKind::turn:
             return lean < angle && moved.norm() < length;

@@ -169,9 +169,9 @@ std::vector<VotedMotion> PairTable::vote(const SurfacePoints& part, int referenc
             for (std::size_t k = 0; k < take; ++k) {
                 const double angle = 2 * pi * best[k].turn / turns;
                 Motion motion;
-                motion.turn = frame(points_.normals[best[k].reference]) *
-                              Eigen::AngleAxisd(angle, Vector3d::UnitZ()).toRotationMatrix() * axes.transpose();
-                motion.shift = points_.places[best[k].reference] - motion.turn * part.places[i];
+                motion.rotation = frame(points_.normals[best[k].reference]) *
+                                  Eigen::AngleAxisd(angle, Vector3d::UnitZ()).toRotationMatrix() * axes.transpose();
+                motion.translation = points_.places[best[k].reference] - motion.rotation * part.places[i];
                 found[r].push_back({motion, best[k].votes});
             }
         },

@@ -58,7 +58,7 @@ private:
         std::vector<std::optional<detail::PlanePair>> found(samples_.size());
         const double reach = options_.reach * whole_.diagonal(), cosine = std::cos(options_.angle * pi / 180);
         parallel_for(samples_.size(), [&](std::size_t i) {
-            const Vector3d p = pose(samples_[i].place), n = pose.turn * samples_[i].normal;
+            const Vector3d p = pose(samples_[i].place), n = pose.rotation * samples_[i].normal;
             const auto hit = whole_.closest_compatible(point_of(p), vector_of(n), cosine, reach);
             if (hit)
                 found[i] =

@@ -73,7 +73,7 @@ struct Nearness {
 double score_on(const detail::NearestGrid& grid, const SurfacePoints& part, const Motion& pose, const Nearness& near) {
     double sum = 0;
     for (std::size_t i = 0; i < part.size(); ++i) {
-        const Vector3d p = pose(part.places[i]), n = pose.turn * part.normals[i];
+        const Vector3d p = pose(part.places[i]), n = pose.rotation * part.normals[i];
         const int j = grid.find(p, n);
         if (j < 0) continue;
         const auto k = static_cast<std::size_t>(j);
@@ -95,7 +95,7 @@ Motion refined_on(const detail::NearestGrid& grid, const SurfacePoints& part, Mo
         const Vector3d centre = pose(Vector3d::Zero());
         PlaneMotion planes(centre, grid.reach());
         for (std::size_t i = 0; i < part.size(); ++i) {
-            const Vector3d p = pose(part.places[i]), normal = pose.turn * part.normals[i];
+            const Vector3d p = pose(part.places[i]), normal = pose.rotation * part.normals[i];
             const int j = grid.find(p, normal);
             if (j < 0) continue;
             const auto k = static_cast<std::size_t>(j);
@@ -105,7 +105,7 @@ Motion refined_on(const detail::NearestGrid& grid, const SurfacePoints& part, Mo
             planes.add(p, to, off, (1 - ratio * ratio) * (1 - ratio * ratio));
         }
         PlaneMotion::Step step = planes.solve(1e-6, scale);
-        if (const double angle = step.turn.norm(); angle > 0.5) step.turn *= 0.5 / angle;
+        if (const double angle = step.rotation.norm(); angle > 0.5) step.rotation *= 0.5 / angle;
         step.growth = std::clamp(step.growth, -0.05, 0.05);
         pose = planes.motion(step).after(pose);
     }
@@ -118,7 +118,7 @@ struct Proposal {
 };
 
 double angle_between(const Motion& a, const Motion& b) {
-    return std::acos(std::clamp(((a.turn.transpose() * b.turn).trace() - 1) / 2, -1.0, 1.0));
+    return std::acos(std::clamp(((a.rotation.transpose() * b.rotation).trace() - 1) / 2, -1.0, 1.0));
 }
 
 // How often the best place was the right one among pieces broken off objects, off others of their class and off strangers
@@ -199,9 +199,9 @@ struct PoseSearch::State {
         std::vector<Sample> samples(points.size());
         Motion onto = one.pose;
         onto.scale /= scale;
-        onto.shift /= scale;
+        onto.translation /= scale;
         parallel_for(points.size(), [&](std::size_t i) {
-            const Vector3d p = onto(points.places[i]), n = onto.turn * points.normals[i];
+            const Vector3d p = onto(points.places[i]), n = onto.rotation * points.normals[i];
             const auto hit = whole.closest_compatible(point_of(p), vector_of(n), 0.5, 2.5 * tolerance / scale);
             if (hit) {
                 samples[i].score = near(hit->distance);
@@ -236,11 +236,11 @@ struct PoseSearch::State {
         how.reach = std::min(10.0, 2.5 * tolerance / one.scale / whole.diagonal());
         Motion start = one.pose;
         start.scale /= one.scale;
-        start.shift /= one.scale;
+        start.translation /= one.scale;
         PoseCandidate other = one;
         const PartAlignment aligned = align_part(part, of_part, whole, start, {}, how);
-        other.pose.turn = aligned.pose.turn;
-        other.pose.shift = one.scale * aligned.pose.shift;
+        other.pose.rotation = aligned.pose.rotation;
+        other.pose.translation = one.scale * aligned.pose.translation;
         judge(other, judges, tolerance, one.scale);
         if (other.score > one.score) one = other;
     }
@@ -255,16 +255,16 @@ struct PoseSearch::State {
         const Nearness near(tolerance / at.scale);
         Motion onto = at.pose;
         onto.scale /= at.scale;
-        onto.shift /= at.scale;
+        onto.translation /= at.scale;
         // Told by the whole's points under the part: those are many, and smoother than what a scan of a sherd is.
         std::vector<Vector3d> places, normals;
         const Motion back = onto.inverse();
         for (std::size_t i = 0; i < some.size(); ++i) {
             const Vector3d p = onto(some.places[i]);
-            const int j = grid->find(p, onto.turn * some.normals[i]);
+            const int j = grid->find(p, onto.rotation * some.normals[i]);
             if (j < 0 || (grid->points().places[static_cast<std::size_t>(j)] - p).norm() > 0.5 * grid->reach()) continue;
             places.push_back(back(grid->points().places[static_cast<std::size_t>(j)]));
-            normals.push_back(back.turn * grid->points().normals[static_cast<std::size_t>(j)]);
+            normals.push_back(back.rotation * grid->points().normals[static_cast<std::size_t>(j)]);
         }
         Freedom freedom;
         // A flat bowl is nearly a plane and nearly a ball: what it leaves open at all is told by looking closer.
@@ -294,8 +294,8 @@ struct PoseSearch::State {
                 one.turns = turns;
                 one.most = reached;
                 one.point = at.pose(freedom.point);
-                one.direction = at.pose.turn * (turns ? Vector3d(Eigen::AngleAxisd(way.front().motion.turn).axis())
-                                                      : Vector3d(way.front().motion.shift.normalized()));
+                one.direction = at.pose.rotation * (turns ? Vector3d(Eigen::AngleAxisd(way.front().motion.rotation).axis())
+                                                          : Vector3d(way.front().motion.translation.normalized()));
             }
         }
         if (freedom.kind == FreedomKind::tube && any_turn != any_shift)
@@ -316,7 +316,7 @@ void PoseSearch::State::decide(const SurfacePoints& points, double tolerance, Po
     const Freedom open = open_freedom(points, best, tolerance, &result.ways);
     result.freedom = open;
     result.freedom.point = best.pose(open.point);
-    result.freedom.direction = best.pose.turn * open.direction;
+    result.freedom.direction = best.pose.rotation * open.direction;
     const bool alone = result.candidates.size() < 2;
     const double second = alone ? 0 : result.candidates[1].score;
     result.margin = std::min(most_margin, std::log((1 - second + 0.02) / (1 - best.score + 0.02)));
@@ -408,14 +408,14 @@ PoseSearchResult PoseSearch::find(const Mesh& part, const std::vector<bool>& of_
     // Proposals are about the part's middle and in the whole's unit: back to the part's file, onto the scaled whole.
     const auto in_file = [&](const Motion& proposal, double scale) {
         Motion pose;
-        pose.turn = proposal.turn;
-        pose.shift = scale * proposal.shift - pose.turn * extent.middle;
+        pose.rotation = proposal.rotation;
+        pose.translation = scale * proposal.translation - pose.rotation * extent.middle;
         return pose;
     };
     const auto really_different = [&](const PoseCandidate& a, const PoseCandidate& b) {
         Motion at = a.pose, bt = b.pose;
         // Compared on the whole as it is.
-        at.scale /= a.scale, at.shift /= a.scale, bt.scale /= b.scale, bt.shift /= b.scale;
+        at.scale /= a.scale, at.translation /= a.scale, bt.scale /= b.scale, bt.translation /= b.scale;
         return State::differ(at, bt, extent.middle, extent.size / std::sqrt(a.scale * b.scale));
     };
     const double tolerance = s.options.tolerance * extent.size;

@@ -89,8 +89,8 @@ std::vector<Motion> common_axis(const std::vector<const Fragment*>& sherds, cons
                        "has an axis that leans by " + digits(one.lean, 3) + " degrees against that of all and lies " +
                            digits(one.aside, 3) + " off it",
                        "lay the sherds as they were in the vessel, or leave it out");
-        motions[k].turn = rotation_between(own, direction).toRotationMatrix();
-        motions[k].shift = at[k] + aside - motions[k].turn * at[k];
+        motions[k].rotation = rotation_between(own, direction).toRotationMatrix();
+        motions[k].translation = at[k] + aside - motions[k].rotation * at[k];
     }
     const auto heaviest = static_cast<std::size_t>(std::max_element(weights.begin(), weights.end()) - weights.begin());
     if (!result.axis.found) result.axis = result.sherds[heaviest].axis;

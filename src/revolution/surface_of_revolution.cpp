@@ -67,7 +67,7 @@ private:
                 b += n.norm() * up * m.dot(eigen(hit->point) - p);
             }
             // More than the step: part of the template there is the sherd itself.
-            if (a > 0) motions_[k].shift += std::clamp(1.3 * b / a, -reach, reach) * frame_.up;
+            if (a > 0) motions_[k].translation += std::clamp(1.3 * b / a, -reach, reach) * frame_.up;
         }
     }
 

@@ -72,9 +72,9 @@ Vector3d centroid_of(const Mesh& mesh, const std::vector<Index>& faces, const Po
 }
 
 struct Placement {
-    Matrix3d turn = Matrix3d::Identity();
-    Vector3d shift = Vector3d::Zero();
-    [[nodiscard]] Vector3d operator()(const Vector3d& p) const { return turn * p + shift; }
+    Matrix3d rotation = Matrix3d::Identity();
+    Vector3d translation = Vector3d::Zero();
+    [[nodiscard]] Vector3d operator()(const Vector3d& p) const { return rotation * p + translation; }
 };
 
 /// The rigid motion that brings columns of `from` closest to those of `to`.
@@ -85,8 +85,8 @@ Placement fit(const Points& from, const Points& to) {
     Matrix3d sign = Matrix3d::Identity();
     sign(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
     Placement result;
-    result.turn = svd.matrixU() * sign * svd.matrixV().transpose();
-    result.shift = b - result.turn * a;
+    result.rotation = svd.matrixU() * sign * svd.matrixV().transpose();
+    result.translation = b - result.rotation * a;
     return result;
 }
 
@@ -187,15 +187,16 @@ private:
                 normal = normal.norm() > 0 ? Vector3d(normal.normalized()) : up;
                 const Vector3d slope = up - normal * normal.dot(up);
                 const double off = wanted - up.dot(feature.placement(feature.centroid));
-                feature.placement.shift += slope.norm() > 0.2 ? Vector3d(off / slope.squaredNorm() * slope) : Vector3d(off * up);
+                feature.placement.translation +=
+                    slope.norm() > 0.2 ? Vector3d(off / slope.squaredNorm() * slope) : Vector3d(off * up);
             }
             const double moved = (feature.placement(feature.centroid) - before(feature.centroid)).norm() +
-                                 feature.radius * (feature.placement.turn - before.turn).norm();
+                                 feature.radius * (feature.placement.rotation - before.rotation).norm();
             if (moved < enough) break;
         }
         if (height) {
             const auto& [up, wanted] = *height;
-            feature.placement.shift += (wanted - up.dot(feature.placement(feature.centroid))) * up;
+            feature.placement.translation += (wanted - up.dot(feature.placement(feature.centroid))) * up;
         }
     }
 

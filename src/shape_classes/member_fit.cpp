@@ -150,7 +150,7 @@ std::vector<Place> places_by_surface(const Mesh& mesh, const WholeObject& member
         return Vector3d(sum / area);
     };
     Motion same;
-    same.shift = middle(member.mesh) - middle(scaled);
+    same.translation = middle(member.mesh) - middle(scaled);
     starts.push_back(same);
     std::vector<Alignment> found;
     for (const Motion& start : starts) found.push_back(align(whole, object, {start}, options.alignment));
@@ -160,11 +160,12 @@ std::vector<Place> places_by_surface(const Mesh& mesh, const WholeObject& member
         // x = s R (ratio p) + t for a point p of the template: the object goes back by R and t, the template gets the scale.
         Place place;
         place.scale = ratio * alignment.motion.scale;
-        place.pose.turn = alignment.motion.turn.transpose();
-        place.pose.shift = -(place.pose.turn * alignment.motion.shift);
+        place.pose.rotation = alignment.motion.rotation.transpose();
+        place.pose.translation = -(place.pose.rotation * alignment.motion.translation);
         place.overlap = alignment.overlap;
-        const bool known = std::any_of(places.begin(), places.end(),
-                                       [&](const Place& other) { return (other.pose.turn - place.pose.turn).norm() < 0.2; });
+        const bool known = std::any_of(places.begin(), places.end(), [&](const Place& other) {
+            return (other.pose.rotation - place.pose.rotation).norm() < 0.2;
+        });
         if (!known) places.push_back(place);
         if (places.size() == static_cast<std::size_t>(options.tries)) break;
     }

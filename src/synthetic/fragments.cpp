@@ -76,8 +76,8 @@ BrokenPiece break_off(const Mesh& whole, const Point& centre, const BreakOptions
     if (options.moved) {
         Motion there;
         Eigen::Quaterniond turn(random.normal(), random.normal(), random.normal(), random.normal());
-        there.turn = turn.normalized().toRotationMatrix();
-        there.shift = diagonal * Vector3d(random.normal(), random.normal(), random.normal());
+        there.rotation = turn.normalized().toRotationMatrix();
+        there.translation = diagonal * Vector3d(random.normal(), random.normal(), random.normal());
         for (const Vertex v : result.mesh.vertices()) result.mesh.point(v) = point_of(there(eigen(result.mesh.point(v))));
         result.pose = there.inverse();
     }

@@ -20,7 +20,7 @@ constexpr int coordinate_bits = 20;
 using Place = std::array<int, 3>;
 
 Vector3d position(const Lattice& lattice, const Place& place) {
-    return lattice.origin + lattice.turn * (0.5 * lattice.cube * Vector3d(place[0], place[1], place[2]));
+    return lattice.origin + lattice.rotation * (0.5 * lattice.cube * Vector3d(place[0], place[1], place[2]));
 }
 
 /// The seven directions of lattice edges, first non-zero coordinate positive.
@@ -60,7 +60,7 @@ public:
     void visit(const Place& corner, int cubes) {
         // A block owns the tetrahedra that reach half a cube beyond its upper sides.
         const Vector3d low = position(lattice_, corner);
-        const Vector3d half = lattice_.turn * Vector3d::Constant(0.5 * lattice_.cube * (cubes + 0.5));
+        const Vector3d half = lattice_.rotation * Vector3d::Constant(0.5 * lattice_.cube * (cubes + 0.5));
         const double radius = half.norm();
         const double value = object_.sample(low + half).value;
         if (value > radius + slack_ || value < -radius - slack_) return;
@@ -210,7 +210,7 @@ Lattice seeded_lattice(const MadeObject& object, double cube, std::uint64_t seed
     const auto box = object.box();
     const double radius = 0.5 * box.diagonal().norm() + 2 * cube;
     const Vector3d shift(share(4), share(5), share(6));
-    lattice.origin = box.center() - lattice.turn * (Vector3d::Constant(radius) + cube * shift);
+    lattice.origin = box.center() - lattice.rotation * (Vector3d::Constant(radius) + cube * shift);
     return lattice;
 }
 

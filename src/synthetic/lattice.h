@@ -10,7 +10,7 @@ namespace ostraka::shapes {
 
 /// The lattice's frame and the length of its cubes' edges.
 struct Lattice {
-    Eigen::Matrix3d turn;
+    Eigen::Matrix3d rotation;
     Eigen::Vector3d origin;
     double cube;
 };

@@ -15,14 +15,14 @@ namespace {
 /// A solid in its own frame, placed in the world.
 class PlacedSolid : public Solid {
 public:
-    explicit PlacedSolid(const Placement& placement) : placement_(placement), back_(placement.turn.transpose()) {}
+    explicit PlacedSolid(const Placement& placement) : placement_(placement), back_(placement.rotation.transpose()) {}
     [[nodiscard]] Sample sample(const Vector3d& p) const final {
         Sample s = local(to_local(p));
-        s.gradient = placement_.turn * s.gradient;
+        s.gradient = placement_.rotation * s.gradient;
         return s;
     }
     [[nodiscard]] AlignedBox3d box() const final {
-        const Vector3d half = placement_.turn.cwiseAbs() * half_extents();
+        const Vector3d half = placement_.rotation.cwiseAbs() * half_extents();
         return {placement_.centre - half, placement_.centre + half};
     }
 

@@ -28,9 +28,9 @@ Fragment fragment_of(const MadeSherd& sherd, const std::string& name, const Moti
 Motion random_motion(std::uint64_t seed, double size) {
     Random random(seed);
     Motion motion;
-    motion.turn =
+    motion.rotation =
         Eigen::Quaterniond(random.normal(), random.normal(), random.normal(), random.normal()).normalized().toRotationMatrix();
-    motion.shift = size * Eigen::Vector3d(random.normal(), random.normal(), random.normal());
+    motion.translation = size * Eigen::Vector3d(random.normal(), random.normal(), random.normal());
     return motion;
 }
 
@@ -39,7 +39,7 @@ std::pair<double, double> errors(const Mesh& mesh, const Motion& pose, const Mot
     double farthest = 0;
     for (const Vertex v : mesh.vertices())
         farthest = std::max(farthest, (pose(eigen(mesh.point(v))) - truth(eigen(mesh.point(v)))).norm());
-    return {Eigen::AngleAxisd(pose.turn.transpose() * truth.turn).angle() * 180 / M_PI, farthest / box_diagonal(mesh)};
+    return {Eigen::AngleAxisd(pose.rotation.transpose() * truth.rotation).angle() * 180 / M_PI, farthest / box_diagonal(mesh)};
 }
 
 PairOptions quick() {
@@ -110,8 +110,8 @@ TEST(BreakPair, ThreadsDoNotMatter) {
     set_threads(before);
     ASSERT_EQ(one.candidates.size(), three.candidates.size());
     for (std::size_t i = 0; i < one.candidates.size(); ++i) {
-        EXPECT_EQ(one.candidates[i].pose.turn, three.candidates[i].pose.turn);
-        EXPECT_EQ(one.candidates[i].pose.shift, three.candidates[i].pose.shift);
+        EXPECT_EQ(one.candidates[i].pose.rotation, three.candidates[i].pose.rotation);
+        EXPECT_EQ(one.candidates[i].pose.translation, three.candidates[i].pose.translation);
         EXPECT_EQ(one.candidates[i].score, three.candidates[i].score);
     }
 }
@@ -151,8 +151,8 @@ TEST(BreakPair, ScannedBottle) {
     Motion moved_by;
     for (int i = 0; i < 3; ++i) {
         for (int j = 0; j < 3; ++j)
-            moved_by.turn(i, j) = solution["r"][static_cast<unsigned>(i)][static_cast<unsigned>(j)].GetDouble();
-        moved_by.shift[i] = solution["t"][static_cast<unsigned>(i)].GetDouble();
+            moved_by.rotation(i, j) = solution["r"][static_cast<unsigned>(i)][static_cast<unsigned>(j)].GetDouble();
+        moved_by.translation[i] = solution["t"][static_cast<unsigned>(i)].GetDouble();
     }
     const Motion away = random_motion(11, 1);
     second.fragment.mesh = moved(second.fragment.mesh, away);

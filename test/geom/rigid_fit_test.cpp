@@ -20,8 +20,8 @@ std::vector<Vector3d> cloud(std::size_t count, double size, const Vector3d& cent
 
 Motion some_motion(double scale) {
     Motion motion;
-    motion.turn = Eigen::AngleAxisd(2.1, Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
-    motion.shift = Vector3d(4, 5, -6);
+    motion.rotation = Eigen::AngleAxisd(2.1, Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
+    motion.translation = Vector3d(4, 5, -6);
     motion.scale = scale;
     return motion;
 }
@@ -37,7 +37,7 @@ TEST(RigidFit, FindsTheMotionAtAnySizeAndPlace) {
                 FitOptions options;
                 options.scale = scaled;
                 const Motion found = fit_motion(from, to, {}, options);
-                EXPECT_NEAR((found.turn - truth.turn).norm(), 0, 1e-9);
+                EXPECT_NEAR((found.rotation - truth.rotation).norm(), 0, 1e-9);
                 EXPECT_NEAR(found.scale, truth.scale, 1e-9);
                 for (std::size_t i = 0; i < from.size(); ++i)
                     EXPECT_LT((found(from[i]) - to[i]).norm(), 1e-9 * (to[i].norm() + size));
@@ -50,7 +50,7 @@ TEST(RigidFit, NeverReflects) {
     const auto from = cloud(20, 1, Vector3d::Zero());
     std::vector<Vector3d> to;
     for (const Vector3d& p : from) to.emplace_back(-p.x(), p.y(), p.z());
-    EXPECT_NEAR(fit_motion(from, to).turn.determinant(), 1, 1e-12);
+    EXPECT_NEAR(fit_motion(from, to).rotation.determinant(), 1, 1e-12);
 }
 
 TEST(RigidFit, IsTheLeastSquaresMotion) {
@@ -72,8 +72,8 @@ TEST(RigidFit, IsTheLeastSquaresMotion) {
     for (int axis = 0; axis < 3; ++axis) {
         for (const double step : {1e-3, -1e-3}) {
             Motion turned = best, moved = best, scaled = best;
-            turned.turn = Eigen::AngleAxisd(step, Vector3d::Unit(axis)) * best.turn;
-            moved.shift[axis] += step;
+            turned.rotation = Eigen::AngleAxisd(step, Vector3d::Unit(axis)) * best.rotation;
+            moved.translation[axis] += step;
             scaled.scale += step;
             EXPECT_GT(cost(turned), cost(best));
             EXPECT_GT(cost(moved), cost(best));
@@ -95,7 +95,7 @@ TEST(RigidFit, TakesWhatLeavesTheMotionOpen) {
     FitOptions options;
     options.scale = true;
     const Motion motion = fit_motion(same, same, {}, options);
-    EXPECT_NEAR(motion.turn.determinant(), 1, 1e-12);
+    EXPECT_NEAR(motion.rotation.determinant(), 1, 1e-12);
     EXPECT_DOUBLE_EQ(motion.scale, 1);
     EXPECT_THROW((void)fit_motion(one, same), Error);
     EXPECT_THROW((void)fit_motion({}, {}), Error);

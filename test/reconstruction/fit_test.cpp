@@ -35,7 +35,7 @@ TEST(Fit, AFragmentOfTheTemplateItselfChangesNothing) {
     const Reconstruction result = reconstruct(whole, set, {}, {&one.fragment});
     ASSERT_TRUE(result.placement.any()) << result.placement.fragments[0].problem;
     EXPECT_NEAR(result.placement.scale, 1, 1e-9);
-    EXPECT_LT((result.placement.fragments[0].pose.turn - one.piece.pose.turn).norm(), 1e-9);
+    EXPECT_LT((result.placement.fragments[0].pose.rotation - one.piece.pose.rotation).norm(), 1e-9);
     for (const Vertex v : whole.vertices())
         EXPECT_LT(std::sqrt(CGAL::squared_distance(result.points[v], whole.point(v))), 1e-6 * box_diagonal(whole));
     EXPECT_EQ(result.verdict, Compatibility::undecided) << "one fragment, no constraint";
@@ -146,7 +146,7 @@ TEST(Fit, TheSameForAnyNumberOfThreadsAndFarAway) {
     EXPECT_EQ(alone.points, many.points);
     Fragment far = one.fragment.facets.empty() ? Fragment{"far", {}, {}, {}} : Fragment{};
     Motion away;
-    away.shift = Vector3d(1e5, -1e5, 1e5);
+    away.translation = Vector3d(1e5, -1e5, 1e5);
     far.mesh = moved(one.fragment.mesh, away);
     for (const auto& annotation : one.fragment.annotations.annotations) far.annotations.annotations.push_back(annotation);
     const Reconstruction there = reconstruct(mesh, set, {}, {&far});

@@ -18,9 +18,9 @@ Vector3d random_place(Random& random) { return {random.normal(), random.normal()
 
 Motion random_motion(Random& random, double scale = 1) {
     Motion motion;
-    motion.turn =
+    motion.rotation =
         Eigen::Quaterniond(random.normal(), random.normal(), random.normal(), random.normal()).normalized().toRotationMatrix();
-    motion.shift = 5 * random_place(random);
+    motion.translation = 5 * random_place(random);
     motion.scale = scale;
     return motion;
 }
@@ -45,8 +45,8 @@ TEST(Placement, FindsOneScaleAndThePoseOfEachFragment) {
         EXPECT_NEAR(found.scale, scale, 1e-12 * scale);
         for (const auto& [one, pose] : {std::pair(found.fragments[0], first), std::pair(found.fragments[1], second)}) {
             EXPECT_EQ(one.problem, "");
-            EXPECT_LT((one.pose.turn - pose.turn).norm(), 1e-12);
-            EXPECT_LT((one.pose.shift - pose.shift).norm(), 1e-11 * (1 + scale));
+            EXPECT_LT((one.pose.rotation - pose.rotation).norm(), 1e-12);
+            EXPECT_LT((one.pose.translation - pose.translation).norm(), 1e-11 * (1 + scale));
             EXPECT_EQ(one.pose.scale, 1);
             EXPECT_NEAR(one.own_scale, scale, 1e-11 * scale);
             EXPECT_LT(one.residual, 1e-11 * (1 + scale));
@@ -74,8 +74,8 @@ TEST(Placement, IsTheLeastSumOfSquares) {
         for (Motion& pose : other) {
             const Vector3d axis = random_place(random).normalized();
             Motion step;
-            step.turn = Eigen::AngleAxisd(0.01 * random.normal(), axis).toRotationMatrix();
-            step.shift = 0.01 * random_place(random);
+            step.rotation = Eigen::AngleAxisd(0.01 * random.normal(), axis).toRotationMatrix();
+            step.translation = 0.01 * random_place(random);
             pose = step.after(pose);
         }
         EXPECT_GE(cost(found.scale * (1 + 0.01 * random.normal()), other), least);
@@ -91,7 +91,7 @@ TEST(Placement, OneWrongPairInSixIsFound) {
         pairs[wrong].on_fragment = pose.inverse()(pairs[wrong].on_template + 1.5 * random_place(random).normalized());
         const CommonPlacement found = place_by_landmarks({pairs});
         for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(found.fragments[0].landmarks[i].used, i != wrong) << seed << ' ' << i;
-        EXPECT_LT((found.fragments[0].pose.turn - pose.turn).norm(), 0.1);
+        EXPECT_LT((found.fragments[0].pose.rotation - pose.rotation).norm(), 0.1);
     }
 }
 

@@ -21,8 +21,8 @@ void expect_same(const Reconstruction& a, const Reconstruction& b, const std::st
     ASSERT_EQ(a.placement.fragments.size(), b.placement.fragments.size()) << what;
     for (std::size_t k = 0; k < a.placement.fragments.size(); ++k) {
         const FragmentPlacement &one = a.placement.fragments[k], &other = b.placement.fragments[k];
-        EXPECT_EQ(one.pose.turn, other.pose.turn) << what;
-        EXPECT_EQ(one.pose.shift, other.pose.shift) << what;
+        EXPECT_EQ(one.pose.rotation, other.pose.rotation) << what;
+        EXPECT_EQ(one.pose.translation, other.pose.translation) << what;
         EXPECT_EQ(one.residual, other.residual) << what;
         EXPECT_EQ(one.problem, other.problem) << what;
     }
@@ -167,8 +167,8 @@ TEST_F(PoseSearchFile, ComesBackToTheBit) {
     EXPECT_EQ(again.reused(), 1U);
     ASSERT_EQ(one->candidates.size(), other->candidates.size());
     for (std::size_t i = 0; i < one->candidates.size(); ++i) {
-        EXPECT_EQ(one->candidates[i].pose.turn, other->candidates[i].pose.turn);
-        EXPECT_EQ(one->candidates[i].pose.shift, other->candidates[i].pose.shift);
+        EXPECT_EQ(one->candidates[i].pose.rotation, other->candidates[i].pose.rotation);
+        EXPECT_EQ(one->candidates[i].pose.translation, other->candidates[i].pose.translation);
         EXPECT_EQ(one->candidates[i].score, other->candidates[i].score);
     }
     EXPECT_EQ(one->confidence, other->confidence);

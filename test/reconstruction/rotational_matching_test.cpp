@@ -54,14 +54,14 @@ struct BrokenPot {
         }
         one.mesh = moved(piece.mesh, frame);
         Motion turn, lean, back = frame.inverse();
-        turn.turn = Eigen::AngleAxisd(random.uniform(-3, 3), Vector3d::UnitZ()).toRotationMatrix();
-        lean.turn = Eigen::AngleAxisd(off * random.normal(), Vector3d(random.normal(), random.normal(), 0).normalized())
-                        .toRotationMatrix();
-        lean.shift = off * pot.height * Vector3d(random.normal(), random.normal(), random.normal()) / 3;
+        turn.rotation = Eigen::AngleAxisd(random.uniform(-3, 3), Vector3d::UnitZ()).toRotationMatrix();
+        lean.rotation = Eigen::AngleAxisd(off * random.normal(), Vector3d(random.normal(), random.normal(), 0).normalized())
+                            .toRotationMatrix();
+        lean.translation = off * pot.height * Vector3d(random.normal(), random.normal(), random.normal()) / 3;
         sherds.push_back({&fragments[k], frame.after(turn.after(lean)).after(back), false});
     }
     [[nodiscard]] BreakTurns turn(const BreakTurnOptions& options = {}) const {
-        return turn_by_breaks(whole, frame(Vector3d::Zero()), frame.turn * Vector3d::UnitZ(), sherds, options);
+        return turn_by_breaks(whole, frame(Vector3d::Zero()), frame.rotation * Vector3d::UnitZ(), sherds, options);
     }
     /// Root mean square way of the second sherd's vertices from where it belongs against the first.
     [[nodiscard]] double off(const BreakTurns& result, int a, int b) const {
@@ -115,8 +115,8 @@ TEST(BreakTurns, AlsoWornAndNoisy) {
 
 TEST(BreakTurns, DoNotDependOnThePlaceOrTheUnit) {
     Motion far;
-    far.turn = Eigen::AngleAxisd(1.1, Vector3d(1, 2, -1).normalized()).toRotationMatrix();
-    far.shift = Vector3d(300, -200, 500);
+    far.rotation = Eigen::AngleAxisd(1.1, Vector3d(1, 2, -1).normalized()).toRotationMatrix();
+    far.translation = Vector3d(300, -200, 500);
     const BrokenPot pot(small_pot(1), breaking(1)), there(small_pot(1), breaking(1), 0.003, far);
     expect_together(there, there.turn());
     PotOptions tiny = small_pot(1);
@@ -135,8 +135,8 @@ TEST(BreakTurns, AreTheSameForAnyNumberOfThreads) {
     set_threads(before);
     ASSERT_EQ(one.poses.size(), three.poses.size());
     for (std::size_t k = 0; k < one.poses.size(); ++k) {
-        EXPECT_EQ(one.poses[k].turn, three.poses[k].turn);
-        EXPECT_EQ(one.poses[k].shift, three.poses[k].shift);
+        EXPECT_EQ(one.poses[k].rotation, three.poses[k].rotation);
+        EXPECT_EQ(one.poses[k].translation, three.poses[k].translation);
     }
 }
 
@@ -144,7 +144,7 @@ TEST(BreakTurns, WhatIsFixedStays) {
     BrokenPot pot(small_pot(1), breaking(1));
     pot.sherds[1].fixed = true;
     const BreakTurns result = pot.turn();
-    EXPECT_LT((result.poses[1].turn - pot.sherds[1].pose.turn).norm(), 1e-9);
+    EXPECT_LT((result.poses[1].rotation - pot.sherds[1].pose.rotation).norm(), 1e-9);
     expect_together(pot, result);
 }
 
@@ -176,7 +176,7 @@ TEST(BreakTurns, OneSherdAndNoBreaks) {
     const BreakTurns alone = pot.turn();
     ASSERT_EQ(alone.poses.size(), 1U);
     EXPECT_TRUE(alone.joints.empty());
-    EXPECT_LT((alone.poses[0].turn - pot.sherds[0].pose.turn).norm(), 1e-9);
+    EXPECT_LT((alone.poses[0].rotation - pot.sherds[0].pose.rotation).norm(), 1e-9);
 
     BrokenPot whole(small_pot(1), breaking(1, 3));
     for (Fragment& one : whole.fragments) one.facets.assign(one.mesh.number_of_faces(), Facet::outer);

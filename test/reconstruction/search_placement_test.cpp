@@ -58,7 +58,7 @@ TEST(SearchPlacement, PlacesWhatHasNoLandmarks) {
     ASSERT_EQ(result.searched.size(), 1U);
     ASSERT_TRUE(result.searched[0].has_value());
     EXPECT_TRUE(result.searched[0]->decided);
-    EXPECT_LT((result.placement.fragments[0].pose.turn - one.pose.turn).norm(), 0.01);
+    EXPECT_LT((result.placement.fragments[0].pose.rotation - one.pose.rotation).norm(), 0.01);
     EXPECT_EQ(result.placement.scale, 1);
     EXPECT_NEAR(result.observed_share, 0.35, 0.05);
     EXPECT_TRUE(std::isfinite(result.placement.fragments[0].residual));
@@ -98,7 +98,7 @@ TEST(SearchPlacement, TakesTheScaleOfLandmarks) {
     ASSERT_TRUE(found[1].has_value());
     EXPECT_EQ(scale, 1.5);
     ASSERT_TRUE(placed[1].problem.empty()) << placed[1].problem;
-    EXPECT_LT((placed[1].pose.turn - one.pose.turn).norm(), 0.01);
+    EXPECT_LT((placed[1].pose.rotation - one.pose.rotation).norm(), 0.01);
 }
 
 TEST(SearchPlacement, AStrangerStaysOut) {
@@ -140,7 +140,7 @@ TEST(SearchPlacement, OneLandmarkDecidesTheTurnOfAVessel) {
     one.fragment.annotations.annotations.push_back(test::landmark(0, "mark", far));
     const Reconstruction with = reconstruct(mesh, set, {}, {&one.fragment});
     EXPECT_EQ(with.searched[0]->freedom.kind, FreedomKind::none);
-    EXPECT_LT((with.placement.fragments[0].pose.turn - one.pose.turn).norm(), 0.02);
+    EXPECT_LT((with.placement.fragments[0].pose.rotation - one.pose.rotation).norm(), 0.02);
     ASSERT_EQ(with.placement.fragments[0].landmarks.size(), 1U);
     EXPECT_TRUE(with.placement.fragments[0].landmarks[0].used);
     ASSERT_FALSE(with.notes[0].empty());

@@ -11,8 +11,9 @@ namespace {
 
 Motion nearly(const Motion& truth, double degrees, double shift) {
     Motion start = truth;
-    start.turn = Eigen::AngleAxisd(degrees * 3.14159265358979323846 / 180, Eigen::Vector3d(1, 1, 1).normalized()) * truth.turn;
-    start.shift += Eigen::Vector3d(shift, -shift, 0);
+    start.rotation =
+        Eigen::AngleAxisd(degrees * 3.14159265358979323846 / 180, Eigen::Vector3d(1, 1, 1).normalized()) * truth.rotation;
+    start.translation += Eigen::Vector3d(shift, -shift, 0);
     return start;
 }
 
@@ -22,7 +23,7 @@ TEST(Align, FindsTheMotionOfAMovedSurface) {
     const Motion truth = test::motion();
     const AlignSurface other(test::moved(a, truth));
     const Alignment found = align(surface, other, {nearly(truth, 10, 2)});
-    EXPECT_LT(test::turn_between(found.motion.turn, truth.turn), 0.1);
+    EXPECT_LT(test::turn_between(found.motion.rotation, truth.rotation), 0.1);
     EXPECT_LT(found.distance, 2e-3);
     EXPECT_GT(found.overlap, 0.9);
     EXPECT_TRUE(found.settled);
@@ -62,8 +63,8 @@ TEST(Align, PrincipalAxesServeWithoutAStart) {
     const Motion truth = test::motion();
     const AlignSurface a(test::head(1, 1).mesh), b(test::moved(test::head(1, 1).mesh, truth));
     const Alignment found = align(a, b, {});
-    EXPECT_LT(test::turn_between(found.motion.turn, truth.turn), 1);
-    for (const Motion& start : principal_starts(a, b)) EXPECT_NEAR(start.turn.determinant(), 1, 1e-9);
+    EXPECT_LT(test::turn_between(found.motion.rotation, truth.rotation), 1);
+    for (const Motion& start : principal_starts(a, b)) EXPECT_NEAR(start.rotation.determinant(), 1, 1e-9);
 }
 
 TEST(Align, AMissingPieceChangesLittle) {
@@ -87,7 +88,8 @@ TEST(Align, WhatSlidesIsLaidOnAllTheSame) {
         away(build_mesh(test::moved(test::octahedron_sphere(4), 1, {0.3, 0.1, 0})));
     const Alignment found = align(ball, away, {Motion()});
     EXPECT_LT(found.distance, 1e-3);
-    EXPECT_LT((found.motion.turn * Eigen::Vector3d::Zero() + found.motion.shift - Eigen::Vector3d(0.3, 0.1, 0)).norm(), 1e-2);
+    EXPECT_LT((found.motion.rotation * Eigen::Vector3d::Zero() + found.motion.translation - Eigen::Vector3d(0.3, 0.1, 0)).norm(),
+              1e-2);
 }
 
 TEST(Align, RefusesWhatHasNoArea) {

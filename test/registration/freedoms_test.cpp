@@ -38,29 +38,30 @@ Vector3d on_ball(double u, double v) {
 /// Moved, so that nothing stands in the axes.
 Motion tilted(double size) {
     Motion motion;
-    motion.turn = Eigen::AngleAxisd(1.1, Vector3d(1, 2, -0.5).normalized()).toRotationMatrix();
-    motion.shift = size * Vector3d(3, -2, 5);
+    motion.rotation = Eigen::AngleAxisd(1.1, Vector3d(1, 2, -0.5).normalized()).toRotationMatrix();
+    motion.translation = size * Vector3d(3, -2, 5);
     motion.scale = size;
     return motion;
 }
 
 Freedom of(Cloud c, const Motion& motion) {
     for (Vector3d& p : c.places) p = motion(p);
-    for (Vector3d& n : c.normals) n = motion.turn * n;
+    for (Vector3d& n : c.normals) n = motion.rotation * n;
     return freedom_of(c.places, c.normals, 0.02);
 }
 
 Motion about(const Vector3d& point, const Vector3d& axis, double angle) {
     Motion motion;
-    motion.turn = Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
-    motion.shift = point - motion.turn * point;
+    motion.rotation = Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
+    motion.translation = point - motion.rotation * point;
     return motion;
 }
 
 TEST(Freedoms, AreThoseOfTheSurface) {
     for (const double size : {1e-6, 1.0, 1e6}) {
         const Motion there = tilted(size);
-        const Vector3d origin = there(Vector3d::Zero()), z = there.turn * Vector3d::UnitZ(), x = there.turn * Vector3d::UnitX();
+        const Vector3d origin = there(Vector3d::Zero()), z = there.rotation * Vector3d::UnitZ(),
+                       x = there.rotation * Vector3d::UnitX();
         const auto near = [&](const Vector3d& p, const Vector3d& q) { return (p - q).norm() < 1e-4 * size; };
         const auto along = [](const Vector3d& a, const Vector3d& b) { return std::abs(a.dot(b)) > 1 - 1e-8; };
 
@@ -74,7 +75,7 @@ TEST(Freedoms, AreThoseOfTheSurface) {
         EXPECT_EQ(plane.kind, FreedomKind::plane);
         EXPECT_TRUE(along(plane.direction, z));
         Motion shift;
-        shift.shift = size * x;
+        shift.translation = size * x;
         EXPECT_TRUE(plane.contains(shift, origin, 0.01, 1e-3 * size));
         EXPECT_TRUE(plane.contains(about(origin + size * x, z, 1), origin, 0.01, 1e-3 * size));
         EXPECT_FALSE(plane.contains(about(origin, x, 0.5), origin, 0.01, 1e-3 * size));
@@ -82,7 +83,7 @@ TEST(Freedoms, AreThoseOfTheSurface) {
         const Freedom tube = of(cloud([](double u, double v) { return Vector3d(std::cos(u), std::sin(u), 2 * v); }), there);
         EXPECT_EQ(tube.kind, FreedomKind::tube);
         EXPECT_TRUE(along(tube.direction, z));
-        shift.shift = size * z;
+        shift.translation = size * z;
         EXPECT_TRUE(tube.contains(shift.after(about(origin, z, 3)), origin, 0.01, 1e-3 * size));
 
         const auto vase = [](double u, double v) {

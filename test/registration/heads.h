@@ -27,8 +27,8 @@ inline Mesh moved(Mesh mesh, const Motion& motion) {
 
 inline Motion motion(double scale = 1, double far = 100) {
     Motion m;
-    m.turn = Eigen::AngleAxisd(1.9, Eigen::Vector3d(0.2, -1, 0.6).normalized()).toRotationMatrix();
-    m.shift = far * Eigen::Vector3d(3, -2, 1);
+    m.rotation = Eigen::AngleAxisd(1.9, Eigen::Vector3d(0.2, -1, 0.6).normalized()).toRotationMatrix();
+    m.translation = far * Eigen::Vector3d(3, -2, 1);
     m.scale = scale;
     return m;
 }

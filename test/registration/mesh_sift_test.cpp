@@ -22,7 +22,7 @@ TEST(MeshSift, FeaturesMoveWithTheSurface) {
         for (std::size_t i = 0; i < here.features.size(); ++i) {
             EXPECT_EQ(there.features[i].vertex, here.features[i].vertex);
             EXPECT_NEAR(there.features[i].scale, scale * here.features[i].scale, 1e-9 * there.features[i].scale);
-            EXPECT_LT((there.features[i].direction - motion.turn * here.features[i].direction).norm(), 0.01);
+            EXPECT_LT((there.features[i].direction - motion.rotation * here.features[i].direction).norm(), 0.01);
         }
         EXPECT_LT((there.descriptors - here.descriptors).cwiseAbs().maxCoeff(), 0.02);
     }
@@ -128,7 +128,7 @@ TEST(Matches, ConsistentOnesTellTheMotion) {
         consistent.shrinkage = scale < 1 ? 0.15 : 0;
         const auto found = consistent_matches(fa, fb, match_features(fa, fb), consistent);
         EXPECT_GT(found.matches.size(), 8U);
-        EXPECT_LT(test::turn_between(found.motion.turn, truth.turn), 4);
+        EXPECT_LT(test::turn_between(found.motion.rotation, truth.rotation), 4);
         EXPECT_NEAR(found.motion.scale, scale, 0.03);
         for (const auto& match : found.matches)
             EXPECT_LT((found.motion(fa.features[match.a].point) - fb.features[match.b].point).norm(), 0.0201 * 66);
@@ -152,7 +152,7 @@ TEST(Matches, ThoseOfOneMouldAreMoreConsistentThanThoseOfTwo) {
 TEST(Matches, NoneOfNone) {
     const ConsistentMatches none = consistent_matches(FeatureSet(), FeatureSet(), {});
     EXPECT_TRUE(none.matches.empty());
-    EXPECT_TRUE(none.motion.turn.isIdentity());
+    EXPECT_TRUE(none.motion.rotation.isIdentity());
 }
 
 }  // namespace

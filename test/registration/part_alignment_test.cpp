@@ -29,13 +29,13 @@ Mesh potato(int levels = 5) {
 
 Motion nudge(double degrees, const Vector3d& shift) {
     Motion motion;
-    motion.turn = Eigen::AngleAxisd(degrees * std::numbers::pi / 180, Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
-    motion.shift = shift;
+    motion.rotation = Eigen::AngleAxisd(degrees * std::numbers::pi / 180, Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
+    motion.translation = shift;
     return motion;
 }
 
 double degrees_between(const Motion& a, const Motion& b) {
-    return Eigen::AngleAxisd(Eigen::Matrix3d(a.turn.transpose() * b.turn)).angle() * 180 / std::numbers::pi;
+    return Eigen::AngleAxisd(Eigen::Matrix3d(a.rotation.transpose() * b.rotation)).angle() * 180 / std::numbers::pi;
 }
 
 TEST(PartAlignment, FindsItsPlaceBackFromNearBy) {
@@ -46,7 +46,7 @@ TEST(PartAlignment, FindsItsPlaceBackFromNearBy) {
     const BrokenPiece piece = break_off(whole, Point(0, 0.5, 1.6), options);
     for (const double far : {0.0, 1e5}) {
         Motion away;
-        away.shift = far * Vector3d(1, -1, 1);
+        away.translation = far * Vector3d(1, -1, 1);
         const Mesh part = [&] {
             Mesh mesh = piece.mesh;
             for (const Vertex v : mesh.vertices()) mesh.point(v) = point_of(away(eigen(mesh.point(v))));
@@ -109,8 +109,8 @@ TEST(PartAlignment, TheSameForAnyNumberOfThreads) {
     set_threads(3);
     const PartAlignment many = align_part(piece.mesh, {}, search, start);
     set_threads(before);
-    EXPECT_EQ(alone.pose.turn, many.pose.turn);
-    EXPECT_EQ(alone.pose.shift, many.pose.shift);
+    EXPECT_EQ(alone.pose.rotation, many.pose.rotation);
+    EXPECT_EQ(alone.pose.translation, many.pose.translation);
 }
 
 TEST(PartAlignment, DegenerateParts) {
@@ -121,10 +121,10 @@ TEST(PartAlignment, DegenerateParts) {
     EXPECT_THROW(align_part(whole, std::vector<bool>(whole.number_of_faces(), false), search, {}), Error);
     // Out of reach of everything: it stays where it is, and says so.
     Motion away;
-    away.shift = Vector3d(100, 0, 0);
+    away.translation = Vector3d(100, 0, 0);
     const PartAlignment lost = align_part(whole, {}, search, away);
     EXPECT_EQ(lost.overlap, 0);
-    EXPECT_EQ(lost.pose.shift, away.shift);
+    EXPECT_EQ(lost.pose.translation, away.translation);
     // One face.
     std::vector<bool> one(whole.number_of_faces(), false);
     one[0] = true;

@@ -36,7 +36,7 @@ Mesh potato() {
 }
 
 double degrees_between(const Motion& a, const Motion& b) {
-    return Eigen::AngleAxisd(Eigen::Matrix3d(a.turn.transpose() * b.turn)).angle() * 180 / std::numbers::pi;
+    return Eigen::AngleAxisd(Eigen::Matrix3d(a.rotation.transpose() * b.rotation)).angle() * 180 / std::numbers::pi;
 }
 
 Vector3d middle_of(const Mesh& mesh) {
@@ -201,8 +201,8 @@ TEST(PoseSearch, SameForAnyNumberOfThreads) {
     set_threads(before);
     ASSERT_EQ(results[0].candidates.size(), results[1].candidates.size());
     for (std::size_t k = 0; k < results[0].candidates.size(); ++k) {
-        EXPECT_EQ(results[0].candidates[k].pose.turn, results[1].candidates[k].pose.turn);
-        EXPECT_EQ(results[0].candidates[k].pose.shift, results[1].candidates[k].pose.shift);
+        EXPECT_EQ(results[0].candidates[k].pose.rotation, results[1].candidates[k].pose.rotation);
+        EXPECT_EQ(results[0].candidates[k].pose.translation, results[1].candidates[k].pose.translation);
         EXPECT_EQ(results[0].candidates[k].score, results[1].candidates[k].score);
     }
     EXPECT_EQ(results[0].confidence, results[1].confidence);
@@ -263,13 +263,13 @@ TEST(PairTable, VotesForTheMotion) {
     const SurfacePoints points = spread_points(whole, {}, 0.12, 0.12);
     const PairTable table(points, 4, 0.1);
     Motion away;
-    away.turn = Eigen::AngleAxisd(2, Vector3d(1, 2, 3).normalized()).toRotationMatrix();
-    away.shift = Vector3d(5, 6, 7);
+    away.rotation = Eigen::AngleAxisd(2, Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+    away.translation = Vector3d(5, 6, 7);
     SurfacePoints part;
     for (std::size_t i = 0; i < points.size(); ++i)
         if (points.places[i].z() > 0.5) {
             part.places.push_back(away(points.places[i]));
-            part.normals.push_back(away.turn * points.normals[i]);
+            part.normals.push_back(away.rotation * points.normals[i]);
         }
     const auto voted = table.vote(part, 10, 100, 1, 1);
     ASSERT_EQ(voted.size(), 10u);

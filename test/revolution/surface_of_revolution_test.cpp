@@ -59,14 +59,14 @@ Fragment sherd(double from, double to, double low, double high, const Motion& mo
 
 Motion tilted() {
     Motion motion;
-    motion.turn = Eigen::AngleAxisd(0.9, Vector3d(1, 2, 0.3).normalized()).toRotationMatrix();
-    motion.shift = Vector3d(10, -5, 3);
+    motion.rotation = Eigen::AngleAxisd(0.9, Vector3d(1, 2, 0.3).normalized()).toRotationMatrix();
+    motion.translation = Vector3d(10, -5, 3);
     return motion;
 }
 
 Motion shifted(const Motion& motion, const Vector3d& by) {
     Motion other;
-    other.shift = by;
+    other.translation = by;
     return other.after(motion);
 }
 
@@ -88,11 +88,11 @@ double worst(const TurnedTemplate& turned) {
 
 TEST(TurnedTemplate, IsTheVesselOfItsSherds) {
     const Motion there = tilted();
-    const Vector3d up = there.turn * Vector3d::UnitZ();
+    const Vector3d up = there.rotation * Vector3d::UnitZ();
     const Fragment a = sherd(0, 2, 0, 0.7, there), b = sherd(2.2, 4, 0.3, 1, there), c = sherd(4.1, 6, 0, 1, there);
     const TurnedTemplate turned = turn_template({&a, &b, &c});
     EXPECT_GT(std::abs(eigen(turned.axis.direction).dot(up)), 1 - 1e-5);
-    EXPECT_LT((eigen(turned.axis.point) - there.shift).cross(up).norm(), 0.01);
+    EXPECT_LT((eigen(turned.axis.point) - there.translation).cross(up).norm(), 0.01);
     EXPECT_FALSE(turned.base);
     EXPECT_TRUE(turned.rim);
     EXPECT_TRUE(CGAL::is_closed(turned.mesh));
@@ -123,13 +123,14 @@ TEST(TurnedTemplate, IsTheVesselOfItsSherds) {
 
 TEST(TurnedTemplate, JointsOfALayoutGo) {
     const Motion there = tilted();
-    const Vector3d up = there.turn * Vector3d::UnitZ(), x = there.turn * Vector3d::UnitX();
+    const Vector3d up = there.rotation * Vector3d::UnitZ(), x = there.rotation * Vector3d::UnitX();
     const Fragment a = sherd(0, 2, 0, 1, shifted(there, 0.08 * x + 0.05 * up)), b = sherd(2.2, 4, 0, 1, there),
                    c = sherd(4.1, 6, 0, 1, shifted(there, -0.06 * x));
     const TurnedTemplate turned = turn_template({&a, &b, &c});
     for (const SherdOnProfile& one : turned.sherds) EXPECT_LT(one.residual, 0.02);
-    EXPECT_GT((turned.sherds[0].motion.shift - turned.sherds[1].motion.shift).norm(), 0.05);
-    EXPECT_NEAR((turned.sherds[0].motion(there.shift + 0.05 * up) - turned.sherds[1].motion(there.shift)).dot(up), 0, 0.03);
+    EXPECT_GT((turned.sherds[0].motion.translation - turned.sherds[1].motion.translation).norm(), 0.05);
+    EXPECT_NEAR((turned.sherds[0].motion(there.translation + 0.05 * up) - turned.sherds[1].motion(there.translation)).dot(up), 0,
+                0.03);
 }
 
 TEST(TurnedTemplate, OneSherdIsEnough) {
@@ -151,7 +152,7 @@ TEST(TurnedTemplate, RefusesWhatCannotBeTurned) {
     EXPECT_THROW(turn_template({&open}), Error);
     // Two that do not lie as they did in one vessel.
     Motion aside;
-    aside.turn = Eigen::AngleAxisd(0.7, Vector3d::UnitX()).toRotationMatrix();
+    aside.rotation = Eigen::AngleAxisd(0.7, Vector3d::UnitX()).toRotationMatrix();
     const Fragment a = sherd(0, 2, 0, 1, {}), b = sherd(2.2, 4, 0, 1, aside);
     EXPECT_THROW(turn_template({&a, &b}), Error);
 }

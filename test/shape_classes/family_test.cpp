@@ -23,8 +23,8 @@ using test::tower;
 
 Motion far_away() {
     Motion motion;
-    motion.turn = Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
-    motion.shift = Eigen::Vector3d(1000, -2000, 500);
+    motion.rotation = Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+    motion.translation = Eigen::Vector3d(1000, -2000, 500);
     return motion;
 }
 
@@ -59,7 +59,7 @@ TEST(ShapeModes, KnownModesComeBack) {
     for (const auto& [a, b] : {std::pair{0.3, 0.0}, {-0.3, 0.0}, {0.0, 0.1}, {0.0, -0.1}}) {
         const Motion motion = far_away();
         Landmarks shape = planted.mean + a * planted.first + b * planted.second;
-        shape = (shape * motion.turn.transpose()).rowwise() + motion.shift.transpose();
+        shape = (shape * motion.rotation.transpose()).rowwise() + motion.translation.transpose();
         members.push_back(shape);
     }
     ModeOptions options;
@@ -288,7 +288,7 @@ TEST(Classify, SizesCountWhereTold) {
 TEST(MemberFit, FitsATowerOfOtherTrianglesAndCarriesAnnotations) {
     const Tower known = tower();
     Motion shifted;
-    shifted.shift = Eigen::Vector3d(10, -20, 5);
+    shifted.translation = Eigen::Vector3d(10, -20, 5);
     WholeObject object = member_of(known, "object", 0.5, 0.6, 0.95, shifted);
     // Other vertices: the box cut finer.
     TriangleSoup fine = to_soup(member_of(known, "same", 0.5, 0.6, 0.95, shifted).mesh);
@@ -386,8 +386,9 @@ TEST(ClassSample, DiversityIsTheMeanDistanceOfTwo) {
     for (const double b : {a, -a, 0.0}) {
         const Landmarks shape = shape_of(modes, {b});
         const Motion motion = far_away();
-        shapes.push_back(
-            shapes.size() == 1 ? Landmarks((3 * shape * motion.turn.transpose()).rowwise() + motion.shift.transpose()) : shape);
+        shapes.push_back(shapes.size() == 1
+                             ? Landmarks((3 * shape * motion.rotation.transpose()).rowwise() + motion.translation.transpose())
+                             : shape);
     }
     EXPECT_NEAR(mean_distance(modes, shapes) / (4.0 / 3 * 1e-4), 1, 1e-3);
     EXPECT_NEAR(mean_distance(modes, {shapes[0], shapes[0]}), 0, 1e-12) << "equal ones have none";

@@ -40,8 +40,8 @@ void write_box(const Path& file, double width, const Motion& motion = {}, int fi
 
 Motion far_away() {
     Motion motion;
-    motion.turn = Eigen::AngleAxisd(2, Eigen::Vector3d(1, 1, -2).normalized()).toRotationMatrix();
-    motion.shift = Eigen::Vector3d(1e4, 0, -3e3);
+    motion.rotation = Eigen::AngleAxisd(2, Eigen::Vector3d(1, 1, -2).normalized()).toRotationMatrix();
+    motion.translation = Eigen::Vector3d(1e4, 0, -3e3);
     motion.scale = 7;
     return motion;
 }

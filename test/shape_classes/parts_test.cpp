@@ -43,10 +43,10 @@ TEST(Parts, OfATowerAreThoseOfTwoOpenBoxes) {
 TEST(Parts, NeitherPlaceNorSizeChangesThem) {
     const Tower known = tower();
     Motion motion;
-    motion.turn = Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
+    motion.rotation = Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
     for (const double scale : {1e-6, 1.0, 1e6}) {
         motion.scale = scale;
-        motion.shift = scale * Eigen::Vector3d(1000, 2000, -500);
+        motion.translation = scale * Eigen::Vector3d(1000, 2000, -500);
         const auto here = part_quantities(known.known(), points_in(member_of(known, "a", 1, 0.8, 1.1).mesh)),
                    there = part_quantities(known.known(), points_in(member_of(known, "a", 1, 0.8, 1.1, motion).mesh));
         ASSERT_EQ(here.size(), there.size());

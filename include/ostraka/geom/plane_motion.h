@@ -8,8 +8,9 @@
 
 namespace ostraka {
 
-/// One step of iterative closest points, point to plane (Chen and Medioni 1991): of all turns, shifts and growths about a centre,
-/// linearised, the one with the least sum of weights times squared distances of the moved points from their planes.
+/// One step of iterative closest points, point to plane (Chen and Medioni 1991): of all rotations, translations and scalings
+/// about a centre, linearised, the one with the least sum of weights times squared distances of the moved points from their
+/// planes.
 class PlaneMotion {
 public:
     /// Arms from the centre are taken in this unit, a length of the size of the whole.
@@ -28,9 +29,9 @@ public:
     }
 
     struct Step {
-        Eigen::Vector3d turn = Eigen::Vector3d::Zero();   ///< axis times angle
-        Eigen::Vector3d shift = Eigen::Vector3d::Zero();  ///< a length
-        double growth = 0;                                ///< logarithm of the scale
+        Eigen::Vector3d rotation = Eigen::Vector3d::Zero();     ///< axis times angle
+        Eigen::Vector3d translation = Eigen::Vector3d::Zero();  ///< a length
+        double growth = 0;                                      ///< logarithm of the scale
     };
     /// `damping`, as a share of the trace, keeps what the planes leave open (of a ball, a plane or a tube) as it is.
     [[nodiscard]] Step solve(double damping, bool scaled = false) const {
@@ -39,18 +40,18 @@ public:
         damped.diagonal().array() += damping * damped.topLeftCorner(n, n).trace() + 1e-30;
         const Eigen::VectorXd x = solve_ldlt<Eigen::Dynamic>(damped.topLeftCorner(n, n), right_.head(n));
         Step step;
-        step.turn = x.head<3>();
-        step.shift = unit_ * x.segment<3>(3);
+        step.rotation = x.head<3>();
+        step.translation = unit_ * x.segment<3>(3);
         if (scaled) step.growth = x[6];
         return step;
     }
 
     [[nodiscard]] Motion motion(const Step& step) const {
         Motion move;
-        const double angle = step.turn.norm();
-        if (angle > 0) move.turn = Eigen::AngleAxisd(angle, step.turn / angle).toRotationMatrix();
+        const double angle = step.rotation.norm();
+        if (angle > 0) move.rotation = Eigen::AngleAxisd(angle, step.rotation / angle).toRotationMatrix();
         move.scale = std::exp(step.growth);
-        move.shift = centre_ + step.shift - move.scale * (move.turn * centre_);
+        move.translation = centre_ + step.translation - move.scale * (move.rotation * centre_);
         return move;
     }
 

@@ -7,13 +7,13 @@
 
 namespace ostraka {
 
-/// p -> scale turn p + shift.
+/// p -> scale rotation p + translation.
 struct Motion {
-    Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  ///< a rotation: determinant 1
-    Eigen::Vector3d shift = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< determinant 1
+    Eigen::Vector3d translation = Eigen::Vector3d::Zero();
     double scale = 1;
 
-    [[nodiscard]] Eigen::Vector3d operator()(const Eigen::Vector3d& p) const { return scale * (turn * p) + shift; }
+    [[nodiscard]] Eigen::Vector3d operator()(const Eigen::Vector3d& p) const { return scale * (rotation * p) + translation; }
     [[nodiscard]] Motion inverse() const;
     /// First `other`, then this.
     [[nodiscard]] Motion after(const Motion& other) const;

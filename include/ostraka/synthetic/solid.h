@@ -36,7 +36,7 @@ using SolidPointer = std::unique_ptr<const Solid>;
 /// Where a solid stands: its own frame is turned, then moved.
 struct Placement {
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-    Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+    Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
 };
 
 /// Value: (|p / radii| - 1) times the smallest radius.
