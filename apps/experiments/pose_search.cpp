@@ -55,13 +55,14 @@ struct PoseError {
     double degrees = 180, percent = 100;
 };
 
-PoseError error_of(const Motion& found, const Motion& truth, const Vector3d& middle, double diagonal, const Freedom& freedom) {
+PoseError error_of(const Motion& found, const Motion& truth, const Vector3d& middle, double diagonal,
+                   const SlippableMotions& slippable) {
     // What the shape leaves open does not count: the turn about a line, where there is one.
     const Motion between = found.after(truth.inverse());
     const Vector3d there = truth(middle);
     PoseError error{Eigen::AngleAxisd(between.rotation).angle() * 180 / std::numbers::pi,
                     100 * (between(there) - there).norm() / diagonal};
-    if (freedom.kind != FreedomKind::none && freedom.contains(between, there, 5 * std::numbers::pi / 180, 0.02 * diagonal))
+    if (slippable.kind != SlippableKind::none && slippable.contains(between, there, 5 * std::numbers::pi / 180, 0.02 * diagonal))
         error = {0, 0};
     return error;
 }
@@ -151,7 +152,7 @@ private:
         const PoseSearchResult result = search_->find(piece.mesh);
         const double seconds = watch.seconds().processor;
         const PoseCandidate& best = result.candidates.front();
-        const PoseError error = error_of(best.pose, truth, middle, diagonal, result.freedom);
+        const PoseError error = error_of(best.pose, truth, middle, diagonal, result.slippable);
         const bool member = case_.kind == Case::Kind::member;
         const bool right =
             case_.kind != Case::Kind::stranger && error.degrees < (member ? 15 : 5) && error.percent < (member ? 5 : 2);
@@ -170,7 +171,7 @@ private:
              << options_.erosion << ',' << seed << ',' << error.degrees << ',' << error.percent << ',' << right << ','
              << (rank >= 0) << ',' << best.score << ',' << best.share << ','
              << (result.candidates.size() > 1 ? result.candidates[1].score : 0) << ',' << result.margin << ','
-             << result.confidence << ',' << result.decided << ',' << to_string(result.freedom.kind) << ',' << seconds << ','
+             << result.confidence << ',' << result.decided << ',' << to_string(result.slippable.kind) << ',' << seconds << ','
              << rank << '\n';
     }
 

@@ -224,9 +224,10 @@ struct Fit final : Operation {
             "fragments",
             {names.fragments[k],
              !one.problem.empty() ? "left out"
-             : search == nullptr  ? "placed"
-                                  : "found, confidence " + number(search->confidence, 3) +
-                                       (search->freedom.kind == FreedomKind::none ? "" : "; open: " + search->freedom.text()),
+             : search == nullptr
+                 ? "placed"
+                 : "found, confidence " + number(search->confidence, 3) +
+                       (search->slippable.kind == SlippableKind::none ? "" : "; open: " + search->slippable.text()),
              std::to_string(count) + " of " + std::to_string(one.landmarks.size()),
              one.problem.empty() ? number(one.residual, 3) : "-", one.own_scale > 0 ? number(one.own_scale, 4) : "-", wrong});
     }

@@ -31,7 +31,7 @@ JsonValue placement_of(const FragmentPlacement& one, JsonAllocator& allocator) {
 
 /// What a search had to say of a fragment's pose.
 JsonValue search_of(const PoseSearchResult& one, JsonAllocator& allocator) {
-    JsonValue entry(rapidjson::kObjectType), freedom(rapidjson::kObjectType), ways(rapidjson::kArrayType);
+    JsonValue entry(rapidjson::kObjectType), slippable(rapidjson::kObjectType), ways(rapidjson::kArrayType);
     const auto triple = [&](const Eigen::Vector3d& v) {
         JsonValue list(rapidjson::kArrayType);
         for (int i = 0; i < 3; ++i) list.PushBack(v[i], allocator);
@@ -42,17 +42,17 @@ JsonValue search_of(const PoseSearchResult& one, JsonAllocator& allocator) {
         add_members(entry, allocator, "score", one.candidates.front().score, "share", one.candidates.front().share);
     }
     if (!one.reason.empty()) add_member(entry, "reason", one.reason, allocator);
-    add_member(freedom, "kind", to_string(one.freedom.kind), allocator);
-    if (one.freedom.kind != FreedomKind::none) {
-        add_members(freedom, allocator, "text", one.freedom.text(), "point", triple(one.freedom.point), "direction",
-                    triple(one.freedom.direction));
+    add_member(slippable, "kind", to_string(one.slippable.kind), allocator);
+    if (one.slippable.kind != SlippableKind::none) {
+        add_members(slippable, allocator, "text", one.slippable.text(), "point", triple(one.slippable.point), "direction",
+                    triple(one.slippable.direction));
     }
     for (const FreeWay& way : one.ways) {
-        JsonValue item = json_object(allocator, "turns", way.turns, "least", way.least, "most", way.most);
+        JsonValue item = json_object(allocator, "turns", way.rotates, "least", way.least, "most", way.most);
         ways.PushBack(item, allocator);
     }
-    add_member(freedom, "ways", std::move(ways), allocator);
-    add_member(entry, "freedom", std::move(freedom), allocator);
+    add_member(slippable, "ways", std::move(ways), allocator);
+    add_member(entry, "freedom", std::move(slippable), allocator);
     return entry;
 }
 

@@ -14,15 +14,15 @@ using Eigen::Vector3d;
 namespace {
 
 /// Does what the search left open hold a turn about the axis? On a small or nearly round part it is one of several motions.
-bool turns_about(const Freedom& freedom, const Vector3d& direction) {
-    switch (freedom.kind) {
-        case FreedomKind::none:
-        case FreedomKind::shift:
+bool turns_about(const SlippableMotions& slippable, const Vector3d& direction) {
+    switch (slippable.kind) {
+        case SlippableKind::none:
+        case SlippableKind::translation:
             return false;
-        case FreedomKind::turn:
-        case FreedomKind::tube:
-        case FreedomKind::screw:
-            return std::abs(freedom.direction.dot(direction)) > std::cos(0.2);
+        case SlippableKind::rotation:
+        case SlippableKind::cylinder:
+        case SlippableKind::helix:
+            return std::abs(slippable.direction.dot(direction)) > std::cos(0.2);
         default:
             return true;
     }
@@ -38,7 +38,7 @@ std::optional<BreakTurns> decide_free_turns(const Mesh& scaled, const std::vecto
                                             const std::vector<std::optional<PoseSearchResult>>& searched,
                                             std::vector<FragmentPlacement>& placed, const BreakTurnOptions& options) {
     const auto open = [&](std::size_t k) {
-        return k < searched.size() && searched[k] && searched[k]->decided && searched[k]->freedom.kind != FreedomKind::none;
+        return k < searched.size() && searched[k] && searched[k]->decided && searched[k]->slippable.kind != SlippableKind::none;
     };
     std::vector<std::size_t> number;
     std::size_t free = 0, breaks = 0;
@@ -57,7 +57,7 @@ std::optional<BreakTurns> decide_free_turns(const Mesh& scaled, const std::vecto
     std::vector<TurnableSherd> sherds;
     free = 0;
     for (const std::size_t k : number) {
-        const bool turns = open(k) && turns_about(searched[k]->freedom, direction);
+        const bool turns = open(k) && turns_about(searched[k]->slippable, direction);
         free += turns ? 1 : 0;
         sherds.push_back({fragments[k], placed[k].pose, !turns});
     }

@@ -63,7 +63,7 @@ JsonValue to_json(const Motion& motion, JsonAllocator& allocator) {
     return entry;
 }
 JsonValue to_json(const PoseSearchResult& result, JsonAllocator& allocator) {
-    JsonValue entry(rapidjson::kObjectType), candidates(rapidjson::kArrayType), freedom(rapidjson::kObjectType),
+    JsonValue entry(rapidjson::kObjectType), candidates(rapidjson::kArrayType), slippable(rapidjson::kObjectType),
         ways(rapidjson::kArrayType);
     for (const PoseCandidate& one : result.candidates) {
         JsonValue item = json_object(allocator, "pose", to_json(one.pose, allocator), "scale", one.scale, "score", one.score,
@@ -72,12 +72,14 @@ JsonValue to_json(const PoseSearchResult& result, JsonAllocator& allocator) {
     }
     add_members(entry, allocator, "candidates", std::move(candidates), "margin", result.margin, "confidence", result.confidence,
                 "decided", result.decided, "reason", result.reason);
-    add_members(freedom, allocator, "kind", to_string(result.freedom.kind), "point", to_json(result.freedom.point, allocator),
-                "direction", to_json(result.freedom.direction, allocator), "pitch", result.freedom.pitch);
-    add_member(entry, "freedom", std::move(freedom), allocator);
+    add_members(slippable, allocator, "kind", to_string(result.slippable.kind), "point",
+                to_json(result.slippable.point, allocator), "direction", to_json(result.slippable.direction, allocator), "pitch",
+                result.slippable.pitch);
+    add_member(entry, "freedom", std::move(slippable), allocator);
     for (const FreeWay& way : result.ways) {
-        JsonValue item = json_object(allocator, "point", to_json(way.point, allocator), "direction",
-                                     to_json(way.direction, allocator), "turns", way.turns, "least", way.least, "most", way.most);
+        JsonValue item =
+            json_object(allocator, "point", to_json(way.point, allocator), "direction", to_json(way.direction, allocator),
+                        "turns", way.rotates, "least", way.least, "most", way.most);
         ways.PushBack(item, allocator);
     }
     add_member(entry, "ways", std::move(ways), allocator);
@@ -93,11 +95,11 @@ Motion motion_from(const JsonValue& entry) {
     motion.scale = entry["scale"].GetDouble();
     return motion;
 }
-FreedomKind freedom_kind_from(const std::string& name) {
-    for (const FreedomKind kind : {FreedomKind::none, FreedomKind::turn, FreedomKind::shift, FreedomKind::screw,
-                                   FreedomKind::tube, FreedomKind::ball, FreedomKind::plane})
+SlippableKind slippable_kind_from(const std::string& name) {
+    for (const SlippableKind kind : {SlippableKind::none, SlippableKind::rotation, SlippableKind::translation,
+                                     SlippableKind::helix, SlippableKind::cylinder, SlippableKind::sphere, SlippableKind::plane})
         if (to_string(kind) == name) return kind;
-    return FreedomKind::more;
+    return SlippableKind::more;
 }
 PoseSearchResult result_from(const JsonValue& entry) {
     PoseSearchResult result;
@@ -108,11 +110,11 @@ PoseSearchResult result_from(const JsonValue& entry) {
     result.confidence = entry["confidence"].GetDouble();
     result.decided = entry["decided"].GetBool();
     result.reason = entry["reason"].GetString();
-    const JsonValue& freedom = entry["freedom"];
-    result.freedom.kind = freedom_kind_from(freedom["kind"].GetString());
-    result.freedom.point = vector_from(freedom["point"]);
-    result.freedom.direction = vector_from(freedom["direction"]);
-    result.freedom.pitch = freedom["pitch"].GetDouble();
+    const JsonValue& slippable = entry["freedom"];
+    result.slippable.kind = slippable_kind_from(slippable["kind"].GetString());
+    result.slippable.point = vector_from(slippable["point"]);
+    result.slippable.direction = vector_from(slippable["direction"]);
+    result.slippable.pitch = slippable["pitch"].GetDouble();
     for (const auto& item : entry["ways"].GetArray())
         result.ways.push_back({vector_from(item["point"]), vector_from(item["direction"]), item["turns"].GetBool(),
                                item["least"].GetDouble(), item["most"].GetDouble()});

@@ -83,7 +83,7 @@ bool close_by_landmarks(const std::vector<LandmarkPair>& pairs, double scale, do
             along += (t - p).dot(d) / static_cast<double>(pairs.size());
         }
         Motion move;
-        if (way.turns) {
+        if (way.rotates) {
             const bool round = way.most - way.least >= 2 * pi - 0.2;
             const double angle = std::atan2(sine, cosine);
             move.rotation = Eigen::AngleAxisd(round ? angle : std::clamp(angle, way.least, way.most), d).toRotationMatrix();
@@ -97,7 +97,7 @@ bool close_by_landmarks(const std::vector<LandmarkPair>& pairs, double scale, do
         if ((pose(pair.on_fragment) - scale * pair.on_template).norm() > limit) return false;
     placed.pose = pose;
     for (LandmarkResidual& landmark : placed.landmarks) landmark.used = true;
-    search.freedom.kind = FreedomKind::none;
+    search.slippable.kind = SlippableKind::none;
     search.ways.clear();
     return true;
 }

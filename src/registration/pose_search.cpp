@@ -247,9 +247,9 @@ struct PoseSearch::State {
 
     /// What the shape of the part leaves open and the whole bears out from this place on: in the part's frame. `ways`, if asked
     /// for, are on the scaled whole.
-    [[nodiscard]] Freedom open_freedom(const SurfacePoints& points, const PoseCandidate& at, double tolerance,
-                                       std::vector<FreeWay>* ways) const {
-        constexpr double least_turn = pi / 12;
+    [[nodiscard]] SlippableMotions slippable_from(const SurfacePoints& points, const PoseCandidate& at, double tolerance,
+                                                  std::vector<FreeWay>* ways) const {
+        constexpr double least_rotation = pi / 12;
         const SurfacePoints some = thinned(points, 300);
         const Extent extent = extent_of(points);
         const Nearness near(tolerance / at.scale);
@@ -266,24 +266,25 @@ struct PoseSearch::State {
             places.push_back(back(grid->points().places[static_cast<std::size_t>(j)]));
             normals.push_back(back.rotation * grid->points().normals[static_cast<std::size_t>(j)]);
         }
-        Freedom freedom;
-        // A flat bowl is nearly a plane and nearly a ball: what it leaves open at all is told by looking closer.
+        SlippableMotions slippable;
+        // A flat bowl is nearly a plane and nearly a sphere: what it leaves open at all is seen by looking closer.
         for (const double slide : {0.1, 0.06, 0.035}) {
-            freedom = freedom_of(places, normals, slide);
-            if (freedom.kind != FreedomKind::more) break;
+            slippable = slippable_motions_of(places, normals, slide);
+            if (slippable.kind != SlippableKind::more) break;
         }
-        if (freedom.kind == FreedomKind::none || freedom.kind == FreedomKind::more) return freedom;
+        if (slippable.kind == SlippableKind::none || slippable.kind == SlippableKind::more) return slippable;
         const double missing = 1 - score_on(*grid, some, onto, near);
-        const auto list = freedom.ways(pi, whole.diagonal() * at.scale, 72);
-        bool any_turn = false, any_shift = false;
+        const auto list = slippable.ways(pi, whole.diagonal() * at.scale, 72);
+        bool any_rotation = false, any_translation = false;
         for (const auto& way : list) {
             double reached = 0;
-            for (const Freedom::Step& step : way) {
+            for (const SlippableMotions::Step& step : way) {
                 if (1 - score_on(*grid, some, onto.after(step.motion), near) > 1.2 * missing + 0.03) break;
                 reached = step.amount;
             }
-            const bool turns = way.front().turns;
-            if (std::abs(reached) >= (turns ? least_turn : length_apart * extent.size)) (turns ? any_turn : any_shift) = true;
+            const bool rotates = way.front().rotates;
+            if (std::abs(reached) >= (rotates ? least_rotation : length_apart * extent.size))
+                (rotates ? any_rotation : any_translation) = true;
             if (ways == nullptr) continue;
             // Ways come for one sign, then for the other.
             const auto number = static_cast<std::size_t>(&way - list.data());
@@ -291,21 +292,21 @@ struct PoseSearch::State {
                 (*ways)[number - list.size() / 2].least = reached;
             } else {
                 FreeWay& one = ways->emplace_back();
-                one.turns = turns;
+                one.rotates = rotates;
                 one.most = reached;
-                one.point = at.pose(freedom.point);
-                one.direction = at.pose.rotation * (turns ? Vector3d(Eigen::AngleAxisd(way.front().motion.rotation).axis())
-                                                          : Vector3d(way.front().motion.translation.normalized()));
+                one.point = at.pose(slippable.point);
+                one.direction = at.pose.rotation * (rotates ? Vector3d(Eigen::AngleAxisd(way.front().motion.rotation).axis())
+                                                            : Vector3d(way.front().motion.translation.normalized()));
             }
         }
-        if (freedom.kind == FreedomKind::tube && any_turn != any_shift)
-            freedom.kind = any_turn ? FreedomKind::turn : FreedomKind::shift;
-        if (!any_turn && !any_shift) freedom.kind = FreedomKind::none;
+        if (slippable.kind == SlippableKind::cylinder && any_rotation != any_translation)
+            slippable.kind = any_rotation ? SlippableKind::rotation : SlippableKind::translation;
+        if (!any_rotation && !any_translation) slippable.kind = SlippableKind::none;
         if (ways != nullptr)
             std::erase_if(*ways, [&](const FreeWay& one) {
-                return one.most - one.least < (one.turns ? least_turn : length_apart * extent.size);
+                return one.most - one.least < (one.rotates ? least_rotation : length_apart * extent.size);
             });
-        return freedom;
+        return slippable;
     }
 
     void decide(const SurfacePoints& points, double tolerance, PoseSearchResult& result) const;
@@ -313,10 +314,10 @@ struct PoseSearch::State {
 
 void PoseSearch::State::decide(const SurfacePoints& points, double tolerance, PoseSearchResult& result) const {
     const PoseCandidate& best = result.candidates.front();
-    const Freedom open = open_freedom(points, best, tolerance, &result.ways);
-    result.freedom = open;
-    result.freedom.point = best.pose(open.point);
-    result.freedom.direction = best.pose.rotation * open.direction;
+    const SlippableMotions open = slippable_from(points, best, tolerance, &result.ways);
+    result.slippable = open;
+    result.slippable.point = best.pose(open.point);
+    result.slippable.direction = best.pose.rotation * open.direction;
     const bool alone = result.candidates.size() < 2;
     const double second = alone ? 0 : result.candidates[1].score;
     result.margin = std::min(most_margin, std::log((1 - second + 0.02) / (1 - best.score + 0.02)));
@@ -324,11 +325,11 @@ void PoseSearch::State::decide(const SurfacePoints& points, double tolerance, Po
     result.confidence = 1 / (1 + std::exp(-rated));
     const auto per_cent = [](double share) { return digits(100 * share, 3) + " %"; };
     const SurfacePoints some = thinned(points, 300);
-    const FreedomKind own = freedom_of(some.places, some.normals, 0.02).kind;
-    if (own == FreedomKind::plane) {
+    const SlippableKind own = slippable_motions_of(some.places, some.normals, 0.02).kind;
+    if (own == SlippableKind::plane) {
         result.confidence = 0;
         result.reason = "it is flat: it lies as well in any flat place";
-    } else if (open.kind == FreedomKind::more || own == FreedomKind::more || points.size() < 30) {
+    } else if (open.kind == SlippableKind::more || own == SlippableKind::more || points.size() < 30) {
         result.confidence = 0;
         result.reason = "it has too little shape: it lies as well nearly anywhere";
     } else if (result.confidence >= options.least_confidence) {
@@ -423,10 +424,10 @@ PoseSearchResult PoseSearch::find(const Mesh& part, const std::vector<bool>& of_
         return PoseCandidate{in_file(one.pose, one.scale), one.scale, one.score, 0, 0, 0};
     };
     // What the part's shape leaves open, as far as the place proposed first bears it out: those places are one.
-    const Freedom open = s.open_freedom(middling, pose_of(all.front()), tolerance, nullptr);
+    const SlippableMotions open = s.slippable_from(middling, pose_of(all.front()), tolerance, nullptr);
     const auto another = [&](const PoseCandidate& one, const PoseCandidate& than) {
         if (!really_different(one, than)) return false;
-        if (open.kind == FreedomKind::none || std::abs(std::log(one.scale / than.scale)) > scale_apart) return true;
+        if (open.kind == SlippableKind::none || std::abs(std::log(one.scale / than.scale)) > scale_apart) return true;
         return !open.contains(than.pose.inverse().after(one.pose), extent.middle, angle_apart, length_apart * extent.size);
     };
     const auto keep_others = [&](std::vector<PoseCandidate>& list, const PoseCandidate& one) {

@@ -172,7 +172,7 @@ TEST_F(PoseSearchFile, ComesBackToTheBit) {
         EXPECT_EQ(one->candidates[i].score, other->candidates[i].score);
     }
     EXPECT_EQ(one->confidence, other->confidence);
-    EXPECT_EQ(one->freedom.kind, other->freedom.kind);
+    EXPECT_EQ(one->slippable.kind, other->slippable.kind);
     EXPECT_EQ(to_text(again.to_json(document.GetAllocator())), to_text(searches.to_json(document.GetAllocator())));
 }
 

@@ -205,7 +205,7 @@ TEST(FreeTurns, OnlyWhereASearchLeftThemOpen) {
         one->decided = true;
     }
     EXPECT_FALSE(decide_free_turns(pot.whole, fragments, searched, placed)) << "nothing is open";
-    for (auto& one : searched) one->freedom.kind = FreedomKind::turn;
+    for (auto& one : searched) one->slippable.kind = SlippableKind::rotation;
     BreakTurnOptions never;
     never.turns = BreakTurnOptions::Turns::never;
     EXPECT_FALSE(decide_free_turns(pot.whole, fragments, searched, placed, never));

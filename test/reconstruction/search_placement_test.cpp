@@ -136,10 +136,10 @@ TEST(SearchPlacement, OneLandmarkDecidesTheTurnOfAVessel) {
     set.annotations.push_back(test::landmark(0, "mark", same));
     const Reconstruction without = reconstruct(mesh, set, {}, {&one.fragment});
     ASSERT_TRUE(without.searched[0].has_value() && without.searched[0]->decided);
-    EXPECT_EQ(without.searched[0]->freedom.kind, FreedomKind::turn);
+    EXPECT_EQ(without.searched[0]->slippable.kind, SlippableKind::rotation);
     one.fragment.annotations.annotations.push_back(test::landmark(0, "mark", far));
     const Reconstruction with = reconstruct(mesh, set, {}, {&one.fragment});
-    EXPECT_EQ(with.searched[0]->freedom.kind, FreedomKind::none);
+    EXPECT_EQ(with.searched[0]->slippable.kind, SlippableKind::none);
     EXPECT_LT((with.placement.fragments[0].pose.rotation - one.pose.rotation).norm(), 0.02);
     ASSERT_EQ(with.placement.fragments[0].landmarks.size(), 1U);
     EXPECT_TRUE(with.placement.fragments[0].landmarks[0].used);

@@ -71,7 +71,7 @@ TEST(PoseSearch, FindsWhereAPieceBelongs) {
             EXPECT_LT(best.inside, 0.1);
             EXPECT_EQ(best.scale, 1);
             EXPECT_EQ(best.pose.scale, 1);
-            EXPECT_EQ(found.freedom.kind, FreedomKind::none);
+            EXPECT_EQ(found.slippable.kind, SlippableKind::none);
             for (std::size_t k = 1; k < found.candidates.size(); ++k)
                 EXPECT_LE(found.candidates[k].score, found.candidates[k - 1].score);
         }
@@ -133,16 +133,17 @@ TEST(PoseSearch, NamesWhatABallLeavesOpen) {
     const SurfaceSearch surface(whole);
     const BrokenPiece piece = broken(whole, Point(1, 2, 5), 0.2);
     const PoseSearchResult found = PoseSearch(surface).find(piece.mesh);
-    EXPECT_EQ(found.freedom.kind, FreedomKind::ball);
-    EXPECT_LT((found.freedom.point - Vector3d(1, 2, 3)).norm(), 0.05);
+    EXPECT_EQ(found.slippable.kind, SlippableKind::sphere);
+    EXPECT_LT((found.slippable.point - Vector3d(1, 2, 3)).norm(), 0.05);
     EXPECT_EQ(found.ways.size(), 3u);
     for (const FreeWay& way : found.ways) {
-        EXPECT_TRUE(way.turns);
+        EXPECT_TRUE(way.rotates);
         EXPECT_GT(way.most - way.least, 6);  // all around
     }
     // But for that, the piece lies where it should.
     ASSERT_TRUE(found.decided) << found.reason;
-    EXPECT_TRUE(found.freedom.contains(found.candidates.front().pose.after(piece.pose.inverse()), Vector3d(1, 2, 3), 0.05, 0.05));
+    EXPECT_TRUE(
+        found.slippable.contains(found.candidates.front().pose.after(piece.pose.inverse()), Vector3d(1, 2, 3), 0.05, 0.05));
 }
 
 TEST(PoseSearch, NamesTheTurnOfAVessel) {
@@ -154,11 +155,11 @@ TEST(PoseSearch, NamesTheTurnOfAVessel) {
     const BrokenPiece piece = broken(whole, Point(1, 0, 0.3), 0.2);
     const PoseSearchResult found = PoseSearch(surface).find(piece.mesh);
     ASSERT_TRUE(found.decided) << found.reason;
-    EXPECT_EQ(found.freedom.kind, FreedomKind::turn);
-    EXPECT_GT(std::abs(found.freedom.direction.z()), 0.999);
-    EXPECT_LT(found.freedom.point.head<2>().norm(), 0.02);
+    EXPECT_EQ(found.slippable.kind, SlippableKind::rotation);
+    EXPECT_GT(std::abs(found.slippable.direction.z()), 0.999);
+    EXPECT_LT(found.slippable.point.head<2>().norm(), 0.02);
     const Motion between = found.candidates.front().pose.after(piece.pose.inverse());
-    EXPECT_TRUE(found.freedom.contains(between, Vector3d::Zero(), 0.03, 0.03));
+    EXPECT_TRUE(found.slippable.contains(between, Vector3d::Zero(), 0.03, 0.03));
     EXPECT_LT(std::abs(between(Vector3d(0, 0, 1)).z() - 1), 0.02);
 }
 

@@ -33,7 +33,7 @@ public:
         Eigen::Vector3d translation = Eigen::Vector3d::Zero();  ///< a length
         double growth = 0;                                      ///< logarithm of the scale
     };
-    /// `damping`, as a share of the trace, keeps what the planes leave open (of a ball, a plane or a tube) as it is.
+    /// `damping`, as a share of the trace, keeps what the planes leave open (of a sphere, a plane or a cylinder) as it is.
     [[nodiscard]] Step solve(double damping, bool scaled = false) const {
         const int n = scaled ? 7 : 6;
         Eigen::Matrix<double, 7, 7> damped = normal_;

@@ -36,7 +36,7 @@ struct PartAlignment {
 /// Trimmed iterative closest points (Chetverikov, Stepanov and Krsek 2005), point to plane (Chen and Medioni 1992), from `start`:
 /// samples of the faces marked in `of_part` (all if empty) are paired with the nearest point of the whole whose normal agrees,
 /// the nearest `trim` of them kept; anchors count as pairs of points. Each step is a linear least squares problem for turn and
-/// shift; motions that the pairs leave open (a ball, a plane, a tube) are not made. The best pose met is kept. Throws Error
+/// shift; motions that the pairs leave open (a sphere, a plane, a cylinder) are not made. The best pose met is kept. Throws Error
 /// (input) for a part without area.
 PartAlignment align_part(const Mesh& part, const std::vector<bool>& of_part, const SurfaceSearch& whole, const Motion& start,
                          const std::vector<Anchor>& anchors = {}, const PartAlignmentOptions& options = {});

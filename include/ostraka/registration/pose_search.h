@@ -3,7 +3,7 @@
 
 #include "ostraka/core/options.h"
 #include "ostraka/geom/surface_search.h"
-#include "ostraka/registration/freedoms.h"
+#include "ostraka/registration/slippable_motions.h"
 
 #include <memory>
 #include <string>
@@ -36,21 +36,21 @@ struct PoseCandidate {
     double residual = 0;  ///< root mean square distance of what lies within the tolerance, in the part's unit
 };
 
-/// How far the part can be moved from its pose along a motion that its shape leaves open.
+/// How far the part can be moved from its pose along a slippable motion.
 struct FreeWay {
     Eigen::Vector3d point = Eigen::Vector3d::Zero();       ///< of the line, on the scaled whole
     Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< of the line
-    bool turns = false;                                    ///< about the line; else along it
+    bool rotates = false;                                  ///< about the line; else along it
     double least = 0, most = 0;  ///< how far either way it lies as well as in the pose: radians, or in the part's unit
 };
 
 struct PoseSearchResult {
     std::vector<PoseCandidate> candidates;  ///< best first, each really another place than those before it
     double margin = 0;      ///< how much better the best explains the part than the second does: log ratio of what they leave
-    double confidence = 0;  ///< that the first is right, but for what `freedom` leaves open
+    double confidence = 0;  ///< that the first is right, but for what `slippable` leaves open
     bool decided = false;
-    std::string reason;  ///< why not decided, in words; empty if it is
-    Freedom freedom;     ///< of the first candidate, on the scaled whole
+    std::string reason;          ///< why not decided, in words; empty if it is
+    SlippableMotions slippable;  ///< of the first candidate, on the scaled whole
     std::vector<FreeWay> ways;
 };
 

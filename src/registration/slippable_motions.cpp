@@ -1,4 +1,4 @@
-#include "ostraka/registration/freedoms.h"
+#include "ostraka/registration/slippable_motions.h"
 #include "ostraka/core/dense.h"
 
 #include <algorithm>
@@ -9,12 +9,12 @@ namespace ostraka {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-std::string to_string(FreedomKind kind) {
+std::string to_string(SlippableKind kind) {
     static constexpr const char* words[]{"none", "turn", "shift", "screw", "tube", "ball", "plane", "more"};
     return words[static_cast<std::size_t>(kind)];
 }
 
-std::string Freedom::text() const {
+std::string SlippableMotions::text() const {
     static constexpr const char* words[]{"none",
                                          "turn about a line",
                                          "shift along a line",
@@ -41,46 +41,46 @@ Vector3d across(const Vector3d& direction) {
 
 }  // namespace
 
-std::vector<std::vector<Freedom::Step>> Freedom::ways(double turn, double shift, int steps) const {
+std::vector<std::vector<SlippableMotions::Step>> SlippableMotions::ways(double radians, double length, int steps) const {
     std::vector<std::vector<Step>> all;
-    const auto add_turn = [&](const Vector3d& axis, double sign, double along) {
+    const auto add_rotation = [&](const Vector3d& axis, double sign, double along) {
         auto& way = all.emplace_back();
         for (int k = 1; k <= steps; ++k) {
-            const double angle = sign * turn * k / steps;
+            const double angle = sign * radians * k / steps;
             way.push_back({true, turned(point, axis, angle, along * angle), angle});
         }
     };
-    const auto add_shift = [&](const Vector3d& axis, double sign) {
+    const auto add_translation = [&](const Vector3d& axis, double sign) {
         auto& way = all.emplace_back();
         for (int k = 1; k <= steps; ++k) {
-            const double length = sign * shift * k / steps;
+            const double amount = sign * length * k / steps;
             Motion motion;
-            motion.translation = length * axis;
-            way.push_back({false, motion, length});
+            motion.translation = amount * axis;
+            way.push_back({false, motion, amount});
         }
     };
     const Vector3d u = across(direction), w = direction.cross(u);
     for (const double sign : {1.0, -1.0}) {
         switch (kind) {
-            case FreedomKind::turn:
-                add_turn(direction, sign, 0);
+            case SlippableKind::rotation:
+                add_rotation(direction, sign, 0);
                 break;
-            case FreedomKind::screw:
-                add_turn(direction, sign, pitch);
+            case SlippableKind::helix:
+                add_rotation(direction, sign, pitch);
                 break;
-            case FreedomKind::shift:
-                add_shift(direction, sign);
+            case SlippableKind::translation:
+                add_translation(direction, sign);
                 break;
-            case FreedomKind::tube:
-                add_turn(direction, sign, 0);
-                add_shift(direction, sign);
+            case SlippableKind::cylinder:
+                add_rotation(direction, sign, 0);
+                add_translation(direction, sign);
                 break;
-            case FreedomKind::ball:
-                for (const Vector3d& axis : {direction, u, w}) add_turn(axis, sign, 0);
+            case SlippableKind::sphere:
+                for (const Vector3d& axis : {direction, u, w}) add_rotation(axis, sign, 0);
                 break;
-            case FreedomKind::plane:
-                add_turn(direction, sign, 0);
-                for (const Vector3d& axis : {u, w}) add_shift(axis, sign);
+            case SlippableKind::plane:
+                add_rotation(direction, sign, 0);
+                for (const Vector3d& axis : {u, w}) add_translation(axis, sign);
                 break;
             default:
                 break;
@@ -89,38 +89,39 @@ std::vector<std::vector<Freedom::Step>> Freedom::ways(double turn, double shift,
     return all;
 }
 
-bool Freedom::contains(const Motion& motion, const Vector3d& around, double angle, double length) const {
+bool SlippableMotions::contains(const Motion& motion, const Vector3d& around, double angle, double length) const {
     const Vector3d moved = motion(point) - point, image = motion.rotation * direction;
     const double lean = std::acos(std::clamp(image.dot(direction), -1.0, 1.0)), along = moved.dot(direction);
-    const Eigen::AngleAxisd turn(motion.rotation);
+    const Eigen::AngleAxisd rotation(motion.rotation);
     switch (kind) {
-        case FreedomKind::turn:
+        case SlippableKind::rotation:
             return lean < angle && moved.norm() < length;
-        case FreedomKind::tube:
+        case SlippableKind::cylinder:
             return lean < angle && (moved - along * direction).norm() < length;
-        case FreedomKind::shift:
-            return turn.angle() < angle && [&] {
+        case SlippableKind::translation:
+            return rotation.angle() < angle && [&] {
                 const Vector3d way = motion(around) - around;
                 return (way - way.dot(direction) * direction).norm() < length;
             }();
-        case FreedomKind::screw: {
-            const double by = turn.angle() * (turn.axis().dot(direction) < 0 ? -1 : 1);
+        case SlippableKind::helix: {
+            const double by = rotation.angle() * (rotation.axis().dot(direction) < 0 ? -1 : 1);
             return lean < angle && (moved - pitch * by * direction).norm() < length;
         }
-        case FreedomKind::ball:
+        case SlippableKind::sphere:
             return moved.norm() < length;
-        case FreedomKind::plane:
+        case SlippableKind::plane:
             return lean < angle && std::abs((motion(around) - around).dot(image)) < length;
         default:
             return false;
     }
 }
 
-Freedom freedom_of(const std::vector<Vector3d>& places, const std::vector<Vector3d>& normals, double tolerance) {
-    Freedom freedom;
+SlippableMotions slippable_motions_of(const std::vector<Vector3d>& places, const std::vector<Vector3d>& normals,
+                                      double tolerance) {
+    SlippableMotions slippable;
     if (places.size() < 6) {
-        freedom.kind = FreedomKind::more;
-        return freedom;
+        slippable.kind = SlippableKind::more;
+        return slippable;
     }
     const auto count = static_cast<double>(places.size());
     Vector3d middle = Vector3d::Zero();
@@ -128,10 +129,10 @@ Freedom freedom_of(const std::vector<Vector3d>& places, const std::vector<Vector
     double size = 0;
     for (const Vector3d& p : places) size += (p - middle).squaredNorm() / count;
     size = std::sqrt(size);
-    freedom.point = middle;
+    slippable.point = middle;
     if (!(size > 0)) {
-        freedom.kind = FreedomKind::more;
-        return freedom;
+        slippable.kind = SlippableKind::more;
+        return slippable;
     }
     // The square along the normals against that of the whole motion: a generalised eigenvalue problem.
     using Matrix6 = Eigen::Matrix<double, 6, 6>;
@@ -150,34 +151,34 @@ Freedom freedom_of(const std::vector<Vector3d>& places, const std::vector<Vector
     const SymmetricEigenX solver = generalised_eigen(along, whole);
     int open = 0;
     while (open < 6 && solver.eigenvalues()[open] < tolerance * tolerance) ++open;
-    if (open == 0) return freedom;
+    if (open == 0) return slippable;
     const auto motions = solver.eigenvectors().leftCols(open).eval();
-    // Which of the open motions are shifts: those whose turn vanishes.
+    // Which of the open motions are translations: those whose rotation vanishes.
     const SvdX turns(motions.topRows(3), true);
     const auto& singular = turns.singularValues();
     const double part = 0.15 * motions.colwise().norm().maxCoeff();
-    const int rotations = static_cast<int>((singular.array() > part).count()), shifts = open - rotations;
+    const int rotations = static_cast<int>((singular.array() > part).count()), translations = open - rotations;
     const auto motion_of = [&](int k) -> Eigen::Matrix<double, 6, 1> { return motions * turns.matrixV().col(k); };
     // The line of a motion: w about it, v at the middle.
     const auto line_of = [&](const Eigen::Matrix<double, 6, 1>& motion) {
         const Vector3d w = motion.head<3>(), v = motion.tail<3>();
-        freedom.direction = w.normalized();
-        freedom.point = middle + size * w.cross(v) / w.squaredNorm();
-        freedom.pitch = size * w.dot(v) / w.squaredNorm();
+        slippable.direction = w.normalized();
+        slippable.point = middle + size * w.cross(v) / w.squaredNorm();
+        slippable.pitch = size * w.dot(v) / w.squaredNorm();
     };
     if (open == 1 && rotations == 0) {
-        freedom.kind = FreedomKind::shift;
-        freedom.direction = motion_of(0).tail<3>().normalized();
+        slippable.kind = SlippableKind::translation;
+        slippable.direction = motion_of(0).tail<3>().normalized();
     } else if (open == 1) {
         line_of(motion_of(0));
-        freedom.kind = std::abs(freedom.pitch) < 0.1 * size ? FreedomKind::turn : FreedomKind::screw;
-        if (freedom.kind == FreedomKind::turn) freedom.pitch = 0;
-    } else if (open == 2 && rotations == 1 && shifts == 1) {
+        slippable.kind = std::abs(slippable.pitch) < 0.1 * size ? SlippableKind::rotation : SlippableKind::helix;
+        if (slippable.kind == SlippableKind::rotation) slippable.pitch = 0;
+    } else if (open == 2 && rotations == 1 && translations == 1) {
         line_of(motion_of(0));
-        freedom.kind = FreedomKind::tube;
-        freedom.pitch = 0;
+        slippable.kind = SlippableKind::cylinder;
+        slippable.pitch = 0;
     } else if (open == 3 && rotations == 3) {
-        // The middle stays: v + w x c = 0 for each of the three.
+        // The centre stays: v + w x c = 0 for each of the three.
         Eigen::Matrix<double, 9, 3> A;
         Eigen::Matrix<double, 9, 1> b;
         for (int k = 0; k < 3; ++k) {
@@ -185,17 +186,17 @@ Freedom freedom_of(const std::vector<Vector3d>& places, const std::vector<Vector
             A.block<3, 3>(3 * k, 0) << 0, -w.z(), w.y(), w.z(), 0, -w.x(), -w.y(), w.x(), 0;
             b.segment<3>(3 * k) = -v;
         }
-        freedom.point = middle + size * Vector3d(solve_full_rank(A, b));
-        freedom.kind = FreedomKind::ball;
+        slippable.point = middle + size * Vector3d(solve_full_rank(A, b));
+        slippable.kind = SlippableKind::sphere;
     } else if (open == 3 && rotations == 1) {
         line_of(motion_of(0));
-        freedom.point = middle;
-        freedom.pitch = 0;
-        freedom.kind = FreedomKind::plane;
+        slippable.point = middle;
+        slippable.pitch = 0;
+        slippable.kind = SlippableKind::plane;
     } else {
-        freedom.kind = FreedomKind::more;
+        slippable.kind = SlippableKind::more;
     }
-    return freedom;
+    return slippable;
 }
 
 }  // namespace ostraka

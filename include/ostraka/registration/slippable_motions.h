@@ -1,0 +1,47 @@
+// Slippable motions of a surface: rigid motions along which it slides on itself (Gelfand and Guibas 2004).
+#pragma once
+
+#include "ostraka/geom/rigid_fit.h"
+
+#include <string>
+#include <vector>
+
+namespace ostraka {
+
+enum class SlippableKind {
+    none,         ///< none: the shape says where it lies
+    rotation,     ///< about a line: a surface of revolution
+    translation,  ///< along a line: a prism
+    helix,        ///< along and about a line together
+    cylinder,     ///< along and about a line, each by itself
+    sphere,       ///< about a point
+    plane,        ///< in a plane and about its normal
+    more          ///< more than any surface has: too little of it, or too small
+};
+std::string to_string(SlippableKind kind);
+
+struct SlippableMotions {
+    SlippableKind kind = SlippableKind::none;
+    Eigen::Vector3d point = Eigen::Vector3d::Zero();       ///< of the line or the plane; the centre of the sphere
+    Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< of the line; normal of the plane
+    double pitch = 0;                                      ///< of a helix: length along for a rotation of one radian
+
+    /// In words, such as "turn about a line".
+    [[nodiscard]] std::string text() const;
+    /// Motions of the group, a sample of them: amounts of -1 to 1 of `radians` and `length` along each of its directions.
+    struct Step {
+        bool rotates = false;
+        Motion motion;
+        double amount = 0;  ///< radians if it rotates, else a length
+    };
+    [[nodiscard]] std::vector<std::vector<Step>> ways(double radians, double length, int steps) const;
+    /// True if the motion is one of the group, up to an angle and a length (of where points as far as `size` from `around` go).
+    [[nodiscard]] bool contains(const Motion& motion, const Eigen::Vector3d& around, double angle, double length) const;
+};
+
+/// Of points with unit normals: which rigid motions move every point in its tangent plane, or nearly: root mean square along the
+/// normals at most `tolerance` times that of the whole motion.
+SlippableMotions slippable_motions_of(const std::vector<Eigen::Vector3d>& places, const std::vector<Eigen::Vector3d>& normals,
+                                      double tolerance = 0.1);
+
+}  // namespace ostraka
