@@ -10,7 +10,7 @@
 
 namespace ostraka::test {
 
-struct MadeSherd {
+struct SyntheticSherd {
     Mesh mesh;
     std::vector<Facet> facets;  ///< of each face
 };
@@ -52,7 +52,7 @@ inline double broken(int which, double along, double through) {
 
 /// A piece of a pot of the radius 6 and walls 0.7 thick between two breaks that run up and two that run around; the break
 /// `right` of one piece is the `left` of its neighbour.
-inline MadeSherd made_sherd(int left, int right, double from, double to, int fineness = 1) {
+inline SyntheticSherd synthetic_sherd(int left, int right, double from, double to, int fineness = 1) {
     constexpr double wall = 0.7, low = 0, high = 6, around = 6;
     const auto at = [&](double u, double v, double w) -> std::array<double, 3> {
         const double s = w - 0.5;
@@ -65,14 +65,14 @@ inline MadeSherd made_sherd(int left, int right, double from, double to, int fin
         return {radius * std::cos(angle), radius * std::sin(angle), z};
     };
     std::vector<int> side;
-    MadeSherd sherd;
+    SyntheticSherd sherd;
     sherd.mesh = build_mesh(box_grid({30 * fineness, 30 * fineness, 4 * fineness}, at, side));
     for (const int s : side) sherd.facets.push_back(s == 4 ? Facet::inner : s == 5 ? Facet::outer : Facet::fracture);
     return sherd;
 }
 
 /// A round bar whose upper end is broken; or the bar above it, whose lower end is.
-inline MadeSherd made_bar(int fineness = 1, bool above = false) {
+inline SyntheticSherd synthetic_bar(int fineness = 1, bool above = false) {
     const auto at = [above](double u, double v, double w) -> std::array<double, 3> {
         // The square onto the disc (Shirley and Chiu 1997).
         const double a = 2 * u - 1, b = 2 * v - 1, r = std::max(std::abs(a), std::abs(b));
@@ -84,13 +84,13 @@ inline MadeSherd made_bar(int fineness = 1, bool above = false) {
         return {x, y, above ? 8 - (1 - w) * (8 - end) : w * end};
     };
     std::vector<int> side;
-    MadeSherd bar;
+    SyntheticSherd bar;
     bar.mesh = build_mesh(box_grid({16 * fineness, 16 * fineness, 30 * fineness}, at, side));
     for (const int s : side) bar.facets.push_back(s == (above ? 4 : 5) ? Facet::fracture : Facet::outer);
     return bar;
 }
 
-inline double agreement(const MadeSherd& truth, const std::vector<Facet>& facets) {
+inline double agreement(const SyntheticSherd& truth, const std::vector<Facet>& facets) {
     double same = 0, all = 0;
     for (const Face face : truth.mesh.faces()) {
         const double area = face_area(truth.mesh, face);

@@ -12,11 +12,11 @@ namespace ostraka::bench {
 
 namespace {
 
-MadeMesh make_teapot(std::size_t vertices, std::uint64_t seed) {
+SyntheticMesh make_teapot(std::size_t vertices, std::uint64_t seed) {
     MakeOptions options;
     options.vertices = vertices;
     options.seed = seed;
-    return make_mesh(made_object("teapot"), options);
+    return make_mesh(synthetic_object("teapot"), options);
 }
 
 struct Target {
@@ -62,7 +62,7 @@ Making making_of(std::size_t vertices) {
 const Source& source() {
     static const Source made = [] {
         Source result;
-        MadeMesh teapot = make_teapot(50'000, 1);
+        SyntheticMesh teapot = make_teapot(50'000, 1);
         result.regions = regions_from_labels(teapot.mesh, teapot.face_labels);
         result.regions.annotations.resize(10);
         result.mesh = std::move(teapot.mesh);

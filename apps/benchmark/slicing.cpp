@@ -13,12 +13,12 @@ namespace {
 
 constexpr int planes = 200;
 
-/// A hollow vase, so that walls have a thickness: a made mesh with each triangle cut into sixteen.
+/// A hollow vase, so that walls have a thickness: a synthetic mesh with each triangle cut into sixteen.
 const Mesh& vase() {
     static const Mesh made = [] {
         MakeOptions options;
         options.vertices = 62'500;
-        Mesh mesh = make_mesh(made_object("vase"), options).mesh;
+        Mesh mesh = make_mesh(synthetic_object("vase"), options).mesh;
         RefineOptions finer;
         finer.levels = 2;
         refine(mesh, finer);

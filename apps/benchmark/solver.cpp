@@ -125,10 +125,10 @@ void closeness_and_plane(benchmark::State& state, std::size_t vertices) {
     report(state, summary);
 }
 
-/// The vertices of each flower of the made teapot.
-std::vector<std::vector<int>> flowers_of(const MadeMesh& made) {
+/// The vertices of each flower of the synthetic teapot.
+std::vector<std::vector<int>> flowers_of(const SyntheticMesh& made) {
     std::vector<std::vector<int>> flowers;
-    const auto& parts = made_object("teapot").parts;
+    const auto& parts = synthetic_object("teapot").parts;
     for (std::size_t part = 0; part < parts.size(); ++part) {
         if (parts[part].find("flower") == std::string::npos) continue;
         std::set<int> members;
@@ -146,7 +146,7 @@ std::vector<std::vector<int>> flowers_of(const MadeMesh& made) {
 void same_level(benchmark::State& state, int window) {
     MakeOptions making;
     making.vertices = 20'000;
-    const MadeMesh made = make_mesh(made_object("teapot"), making);
+    const SyntheticMesh made = make_mesh(synthetic_object("teapot"), making);
     const Mesh& mesh = made.mesh;
     const Points rest = points_of_mesh(mesh);
     Points stretched = rest;
@@ -257,7 +257,7 @@ void through_cage(benchmark::State& state, Kind kind) {
 void interactive_edit(benchmark::State& state) {
     MakeOptions making;
     making.vertices = 60'000;
-    const MadeMesh made = make_mesh(made_object("teapot"), making);
+    const SyntheticMesh made = make_mesh(synthetic_object("teapot"), making);
     const Mesh cage_mesh = make_cage(made.mesh).cage;
     const Points mesh_points = points_of_mesh(made.mesh), cage = points_of_mesh(cage_mesh);
     // Rows for the handles themselves below those of the mesh, so that they have targets.

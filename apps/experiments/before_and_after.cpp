@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 
 /// Figure 5.19.
 std::vector<Problem> hand(const Path& folder, std::uint64_t vertices) {
-    const auto subject = std::make_shared<Subject>(made_subject("hand", vertices));
+    const auto subject = std::make_shared<Subject>(synthetic_subject("hand", vertices));
     for (Annotation& annotation : subject->set.annotations) {
         if (annotation.tag != "ring finger" && annotation.tag != "little finger") continue;
         Attribute attribute;

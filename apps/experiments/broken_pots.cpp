@@ -1,4 +1,4 @@
-// Made vessels, broken into sherds of known place, on the whole vessel: turns found again by the breaks.
+// Synthetic vessels, broken into sherds of known place, on the whole vessel: turns found again by the breaks.
 #include "breaks.h"
 #include "experiments.h"
 #include "report.h"

@@ -105,7 +105,7 @@ void stretch_arm(Chair& chair) {
 
 Chair make_chair(std::uint64_t vertices) {
     Chair chair;
-    chair.subject = made_subject("chair", vertices, bent);
+    chair.subject = synthetic_subject("chair", vertices, bent);
     find_segment(chair);
     stretch_arm(chair);
     return chair;

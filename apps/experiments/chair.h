@@ -14,7 +14,7 @@ struct Chair {
     int count = 0;              ///< slices
     Eigen::Vector3d point, direction;  ///< the leg's axis at rest
 };
-/// The made chair with supports that are bent backwards at their upper half: only their feet continue the legs.
+/// The synthetic chair with supports that are bent backwards at their upper half: only their feet continue the legs.
 Chair make_chair(std::uint64_t vertices);
 
 struct AxisDeviation {

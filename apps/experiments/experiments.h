@@ -97,14 +97,14 @@ void technique(const TechniqueExperiment& options);
 /// The faces nearest to a seed vertex (by edge paths), up to a share of the mesh's area.
 std::vector<Index> disc(const Mesh& mesh, Vertex seed, double share);
 
-/// Planted proportions found in many made populations, and false ones.
+/// Planted proportions found in many synthetic populations, and false ones.
 struct FixedProportionsOptions {
     std::string output = "experiments-output/proportions";
     int seeds = 100;
 };
 void fixed_proportions(const FixedProportionsOptions& options);
 
-/// Fragments of deformed copies of a made template, fitted: pose, observed part, missing part, constraints.
+/// Fragments of deformed copies of a synthetic template, fitted: pose, observed part, missing part, constraints.
 struct FragmentExperiment {
     std::string output = "experiments-output/fragments";
     std::vector<double> shares{0.1, 0.25, 0.5};
@@ -118,7 +118,7 @@ void fragments(const FragmentExperiment& options);
 /// others.
 void verdicts(const FragmentExperiment& options);
 
-/// Which similarity and epsilon find the moulds of made heads and of mixes of scanned faces.
+/// Which similarity and epsilon find the moulds of synthetic heads and of mixes of scanned faces.
 struct MouldExperimentOptions {
     std::string output = "experiments-output/moulds";
     std::vector<std::string> parts;  ///< of choices, wear, runs, scans; empty: all
@@ -148,11 +148,11 @@ struct BreakExperiment {
     std::string output = "experiments-output/breaks";
     std::string data = "../shared/data";  ///< folder with fragments-bottle-pair and fragments-vessel-sherds
     int motions = 3;                      ///< random ones of all sherds
-    int pots = 4;                         ///< made vessels of each kind
+    int pots = 4;                         ///< synthetic vessels of each kind
 };
 /// The sherds on the template turned from them: axes, heights and turns.
 void sherd_turns(const BreakExperiment& options);
-/// Made vessels, broken: turns by breaks with wear, noise, a piece that is missing, one of another vessel.
+/// Synthetic vessels, broken: turns by breaks with wear, noise, a piece that is missing, one of another vessel.
 void broken_pots(const BreakExperiment& options);
 
 }  // namespace ostraka::experiments

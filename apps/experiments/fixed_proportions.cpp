@@ -1,4 +1,4 @@
-// How surely planted proportions are found, and how seldom others: many made populations.
+// How surely planted proportions are found, and how seldom others: many synthetic populations.
 #include "ostraka/collection/proportions.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/report/plot.h"
@@ -17,7 +17,7 @@ namespace {
 
 struct Scenario {
     std::string name;
-    MadeMeasuresOptions made;
+    SyntheticMeasuresOptions made;
 };
 
 /// What one population gave.
@@ -25,8 +25,8 @@ struct Found {
     std::size_t planted = 0, hit = 0, wrong = 0;
 };
 
-Found find(const MadeMeasuresOptions& options, const ProportionOptions& study) {
-    const MadeMeasures made = make_measures(options);
+Found find(const SyntheticMeasuresOptions& options, const ProportionOptions& study) {
+    const SyntheticMeasures made = make_measures(options);
     Found found;
     for (const RatioRow& ratio : study_proportions(made.table, study).ratios) {
         const int a = made.groups[ratio.numerator], b = made.groups[ratio.denominator];
@@ -38,13 +38,13 @@ Found find(const MadeMeasuresOptions& options, const ProportionOptions& study) {
     return found;
 }
 
-std::vector<Found> over_seeds(const MadeMeasuresOptions& made, int seeds) {
+std::vector<Found> over_seeds(const SyntheticMeasuresOptions& made, int seeds) {
     std::vector<Found> list(static_cast<std::size_t>(seeds));
     ProportionOptions study;
     parallel_for(
         list.size(),
         [&](std::size_t s) {
-            MadeMeasuresOptions options = made;
+            SyntheticMeasuresOptions options = made;
             options.seed = s + 1;
             ProportionOptions seeded = study;
             seeded.seed = s + 1;
@@ -85,7 +85,7 @@ double coverage(int seeds, double deviation) {
 
 void fixed_proportions(const FixedProportionsOptions& options) {
     std::vector<Scenario> scenarios;
-    MadeMeasuresOptions base;
+    SyntheticMeasuresOptions base;
     const auto add = [&](const std::string& name, const auto& change) {
         Scenario scenario{name, base};
         change(scenario.made);
@@ -123,7 +123,7 @@ void fixed_proportions(const FixedProportionsOptions& options) {
     TextTable table(
         {"population", "ratios", "planted", "recall", "false discoveries", "false a population", "populations with one"});
     for (std::size_t s = 0; s < scenarios.size(); ++s) {
-        const MadeMeasuresOptions& made = scenarios[s].made;
+        const SyntheticMeasuresOptions& made = scenarios[s].made;
         const std::vector<Found> list = over_seeds(made, options.seeds);
         double planted = 0, hit = 0, wrong = 0, share = 0, any = 0;
         for (const Found& found : list) {
@@ -146,7 +146,7 @@ void fixed_proportions(const FixedProportionsOptions& options) {
     for (const int objects : {10, 20, 40, 80}) {
         PlotSeries series{std::to_string(objects) + " objects", {}};
         for (const double deviation : {0.01, 0.03, 0.05, 0.06, 0.07, 0.08, 0.09, 0.1, 0.12, 0.15}) {
-            MadeMeasuresOptions made;
+            SyntheticMeasuresOptions made;
             made.objects = objects;
             made.planted_deviation = deviation;
             double planted = 0, hit = 0;

@@ -1,4 +1,4 @@
-// The mould study over made heads and over mixes of scanned faces: which similarity and epsilon find the moulds.
+// The mould study over synthetic heads and over mixes of scanned faces: which similarity and epsilon find the moulds.
 #include "experiments.h"
 #include "report.h"
 
@@ -34,7 +34,7 @@ struct Heads {
     std::vector<bool> beard, long_hair, hand_made;
 };
 
-Heads made_heads(const MouldPopulationOptions& population, const CastOptions& cast) {
+Heads synthetic_heads(const MouldPopulationOptions& population, const CastOptions& cast) {
     const auto plan = plan_heads(population, cast);
     Heads heads;
     heads.meshes.resize(plan.size());
@@ -155,7 +155,7 @@ void choice_experiment(const MouldExperimentOptions& options) {
         population.seed = static_cast<std::uint64_t>(seed);
         const double levels[] = {0, 0.01, 0.02};
         for (std::size_t level = 0; level < 3; ++level) {
-            const Compared compared = compare(made_heads(population, cast_of(options, levels[level])), everyone, back_only);
+            const Compared compared = compare(synthetic_heads(population, cast_of(options, levels[level])), everyone, back_only);
             std::cerr << format("seed %d wear %g: %.0f features a head in %.1f s, pairs %.1f s (processor %.1f, %.1f)\n", seed,
                                 levels[level], compared.features, compared.finding.wall, compared.comparing.wall,
                                 compared.finding.processor, compared.comparing.processor);
@@ -197,7 +197,7 @@ void wear_experiment(const MouldExperimentOptions& options) {
             population.seed = static_cast<std::uint64_t>(seed);
             CastOptions cast = cast_of(options, levels[level]);
             cast.pressure = 0.01;
-            const Compared compared = compare(made_heads(population, cast), everyone, back_only);
+            const Compared compared = compare(synthetic_heads(population, cast), everyone, back_only);
             for (auto& curve : curves)
                 curve.scores[level].push_back(adjusted_rand_index(
                     grouped(compared, curve.choice, options.objects / population.moulds).labels, compared.truth));
@@ -248,7 +248,7 @@ void run_experiment(const MouldExperimentOptions& options) {
     CastOptions cast = cast_of(options, 0.01);
     cast.beard = 0.4;
     cast.dents = 2;
-    const Heads heads = made_heads(population, cast);
+    const Heads heads = synthetic_heads(population, cast);
     const auto moulded = [&](std::size_t i) { return !heads.hand_made[i]; };
     const auto short_hair = [&](std::size_t i) { return moulded(i) && !heads.long_hair[i]; };
     struct Run {

@@ -30,7 +30,7 @@ Mesh read_or_make(const std::string& name, std::uint64_t vertices, std::uint64_t
         MakeOptions options;
         options.vertices = vertices;
         options.seed = seed;
-        return make_mesh(made_object(name.substr(5)), options).mesh;
+        return make_mesh(synthetic_object(name.substr(5)), options).mesh;
     }
     return read_mesh(name).mesh;
 }

@@ -97,7 +97,7 @@ struct Measures {
 class Teapot {
 public:
     explicit Teapot(const SemanticOptions& options)
-        : options_(options), pot_(made_subject("teapot", options.vertices == 0 ? 60000 : options.vertices)) {
+        : options_(options), pot_(synthetic_subject("teapot", options.vertices == 0 ? 60000 : options.vertices)) {
         for (const Annotation& annotation : pot_.set.annotations)
             if (annotation.tag.rfind("flower ", 0) == 0) flowers_.push_back(annotation.id);
         if (flowers_.size() != 5) fail_input("data/teapot.recipe.json", "has not five flowers", "use the project's own");

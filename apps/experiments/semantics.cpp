@@ -59,8 +59,8 @@ int Subject::id(const std::string& tag) const {
     fail_input(tag, "no annotation has this tag", "see the recipe that the experiment names");
 }
 
-Subject made_subject(const std::string& object, std::uint64_t vertices, const std::function<Point(const Point&)>& warp) {
-    MadeMesh made = make_mesh(made_object(object), {.vertices = vertices});
+Subject synthetic_subject(const std::string& object, std::uint64_t vertices, const std::function<Point(const Point&)>& warp) {
+    SyntheticMesh made = make_mesh(synthetic_object(object), {.vertices = vertices});
     if (warp)
         for (const Vertex v : made.mesh.vertices()) made.mesh.point(v) = warp(made.mesh.point(v));
     AnnotationSet set = apply_recipe(Path("data") / (object + ".recipe.json"), made.mesh, made.face_labels);

@@ -4,7 +4,7 @@
 #include "ostraka/report/plot.h"
 #include "ostraka/report/table.h"
 #include "ostraka/semantic/deform.h"
-#include "ostraka/synthetic/made_object.h"
+#include "ostraka/synthetic/synthetic_object.h"
 
 #include <functional>
 #include <string>
@@ -22,8 +22,8 @@ struct Subject {
     [[nodiscard]] const Annotation& part(const std::string& tag) const { return *set.find(id(tag)); }
 };
 
-/// A made object, its points moved before it is annotated if `warp` is given.
-Subject made_subject(const std::string& object, std::uint64_t vertices, const std::function<Point(const Point&)>& warp = {});
+/// A synthetic object, its points moved before it is annotated if `warp` is given.
+Subject synthetic_subject(const std::string& object, std::uint64_t vertices, const std::function<Point(const Point&)>& warp = {});
 
 /// One result of an experiment.
 struct Outcome {

@@ -65,7 +65,7 @@ public:
         if (options_.scan.empty()) {
             MakeOptions making;
             making.vertices = vertices;
-            return make_mesh(made_object(options_.made), making).mesh;
+            return make_mesh(synthetic_object(options_.made), making).mesh;
         }
         Mesh mesh = finest_;
         SimplifyOptions simplifying;

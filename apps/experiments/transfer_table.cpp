@@ -88,7 +88,7 @@ public:
     void run() {
         for (const std::string& name : options_.made) {
             if (name == "none") continue;
-            const MadeObject& object = made_object(name);
+            const SyntheticObject& object = synthetic_object(name);
             const auto make = [&](std::size_t n, std::uint64_t seed) {
                 MakeOptions making;
                 making.vertices = n;
@@ -127,7 +127,8 @@ public:
     }
 
 private:
-    void all_kinds(const std::string& name, const Mesh& full, std::map<std::string, Mesh> independent, const MadeObject* truth) {
+    void all_kinds(const std::string& name, const Mesh& full, std::map<std::string, Mesh> independent,
+                   const SyntheticObject* truth) {
         std::vector<std::size_t> down = options_.rungs;
         std::sort(down.rbegin(), down.rend());
         Ladder decimated{name, "decimated", {}};
@@ -178,15 +179,15 @@ private:
         return set;
     }
 
-    /// What truly belongs to each part on a mesh of a made object: each face is sampled by 16 smaller triangles whose centroids,
-    /// followed to the true surface, tell their part.
+    /// What truly belongs to each part on a mesh of a synthetic object: each face is sampled by 16 smaller triangles whose
+    /// centroids, followed to the true surface, tell their part.
     struct Truth {
         const Mesh* mesh;
         std::vector<std::map<int, double>> shares;
         std::map<int, double> areas;
         double whole = 0;
     };
-    static Truth truth_of(const Mesh& mesh, const MadeObject& object) {
+    static Truth truth_of(const Mesh& mesh, const SyntheticObject& object) {
         Truth truth{&mesh, std::vector<std::map<int, double>>(mesh.number_of_faces()), {}, surface_area(mesh)};
         parallel_for(mesh.number_of_faces(), [&](std::size_t i) {
             const auto [a, b, c] = corners(mesh, Face(static_cast<Index>(i)));
@@ -205,7 +206,7 @@ private:
     }
 
     /// Parts by their labels at the faces' centroids, transferred and compared with the parts themselves.
-    void measure_truth(const Ladder& ladder, const MadeObject& object) {
+    void measure_truth(const Ladder& ladder, const SyntheticObject& object) {
         const std::string home = name_of(options_.rungs.front());
         const Mesh& source = ladder.rungs.at(home);
         const SurfaceSearch source_search(source);
@@ -258,7 +259,7 @@ private:
         }
     }
 
-    void measure(const Ladder& ladder, const MadeObject* truth) {
+    void measure(const Ladder& ladder, const SyntheticObject* truth) {
         if (truth != nullptr) measure_truth(ladder, *truth);
         if (options_.truth_only) return;
         const std::string home = name_of(options_.rungs.front());

@@ -111,7 +111,7 @@ UnifiedMeasures unify_units(const MeasureTable& table) {
     return result;
 }
 
-MadeMeasures make_measures(const MadeMeasuresOptions& options) {
+SyntheticMeasures make_measures(const SyntheticMeasuresOptions& options) {
     check_options(options, "made measures");
     if (options.groups * options.group_size > options.measures)
         fail_usage(std::to_string(options.groups) + " groups of " + std::to_string(options.group_size) +
@@ -119,7 +119,7 @@ MadeMeasures make_measures(const MadeMeasuresOptions& options) {
                    "raise --measures or lower the groups");
     Random random(options.seed);
     const auto n = static_cast<Eigen::Index>(options.objects), m = static_cast<Eigen::Index>(options.measures);
-    MadeMeasures made;
+    SyntheticMeasures made;
     made.table.values.resize(n, m);
     made.table.units.assign(static_cast<std::size_t>(n), "mm");
     // Which measures belong together is drawn, so that their order tells nothing.
@@ -152,7 +152,7 @@ MadeMeasures make_measures(const MadeMeasuresOptions& options) {
     return made;
 }
 
-void MadeMeasuresOptions::describe(OptionList& visit) {
+void SyntheticMeasuresOptions::describe(OptionList& visit) {
     visit("objects", objects, "number of objects", Range{1, 100000});
     visit("measures", measures, "number of measures", Range{1, 60});
     visit("groups", groups, "groups of measures with fixed proportions among each other", Range{0, 30});

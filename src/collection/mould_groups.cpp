@@ -113,7 +113,7 @@ Eigen::MatrixXd part_of(const Eigen::MatrixXd& d, const std::vector<std::size_t>
     return part;
 }
 
-/// What a silhouette must reach for groups to stand out. Made heads of one mould, or each of its own, stay below both
+/// What a silhouette must reach for groups to stand out. Synthetic heads of one mould, or each of its own, stay below both
 /// (doc/moulds.md); an embedding makes more of what there is.
 constexpr double least_in_distances = 0.2, least_in_embedding = 0.7;
 

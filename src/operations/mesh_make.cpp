@@ -30,20 +30,20 @@ struct MeshMake final : Operation {
     void check() const override {
         if (list) return;
         if (wanted.empty()) fail_usage("no object is named", "name one of those that 'ostraka mesh make --list' shows");
-        const MadeObject& object = made_object(wanted);
+        const SyntheticObject& object = synthetic_object(wanted);
         if (!output)
             fail_usage("no output file is named", "write: ostraka mesh make " + object.name + " " + object.name + ".ply");
     }
 
     void run(Context&, Report& report) override {
         if (list) {
-            for (const std::string& name : wanted.empty() ? made_object_names() : std::vector{wanted})
-                show(report, made_object(name));
+            for (const std::string& name : wanted.empty() ? synthetic_object_names() : std::vector{wanted})
+                show(report, synthetic_object(name));
             return;
         }
-        const MadeObject& object = made_object(wanted);
+        const SyntheticObject& object = synthetic_object(wanted);
         const Stopwatch stopwatch;
-        MadeMesh made = make_mesh(object, options);
+        SyntheticMesh made = make_mesh(object, options);
         report.run("seconds", stopwatch.seconds());
         tell(report, object, made);
 
@@ -60,7 +60,7 @@ struct MeshMake final : Operation {
         output.write(std::move(made.mesh), std::move(extras));
     }
 
-    static void show(Report& report, const MadeObject& object) {
+    static void show(Report& report, const SyntheticObject& object) {
         report.row("objects")("name", object.name)("class", object.object_class)("description", object.description)(
             "unit", object.unit)("genus", object.genus)("minimumVertices", object.minimum_vertices)("parts", object.parts);
         for (std::size_t part = 0; part < object.parts.size(); ++part) {
@@ -73,7 +73,7 @@ struct MeshMake final : Operation {
         }
     }
 
-    static void tell(Report& report, const MadeObject& object, const MadeMesh& made) {
+    static void tell(Report& report, const SyntheticObject& object, const SyntheticMesh& made) {
         struct Part {
             std::size_t faces = 0, vertices = 0;
             double area = 0;

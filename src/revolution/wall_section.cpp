@@ -43,7 +43,7 @@ ClayImage look_at_clay(const SurfaceSearch& search, const AxisFrame& frame, doub
         [&](std::size_t row) {
             const Vector3d origin = frame.foot + (low + (static_cast<double>(row) + 0.5) * image.step) * frame.up;
             for (int k = 0; k < half; ++k) {
-                // Not along symmetric directions, which edges of made meshes like.
+                // Not along symmetric directions, which edges of synthetic meshes like.
                 const Vector3d direction = frame.direction(pi * (k + 0.37) / half);
                 const auto hits = search.line_hits(point_of(origin), vector_of(direction), 1.01 * far);
                 for (const double side : {1.0, -1.0}) {

@@ -1,7 +1,7 @@
-// Words for describing made objects.
+// Words for describing synthetic objects.
 #pragma once
 
-#include "ostraka/synthetic/made_object.h"
+#include "ostraka/synthetic/synthetic_object.h"
 
 #include <memory>
 #include <string>
@@ -18,13 +18,13 @@ inline Eigen::Matrix3d turned(double degrees, const Vector3d& axis) {
 }
 
 /// Adds a part and returns its label.
-inline int add_part(MadeObject& object, const std::string& name, const Colour3& colour) {
+inline int add_part(SyntheticObject& object, const std::string& name, const Colour3& colour) {
     object.parts.push_back(name);
     object.part_colours.push_back(colour);
     return static_cast<int>(object.parts.size()) - 1;
 }
 
-inline void add_member(MadeObject& object, SolidPointer solid, int part, double blend) {
+inline void add_member(SyntheticObject& object, SolidPointer solid, int part, double blend) {
     Member member;
     member.solid = std::move(solid);
     member.blend = blend;
@@ -34,7 +34,7 @@ inline void add_member(MadeObject& object, SolidPointer solid, int part, double 
 
 /// A member in several parts: `until` pairs the number of a profile point or bead with the part that ends there.
 template <class Items>
-void add_divided_member(MadeObject& object, SolidPointer solid, const Items& items, double blend,
+void add_divided_member(SyntheticObject& object, SolidPointer solid, const Items& items, double blend,
                         const std::vector<std::pair<double, int>>& until) {
     const auto lengths = chord_lengths(items);
     Member member;
@@ -51,7 +51,7 @@ void add_divided_member(MadeObject& object, SolidPointer solid, const Items& ite
 }
 
 /// Cuts a solid away; the walls it leaves become `part` (or, below 0, belong to what was cut).
-inline void carve(MadeObject& object, SolidPointer solid, int part, double blend) {
+inline void carve(SyntheticObject& object, SolidPointer solid, int part, double blend) {
     Member member;
     member.solid = std::move(solid);
     member.blend = blend;
@@ -60,7 +60,7 @@ inline void carve(MadeObject& object, SolidPointer solid, int part, double blend
     object.members.push_back(std::move(member));
 }
 
-using ObjectPointer = std::unique_ptr<const MadeObject>;
+using ObjectPointer = std::unique_ptr<const SyntheticObject>;
 ObjectPointer make_teapot();
 ObjectPointer make_vase();
 ObjectPointer make_statuette();

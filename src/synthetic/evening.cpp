@@ -18,7 +18,7 @@ constexpr double least_fullness = 0.12;
 
 class Evening {
 public:
-    Evening(const MadeObject& object, Triangles&& mesh, std::size_t wanted)
+    Evening(const SyntheticObject& object, Triangles&& mesh, std::size_t wanted)
         : object_(object), table_(mesh), points_(std::move(mesh.points)), normals_(points_.size()), wanted_(wanted) {
         double area = 0;
         for (const auto& [a, b, c] : mesh.faces) area += 0.5 * (points_[b] - points_[a]).cross(points_[c] - points_[a]).norm();
@@ -217,7 +217,7 @@ private:
         return mesh;
     }
 
-    const MadeObject& object_;
+    const SyntheticObject& object_;
     HalfedgeTable table_;
     std::vector<Vector3d> points_, normals_;
     std::size_t wanted_;
@@ -226,7 +226,7 @@ private:
 
 }  // namespace
 
-Triangles make_even(const MadeObject& object, Triangles mesh, std::size_t vertices) {
+Triangles make_even(const SyntheticObject& object, Triangles mesh, std::size_t vertices) {
     return Evening(object, std::move(mesh), vertices).run();
 }
 

@@ -51,6 +51,6 @@ private:
 /// Collapses short edges until `vertices` are left, flips edges towards Delaunay triangles and moves vertices along the surface
 /// towards the centres of their neighbours. No triangle ever turns against the surface's normal, so the mesh stays as
 /// embedded as it was. Returns a mesh with `vertices` points, or more where the shape allows no further collapse.
-Triangles make_even(const MadeObject& object, Triangles mesh, std::size_t vertices);
+Triangles make_even(const SyntheticObject& object, Triangles mesh, std::size_t vertices);
 
 }  // namespace ostraka::shapes

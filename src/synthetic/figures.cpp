@@ -4,7 +4,7 @@
 namespace ostraka::shapes {
 
 ObjectPointer make_hand() {
-    auto object = std::make_unique<MadeObject>();
+    auto object = std::make_unique<SyntheticObject>();
     object->name = "hand";
     object->object_class = "hand";
     object->description = "open left hand with wrist, palm and five fingers";
@@ -48,7 +48,7 @@ ObjectPointer make_hand() {
 }
 
 ObjectPointer make_statuette() {
-    auto object = std::make_unique<MadeObject>();
+    auto object = std::make_unique<SyntheticObject>();
     object->name = "statuette";
     object->object_class = "drum player statuette";
     object->description = "votive figure: base, tubular body, head with a cap, two arms that hold a drum before the chest";

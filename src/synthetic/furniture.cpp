@@ -12,7 +12,7 @@ Vector3d along_leg(double height, double side) {
 }  // namespace
 
 ObjectPointer make_chair() {
-    auto object = std::make_unique<MadeObject>();
+    auto object = std::make_unique<SyntheticObject>();
     object->name = "chair";
     object->object_class = "armchair";
     object->description = "chair with back, two arms on supports and four legs";

@@ -61,7 +61,7 @@ private:
 };
 
 /// Where two features all but touch, one lattice in a few sees a handle between them: then another one is taken.
-MadeMesh meshed(const MadeObject& head, MakeOptions options) {
+SyntheticMesh meshed(const SyntheticObject& head, MakeOptions options) {
     constexpr int attempts = 4;
     for (int attempt = 1;; ++attempt, options.seed += 1000003) {
         try {
@@ -113,7 +113,7 @@ HeadCast cast_head(const HeadShape& shape, const CastOptions& options) {
     MakeOptions make;
     make.vertices = options.vertices;
     make.seed = options.seed;
-    MadeMesh made = meshed(*head_object(shape, draw_hand_work(options, cast.beard)), make);
+    SyntheticMesh made = meshed(*head_object(shape, draw_hand_work(options, cast.beard)), make);
     Mesh& mesh = made.mesh;
 
     Random wear(options.seed, wear_stream), pressure(options.seed, pressure_stream), noise(options.seed, noise_stream);

@@ -19,9 +19,10 @@ constexpr int label(HeadPart part) { return static_cast<int>(part); }
 /// Builds a head from the inside out: the bare skull and face first, then features that lie on its front.
 class HeadBuilder {
 public:
-    HeadBuilder(const HeadShape& shape, const HandWork& work) : s_(shape), w_(work), object_(std::make_unique<MadeObject>()) {}
+    HeadBuilder(const HeadShape& shape, const HandWork& work)
+        : s_(shape), w_(work), object_(std::make_unique<SyntheticObject>()) {}
 
-    std::unique_ptr<const MadeObject> build() {
+    std::unique_ptr<const SyntheticObject> build() {
         object_->name = "head";
         object_->object_class = "head of a figurine";
         object_->description = "face, hair, ears, neck";
@@ -283,7 +284,7 @@ private:
 
     const HeadShape& s_;
     const HandWork& w_;
-    std::unique_ptr<MadeObject> object_;
+    std::unique_ptr<SyntheticObject> object_;
     std::size_t finished_ = 0;  ///< members that the object's boxes are of
 };
 
@@ -334,7 +335,7 @@ HeadShape head_archetype(const ArchetypeOptions& options) {
     return s;
 }
 
-std::unique_ptr<const MadeObject> head_object(const HeadShape& shape, const HandWork& work) {
+std::unique_ptr<const SyntheticObject> head_object(const HeadShape& shape, const HandWork& work) {
     return HeadBuilder(shape, work).build();
 }
 

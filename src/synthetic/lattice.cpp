@@ -56,7 +56,8 @@ std::pair<Place, Place> edge_ends(EdgeKey key) {
 /// Blocks that the surface may cross, in depth-first order of an octree.
 class BlockFinder {
 public:
-    BlockFinder(const MadeObject& object, const Lattice& lattice) : object_(object), lattice_(lattice), slack_(object.slack()) {}
+    BlockFinder(const SyntheticObject& object, const Lattice& lattice)
+        : object_(object), lattice_(lattice), slack_(object.slack()) {}
     void visit(const Place& corner, int cubes) {
         // A block owns the tetrahedra that reach half a cube beyond its upper sides.
         const Vector3d low = position(lattice_, corner);
@@ -76,7 +77,7 @@ public:
     std::vector<Place> blocks;
 
 private:
-    const MadeObject& object_;
+    const SyntheticObject& object_;
     const Lattice& lattice_;
     double slack_;
 };
@@ -89,7 +90,7 @@ struct Piece {
 
 class BlockMarcher {
 public:
-    BlockMarcher(const MadeObject& object, const Lattice& lattice, const Place& corner) : corner_(corner) {
+    BlockMarcher(const SyntheticObject& object, const Lattice& lattice, const Place& corner) : corner_(corner) {
         for (int x = 0; x < block_points; ++x) {
             for (int y = x & 1; y < block_points; y += 2) {
                 for (int z = x & 1; z < block_points; z += 2) {
@@ -180,7 +181,7 @@ private:
 };
 
 /// The surface's place on a lattice edge: false position (Illinois), kept off the ends so that no triangle collapses.
-Vector3d crossing(const MadeObject& object, const Vector3d& a, const Vector3d& b) {
+Vector3d crossing(const SyntheticObject& object, const Vector3d& a, const Vector3d& b) {
     double low = 0, high = 1, low_value = object.sample(a).value, high_value = object.sample(b).value;
     double t = 0.5;
     for (int i = 0; i < 5; ++i) {
@@ -201,7 +202,7 @@ Vector3d crossing(const MadeObject& object, const Vector3d& a, const Vector3d& b
 
 }  // namespace
 
-Lattice seeded_lattice(const MadeObject& object, double cube, std::uint64_t seed) {
+Lattice seeded_lattice(const SyntheticObject& object, double cube, std::uint64_t seed) {
     const auto share = [&](std::uint64_t counter) { return random_share(seed, counter); };
     // A quaternion from four numbers: no need for uniform rotations, any general position will do.
     const Eigen::Quaterniond turn =
@@ -214,7 +215,7 @@ Lattice seeded_lattice(const MadeObject& object, double cube, std::uint64_t seed
     return lattice;
 }
 
-Triangles march(const MadeObject& object, const Lattice& lattice) {
+Triangles march(const SyntheticObject& object, const Lattice& lattice) {
     const double across = object.box().diagonal().norm() + 6 * lattice.cube;
     int cubes = block_cubes;
     while (cubes * lattice.cube < across) cubes *= 2;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "ostraka/core/mesh.h"
-#include "ostraka/synthetic/made_object.h"
+#include "ostraka/synthetic/synthetic_object.h"
 
 #include <Eigen/Geometry>
 
@@ -28,9 +28,9 @@ inline constexpr double lattice_vertices_per_area = 6.4641016151377546;
 /// Triangulates the surface; every edge has exactly two triangles whatever the function, and vertices lie on the surface
 /// (on lattice edges). Blocks far from the surface are skipped by the bound on the function's slope: work and memory grow with
 /// the area only. The seed turns and shifts the lattice. Same result for any number of threads.
-Triangles march(const MadeObject& object, const Lattice& lattice);
+Triangles march(const SyntheticObject& object, const Lattice& lattice);
 
 /// Frame turned and shifted by the seed.
-Lattice seeded_lattice(const MadeObject& object, double cube, std::uint64_t seed);
+Lattice seeded_lattice(const SyntheticObject& object, double cube, std::uint64_t seed);
 
 }  // namespace ostraka::shapes

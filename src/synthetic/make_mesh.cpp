@@ -41,13 +41,13 @@ bool is_connected(const shapes::Triangles& mesh) {
     return pieces == 1;
 }
 
-[[noreturn]] void refuse(const MadeObject& object, std::uint64_t vertices) {
+[[noreturn]] void refuse(const SyntheticObject& object, std::uint64_t vertices) {
     fail_usage("the " + object.name + " cannot be held by " + std::to_string(vertices) + " vertices",
                "ask for at least " + std::to_string(object.minimum_vertices));
 }
 
 /// The marched surface with about `vertices` vertices, or with more if it takes more to hold the shape.
-shapes::Triangles marched(const MadeObject& object, double vertices, std::uint64_t seed) {
+shapes::Triangles marched(const SyntheticObject& object, double vertices, std::uint64_t seed) {
     // A first coarse surface tells the area.
     const double coarse = object.box().diagonal().norm() / 40;
     const double pilot_area = area(shapes::march(object, shapes::seeded_lattice(object, coarse, seed)));
@@ -102,7 +102,7 @@ void join_crumbs(const Mesh& mesh, std::vector<std::int32_t>& labels, std::size_
 
 }  // namespace
 
-MadeMesh make_mesh(const MadeObject& object, const MakeOptions& options) {
+SyntheticMesh make_mesh(const SyntheticObject& object, const MakeOptions& options) {
     check_options(options, "mesh make");
     if (options.vertices < object.minimum_vertices) refuse(object, options.vertices);
     const auto wanted = static_cast<std::size_t>(options.vertices);
@@ -110,7 +110,7 @@ MadeMesh make_mesh(const MadeObject& object, const MakeOptions& options) {
         shapes::make_even(object, marched(object, surplus * static_cast<double>(wanted), options.seed), wanted);
     if (static_cast<double>(even.points.size()) > 1.01 * static_cast<double>(wanted)) refuse(object, options.vertices);
 
-    MadeMesh made;
+    SyntheticMesh made;
     made.vertex_labels.resize(even.points.size());
     made.face_labels.resize(even.faces.size());
     parallel_for(even.points.size(), [&](std::size_t v) { made.vertex_labels[v] = object.part(even.points[v]); });

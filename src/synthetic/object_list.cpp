@@ -36,13 +36,13 @@ std::size_t edits(const std::string& a, const std::string& b) {
 }
 }  // namespace
 
-std::vector<std::string> made_object_names() {
+std::vector<std::string> synthetic_object_names() {
     std::vector<std::string> names;
     for (const auto& [name, maker] : makers()) names.push_back(name);
     return names;
 }
 
-const MadeObject& made_object(const std::string& name) {
+const SyntheticObject& synthetic_object(const std::string& name) {
     static std::map<std::string, shapes::ObjectPointer> made = [] {
         std::map<std::string, shapes::ObjectPointer> list;
         for (const auto& [known, maker] : makers()) list[known] = maker();

@@ -5,9 +5,9 @@
 namespace ostraka::shapes {
 
 namespace {
-std::unique_ptr<MadeObject> start(const std::string& name, const std::string& description, int genus, double area,
-                                  double volume) {
-    auto object = std::make_unique<MadeObject>();
+std::unique_ptr<SyntheticObject> start(const std::string& name, const std::string& description, int genus, double area,
+                                       double volume) {
+    auto object = std::make_unique<SyntheticObject>();
     object->name = object->object_class = name;
     object->description = description;
     object->genus = genus;
@@ -18,7 +18,7 @@ std::unique_ptr<MadeObject> start(const std::string& name, const std::string& de
 }
 constexpr Colour3 grey{190, 190, 185}, red{200, 60, 50}, blue{60, 100, 190}, green{70, 160, 90};
 
-ObjectPointer finished(std::unique_ptr<MadeObject> object) {
+ObjectPointer finished(std::unique_ptr<SyntheticObject> object) {
     object->finish();
     return object;
 }

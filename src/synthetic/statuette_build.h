@@ -46,6 +46,6 @@ private:
 std::array<Arm, 2> body_arms(const StatuetteParameters& parameters, const StatuetteBody& body);
 
 void check_parameters(const StatuetteParameters& parameters);
-std::unique_ptr<MadeObject> build_statuette(const StatuetteParameters& parameters, const StatuetteBody& body);
+std::unique_ptr<SyntheticObject> build_statuette(const StatuetteParameters& parameters, const StatuetteBody& body);
 
 }  // namespace ostraka::shapes

@@ -129,7 +129,7 @@ void take_away(Statuette& statuette, const std::vector<bool>& missing) {
     statuette.face_labels = std::move(labels);
 }
 
-std::vector<std::pair<std::string, Vector3d>> known_places(const MadeObject& object, const StatuetteParameters& p,
+std::vector<std::pair<std::string, Vector3d>> known_places(const SyntheticObject& object, const StatuetteParameters& p,
                                                            const shapes::StatuetteBody& body) {
     std::vector<std::pair<std::string, Vector3d>> places;
     const auto add = [&](const std::string& name, const Vector3d& near) { places.emplace_back(name, object.project(near)); };
@@ -166,7 +166,7 @@ Statuette generate_statuette(const StatuetteParameters& parameters) {
     MakeOptions options;
     options.vertices = parameters.vertices;
     options.seed = parameters.seed;
-    MadeMesh made = make_mesh(*object, options);
+    SyntheticMesh made = make_mesh(*object, options);
     Statuette statuette{parameters, object->parts, object->part_colours, std::move(made.mesh), std::move(made.face_labels), {}};
     add_noise(statuette.mesh, parameters.scan_noise, parameters.seed);
 

@@ -202,7 +202,7 @@ double Arm::outside_length() const {
 
 namespace {
 
-void add_head(MadeObject& object, const StatuetteParameters& p, const StatuetteBody& body, int head) {
+void add_head(SyntheticObject& object, const StatuetteParameters& p, const StatuetteBody& body, int head) {
     using Hat = StatuetteParameters::Hat;
     const double h = p.head_height, joint = body.frame.joint_height;
     const Vector2d c = body.outside->centre(joint);
@@ -241,9 +241,9 @@ void add_head(MadeObject& object, const StatuetteParameters& p, const StatuetteB
 
 }  // namespace
 
-std::unique_ptr<MadeObject> build_statuette(const StatuetteParameters& p, const StatuetteBody& body) {
+std::unique_ptr<SyntheticObject> build_statuette(const StatuetteParameters& p, const StatuetteBody& body) {
     const StatuetteFrame& frame = body.frame;
-    auto object = std::make_unique<MadeObject>();
+    auto object = std::make_unique<SyntheticObject>();
     object->name = option_text(p, "technique") + "-made statuette";
     object->object_class = "votive statuette";
     object->description = "tubular body on a flared base, head, two arms";
@@ -300,7 +300,7 @@ void check_parameters(const StatuetteParameters& p) {
 
 }  // namespace shapes
 
-std::unique_ptr<const MadeObject> statuette_object(const StatuetteParameters& parameters) {
+std::unique_ptr<const SyntheticObject> statuette_object(const StatuetteParameters& parameters) {
     shapes::check_parameters(parameters);
     return shapes::build_statuette(parameters, shapes::StatuetteBody(parameters));
 }

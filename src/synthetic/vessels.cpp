@@ -1,4 +1,4 @@
-// Made vessels: the flowered teapot and the vase.
+// Synthetic vessels: the flowered teapot and the vase.
 #include "builder.h"
 #include "ostraka/core/angles.h"
 
@@ -7,7 +7,7 @@
 namespace ostraka::shapes {
 
 ObjectPointer make_teapot() {
-    auto object = std::make_unique<MadeObject>();
+    auto object = std::make_unique<SyntheticObject>();
     object->name = "teapot";
     object->object_class = "flowered teapot";
     object->description = "lidded teapot with spout, handle, knob and five flowers in relief at one level";
@@ -44,7 +44,7 @@ ObjectPointer make_teapot() {
 }
 
 ObjectPointer make_vase() {
-    auto object = std::make_unique<MadeObject>();
+    auto object = std::make_unique<SyntheticObject>();
     object->name = "vase";
     object->object_class = "two-handled vase";
     object->description = "hollow vase with foot, belly, decorated band, neck, lip and two handles";

@@ -5,8 +5,8 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/io/mesh_file.h"
-#include "ostraka/synthetic/made_object.h"
 #include "ostraka/synthetic/make_mesh.h"
+#include "ostraka/synthetic/synthetic_object.h"
 
 #include <gtest/gtest.h>
 
@@ -109,7 +109,7 @@ TEST(RotationAxis, OfASherd) {
 
 TEST(RotationAxis, HandlesAndSpoutsDoNotTurnIt) {
     for (const char* name : {"vase", "teapot"}) {
-        const Mesh mesh = make_mesh(made_object(name), {.vertices = 8000}).mesh;
+        const Mesh mesh = make_mesh(synthetic_object(name), {.vertices = 8000}).mesh;
         const Axis axis = rotation_axis(mesh, all(mesh));
         ASSERT_TRUE(axis.found) << name << ": " << axis.reason << " " << axis.quality;
         EXPECT_LT(angle(axis, Vector(0, 0, 1)), 0.3) << name;
@@ -132,7 +132,7 @@ TEST(RotationAxis, NoneWhereThereIsNone) {
     for (auto& p : soup.points) p = {p[0], 1.5 * p[1], 2.2 * p[2]};
     const Mesh ellipsoid = build_mesh(soup);
     EXPECT_FALSE(rotation_axis(ellipsoid, all(ellipsoid)).found);
-    const Mesh hand = make_mesh(made_object("hand"), {.vertices = 3000}).mesh;
+    const Mesh hand = make_mesh(synthetic_object("hand"), {.vertices = 3000}).mesh;
     EXPECT_FALSE(rotation_axis(hand, all(hand)).found);
     const Mesh flat = build_mesh(grid(10, 10, false, false, [](double s, double t) { return std::array<double, 3>{s, t, 0}; }));
     const Axis none = rotation_axis(flat, all(flat));
@@ -261,7 +261,7 @@ TEST(Axis, DegenerateParts) {
 }
 
 TEST(Axis, DoesNotDependOnThreads) {
-    const Mesh mesh = make_mesh(made_object("vase"), {.vertices = 3000}).mesh;
+    const Mesh mesh = make_mesh(synthetic_object("vase"), {.vertices = 3000}).mesh;
     for (const char* method : {"rotation", "slices", "principal"}) {
         set_threads(1);
         const Axis one = find_axis(mesh, all(mesh), by(method));

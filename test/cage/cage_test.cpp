@@ -25,9 +25,9 @@ std::string words(const CageCheck& check) {
 
 }  // namespace
 
-TEST(Cage, OfMadeObjects) {
+TEST(Cage, OfSyntheticObjects) {
     for (const char* name : {"teapot", "chair", "hand", "statuette", "vase"}) {
-        const MadeMesh made = make_mesh(made_object(name), {.vertices = 5000});
+        const SyntheticMesh made = make_mesh(synthetic_object(name), {.vertices = 5000});
         for (const std::uint64_t vertices : {100, 200, 500}) {
             const CageResult result = make_cage(made.mesh, {.vertices = vertices});
             const CageCheck check = check_cage(result.cage, made.mesh);
@@ -54,7 +54,7 @@ TEST(Cage, OfRealMeshes) {
 }
 
 TEST(Cage, MirroredToTheBit) {
-    const MadeMesh made = make_mesh(made_object("chair"), {.vertices = 4000});
+    const SyntheticMesh made = make_mesh(synthetic_object("chair"), {.vertices = 4000});
     const auto plane = std::optional<MirrorPlane>({Point(0, 0, 0), Vector(1, 0, 0)});
     const CageResult result = make_cage(made.mesh, {.vertices = 150}, {}, plane);
     const CageCheck check = check_cage(result.cage, made.mesh);
@@ -70,7 +70,7 @@ TEST(Cage, MirroredToTheBit) {
 }
 
 TEST(Cage, NestedLevelsEncloseEachOther) {
-    const MadeMesh made = make_mesh(made_object("statuette"), {.vertices = 3000});
+    const SyntheticMesh made = make_mesh(synthetic_object("statuette"), {.vertices = 3000});
     const auto levels = make_nested_cages(made.mesh, {60, 240, 120});
     ASSERT_EQ(levels.size(), 3U);
     const Mesh* inner = &made.mesh;
@@ -98,7 +98,7 @@ TEST(Cage, MoreVerticesWhereTheyAreWanted) {
 }
 
 TEST(Cage, FollowsOrFillsHoles) {
-    const MadeMesh torus = make_mesh(made_object("torus"), {.vertices = 2000});
+    const SyntheticMesh torus = make_mesh(synthetic_object("torus"), {.vertices = 2000});
     EXPECT_EQ(check_cage(make_cage(torus.mesh, {.vertices = 80}).cage, torus.mesh).genus, 1);
     const CageResult filled = make_cage(torus.mesh, {.vertices = 80, .genus = CageOptions::Genus::fill});
     EXPECT_EQ(check_cage(filled.cage, torus.mesh).genus, 0);

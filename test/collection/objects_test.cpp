@@ -184,7 +184,7 @@ TEST(Collection, LinksThatLeadNowhereAreLeftOut) {
     EXPECT_EQ(collection.left_out[1].first, "loop.ply");
 }
 
-TEST(Collection, MadeObjectsAreNotMixedWithOthers) {
+TEST(Collection, SyntheticObjectsAreNotMixedWithOthers) {
     const Scratch scratch;
     EXPECT_NO_THROW(check_new_collection(scratch / "missing"));
     write_file(scratch / "notes.txt", "x");

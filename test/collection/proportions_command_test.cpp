@@ -76,11 +76,11 @@ void write_boxes(const Scratch& scratch, const Path& folder, const MeasureTable&
 
 struct Boxes {
     Scratch scratch;
-    MadeMeasures made;
+    SyntheticMeasures made;
     std::string command;
 
     explicit Boxes(std::uint64_t seed = 3) {
-        MadeMeasuresOptions options;
+        SyntheticMeasuresOptions options;
         options.objects = 24;
         options.seed = seed;
         made = make_measures(options);

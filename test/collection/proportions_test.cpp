@@ -45,11 +45,11 @@ struct Counts {
     double planted = 0, hit = 0, wrong = 0;
 };
 
-Counts over_seeds(MadeMeasuresOptions made, int seeds) {
+Counts over_seeds(SyntheticMeasuresOptions made, int seeds) {
     Counts counts;
     for (int s = 1; s <= seeds; ++s) {
         made.seed = static_cast<std::uint64_t>(s);
-        const MadeMeasures population = make_measures(made);
+        const SyntheticMeasures population = make_measures(made);
         for (const RatioRow& ratio : study_proportions(population.table, quick(made.seed)).ratios) {
             const int a = population.groups[ratio.numerator], b = population.groups[ratio.denominator];
             const bool planted = a >= 0 && a == b, called = ratio.fixedness == Fixedness::fixed;
@@ -94,7 +94,7 @@ TEST(Proportions, AMeasureWithoutAValueHasNoRatios) {
 }
 
 TEST(Proportions, FewObjectsAreToldAndTheFailedTestIsNamed) {
-    MadeMeasuresOptions made;
+    SyntheticMeasuresOptions made;
     made.objects = 9;
     const ProportionStudy few = study_proportions(make_measures(made).table, quick());
     EXPECT_NE(all_notes(few).find("9 objects: a fixed ratio can hardly be shown"), std::string::npos) << all_notes(few);
@@ -111,7 +111,7 @@ TEST(Proportions, FewObjectsAreToldAndTheFailedTestIsNamed) {
 
 TEST(Proportions, PlantedOnesAreFoundWithAndWithoutCommonSize) {
     for (const double size : {0.0, 0.15, 0.4}) {
-        MadeMeasuresOptions made;
+        SyntheticMeasuresOptions made;
         made.size_deviation = size;
         const Counts counts = over_seeds(made, 10);
         EXPECT_GE(counts.hit, 0.9 * counts.planted) << size;
@@ -120,7 +120,7 @@ TEST(Proportions, PlantedOnesAreFoundWithAndWithoutCommonSize) {
 }
 
 TEST(Proportions, GroupsOfThreeAreFoundToo) {
-    MadeMeasuresOptions made;
+    SyntheticMeasuresOptions made;
     made.group_size = 3;
     const Counts counts = over_seeds(made, 6);
     EXPECT_GE(counts.hit, 0.9 * counts.planted);
@@ -129,19 +129,19 @@ TEST(Proportions, GroupsOfThreeAreFoundToo) {
 
 TEST(Proportions, NearlyNoneWhereNoneIsPlanted) {
     for (const double size : {0.0, 0.15, 0.4}) {
-        MadeMeasuresOptions made;
+        SyntheticMeasuresOptions made;
         made.groups = 0;
         made.size_deviation = size;
         EXPECT_LE(over_seeds(made, 10).wrong, 3) << size;
     }
-    MadeMeasuresOptions unequal;
+    SyntheticMeasuresOptions unequal;
     unequal.groups = 0;
     unequal.spread = 0.5;
     EXPECT_LE(over_seeds(unequal, 10).wrong, 3) << "measures that follow the size closely are not bound to each other";
 }
 
 TEST(Proportions, ScaledCopiesGoWithTheSize) {
-    MadeMeasuresOptions made;
+    SyntheticMeasuresOptions made;
     made.groups = 0;
     made.ratio_deviation = 0.03;
     made.size_deviation = 0.2;
@@ -155,7 +155,7 @@ TEST(Proportions, ScaledCopiesGoWithTheSize) {
 }
 
 TEST(Proportions, DoNotDependOnUnitsOrderOrThreads) {
-    MadeMeasuresOptions made;
+    SyntheticMeasuresOptions made;
     made.missing = 0.1;
     const MeasureTable table = make_measures(made).table;
     const int before = threads();
@@ -191,8 +191,8 @@ TEST(Proportions, DoNotDependOnUnitsOrderOrThreads) {
 }
 
 TEST(Proportions, MissingValuesAreToldInEachRow) {
-    MadeMeasuresOptions made;
-    MadeMeasures population = make_measures(made);
+    SyntheticMeasuresOptions made;
+    SyntheticMeasures population = make_measures(made);
     population.table.values.col(3).head(15).setConstant(none);
     population.table.values.col(5).setConstant(none);
     population.table.values(0, 0) = 0;
@@ -290,7 +290,7 @@ TEST(Proportions, ValuesBeyondComputingAreLeftOutWithANote) {
 }
 
 TEST(Proportions, AnExactProportionAmongOthersIsFixed) {
-    MadeMeasures population = make_measures({.groups = 0});
+    SyntheticMeasures population = make_measures({.groups = 0});
     population.table.values.col(2) = 0.41 * population.table.values.col(6);
     int exact = 0;
     for (const RatioRow& ratio : study_proportions(population.table, quick()).ratios)
@@ -351,10 +351,10 @@ TEST(Units, ThatAreNotKnownStayInTheRatios) {
     EXPECT_EQ(study.ratios[0].row.summary->max, 3);
 }
 
-TEST(MadeMeasures, VaryAsTheyAreAskedTo) {
-    MadeMeasuresOptions options;
+TEST(SyntheticMeasures, VaryAsTheyAreAskedTo) {
+    SyntheticMeasuresOptions options;
     options.objects = 4000;
-    const MadeMeasures made = make_measures(options);
+    const SyntheticMeasures made = make_measures(options);
     const auto deviation = [&](std::size_t a, std::size_t b) {
         const Eigen::VectorXd logs = (made.table.values.col(static_cast<Eigen::Index>(a)).array() /
                                       made.table.values.col(static_cast<Eigen::Index>(b)).array())

@@ -10,9 +10,9 @@
 
 int main() try {
     using namespace ostraka;
-    const MadeObject& object = made_object("sphere");
-    const MadeMesh source = make_mesh(object, {.vertices = 2000});
-    const MadeMesh target = make_mesh(object, {.vertices = 4000, .seed = 2});
+    const SyntheticObject& object = synthetic_object("sphere");
+    const SyntheticMesh source = make_mesh(object, {.vertices = 2000});
+    const SyntheticMesh target = make_mesh(object, {.vertices = 4000, .seed = 2});
     const AnnotationSet annotations = regions_from_labels(source.mesh, source.face_labels);
 
     const TransferResult result = transfer(source.mesh, annotations, SurfaceSearch(target.mesh));

@@ -1,4 +1,4 @@
-// Curvature and thickness of made objects under noise of 0.2 % of the diagonal, part by part, blends apart.
+// Curvature and thickness of synthetic objects under noise of 0.2 % of the diagonal, part by part, blends apart.
 #include "ostraka/fields/curvature.h"
 #include "ostraka/fields/statistics.h"
 #include "ostraka/fields/thickness.h"
@@ -16,7 +16,7 @@ namespace {
 constexpr double noise_share = 0.002;
 
 /// Vertices moved along the normal of the object by a normal distribution of this standard deviation.
-Mesh with_noise(const MadeObject& object, const Mesh& mesh, double deviation) {
+Mesh with_noise(const SyntheticObject& object, const Mesh& mesh, double deviation) {
     Mesh noisy = mesh;
     std::mt19937 random(11);
     std::normal_distribution<double> normal(0, deviation);
@@ -28,7 +28,7 @@ Mesh with_noise(const MadeObject& object, const Mesh& mesh, double deviation) {
 }
 
 /// Faces of a part farther than `margin` from every face of another part.
-std::vector<Index> inner_faces(const MadeMesh& made, std::int32_t part, double margin) {
+std::vector<Index> inner_faces(const SyntheticMesh& made, std::int32_t part, double margin) {
     std::vector<Point> rim;
     for (const Edge e : made.mesh.edges()) {
         const Face f = made.mesh.face(made.mesh.halfedge(e, 0)), g = made.mesh.face(made.mesh.halfedge(e, 1));
@@ -53,10 +53,10 @@ struct Compared {
 
 template <class Field>
 std::vector<Compared> compare(const std::string& name, std::uint64_t vertices, double margin_share, Field&& field) {
-    const MadeObject& object = made_object(name);
+    const SyntheticObject& object = synthetic_object(name);
     MakeOptions options;
     options.vertices = vertices;
-    const MadeMesh made = make_mesh(object, options);
+    const SyntheticMesh made = make_mesh(object, options);
     const double diagonal = box_diagonal(made.mesh);
     const Mesh noisy = with_noise(object, made.mesh, noise_share * diagonal);
     const std::vector<double> before = field(made.mesh), after = field(noisy);
@@ -85,7 +85,7 @@ std::vector<Compared> compare(const std::string& name, std::uint64_t vertices, d
 std::size_t expect_mean_curvature_kept(const std::string& name, std::uint64_t vertices, double scale) {
     CurvatureOptions options;
     options.scale = scale;
-    const double diagonal = made_object(name).box().diagonal().norm();
+    const double diagonal = synthetic_object(name).box().diagonal().norm();
     std::size_t parts = 0;
     for (const Compared& c : compare(name, vertices, scale, [&](const Mesh& mesh) { return curvature(mesh, options).mean; })) {
         if (std::abs(c.clean) * diagonal < 1) continue;  // nearly flat: there is no share to speak of

@@ -13,11 +13,11 @@
 namespace ostraka {
 namespace {
 
-using test::made_bar;
-using test::made_sherd;
-using test::MadeSherd;
+using test::synthetic_bar;
+using test::synthetic_sherd;
+using test::SyntheticSherd;
 
-Fragment fragment_of(const MadeSherd& sherd, const std::string& name, const Motion& motion = {}) {
+Fragment fragment_of(const SyntheticSherd& sherd, const std::string& name, const Motion& motion = {}) {
     Fragment fragment;
     fragment.name = name;
     fragment.mesh = moved(sherd.mesh, motion);
@@ -52,7 +52,7 @@ PairOptions quick() {
 }
 
 TEST(BreakPair, NeighboursComeTogetherFromAnywhere) {
-    const MadeSherd a = made_sherd(1, 2, 0, 1), b = made_sherd(2, 3, 1, 2);
+    const SyntheticSherd a = synthetic_sherd(1, 2, 0, 1), b = synthetic_sherd(2, 3, 1, 2);
     for (const double scale : {1.0, 1e-6, 1e6}) {
         Motion unit;
         unit.scale = scale;
@@ -70,7 +70,7 @@ TEST(BreakPair, NeighboursComeTogetherFromAnywhere) {
 }
 
 TEST(BreakPair, ASolidThatBroke) {
-    const MadeSherd below = made_bar(), above = made_bar(1, true);
+    const SyntheticSherd below = synthetic_bar(), above = synthetic_bar(1, true);
     const Motion away = random_motion(3, 20);
     const Fragment first = fragment_of(below, "below"), second = fragment_of(above, "above", away);
     const BreakPair pair = pair_breaks(first, second, quick());
@@ -84,10 +84,10 @@ TEST(BreakPair, ASolidThatBroke) {
 }
 
 TEST(BreakPair, StrangersAreLessSure) {
-    const Fragment a = fragment_of(made_bar(), "a");
-    const Fragment mate = fragment_of(made_bar(1, true), "mate");
+    const Fragment a = fragment_of(synthetic_bar(), "a");
+    const Fragment mate = fragment_of(synthetic_bar(1, true), "mate");
     // A bar with another break.
-    MadeSherd other = made_bar(1, true);
+    SyntheticSherd other = synthetic_bar(1, true);
     for (const Vertex v : other.mesh.vertices()) {
         const Point p = other.mesh.point(v);
         const double fade = (8 - p.z()) / 4;
@@ -99,7 +99,7 @@ TEST(BreakPair, StrangersAreLessSure) {
 }
 
 TEST(BreakPair, ThreadsDoNotMatter) {
-    const Fragment a = fragment_of(made_bar(), "a"), b = fragment_of(made_bar(1, true), "b", random_motion(4, 5));
+    const Fragment a = fragment_of(synthetic_bar(), "a"), b = fragment_of(synthetic_bar(1, true), "b", random_motion(4, 5));
     PairOptions options = quick();
     options.frames = 30;
     const int before = threads();
@@ -117,8 +117,8 @@ TEST(BreakPair, ThreadsDoNotMatter) {
 }
 
 TEST(BreakPair, WhatCannotBeLaidTogetherIsSaid) {
-    const Fragment a = fragment_of(made_bar(), "a");
-    Fragment whole = fragment_of(made_bar(1, true), "whole");
+    const Fragment a = fragment_of(synthetic_bar(), "a");
+    Fragment whole = fragment_of(synthetic_bar(1, true), "whole");
     whole.facets.assign(whole.facets.size(), Facet::outer);
     EXPECT_THROW(pair_breaks(a, whole, quick()), Error);
     whole.facets.clear();
@@ -134,7 +134,7 @@ TEST(BreakPair, WhatCannotBeLaidTogetherIsSaid) {
     options.least_contact = 1;
     Motion smaller;
     smaller.scale = 0.2;
-    const BreakPair pair = pair_breaks(a, fragment_of(made_sherd(4, 5, 0, 1), "small", smaller), options);
+    const BreakPair pair = pair_breaks(a, fragment_of(synthetic_sherd(4, 5, 0, 1), "small", smaller), options);
     EXPECT_FALSE(pair.decided());
     EXPECT_FALSE(pair.undecided.empty());
 }
@@ -169,7 +169,7 @@ std::string quoted(const Path& path) { return "'" + path.string() + "'"; }
 
 TEST(PairCommand, MovesTheSecondToTheFirst) {
     const test::Scratch scratch;
-    const MadeSherd below = made_bar(), above = made_bar(1, true);
+    const SyntheticSherd below = synthetic_bar(), above = synthetic_bar(1, true);
     const Motion away = random_motion(5, 10);
     write_mesh(scratch / "a.ply", below.mesh);
     write_mesh(scratch / "b.ply", moved(above.mesh, away));

@@ -14,12 +14,12 @@ namespace ostraka {
 namespace {
 
 using test::agreement;
-using test::made_bar;
-using test::made_sherd;
-using test::MadeSherd;
+using test::synthetic_bar;
+using test::synthetic_sherd;
+using test::SyntheticSherd;
 
 TEST(Facets, ASherdHasTwoSidesAndABreak) {
-    const MadeSherd sherd = made_sherd(1, 2, 0, 1);
+    const SyntheticSherd sherd = synthetic_sherd(1, 2, 0, 1);
     const Facets found = find_facets(sherd.mesh);
     EXPECT_TRUE(found.shell);
     EXPECT_NEAR(found.thickness, 0.7, 0.05);
@@ -39,7 +39,7 @@ TEST(Facets, ASherdHasTwoSidesAndABreak) {
 }
 
 TEST(Facets, UnitPlaceResolutionAndThreadsDoNotMatter) {
-    const MadeSherd sherd = made_sherd(1, 2, 0, 1);
+    const SyntheticSherd sherd = synthetic_sherd(1, 2, 0, 1);
     const Facets found = find_facets(sherd.mesh);
     Motion turn;
     turn.rotation = Eigen::AngleAxisd(2, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
@@ -49,7 +49,7 @@ TEST(Facets, UnitPlaceResolutionAndThreadsDoNotMatter) {
         EXPECT_GT(agreement({moved(sherd.mesh, turn), found.of_face}, find_facets(moved(sherd.mesh, turn)).of_face), 0.995)
             << scale;
     }
-    const MadeSherd fine = made_sherd(1, 2, 0, 1, 2);
+    const SyntheticSherd fine = synthetic_sherd(1, 2, 0, 1, 2);
     EXPECT_GT(agreement(fine, find_facets(fine.mesh).of_face), 0.95);
     const int before = threads();
     for (const int count : {1, 3}) {
@@ -63,7 +63,7 @@ TEST(Facets, UnitPlaceResolutionAndThreadsDoNotMatter) {
 
 TEST(Facets, ASolidHasARoughEnd) {
     for (const int fineness : {1, 2}) {
-        const MadeSherd bar = made_bar(fineness);
+        const SyntheticSherd bar = synthetic_bar(fineness);
         const Facets found = find_facets(bar.mesh);
         EXPECT_FALSE(found.shell);
         EXPECT_GT(agreement(bar, found.of_face), 0.95) << fineness;
@@ -133,7 +133,7 @@ std::string quoted(const Path& path) { return "'" + path.string() + "'"; }
 
 TEST(FacetsCommand, WritesThreeRegions) {
     const test::Scratch scratch;
-    const MadeSherd sherd = made_sherd(1, 2, 0, 1);
+    const SyntheticSherd sherd = synthetic_sherd(1, 2, 0, 1);
     write_mesh(scratch / "sherd.ply", sherd.mesh);
     const auto run = test::run_command("annotation facets " + quoted(scratch / "sherd.ply") + " " +
                                        quoted(scratch / "sherd.ant.json") + " --unit mm --json");

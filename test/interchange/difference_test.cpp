@@ -1,4 +1,4 @@
-// Diff and merge: laws over made sets, each kind of conflict.
+// Diff and merge: laws over synthetic sets, each kind of conflict.
 #include "ostraka/interchange/difference.h"
 #include "ostraka/core/error.h"
 #include "sets.h"

@@ -143,7 +143,7 @@ TEST(PointCloud, WhatIsWrongIsSaid) {
 
 TEST(FragmentFile, PointsBecomeAFragmentWithFacets) {
     const Scratch scratch;
-    const test::MadeSherd bar = test::made_bar(2);
+    const test::SyntheticSherd bar = test::synthetic_bar(2);
     std::ostringstream text;
     text.precision(17);
     for (const Vertex v : bar.mesh.vertices()) text << bar.mesh.point(v) << '\n';
@@ -163,7 +163,7 @@ TEST(FragmentFile, PointsBecomeAFragmentWithFacets) {
 
 TEST(FragmentFile, AnnotationsOverrideTheShape) {
     const Scratch scratch;
-    const test::MadeSherd sherd = test::made_sherd(1, 2, 0, 1);
+    const test::SyntheticSherd sherd = test::synthetic_sherd(1, 2, 0, 1);
     write_mesh(scratch / "sherd.ply", sherd.mesh);
     using FacetSource = FragmentFileOptions::FacetSource;
     FragmentFileOptions options;

@@ -16,7 +16,7 @@ using test::Scratch;
 
 std::string quoted(const Path& path) { return "'" + path.string() + "'"; }
 
-/// A made statuette as a template, and a fragment of another one.
+/// A synthetic statuette as a template, and a fragment of another one.
 class FitCommand : public ::testing::Test {
 protected:
     void SetUp() override {

@@ -29,7 +29,7 @@ PotOptions small_pot(std::uint64_t shape) {
     return options;
 }
 
-/// Sherds of a made pot, each turned about the axis at random and a little off its place, as a search leaves them.
+/// Sherds of a synthetic pot, each turned about the axis at random and a little off its place, as a search leaves them.
 struct BrokenPot {
     Mesh whole;
     std::vector<Fragment> fragments;

@@ -1,11 +1,11 @@
-// Relationships that are planted in made objects are found at every noise, and what is false is not.
+// Relationships that are planted in synthetic objects are found at every noise, and what is false is not.
 #include "ostraka/relation/geometric.h"
 
 #include "meshes.h"
 #include "ostraka/core/error.h"
 #include "ostraka/select/recipe.h"
-#include "ostraka/synthetic/made_object.h"
 #include "ostraka/synthetic/make_mesh.h"
+#include "ostraka/synthetic/synthetic_object.h"
 
 #include <gtest/gtest.h>
 
@@ -122,7 +122,7 @@ TEST(GeometricRelations, PlantedOnesAreFoundAndFalseOnesAreNot) {
     for (const auto& [name, list] : planted())
         for (const auto& [noise, seed] :
              {std::pair{0.0, 0U}, {0.001, 11U}, {0.001, 71U}, {0.005, 11U}, {0.005, 72U}, {0.005, 73U}}) {
-            MadeMesh made = make_mesh(made_object(name), {.vertices = 12000});
+            SyntheticMesh made = make_mesh(synthetic_object(name), {.vertices = 12000});
             const AnnotationSet set =
                 apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data" / (name + ".recipe.json"), made.mesh, made.face_labels);
             add_noise(made.mesh, noise, seed);
@@ -139,7 +139,7 @@ TEST(GeometricRelations, PlantedOnesAreFoundAndFalseOnesAreNot) {
 }
 
 TEST(GeometricRelations, ExtractionFindsThePlantedOnes) {
-    const MadeMesh made = make_mesh(made_object("teapot"), {.vertices = 12000});
+    const SyntheticMesh made = make_mesh(synthetic_object("teapot"), {.vertices = 12000});
     const AnnotationSet set = apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data/teapot.recipe.json", made.mesh, made.face_labels);
     RelationMeter meter(made.mesh, set);
     RelationGraph graph;
@@ -165,7 +165,7 @@ TEST(GeometricRelations, ExtractionFindsThePlantedOnes) {
 }
 
 TEST(GeometricRelations, WhatIsStatedIsNotExtractedAgain) {
-    const MadeMesh made = make_mesh(made_object("teapot"), {.vertices = 12000});
+    const SyntheticMesh made = make_mesh(synthetic_object("teapot"), {.vertices = 12000});
     AnnotationSet set = apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data/teapot.recipe.json", made.mesh, made.face_labels);
     const ExtractedRelations all = extract_relations(made.mesh, set);
     EXPECT_TRUE(all.stated.empty());

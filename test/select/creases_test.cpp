@@ -104,11 +104,11 @@ TEST(Creases, APartialRidgeIsAnOpenLine) {
     EXPECT_NEAR(creases[0].length, std::numbers::pi * 10.5, 5);
 }
 
-TEST(Creases, JointsOfAMadeObjectAreHollows) {
+TEST(Creases, JointsOfASyntheticObjectAreHollows) {
     MakeOptions options;
     options.vertices = 30000;
-    const MadeObject& object = made_object("teapot");
-    const MadeMesh made = make_mesh(object, options);
+    const SyntheticObject& object = synthetic_object("teapot");
+    const SyntheticMesh made = make_mesh(object, options);
     const auto label = [&](const std::string& name) {
         return static_cast<int>(std::find(object.parts.begin(), object.parts.end(), name) - object.parts.begin());
     };

@@ -50,8 +50,8 @@ Mesh two_sizes(int levels = 4) {
 }
 
 /// Two balls of radius 20 joined by a rod of radius 6; labels 0, 1 for the balls and 2 for the rod.
-MadeMesh dumbbell() {
-    MadeObject object;
+SyntheticMesh dumbbell() {
+    SyntheticObject object;
     object.name = "dumbbell";
     object.parts = {"one", "other", "rod"};
     object.part_colours = {{9, 9, 9}, {99, 9, 9}, {9, 99, 9}};
@@ -89,10 +89,10 @@ TEST(Growth, RingsOnATile) {
     EXPECT_EQ(select("point", R"({"invert": {"threshold": {"coordinate": [1, 0, 0], "above": 1}}})", mesh).points.size(), 11U);
 }
 
-TEST(Growth, LawsOnMadeObjectsAndAScan) {
+TEST(Growth, LawsOnSyntheticObjectsAndAScan) {
     MakeOptions options;
     options.vertices = 3000;
-    const MadeMesh vase = make_mesh(made_object("vase"), options);
+    const SyntheticMesh vase = make_mesh(synthetic_object("vase"), options);
     std::vector<bool> part(vase.mesh.number_of_faces());
     for (std::size_t f = 0; f < part.size(); ++f) part[f] = vase.face_labels[f] == 1;
     expect_laws(vase.mesh, part);
@@ -221,7 +221,7 @@ TEST(Threshold, OnAScan) {
 }
 
 TEST(Segments, TheBallsOfADumbbell) {
-    const MadeMesh made = dumbbell();
+    const SyntheticMesh made = dumbbell();
     const Mesh& mesh = made.mesh;
     const std::string by_seed = R"({"segments": {"clusters": 2, "smoothing": 0.3, "seeds": [[)";
     const std::vector<std::pair<std::string, int>> seeds{{"-70, 0, 0", 0}, {"70, 0, 0", 1}, {"0, 6, 0", 2}};

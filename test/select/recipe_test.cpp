@@ -269,8 +269,8 @@ TEST(Recipe, TheShippedOnesFitTheSchema) {
 TEST(Recipe, TheVaseDrawnOnItsPicturesHasItsTrueParts) {
     MakeOptions options;
     options.vertices = 12000;
-    const MadeObject& vase = made_object("vase");
-    const MadeMesh made = make_mesh(vase, options);
+    const SyntheticObject& vase = synthetic_object("vase");
+    const SyntheticMesh made = make_mesh(vase, options);
     const AnnotationSet set = apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data/vase-drawn.recipe.json", made.mesh);
     for (std::size_t part = 0; part < vase.parts.size(); ++part) {
         const auto found = std::find_if(set.annotations.begin(), set.annotations.end(),

@@ -143,10 +143,10 @@ TEST(Screen, OneSphereHidesAnother) {
         mesh.number_of_faces());
 }
 
-TEST(Screen, AnIndependentRayTestAgreesOnAMadeObject) {
+TEST(Screen, AnIndependentRayTestAgreesOnASyntheticObject) {
     MakeOptions options;
     options.vertices = 6000;
-    compare_with_brute_force(make_mesh(made_object("teapot"), options).mesh);
+    compare_with_brute_force(make_mesh(synthetic_object("teapot"), options).mesh);
 }
 
 TEST(Screen, AnIndependentRayTestAgreesOnAScan) {
@@ -157,7 +157,7 @@ TEST(Screen, AnIndependentRayTestAgreesOnAScan) {
 TEST(Screen, APixelOfAPictureSelectsWhatIsSeenThere) {
     MakeOptions make;
     make.vertices = 4000;
-    const Mesh mesh = make_mesh(made_object("teapot"), make).mesh;
+    const Mesh mesh = make_mesh(synthetic_object("teapot"), make).mesh;
     const SurfaceSearch search(mesh, false);
     const std::array<Rgb, 3> palette{Rgb{255, 0, 0}, Rgb{0, 255, 0}, Rgb{0, 0, 255}};
     Scene scene;

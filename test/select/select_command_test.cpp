@@ -364,6 +364,6 @@ TEST(SelectMutation, DamagedRecipesEndInSuccessOrAClearError) {
     MakeOptions options;
     options.vertices = 2000;
     EXPECT_LT(survive(read_file(Path(OSTRAKA_SOURCE_DIR) / "data/vase-drawn.recipe.json"),
-                      make_mesh(made_object("vase"), options).mesh),
+                      make_mesh(synthetic_object("vase"), options).mesh),
               200U);
 }

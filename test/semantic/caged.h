@@ -1,4 +1,4 @@
-// A made object in a cage, and constraints on its parts in a line each.
+// A synthetic object in a cage, and constraints on its parts in a line each.
 #pragma once
 
 #include "annotation/example_meshes.h"
@@ -16,14 +16,14 @@ inline Json edit(const std::string& steps) {
     return parse_json(R"({"format": "ostraka-edit", "version": 1, "steps": [)" + steps + "]}", "e");
 }
 
-/// A made object with the annotations of its recipe, a cage and mean value coordinates.
+/// A synthetic object with the annotations of its recipe, a cage and mean value coordinates.
 struct Caged {
-    MadeMesh made;
+    SyntheticMesh made;
     AnnotationSet set;
     Mesh cage;
     Coordinates coordinates;
     Caged(const std::string& name, std::uint64_t vertices, std::uint64_t cage_vertices)
-        : made(make_mesh(made_object(name), {.vertices = vertices})),
+        : made(make_mesh(synthetic_object(name), {.vertices = vertices})),
           set(apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data" / (name + ".recipe.json"), made.mesh, made.face_labels)),
           cage(make_cage(made.mesh, {.vertices = cage_vertices}).cage),
           coordinates(compute_coordinates("mean-value", cage, made.mesh)) {}

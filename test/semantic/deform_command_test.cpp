@@ -16,7 +16,7 @@ namespace {
 const std::string data = OSTRAKA_SOURCE_DIR "/data/";
 const std::string pot = data + "teapot.ply ", parts = data + "teapot.ant.json ";
 
-/// A folder with a cage of the made teapot and its weights.
+/// A folder with a cage of the synthetic teapot and its weights.
 struct Caged : Scratch {
     [[nodiscard]] std::string at(const std::string& name) const { return (*this / name).string(); }
     Caged() {

@@ -44,10 +44,10 @@ struct RingDistortion {
 std::pair<double, Eigen::Vector3d> stretched_body(const Eigen::Vector3d& p) {
     const double radius = std::hypot(p.x(), p.y()), free = 72 * M_PI / 180;
     const Point there(radius * std::cos(free), radius * std::sin(free), p.z() / 1.4);
-    const Vector g = made_object("teapot").gradient(there);
+    const Vector g = synthetic_object("teapot").gradient(there);
     const double outwards = g.x() * std::cos(free) + g.y() * std::sin(free);
     const Eigen::Vector3d gradient(outwards * p.x() / radius, outwards * p.y() / radius, g.z() / 1.4);
-    return {made_object("teapot").value(there), gradient};
+    return {synthetic_object("teapot").value(there), gradient};
 }
 
 RingDistortion distortion_around(const Caged& object, const std::vector<int>& flowers, const DeformResult& result) {

@@ -15,7 +15,7 @@ namespace {
 
 /// A made hand whose ring and little finger have a bounding measure "length", upwards.
 struct Hand {
-    MadeMesh made = make_mesh(made_object("hand"), {.vertices = 6000});
+    SyntheticMesh made = make_mesh(synthetic_object("hand"), {.vertices = 6000});
     AnnotationSet set = apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data/hand.recipe.json", made.mesh, made.face_labels);
     Hand() {
         for (Annotation& annotation : set.annotations) {
@@ -121,7 +121,7 @@ TEST(Deform, ASupportContinuesItsLegWhileTheArmIsMoved) {
 }
 
 TEST(Deform, APartThatContinuesAnotherAlreadyKeepsItsThickness) {
-    const MadeMesh made = make_mesh(made_object("chair"), {.vertices = 8000});
+    const SyntheticMesh made = make_mesh(synthetic_object("chair"), {.vertices = 8000});
     const AnnotationSet set = apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data/chair.recipe.json", made.mesh, made.face_labels);
     RelationGraph graph;
     graph.relationships.push_back(constraint(0, "structural continuity", {6, 8}, R"({"hard": true})"));

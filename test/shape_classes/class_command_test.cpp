@@ -16,7 +16,7 @@ using test::Scratch;
 
 std::string quoted(const Path& path) { return "'" + path.string() + "'"; }
 
-/// Made statuettes, one of them as a template.
+/// Synthetic statuettes, one of them as a template.
 class ClassCommand : public ::testing::Test {
 protected:
     void SetUp() override {

@@ -1,4 +1,4 @@
-// An independent check that made meshes do not cross themselves.
+// An independent check that synthetic meshes do not cross themselves.
 #include "ostraka/synthetic/make_mesh.h"
 
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
@@ -7,12 +7,12 @@
 using namespace ostraka;
 
 TEST(MakeMesh, NoTriangleCrossesAnother) {
-    for (const std::string& name : made_object_names()) {
-        for (const std::uint64_t vertices : {made_object(name).minimum_vertices, std::size_t{6000}}) {
+    for (const std::string& name : synthetic_object_names()) {
+        for (const std::uint64_t vertices : {synthetic_object(name).minimum_vertices, std::size_t{6000}}) {
             MakeOptions options;
             options.vertices = vertices;
             options.noise = vertices == 6000 ? 0.1 : 0;
-            EXPECT_FALSE(CGAL::Polygon_mesh_processing::does_self_intersect(make_mesh(made_object(name), options).mesh))
+            EXPECT_FALSE(CGAL::Polygon_mesh_processing::does_self_intersect(make_mesh(synthetic_object(name), options).mesh))
                 << name << vertices;
         }
     }

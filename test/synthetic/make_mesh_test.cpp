@@ -10,12 +10,12 @@ using namespace ostraka;
 
 namespace {
 
-MadeMesh made(const std::string& name, std::uint64_t vertices, std::uint64_t seed = 1, double noise = 0) {
+SyntheticMesh made(const std::string& name, std::uint64_t vertices, std::uint64_t seed = 1, double noise = 0) {
     MakeOptions options;
     options.vertices = vertices;
     options.seed = seed;
     options.noise = noise;
-    return make_mesh(made_object(name), options);
+    return make_mesh(synthetic_object(name), options);
 }
 
 double volume(const Mesh& mesh) {
@@ -35,7 +35,7 @@ int euler_characteristic(const Mesh& mesh) {
 }
 
 /// Number of pieces of each label's faces, joined across edges.
-std::vector<int> patches(const MadeMesh& m, std::size_t labels) {
+std::vector<int> patches(const SyntheticMesh& m, std::size_t labels) {
     std::vector<int> count(labels, 0);
     std::vector<bool> seen(m.mesh.number_of_faces(), false);
     for (const Face start : m.mesh.faces()) {
@@ -63,9 +63,9 @@ class EveryObject : public testing::TestWithParam<std::string> {};
 }  // namespace
 
 TEST_P(EveryObject, IsClosedOrientedOfItsGenusAtEveryResolution) {
-    const MadeObject& object = made_object(GetParam());
+    const SyntheticObject& object = synthetic_object(GetParam());
     for (const std::size_t vertices : {object.minimum_vertices, std::size_t{4000}, std::size_t{8000}}) {
-        const MadeMesh m = made(object.name, vertices, vertices);
+        const SyntheticMesh m = made(object.name, vertices, vertices);
         EXPECT_NEAR(static_cast<double>(m.mesh.number_of_vertices()), static_cast<double>(vertices),
                     0.01 * static_cast<double>(vertices));
         EXPECT_TRUE(CGAL::is_closed(m.mesh));
@@ -78,8 +78,8 @@ TEST_P(EveryObject, IsClosedOrientedOfItsGenusAtEveryResolution) {
 }
 
 TEST_P(EveryObject, TrianglesAreEvenAndFaceOutward) {
-    const MadeObject& object = made_object(GetParam());
-    const MadeMesh m = made(object.name, 8000);
+    const SyntheticObject& object = synthetic_object(GetParam());
+    const SyntheticMesh m = made(object.name, 8000);
     const double edge = mean_edge_length(m.mesh);
     std::size_t thin = 0;
     for (const Face f : m.mesh.faces()) {
@@ -96,9 +96,9 @@ TEST_P(EveryObject, TrianglesAreEvenAndFaceOutward) {
 }
 
 TEST_P(EveryObject, VerticesLieOnTheSurfaceAndPartsAreWhole) {
-    const MadeObject& object = made_object(GetParam());
+    const SyntheticObject& object = synthetic_object(GetParam());
     ASSERT_EQ(object.parts.size(), object.part_colours.size());
-    const MadeMesh m = made(object.name, 10000, 3);
+    const SyntheticMesh m = made(object.name, 10000, 3);
     // A few vertices at bends sharper than the triangles can follow stay a little off, where moving them would fold a triangle.
     const double diagonal = box_diagonal(m.mesh), edge = mean_edge_length(m.mesh);
     std::size_t off = 0;
@@ -115,8 +115,8 @@ TEST_P(EveryObject, VerticesLieOnTheSurfaceAndPartsAreWhole) {
 
 TEST_P(EveryObject, SlopeKeepsItsBound) {
     // What lets the mesher skip blocks: no surface within |value| - slack of a point.
-    const MadeObject& object = made_object(GetParam());
-    const MadeMesh m = made(object.name, object.minimum_vertices);
+    const SyntheticObject& object = synthetic_object(GetParam());
+    const SyntheticMesh m = made(object.name, object.minimum_vertices);
     std::vector<Point> surface;
     for (const Vertex v : m.mesh.vertices()) surface.push_back(m.mesh.point(v));
     const auto box = object.box();
@@ -135,8 +135,8 @@ TEST_P(EveryObject, SlopeKeepsItsBound) {
 }
 
 TEST_P(EveryObject, GradientIsThatOfTheValue) {
-    const MadeObject& object = made_object(GetParam());
-    const MadeMesh m = made(object.name, object.minimum_vertices);
+    const SyntheticObject& object = synthetic_object(GetParam());
+    const SyntheticMesh m = made(object.name, object.minimum_vertices);
     const double step = 1e-6 * box_diagonal(m.mesh);
     std::size_t odd = 0;  // the second derivative jumps at some curves, where differences err more
     for (const Vertex v : m.mesh.vertices()) {
@@ -151,16 +151,16 @@ TEST_P(EveryObject, GradientIsThatOfTheValue) {
     EXPECT_LE(odd, m.mesh.number_of_vertices() / 100);
 }
 
-INSTANTIATE_TEST_SUITE_P(Shapes, EveryObject, testing::ValuesIn(made_object_names()),
+INSTANTIATE_TEST_SUITE_P(Shapes, EveryObject, testing::ValuesIn(synthetic_object_names()),
                          [](const auto& name) { return name.param; });
 
 TEST(MakeMesh, AreaAndVolumeConvergeToTheFormulas) {
-    for (const std::string& name : made_object_names()) {
-        const MadeObject& object = made_object(name);
+    for (const std::string& name : synthetic_object_names()) {
+        const SyntheticObject& object = synthetic_object(name);
         if (!object.exact_area) continue;
         double last_area = 1, last_volume = 1;
         for (const std::uint64_t vertices : {1000, 4000, 16000}) {
-            const MadeMesh m = made(name, vertices);
+            const SyntheticMesh m = made(name, vertices);
             const double area_error = std::abs(surface_area(m.mesh) / *object.exact_area - 1);
             const double volume_error = std::abs(volume(m.mesh) / *object.exact_volume - 1);
             // Second order in the edge length: four times the vertices, a quarter of the error.
@@ -174,8 +174,8 @@ TEST(MakeMesh, AreaAndVolumeConvergeToTheFormulas) {
 }
 
 TEST(MakeMesh, CapsOfTheSphereHaveTheirArea) {
-    const MadeObject& sphere = made_object("sphere");
-    const MadeMesh m = made("sphere", 40000);
+    const SyntheticObject& sphere = synthetic_object("sphere");
+    const SyntheticMesh m = made("sphere", 40000);
     std::vector<double> area(sphere.parts.size(), 0);
     for (const Face f : m.mesh.faces()) area[static_cast<std::size_t>(m.face_labels[f.idx()])] += face_area(m.mesh, f);
     const double whole = *sphere.exact_area, edge = mean_edge_length(m.mesh), r = 50;
@@ -188,9 +188,9 @@ TEST(MakeMesh, CapsOfTheSphereHaveTheirArea) {
 TEST(MakeMesh, SameToTheBitForAnyNumberOfThreads) {
     for (const char* name : {"teapot", "box"}) {
         set_threads(1);
-        const MadeMesh one = made(name, 6000, 7, 0.1);
+        const SyntheticMesh one = made(name, 6000, 7, 0.1);
         set_threads(2);
-        const MadeMesh two = made(name, 6000, 7, 0.1);
+        const SyntheticMesh two = made(name, 6000, 7, 0.1);
         set_threads(0);
         EXPECT_EQ(mesh_checksum(one.mesh), mesh_checksum(two.mesh));
         EXPECT_EQ(one.face_labels, two.face_labels);
@@ -199,14 +199,14 @@ TEST(MakeMesh, SameToTheBitForAnyNumberOfThreads) {
 }
 
 TEST(MakeMesh, SeedsGiveDifferentMeshesOfOneObject) {
-    const MadeMesh one = made("torus", 5000, 1), two = made("torus", 5000, 2);
+    const SyntheticMesh one = made("torus", 5000, 1), two = made("torus", 5000, 2);
     EXPECT_NE(mesh_checksum(one.mesh), mesh_checksum(two.mesh));
     EXPECT_NEAR(surface_area(one.mesh), surface_area(two.mesh), 1e-3 * surface_area(one.mesh));
 }
 
 TEST(MakeMesh, NoiseStaysWithinItsShareOfTheEdge) {
-    const MadeObject& object = made_object("sphere");
-    const MadeMesh m = made("sphere", 5000, 1, 0.2);
+    const SyntheticObject& object = synthetic_object("sphere");
+    const SyntheticMesh m = made("sphere", 5000, 1, 0.2);
     const double edge = mean_edge_length(m.mesh);
     double most = 0;
     for (const Vertex v : m.mesh.vertices()) most = std::max(most, std::abs(object.value(m.mesh.point(v))));
@@ -229,7 +229,7 @@ TEST(MakeMesh, RefusesWhatCannotBe) {
     EXPECT_EQ(kind("sphere", 1000, 0.5), ErrorKind::usage);
     EXPECT_EQ(kind("tepot", 1000, 0), ErrorKind::usage);
     try {
-        made_object("tepot");
+        synthetic_object("tepot");
     } catch (const Error& error) {
         EXPECT_NE(error.remedy().find("'teapot'"), std::string::npos);
     }

@@ -22,7 +22,8 @@ bool closed(const Mesh& mesh) {
 }
 
 /// The place where the surface is crossed, walking from `inner` (inside) to `outer` along a horizontal ray from `centre`.
-double crossing(const MadeObject& object, const Eigen::Vector2d& centre, double angle, double z, double inner, double outer) {
+double crossing(const SyntheticObject& object, const Eigen::Vector2d& centre, double angle, double z, double inner,
+                double outer) {
     const auto value = [&](double r) {
         return object.sample({centre.x() + r * std::cos(angle), centre.y() + r * std::sin(angle), z}).value;
     };
@@ -35,7 +36,7 @@ double crossing(const MadeObject& object, const Eigen::Vector2d& centre, double 
 }
 
 /// Fourier coefficient `k` of the outer radius at a height, divided by the mean radius.
-std::complex<double> harmonic(const MadeObject& object, double z, int k, double reach) {
+std::complex<double> harmonic(const SyntheticObject& object, double z, int k, double reach) {
     std::complex<double> sum = 0;
     double mean = 0;
     const int samples = 180;

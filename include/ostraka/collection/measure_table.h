@@ -39,7 +39,7 @@ UnifiedMeasures unify_units(const MeasureTable& table);
 
 /// A population of measures with known proportions, for trying the study out. The logarithm of measure j of object i is
 /// centre_j + size_i + own_ij, all normal; measures of one group have the same `own` but for what the planted ratio varies.
-struct MadeMeasuresOptions {
+struct SyntheticMeasuresOptions {
     int objects = 40;
     int measures = 8;
     int groups = 2;
@@ -54,11 +54,11 @@ struct MadeMeasuresOptions {
     void describe(OptionList& visit);
 };
 
-struct MadeMeasures {
+struct SyntheticMeasures {
     MeasureTable table;
     std::vector<int> groups;  ///< a measure: the group it belongs to, or -1
 };
 /// Throws Error (usage) for options out of range or groups that need more measures than there are.
-MadeMeasures make_measures(const MadeMeasuresOptions& options = {});
+SyntheticMeasures make_measures(const SyntheticMeasuresOptions& options = {});
 
 }  // namespace ostraka

@@ -33,8 +33,8 @@ struct Collection {
 /// Whether `read_collection` of its folder would take the file for an object's: by its ending a mesh, annotations or markups.
 bool is_object_file(const Path& file);
 
-/// Throws Error (failure) where the folder holds files of objects or tables already, with which made objects would be mixed. It
-/// may be missing.
+/// Throws Error (failure) where the folder holds files of objects or tables already, with which synthetic objects would be mixed.
+/// It may be missing.
 void check_new_collection(const Path& folder);
 
 /// A folder: every OBJ, PLY, OFF or STL file directly in it is an object, named as the file without its ending (with it, where

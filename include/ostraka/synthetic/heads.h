@@ -2,7 +2,7 @@
 #pragma once
 
 #include "ostraka/core/options.h"
-#include "ostraka/synthetic/made_object.h"
+#include "ostraka/synthetic/synthetic_object.h"
 
 #include <cstdint>
 #include <memory>
@@ -65,6 +65,6 @@ struct HandWork {
 };
 
 /// The solid: parts as head_part_names(). The front is the archetype's, the rest as the hand work says.
-std::unique_ptr<const MadeObject> head_object(const HeadShape& shape, const HandWork& work = {});
+std::unique_ptr<const SyntheticObject> head_object(const HeadShape& shape, const HandWork& work = {});
 
 }  // namespace ostraka

@@ -1,8 +1,8 @@
-// Triangle meshes of made objects at any resolution, with the true part of every face and vertex.
+// Triangle meshes of synthetic objects at any resolution, with the true part of every face and vertex.
 #pragma once
 
 #include "ostraka/core/options.h"
-#include "ostraka/synthetic/made_object.h"
+#include "ostraka/synthetic/synthetic_object.h"
 
 #include <cstdint>
 #include <vector>
@@ -17,7 +17,7 @@ struct MakeOptions {
     void describe(OptionList& visit);
 };
 
-struct MadeMesh {
+struct SyntheticMesh {
     Mesh mesh;                              ///< closed, oriented, manifold, of the object's genus
     std::vector<std::int32_t> face_labels;  ///< part at the face's centroid carried onto the surface; crumbs of up to three faces
                                             ///< join their surroundings
@@ -26,6 +26,6 @@ struct MadeMesh {
 
 /// Meshes the object's surface with triangles of even size. Time and memory grow linearly with the number of vertices.
 /// Throws Error (usage) if the options are out of range or the object cannot be held by so few vertices.
-MadeMesh make_mesh(const MadeObject& object, const MakeOptions& options = {});
+SyntheticMesh make_mesh(const SyntheticObject& object, const MakeOptions& options = {});
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// A made vessel, broken into sherds whose places, neighbours and facets are known exactly.
+// A synthetic vessel, broken into sherds whose places, neighbours and facets are known exactly.
 #pragma once
 
 #include "ostraka/core/mesh.h"

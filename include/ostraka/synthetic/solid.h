@@ -1,4 +1,4 @@
-// Implicit solids: signed values with gradients, the clay that made objects are built from.
+// Implicit solids: signed values with gradients, of which synthetic objects are built.
 #pragma once
 
 #include <Eigen/Geometry>

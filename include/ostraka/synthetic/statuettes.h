@@ -3,8 +3,8 @@
 #pragma once
 
 #include "ostraka/core/options.h"
-#include "ostraka/synthetic/made_object.h"
 #include "ostraka/synthetic/make_mesh.h"
+#include "ostraka/synthetic/synthetic_object.h"
 
 #include <memory>
 #include <string>
@@ -65,7 +65,7 @@ struct Statuette {
 
 /// The implicit object alone: body, cavity (as deep as it is seen), head, arms. Throws Error (usage) for parameters out of range
 /// or that do not fit each other (a wall thicker than the body).
-std::unique_ptr<const MadeObject> statuette_object(const StatuetteParameters& parameters);
+std::unique_ptr<const SyntheticObject> statuette_object(const StatuetteParameters& parameters);
 
 /// The statuette as its scan. Throws Error as statuette_object and make_mesh do.
 Statuette generate_statuette(const StatuetteParameters& parameters);

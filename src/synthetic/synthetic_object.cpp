@@ -1,4 +1,4 @@
-#include "ostraka/synthetic/made_object.h"
+#include "ostraka/synthetic/synthetic_object.h"
 
 #include <cmath>
 
@@ -52,7 +52,7 @@ bool near_relief(const Relief& relief, const Vector3d& offset) {
 
 }  // namespace
 
-void MadeObject::finish() {
+void SyntheticObject::finish() {
     boxes_.clear();
     reach_ = 0;
     for (const Member& member : members) {
@@ -70,7 +70,7 @@ void MadeObject::finish() {
     reach_ += 4 * slack() + 1e-3 * box_.diagonal().norm();
 }
 
-Sample MadeObject::member_sample(std::size_t member, const Vector3d& p) const {
+Sample SyntheticObject::member_sample(std::size_t member, const Vector3d& p) const {
     // Far from a solid only a lower bound of its value is needed: what is farther than every blend changes nothing.
     const auto& solid = *members[member].solid;
     const double distance = boxes_[member].exteriorDistance(p) * solid.flatness();
@@ -81,13 +81,13 @@ Sample MadeObject::member_sample(std::size_t member, const Vector3d& p) const {
     return solid.sample(p);
 }
 
-double MadeObject::slack() const {
+double SyntheticObject::slack() const {
     double most = 0;
     for (const Relief& relief : reliefs) most = std::max(most, std::abs(relief.height));
     return most;
 }
 
-Sample MadeObject::sample(const Vector3d& p) const {
+Sample SyntheticObject::sample(const Vector3d& p) const {
     Sample all = member_sample(0, p);
     for (std::size_t i = 1; i < members.size(); ++i) {
         const Sample next = member_sample(i, p);
@@ -109,12 +109,12 @@ Sample MadeObject::sample(const Vector3d& p) const {
     return all;
 }
 
-Vector MadeObject::gradient(const Point& p) const {
+Vector SyntheticObject::gradient(const Point& p) const {
     const Vector3d g = sample({p.x(), p.y(), p.z()}).gradient;
     return {g.x(), g.y(), g.z()};
 }
 
-int MadeObject::part(const Vector3d& p) const {
+int SyntheticObject::part(const Vector3d& p) const {
     std::size_t nearest = 0;
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < members.size(); ++i) {
@@ -143,7 +143,7 @@ int MadeObject::part(const Vector3d& p) const {
     return label;
 }
 
-Vector3d MadeObject::project(const Vector3d& p) const {
+Vector3d SyntheticObject::project(const Vector3d& p) const {
     Vector3d q = p;
     const double enough = 1e-13 * box_.diagonal().norm();
     for (int i = 0; i < 12; ++i) {
@@ -154,7 +154,7 @@ Vector3d MadeObject::project(const Vector3d& p) const {
     return q;
 }
 
-Point MadeObject::project(const Point& p) const {
+Point SyntheticObject::project(const Point& p) const {
     const Vector3d q = project(Vector3d(p.x(), p.y(), p.z()));
     return {q.x(), q.y(), q.z()};
 }

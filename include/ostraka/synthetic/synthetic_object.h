@@ -38,7 +38,7 @@ struct Cut {
     std::function<double(const Eigen::Vector3d&)> side;
 };
 
-class MadeObject {
+class SyntheticObject {
 public:
     std::string name, object_class, description;
     std::string unit = "mm";
@@ -85,8 +85,8 @@ private:
 };
 
 /// Names in alphabetical order.
-std::vector<std::string> made_object_names();
+std::vector<std::string> synthetic_object_names();
 /// Throws Error (usage) for an unknown name, with the nearest known one.
-const MadeObject& made_object(const std::string& name);
+const SyntheticObject& synthetic_object(const std::string& name);
 
 }  // namespace ostraka
