@@ -25,7 +25,7 @@ namespace ostraka::experiments {
 namespace {
 
 struct Object {
-    std::string family;
+    std::string class_name;
     WholeObject member;
     WholeShape whole;
     Mesh original;
@@ -96,13 +96,13 @@ std::vector<Object> read_objects(const std::string& folder, std::size_t most) {
         if (extension(entry.path()) == ".off")
             files[entry.path().parent_path().filename().string()][std::stoi(entry.path().stem().string())] = entry.path();
     std::vector<Object> objects;
-    for (const auto& [family, list] : files) {
+    for (const auto& [class_name, list] : files) {
         std::size_t taken = 0;
         for (const auto& [number, file] : list) {
             if (taken++ == most) break;
             Object object;
-            object.family = family;
-            object.member.name = family + " " + std::to_string(number);
+            object.class_name = class_name;
+            object.member.name = class_name + " " + std::to_string(number);
             object.member.mesh = read_mesh(file).mesh;
             objects.push_back(std::move(object));
         }
@@ -122,7 +122,7 @@ Mesh simplified(const Mesh& mesh, std::uint64_t vertices) {
 
 /// A class's template, made from one object, and what is measured where it lies on the others.
 struct Source {
-    std::string family;
+    std::string class_name;
     std::size_t object = 0;
     Mesh mesh;
     AnnotationSet parts;
@@ -141,8 +141,8 @@ void print(const Counts& table, const std::vector<std::string>& columns) {
     std::cout << "\n|---|";
     for (std::size_t k = 0; k < columns.size(); ++k) std::cout << "--:|";
     std::cout << '\n';
-    for (const auto& [family, row] : table) {
-        std::cout << "| " << family << " |";
+    for (const auto& [class_name, row] : table) {
+        std::cout << "| " << class_name << " |";
         for (const std::string& name : columns) {
             const auto found = row.find(name);
             std::cout << ' ' << (found == row.end() ? "" : std::to_string(found->second)) << " |";
@@ -154,7 +154,7 @@ void print(const Counts& table, const std::vector<std::string>& columns) {
 class LeaveOneOut {
 public:
     LeaveOneOut(const std::vector<Object>& objects, const ClassMembershipOptions& options) : objects_(objects) {
-        for (std::size_t i = 0; i < objects.size(); ++i) families_[objects[i].family].push_back(i);
+        for (std::size_t i = 0; i < objects.size(); ++i) objects_of_class_[objects[i].class_name].push_back(i);
         how_.correspondence = CorrespondenceChoice::fitted;
         how_.fit.tries = options.tries;
         how_.fit.fit.reach = options.reach;
@@ -168,16 +168,16 @@ public:
         std::ofstream csv(Path(options.output) / "quantities.csv");
         csv << "template,object,annotations,kind,id,name,value\n";
         std::vector<double> seconds;
-        for (const auto& [family, list] : families_)
+        for (const auto& [class_name, list] : objects_of_class_)
             for (std::size_t first = 0; first < std::min<std::size_t>(2, list.size()); ++first) {
                 Source& source = sources_.emplace_back();
-                source.family = family;
+                source.class_name = class_name;
                 source.object = list[first];
                 const Object& from = objects_[source.object];
                 source.mesh = simplified(from.member.mesh, options.template_vertices);
                 if (!from.labels.empty()) source.parts = parts_on(source.mesh, from.original, from.labels);
                 for (std::size_t i = 0; i < objects_.size(); ++i) {
-                    if (i == source.object || (first > 0 && objects_[i].family != family)) continue;
+                    if (i == source.object || (first > 0 && objects_[i].class_name != class_name)) continue;
                     const Stopwatch watch;
                     const WholeObject bare{objects_[i].member.name, objects_[i].member.mesh, {}};
                     source.fits[i] = fit_member(source.mesh, {}, bare, how_.fit);
@@ -205,9 +205,9 @@ public:
             const Object& object = objects_[i];
             std::vector<const Source*> asked_of;
             std::vector<ShapeClass> classes;
-            for (const auto& [family, members] : families_)
+            for (const auto& [class_name, members] : objects_of_class_)
                 for (const Source& source : sources_)
-                    if (source.family == family && source.object != i) {
+                    if (source.class_name == class_name && source.object != i) {
                         asked_of.push_back(&source);
                         classes.push_back(learnt_from(source, arm, i));
                         break;
@@ -221,7 +221,7 @@ public:
                 const auto reasons = list.back().reasons();
                 answers << object.member.name << ',' << classes[k].name << ',' << to_string(list.back().verdict) << ','
                         << format("%.4f", list.back().score) << ",\"" << (reasons.empty() ? "" : reasons.front()) << "\"\n";
-                if (classes[k].name == object.family) {
+                if (classes[k].name == object.class_name) {
                     own_refused += member ? 0 : 1;
                 } else {
                     ++asked;
@@ -235,16 +235,16 @@ public:
             const std::string best = answer.best >= 0                      ? name(answer.best)
                                      : answer.verdict == Membership::other ? "none"
                                                                            : "undecided";
-            ++nearest[object.family][name(answer.nearest)];
-            ++decided[object.family][best];
-            near += name(answer.nearest) == object.family ? 1 : 0;
-            ++sums[best == object.family ? "right" : answer.best >= 0 ? "wrong" : best];
+            ++nearest[object.class_name][name(answer.nearest)];
+            ++decided[object.class_name][best];
+            near += name(answer.nearest) == object.class_name ? 1 : 0;
+            ++sums[best == object.class_name ? "right" : answer.best >= 0 ? "wrong" : best];
         }
         const std::size_t n = objects_.size();
         std::cout << "\n## " << known_of_parts.at(arm) << (shared ? "" : "; each class by its own members' deviations alone")
                   << "\n\nNearest class: " << near << " of " << n << " right.\n\n";
         std::vector<std::string> columns;
-        for (const auto& [family, list] : families_) columns.push_back(family);
+        for (const auto& [class_name, list] : objects_of_class_) columns.push_back(class_name);
         print(nearest, columns);
         std::cout << "\nAnswers: " << sums["right"] << " right, " << sums["wrong"] << " wrong, " << sums["none"] << " none, "
                   << sums["undecided"] << " undecided. Its own class refuses an object " << own_refused << " times in " << n
@@ -268,15 +268,15 @@ private:
 
     [[nodiscard]] ShapeClass learnt_from(const Source& source, std::size_t arm, std::size_t without) const {
         std::vector<LearntMember> members;
-        for (const std::size_t i : families_.at(source.family))
+        for (const std::size_t i : objects_of_class_.at(source.class_name))
             if (i != without && i != source.object) members.push_back(source.measured.at(arm).at(i));
         ShapeClass learnt = learn_class({source.mesh, arm == 0 ? none_ : source.parts, no_graph_}, members, how_);
-        learnt.name = source.family;
+        learnt.name = source.class_name;
         return learnt;
     }
 
     const std::vector<Object>& objects_;
-    std::map<std::string, std::vector<std::size_t>> families_;
+    std::map<std::string, std::vector<std::size_t>> objects_of_class_;
     std::vector<Source> sources_;
     LearnOptions how_;
     const AnnotationSet none_;
@@ -292,8 +292,8 @@ void class_membership(const ClassMembershipOptions& options) {
         object.original = object.member.mesh;
         object.member.mesh = simplified(object.original, options.object_vertices);
         if (options.labels.empty()) continue;
-        const std::string number = object.member.name.substr(object.family.size() + 1);
-        object.labels = typical_labels(Path(options.labels) / object.family / number, object.original);
+        const std::string number = object.member.name.substr(object.class_name.size() + 1);
+        object.labels = typical_labels(Path(options.labels) / object.class_name / number, object.original);
         object.member.annotations = parts_on(object.member.mesh, object.original, object.labels);
     }
     std::filesystem::create_directories(options.output);

@@ -52,8 +52,8 @@ public:
         if (rows_.empty()) fail_at(1, "the file is empty", "give a table that 'annotation export' wrote");
         const auto& header = rows_.front().cells;
         for (std::size_t i = 0; i < header.size(); ++i)
-            if (!columns_.emplace(exchange::lower(trimmed(header[i])), i).second)
-                fail_at(rows_.front().line, "the column '" + exchange::one_line(header[i]) + "' stands twice", "remove one");
+            if (!columns_.emplace(interchange::lower(trimmed(header[i])), i).second)
+                fail_at(rows_.front().line, "the column '" + interchange::one_line(header[i]) + "' stands twice", "remove one");
         for (const char* needed : {"annotation", "attribute", "name", "kind"})
             if (!columns_.contains(needed))
                 fail_at(rows_.front().line, std::string("there is no column '") + needed + "'",
@@ -103,12 +103,12 @@ private:
     [[nodiscard]] std::string cell(const std::string& column) const {
         const auto found = columns_.find(column);
         if (found == columns_.end() || found->second >= row_->cells.size()) return {};
-        return exchange::as_utf8(unguarded(row_->cells[found->second]));
+        return interchange::as_utf8(unguarded(row_->cells[found->second]));
     }
     [[nodiscard]] int whole(const std::string& column) const {
         const auto value = whole_of(cell(column));
         if (!value)
-            fail(column, "'" + exchange::one_line(cell(column)).substr(0, 40) + "' is not a whole number", "mend the cell");
+            fail(column, "'" + interchange::one_line(cell(column)).substr(0, 40) + "' is not a whole number", "mend the cell");
         return *value;
     }
     [[nodiscard]] std::vector<double> numbers(const std::string& column) const { return numbers(column, cell(column)); }
@@ -121,7 +121,8 @@ private:
             const auto value = number_of(std::string_view(text).substr(begin, from - begin));
             if (!value)
                 fail(column,
-                     "'" + exchange::one_line(text.substr(begin, std::min<std::size_t>(from - begin, 40))) + "' is not a number",
+                     "'" + interchange::one_line(text.substr(begin, std::min<std::size_t>(from - begin, 40))) +
+                         "' is not a number",
                      "give numbers with a decimal point, separated by blanks");
             list.push_back(*value);
         }
@@ -175,9 +176,9 @@ private:
         attribute.id = whole("attribute");
         attribute.name = cell("name");
         const std::string kind = cell("kind"), stale = cell("stale");
-        if (!stale.empty() && exchange::lower(stale) != "true" && exchange::lower(stale) != "false")
+        if (!stale.empty() && interchange::lower(stale) != "true" && interchange::lower(stale) != "false")
             fail("stale", "is neither true nor false", "mend the cell");
-        const bool is_stale = exchange::lower(stale) == "true";
+        const bool is_stale = interchange::lower(stale) == "true";
         if (kind == "semantic") {
             attribute.note = cell("note");
             attribute.origin = cell("origin");
@@ -191,7 +192,7 @@ private:
             if (kind == "descriptor" && attribute.descriptor.values.size() > 1)
                 fail("value", "more than one number", "write 'list' as the kind");
         } else {
-            fail("kind", "'" + exchange::one_line(kind).substr(0, 40) + "' is not known",
+            fail("kind", "'" + interchange::one_line(kind).substr(0, 40) + "' is not known",
                  "use semantic, measure, descriptor or list");
         }
         return attribute;

@@ -9,7 +9,7 @@ namespace ostraka {
 
 namespace {
 
-using namespace exchange;
+using namespace interchange;
 using Kind = Difference::Kind;
 
 /// The elements of a selection as sortable numbers: vertices, edges (both ends, lower first) or faces.

@@ -15,10 +15,10 @@ namespace ostraka {
 
 namespace {
 
-using namespace exchange;
+using namespace interchange;
 using std::to_string;
 
-std::string words(const EntryName& name) { return name.id ? to_string(*name.id) : "'" + exchange::words(name.text) + "'"; }
+std::string words(const EntryName& name) { return name.id ? to_string(*name.id) : "'" + interchange::words(name.text) + "'"; }
 
 EntryName name_of(const JsonValue& value) {
     EntryName name;
@@ -186,8 +186,8 @@ private:
             }
             attribute.id = twin->id;
             if (!same(attribute, *twin) && attribute.type != AttributeType::descriptor)
-                notes_.push_back("annotation " + to_string(annotation.id) + " keeps its own '" + exchange::words(attribute.name) +
-                                 "', that of " + to_string(other.id) + " is lost");
+                notes_.push_back("annotation " + to_string(annotation.id) + " keeps its own '" +
+                                 interchange::words(attribute.name) + "', that of " + to_string(other.id) + " is lost");
         }
         refresh(annotation);
         merged_id_ = annotation.id;
@@ -209,7 +209,8 @@ private:
         for (const auto& polyline : whole.polylines) add().polylines = {polyline};
         for (auto& patch : patches(mesh_, whole.faces)) add().faces = std::move(patch);
         if (parts.size() < 2) {
-            notes_.push_back("annotation " + to_string(whole.id) + " '" + exchange::words(whole.tag) + "' is one piece already");
+            notes_.push_back("annotation " + to_string(whole.id) + " '" + interchange::words(whole.tag) +
+                             "' is one piece already");
             return;
         }
         for (Annotation& part : parts)

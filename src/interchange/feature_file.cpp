@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace ostraka::exchange {
+namespace ostraka::interchange {
 
 FeatureFile::FeatureFile(const std::string& bytes, const std::string& where) : file(bytes, where) {
     refuse_what_is_not_read();
@@ -226,4 +226,4 @@ void FeatureFile::collect(const Primitive& primitive, std::size_t number) {
     if (primitive.mode == glb::triangles_mode) offset_ += primitive.corners.size() / 3;
 }
 
-}  // namespace ostraka::exchange
+}  // namespace ostraka::interchange

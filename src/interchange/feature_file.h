@@ -8,7 +8,7 @@
 #include <optional>
 #include <set>
 
-namespace ostraka::exchange {
+namespace ostraka::interchange {
 
 inline constexpr std::size_t absent = static_cast<std::size_t>(-1);
 
@@ -66,4 +66,4 @@ private:
     std::size_t table_ = absent, offset_ = 0;
 };
 
-}  // namespace ostraka::exchange
+}  // namespace ostraka::interchange

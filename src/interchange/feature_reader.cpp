@@ -19,7 +19,7 @@ namespace ostraka {
 
 namespace {
 
-using namespace exchange;
+using namespace interchange;
 
 class FeatureReader {
 public:

@@ -23,7 +23,7 @@ namespace ostraka {
 
 namespace {
 
-using namespace exchange;
+using namespace interchange;
 using Eigen::Vector3d;
 using glb::append;
 

@@ -2,7 +2,7 @@
 
 #include "text.h"
 
-namespace ostraka::exchange {
+namespace ostraka::interchange {
 
 bool same(const Attribute& a, const Attribute& b) {
     if (a.id != b.id || a.name != b.name || a.type != b.type) return false;
@@ -82,4 +82,4 @@ std::string words(const Annotation& annotation) {
                  std::to_string(annotation.attributes.size()) + " attributes");
 }
 
-}  // namespace ostraka::exchange
+}  // namespace ostraka::interchange

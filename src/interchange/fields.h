@@ -3,7 +3,7 @@
 
 #include "ostraka/annotation/annotation.h"
 
-namespace ostraka::exchange {
+namespace ostraka::interchange {
 
 bool same(const Attribute& a, const Attribute& b);
 bool same_geometry(const Annotation& a, const Annotation& b);
@@ -26,4 +26,4 @@ std::vector<int> ids_of(const Entries& entries) {
 }
 std::string words(const std::vector<int>& ids);
 
-}  // namespace ostraka::exchange
+}  // namespace ostraka::interchange

@@ -3,7 +3,7 @@
 
 #include "ostraka/interchange/landmarks.h"
 
-namespace ostraka::exchange {
+namespace ostraka::interchange {
 
 using Notes = std::vector<std::string>;
 
@@ -30,4 +30,4 @@ void check_place(const std::array<double, 3>& position, const std::string& at);
 /// "1 landmark", "2 landmarks".
 std::string counted(std::size_t count, const std::string& noun);
 
-}  // namespace ostraka::exchange
+}  // namespace ostraka::interchange

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <map>
 
-namespace ostraka::exchange {
+namespace ostraka::interchange {
 
 namespace {
 
@@ -329,4 +329,4 @@ std::string write_fcsv(const LandmarkSet& set, const LandmarkFileOptions& option
     return text;
 }
 
-}  // namespace ostraka::exchange
+}  // namespace ostraka::interchange

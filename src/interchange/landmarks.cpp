@@ -15,9 +15,9 @@ namespace ostraka {
 
 namespace {
 
-using exchange::counted;
-using exchange::Placed;
-using exchange::Placer;
+using interchange::counted;
+using interchange::Placed;
+using interchange::Placer;
 using std::to_string;
 
 std::array<double, 3> position_of(const Mesh& mesh, Index vertex) {
@@ -60,7 +60,7 @@ bool fits_turned(const Placer& placer, const std::vector<Entry>& entries) {
             : "check that mesh and file have one unit and one position, raise --tolerance, or leave them out with --skip-far";
     fail_input(where,
                counted(far.size(), "place") + " of " + to_string(entries.size()) + " farther than " + digits(limit) +
-                   " from the surface, the farthest " + worst->kind + " '" + exchange::one_line(worst->name).substr(0, 40) +
+                   " from the surface, the farthest " + worst->kind + " '" + interchange::one_line(worst->name).substr(0, 40) +
                    "' at " + digits(worst->placed.to_surface),
                remedy);
 }
@@ -70,9 +70,9 @@ public:
     Assembler(const Mesh& mesh, const std::string& where) : placer_(mesh), where_(where) {}
 
     PlacedAnnotations assemble(const LandmarkSet& input, const PlaceOptions& options) {
-        for (const Landmark& landmark : input.landmarks) exchange::check_place(landmark.position, where_);
+        for (const Landmark& landmark : input.landmarks) interchange::check_place(landmark.position, where_);
         for (const LandmarkCurve& curve : input.curves)
-            for (const auto& position : curve.points) exchange::check_place(position, where_);
+            for (const auto& position : curve.points) interchange::check_place(position, where_);
         std::vector<Entry> entries;
         for (const Landmark& landmark : input.landmarks)
             entries.push_back({landmark.name, "landmark", &landmark.position, placer_.place(point_of(landmark.position))});
@@ -110,7 +110,7 @@ private:
     static std::string names_of(const std::vector<Entry>& entries) {
         std::string text;
         for (std::size_t i = 0; i < std::min<std::size_t>(entries.size(), 5); ++i)
-            text += (i > 0 ? ", '" : "'") + exchange::one_line(entries[i].name).substr(0, 40) + "'";
+            text += (i > 0 ? ", '" : "'") + interchange::one_line(entries[i].name).substr(0, 40) + "'";
         return text + (entries.size() > 5 ? " ..." : "");
     }
 
@@ -153,7 +153,7 @@ private:
         std::vector<Index> chain =
             placer_.chain(picks, curve.closed && picks.size() > 2, where_ + ", curve '" + curve.name + "'");
         if (chain.size() < 2) {
-            result_.set.notes.push_back("curve '" + exchange::one_line(curve.name).substr(0, 40) +
+            result_.set.notes.push_back("curve '" + interchange::one_line(curve.name).substr(0, 40) +
                                         "' shrank to a point on this mesh and was left out");
             return;
         }
@@ -180,17 +180,17 @@ LandmarkSet landmarks_from_text(const std::string& bytes, LandmarkFormat format,
     check_options(options, "landmarks");
     switch (format) {
         case LandmarkFormat::tps:
-            return exchange::read_tps(bytes, where, options);
+            return interchange::read_tps(bytes, where, options);
         case LandmarkFormat::pp:
-            return exchange::read_picked_points(bytes, where);
+            return interchange::read_picked_points(bytes, where);
         case LandmarkFormat::mrk:
-            return exchange::read_markups(bytes, where, options);
+            return interchange::read_markups(bytes, where, options);
         case LandmarkFormat::fcsv:
-            return exchange::read_fcsv(bytes, where, options);
+            return interchange::read_fcsv(bytes, where, options);
         case LandmarkFormat::csv:
             break;
     }
-    return exchange::read_landmark_table(bytes, where, options);
+    return interchange::read_landmark_table(bytes, where, options);
 }
 
 LandmarkSet read_landmarks(const Path& file, LandmarkFormat format, const LandmarkFileOptions& options) {
@@ -204,17 +204,17 @@ std::string landmarks_to_text(const LandmarkSet& set, LandmarkFormat format, con
         notes.push_back(counted(set.curves.size(), "poly-line") + points_only);
     switch (format) {
         case LandmarkFormat::tps:
-            return exchange::write_tps(set, mesh_file);
+            return interchange::write_tps(set, mesh_file);
         case LandmarkFormat::pp:
-            return exchange::write_picked_points(set, mesh_file, notes);
+            return interchange::write_picked_points(set, mesh_file, notes);
         case LandmarkFormat::mrk:
-            return exchange::write_markups(set, options, provenance);
+            return interchange::write_markups(set, options, provenance);
         case LandmarkFormat::fcsv:
-            return exchange::write_fcsv(set, options, notes);
+            return interchange::write_fcsv(set, options, notes);
         case LandmarkFormat::csv:
             break;
     }
-    return exchange::write_landmark_table(set);
+    return interchange::write_landmark_table(set);
 }
 
 LandmarkSet landmarks_of(const Mesh& mesh, const AnnotationSet& set, LandmarkFormat format) {

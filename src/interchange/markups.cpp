@@ -4,7 +4,7 @@
 
 #include "ostraka/core/error.h"
 
-namespace ostraka::exchange {
+namespace ostraka::interchange {
 
 namespace {
 
@@ -149,4 +149,4 @@ std::string write_markups(const LandmarkSet& set, const LandmarkFileOptions& opt
     return json_text(document);
 }
 
-}  // namespace ostraka::exchange
+}  // namespace ostraka::interchange

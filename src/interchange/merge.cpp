@@ -11,7 +11,7 @@ namespace ostraka {
 
 namespace {
 
-using namespace exchange;
+using namespace interchange;
 
 /// The order of what both or one of the sides hold: theirs where ours left the base's order as it was, otherwise ours; what
 /// only the other side has comes last.

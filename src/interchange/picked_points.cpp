@@ -9,7 +9,7 @@
 
 #include <algorithm>
 
-namespace ostraka::exchange {
+namespace ostraka::interchange {
 
 namespace {
 
@@ -98,4 +98,4 @@ std::string write_picked_points(const LandmarkSet& set, const std::string& mesh_
     return std::move(writer.text);
 }
 
-}  // namespace ostraka::exchange
+}  // namespace ostraka::interchange

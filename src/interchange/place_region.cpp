@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace ostraka::exchange {
+namespace ostraka::interchange {
 
 std::vector<Index> region_of(Placer& placer, const std::vector<RegionPart>& parts, const std::string& where,
                              std::vector<std::string>& remarks) {
@@ -37,4 +37,4 @@ std::vector<Index> region_of(Placer& placer, const std::vector<RegionPart>& part
     return flagged(selected);
 }
 
-}  // namespace ostraka::exchange
+}  // namespace ostraka::interchange

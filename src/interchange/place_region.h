@@ -3,7 +3,7 @@
 
 #include "placing.h"
 
-namespace ostraka::exchange {
+namespace ostraka::interchange {
 
 /// What of a region lies on one connected component of its own mesh.
 struct RegionPart {
@@ -18,4 +18,4 @@ struct RegionPart {
 std::vector<Index> region_of(Placer& placer, const std::vector<RegionPart>& parts, const std::string& where,
                              std::vector<std::string>& remarks);
 
-}  // namespace ostraka::exchange
+}  // namespace ostraka::interchange

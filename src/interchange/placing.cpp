@@ -11,7 +11,7 @@
 #include <cmath>
 #include <limits>
 
-namespace ostraka::exchange {
+namespace ostraka::interchange {
 
 VertexSearch::VertexSearch(const Mesh& mesh) : mesh_(mesh) {
     for (const Vertex v : mesh.vertices())
@@ -158,4 +158,4 @@ PlacedAnnotations placed_annotations(Json& native, JsonValue list, const JsonVal
     return result;
 }
 
-}  // namespace ostraka::exchange
+}  // namespace ostraka::interchange

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace ostraka::exchange {
+namespace ostraka::interchange {
 
 /// The nearest vertex that has a face, by a balanced tree of the vertices; ties go to the lower index.
 class VertexSearch {
@@ -63,4 +63,4 @@ PlacedAnnotations placed_annotations(Json& native, JsonValue list, const JsonVal
                                      const std::string& where, bool same_mesh, std::vector<std::string> notes,
                                      std::vector<PlacedAnnotation> placements);
 
-}  // namespace ostraka::exchange
+}  // namespace ostraka::interchange

@@ -14,7 +14,7 @@ namespace ostraka {
 
 namespace {
 
-using namespace exchange;
+using namespace interchange;
 
 std::string in_words(const Descriptor& descriptor) {
     std::string text;

@@ -14,7 +14,7 @@ namespace ostraka {
 
 namespace {
 
-using namespace exchange;
+using namespace interchange;
 
 bool is_facet_type(const std::string& text) { return text == "external" || text == "internal" || text == "fracture"; }
 

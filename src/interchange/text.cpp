@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace ostraka::exchange {
+namespace ostraka::interchange {
 
 std::string as_utf8(std::string_view text) {
     Json scratch;
@@ -46,4 +46,4 @@ JsonValue triple_json(const std::array<double, 3>& values, JsonAllocator& alloca
     return list;
 }
 
-}  // namespace ostraka::exchange
+}  // namespace ostraka::interchange

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-namespace ostraka::exchange {
+namespace ostraka::interchange {
 
 /// Text whose bytes are not UTF-8 has U+FFFD for each byte that does not fit.
 std::string as_utf8(std::string_view text);
@@ -30,4 +30,4 @@ std::string text_member(const JsonValue& object, std::string_view name);
 std::optional<std::array<double, 3>> triple(const JsonValue* value);
 JsonValue triple_json(const std::array<double, 3>& values, JsonAllocator& allocator);
 
-}  // namespace ostraka::exchange
+}  // namespace ostraka::interchange

@@ -20,7 +20,7 @@ namespace ostraka {
 
 namespace {
 
-using namespace exchange;
+using namespace interchange;
 
 /// Is `text` one of the strings that a JSON-LD member holds, alone or in a list?
 bool holds(const JsonValue* value, std::string_view text) {

@@ -15,7 +15,7 @@ namespace ostraka {
 
 namespace {
 
-using namespace exchange;
+using namespace interchange;
 
 /// A name for ever for a thing that `content` describes: a UUID of version 8 (RFC 9562) from its SHA-256.
 std::string uuid_of(const std::string& content) {

@@ -11,7 +11,7 @@ namespace {
 
 struct Deform final : Operation {
     void describe(Parameters& p) override {
-        p.input("template", Kind::template_package, bundle,
+        p.input("template", Kind::template_package, package,
                 "template (.template.json), with its graph, cage and coordinates, in place of mesh and annotations")
             .optional();
         p.input("mesh", Kind::mesh, mesh, "mesh file").optional();
@@ -40,11 +40,11 @@ struct Deform final : Operation {
     }
 
     void check() const override {
-        if (bundle ? mesh || annotations : !mesh || !annotations)
+        if (package ? mesh || annotations : !mesh || !annotations)
             fail_usage("what to deform is not clear", "give a mesh and its annotations, or a template");
         if (static_cast<bool>(cage) != static_cast<bool>(weights))
             fail_usage("--cage and --weights belong together", "give both: see 'cage weights'");
-        if (cage_out && !bundle && !cage) fail_without_cage();
+        if (cage_out && !package && !cage) fail_without_cage();
     }
 
     void run(Context& context, Report& report) override {
@@ -56,7 +56,7 @@ struct Deform final : Operation {
             context.check_outputs(files);
         }
         const Stopwatch stopwatch;
-        Subject subject = bundle ? of_template(context) : Subject{&*mesh, &annotations.on(mesh->mesh)};
+        Subject subject = package ? of_template(context) : Subject{&*mesh, &annotations.on(mesh->mesh)};
         if (cage) {
             subject.around = &*cage;
             subject.coordinates = &weights.of(subject.object->mesh, cage->mesh);
@@ -119,12 +119,13 @@ struct Deform final : Operation {
     }
 
     Subject of_template(Context& context) {
-        const Template& loaded = *bundle;
+        const Template& loaded = *package;
         for (const Finding& finding : loaded.findings)
             if (finding.defect)
-                fail_input(bundle.file() + ", " + finding.where, finding.text, "mend it: 'template check' tells all");
-        if (!loaded.mesh) fail_input(bundle.file(), "has no mesh", "pack one");
-        if (!loaded.annotations) fail_input(bundle.file(), "has no annotations", "pack them, or give a mesh and its annotations");
+                fail_input(package.file() + ", " + finding.where, finding.text, "mend it: 'template check' tells all");
+        if (!loaded.mesh) fail_input(package.file(), "has no mesh", "pack one");
+        if (!loaded.annotations)
+            fail_input(package.file(), "has no annotations", "pack them, or give a mesh and its annotations");
         Subject subject{&*loaded.mesh, &*loaded.annotations};
         if (loaded.graph) subject.relations = &*loaded.graph;
         // The first cage that has coordinates.
@@ -142,7 +143,7 @@ struct Deform final : Operation {
                 }
             }
         if (!cage && subject.coordinates == nullptr && !why_not.empty())
-            fail_input(bundle.file(), "has a cage and coordinates that do not go together: " + why_not,
+            fail_input(package.file(), "has a cage and coordinates that do not go together: " + why_not,
                        "make them anew with 'cage weights', or give --cage and --weights");
         return subject;
     }
@@ -220,7 +221,7 @@ struct Deform final : Operation {
                       (gives.empty() ? ", and so does " + id : "; " + id + " would have to give: " + joined(gives, "; "))));
     }
 
-    TemplateInput bundle;
+    TemplateInput package;
     MeshInput mesh, cage;
     AnnotationsInput annotations;
     JsonInput edit;

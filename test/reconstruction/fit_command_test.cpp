@@ -196,7 +196,7 @@ TEST_F(FitCommand, SearchesOfAnEarlierFitAreTakenWhereNothingChanged) {
 }
 
 TEST_F(FitCommand, FitsThroughACage) {
-    const std::string bundle = quoted(scratch / "made" / "t.template.json"), top = quoted(scratch / "top.ply");
+    const std::string package = quoted(scratch / "made" / "t.template.json"), top = quoted(scratch / "top.ply");
     const auto made = fit(top + " --space cage");
     EXPECT_EQ(made.code, 3) << made.err;
     EXPECT_NE(made.err.find("has no cage"), std::string::npos) << made.err;
@@ -212,7 +212,7 @@ TEST_F(FitCommand, FitsThroughACage) {
     const auto own = run_command(caged);
     EXPECT_EQ(own.code, 3) << own.err;
     EXPECT_EQ(own.err.find("has no cage"), std::string::npos) << own.err;
-    EXPECT_EQ(run_command("fit " + bundle + " " + top + " --space air --output " + quoted(scratch / "out")).code, 2);
+    EXPECT_EQ(run_command("fit " + package + " " + top + " --space air --output " + quoted(scratch / "out")).code, 2);
 }
 
 TEST_F(FitCommand, BreakRefusesWhatItCannotDo) {

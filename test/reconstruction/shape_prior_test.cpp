@@ -14,8 +14,8 @@ namespace {
 using namespace test;
 using Eigen::Vector3d;
 
-/// The body's family: taller or shorter (by 10 per cent in a standard deviation), bent forward, wider on one side.
-ShapePrior family(const Mesh& mesh) {
+/// The class of the body: taller or shorter (by 10 per cent in a standard deviation), bent forward, wider on one side.
+ShapePrior prior_of_bodies(const Mesh& mesh) {
     ShapePrior prior;
     prior.modes.setZero(3 * static_cast<Eigen::Index>(mesh.number_of_vertices()), 3);
     for (const Vertex v : mesh.vertices()) {
@@ -55,7 +55,7 @@ double missing_error(const Mesh& whole, const Cut& one, const Reconstruction& re
 TEST(ShapePrior, TheMissingPartIsThatOfTheMemberSeen) {
     const Mesh mesh = body();
     const AnnotationSet set = landmarks_of(mesh);
-    const ShapePrior prior = family(mesh);
+    const ShapePrior prior = prior_of_bodies(mesh);
     for (const Vector3d& b : {Vector3d(1.5, -1, 0.5), Vector3d(-1, 1, 1), Vector3d(0, 0, 0)}) {
         const Mesh whole = member(mesh, prior, b);
         BreakOptions options;
@@ -79,7 +79,7 @@ TEST(ShapePrior, TheMissingPartIsThatOfTheMemberSeen) {
 TEST(ShapePrior, HoldsCoefficientsWithinItsLimitAndIsTheSameForAnyNumberOfThreads) {
     const Mesh mesh = body(3);
     const AnnotationSet set = landmarks_of(mesh);
-    const ShapePrior prior = family(mesh);
+    const ShapePrior prior = prior_of_bodies(mesh);
     const Mesh whole = member(mesh, prior, Vector3d(6, 0, 0));
     BreakOptions half;
     half.share = 0.5;
@@ -101,7 +101,7 @@ TEST(ShapePrior, HoldsCoefficientsWithinItsLimitAndIsTheSameForAnyNumberOfThread
 TEST(ShapePrior, WithoutModesItIsTheMean) {
     const Mesh mesh = body(3);
     const AnnotationSet set = landmarks_of(mesh);
-    ShapePrior prior = family(mesh);
+    ShapePrior prior = prior_of_bodies(mesh);
     prior.modes.resize(prior.modes.rows(), 0);
     prior.deviations.clear();
     const Cut one = cut(mesh, set, Point(0, 0, 1.9), {});
@@ -123,11 +123,11 @@ TEST(ShapePrior, RefusesWhatDoesNotFitTheTemplate) {
             EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
         }
     };
-    refused(family(body(2)), "vertices");
-    ShapePrior prior = family(mesh);
+    refused(prior_of_bodies(body(2)), "vertices");
+    ShapePrior prior = prior_of_bodies(mesh);
     prior.deviations.pop_back();
     refused(prior, "modes");
-    prior = family(mesh);
+    prior = prior_of_bodies(mesh);
     prior.deviations[1] = 0;
     refused(prior, "vary");
 }

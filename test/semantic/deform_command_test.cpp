@@ -136,12 +136,12 @@ TEST(DeformCommand, EveryDocumentedConstraintCanBeStated) {
 
 TEST(DeformCommand, ATemplateIsAllItNeeds) {
     const Caged folder;
-    const std::string bundle = folder.at("pot.template.json");
-    const auto packed = run_command("template pack " + bundle + " --mesh " + pot + " --annotations " + parts + " --graph " +
+    const std::string package = folder.at("pot.template.json");
+    const auto packed = run_command("template pack " + package + " --mesh " + pot + " --annotations " + parts + " --graph " +
                                     folder.at("k.graph.json") + " --cage " + folder.at("cage.ply") + " --coordinates " +
                                     folder.at("w.npy") + " --copy");
     ASSERT_EQ(packed.code, 0) << packed.err;
-    const auto whole = run_command("deform " + bundle + " " + folder.at("lift.edit.json") + " " + folder.at("whole.ply") +
+    const auto whole = run_command("deform " + package + " " + folder.at("lift.edit.json") + " " + folder.at("whole.ply") +
                                    " --cage-out " + folder.at("whole-cage.ply"));
     EXPECT_EQ(whole.code, 0) << whole.err;
     ASSERT_EQ(run_command("deform " + pot + parts + folder.at("lift.edit.json") + " " + folder.at("pieces.ply") +

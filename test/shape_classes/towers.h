@@ -1,4 +1,4 @@
-// A family made by rule: a tower of two halves whose heights and width are drawn, as a template with measures and a proportion.
+// A class made by rule: a tower of two halves whose heights and width are drawn, as a template with measures and a proportion.
 #pragma once
 
 #include "meshes.h"

@@ -116,15 +116,15 @@ TEST(Template, PackedCheckedShown) {
     const Json report = parse_json(show.out, "report");
     validate(report, "report", "report");
     EXPECT_EQ(report["result"]["parts"].Size(), 9U);
-    const Template bundle = load_template(read_template(ball / "ball.template.json"));
-    EXPECT_TRUE(bundle.sound());
-    ASSERT_EQ(bundle.entries.size(), 9U);
-    EXPECT_EQ(bundle.entries[0].text, "66 vertices, 128 faces");
-    EXPECT_EQ(bundle.entries[2].text, "1 relationship, 0 constraints");
-    EXPECT_EQ(bundle.entries[3].text, "18 vertices, 32 faces, encloses the mesh");
-    EXPECT_EQ(bundle.entries[4].text, "66 x 18");
-    EXPECT_EQ(bundle.entries[8].text, "2 landmarks");
-    EXPECT_EQ((*bundle.annotations->up)[2], 2) << "the template's";
+    const Template package = load_template(read_template(ball / "ball.template.json"));
+    EXPECT_TRUE(package.sound());
+    ASSERT_EQ(package.entries.size(), 9U);
+    EXPECT_EQ(package.entries[0].text, "66 vertices, 128 faces");
+    EXPECT_EQ(package.entries[2].text, "1 relationship, 0 constraints");
+    EXPECT_EQ(package.entries[3].text, "18 vertices, 32 faces, encloses the mesh");
+    EXPECT_EQ(package.entries[4].text, "66 x 18");
+    EXPECT_EQ(package.entries[8].text, "2 landmarks");
+    EXPECT_EQ((*package.annotations->up)[2], 2) << "the template's";
 }
 
 TEST(Template, ClassUnitAndUpAreThoseOfTheAnnotations) {

@@ -1,14 +1,14 @@
 // annotation export, import
 #include "operations.h"
 
-#include "ostraka/interchange/exchange.h"
+#include "ostraka/interchange/interchange.h"
 
 namespace ostraka {
 
 namespace {
 
 void describe_format(Parameters& p, std::optional<std::string>& format) {
-    p.options("format", format, "format of the file, if its ending does not tell", Choices(exchange_formats()));
+    p.options("format", format, "format of the file, if its ending does not tell", Choices(interchange_formats()));
 }
 
 struct AnnotationExport final : Operation {
@@ -22,7 +22,7 @@ struct AnnotationExport final : Operation {
     }
 
     void run(Context& context, Report& report) override {
-        if (!format) format = guess_exchange_format(output.file());
+        if (!format) format = guess_interchange_format(output.file());
         const AnnotationSet& set = annotations.on(mesh->mesh);
         const ExportedAnnotations exported =
             export_annotations(mesh->mesh, set, *format, mesh.file(), context.provenance(), options);
@@ -58,7 +58,7 @@ struct AnnotationImport final : Operation {
 
     void run(Context& context, Report& report) override {
         const auto& bytes = input.load<std::string>(read_file);
-        if (!format) format = guess_exchange_format(input.file(), bytes);
+        if (!format) format = guess_interchange_format(input.file(), bytes);
         const Mesh& on = mesh->mesh;
         const AnnotationSet* base = onto ? &onto.on(on) : nullptr;
         PlacedAnnotations placed = [&] {

@@ -1,4 +1,4 @@
-#include "ostraka/interchange/exchange.h"
+#include "ostraka/interchange/interchange.h"
 
 #include "landmark_formats.h"
 
@@ -16,11 +16,11 @@ namespace ostraka {
 
 namespace {
 
-/// In the order of exchange_formats().
+/// In the order of interchange_formats().
 enum class Format { attributes_csv, landmarks_csv, tps, pp, mrk, fcsv, web, glb, ant, fct };
 
 Format format_named(const std::string& name) {
-    const auto& names = exchange_formats();
+    const auto& names = interchange_formats();
     if (const auto found = std::find(names.begin(), names.end(), name); found != names.end())
         return static_cast<Format>(found - names.begin());
     std::string list;
@@ -74,13 +74,13 @@ PlacedAnnotations added_to(const AnnotationSet& onto, PlacedAnnotations read) {
 
 }  // namespace
 
-const std::vector<std::string>& exchange_formats() {
+const std::vector<std::string>& interchange_formats() {
     static const std::vector<std::string> names{"attributes-csv", "landmarks-csv", "tps", "pp",  "mrk",
                                                 "fcsv",           "web",           "glb", "ant", "fct"};
     return names;
 }
 
-std::string guess_exchange_format(const Path& file, const std::string& bytes) {
+std::string guess_interchange_format(const Path& file, const std::string& bytes) {
     const std::string ending = extension(file);
     if (ending == ".csv") return bytes.empty() || is_attribute_table(bytes) ? "attributes-csv" : "landmarks-csv";
     if (ending == ".tps") return "tps";
@@ -147,7 +147,7 @@ PlacedAnnotations import_annotations(const Mesh& mesh, const std::string& bytes,
         result.set.annotations = onto->annotations;
         result.set.notes = onto->notes;
         const std::size_t changed = apply_attribute_table(bytes, result.set, where);
-        result.set.notes.push_back(exchange::counted(changed, "annotation") + " of the table taken over");
+        result.set.notes.push_back(interchange::counted(changed, "annotation") + " of the table taken over");
     } else if (format == Format::web) {
         result = read_web_annotations(bytes, mesh, where, options.place);
     } else if (format == Format::glb) {

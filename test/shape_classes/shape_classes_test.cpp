@@ -78,7 +78,7 @@ TEST(ShapeModes, KnownModesComeBack) {
     EXPECT_GT(along(1, planted.second), 0.99);
     EXPECT_LT((modes.modes * modes.modes.transpose() - Eigen::MatrixXd::Identity(modes.modes.rows(), modes.modes.rows())).norm(),
               1e-9);
-    // A shape of the family is given by its coefficients; one off the family is not.
+    // A shape of the class is given by its coefficients; one off the class is not.
     const ShapeCoordinates inside = coordinates_in(modes, members[0]);
     EXPECT_LT(inside.outside, 1e-6);
     EXPECT_NEAR((landmarks_of(points_of(shape_of(modes, inside.coefficients))) - inside.map.apply(members[0])).norm(), 0, 1e-6);

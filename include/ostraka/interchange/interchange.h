@@ -9,11 +9,11 @@ namespace ostraka {
 
 /// Names of formats, as the commands take them: "attributes-csv", "landmarks-csv", "tps", "pp", "mrk", "fcsv", "web", "glb",
 /// "ant", "fct".
-const std::vector<std::string>& exchange_formats();
+const std::vector<std::string>& interchange_formats();
 
 /// The format of a file by its name, and for .csv by its first line. `bytes` is empty for a file to be written: then .csv is
 /// "attributes-csv". Throws Error (usage) for an unknown ending.
-std::string guess_exchange_format(const Path& file, const std::string& bytes = {});
+std::string guess_interchange_format(const Path& file, const std::string& bytes = {});
 
 struct ExportOptions {
     LandmarkFileOptions landmarks;

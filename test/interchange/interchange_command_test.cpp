@@ -1,6 +1,6 @@
 // The built command: export, import, edit, diff and merge on good and bad input, and on real landmarks.
 #include "ostraka/core/json.h"
-#include "ostraka/interchange/exchange.h"
+#include "ostraka/interchange/interchange.h"
 #include "ostraka/io/mesh_file.h"
 #include "scratch.h"
 #include "sets.h"
@@ -35,14 +35,14 @@ struct Folder : Scratch {
 
 }  // namespace
 
-TEST(ExchangeCommand, EveryFormatGoesOutAndComesIn) {
+TEST(InterchangeCommand, EveryFormatGoesOutAndComesIn) {
     const Folder folder;
     const std::vector<std::pair<std::string, std::string>> formats{{"t.csv", ""},      {"l.csv", "--format landmarks-csv"},
                                                                    {"l.tps", ""},      {"l.pp", ""},
                                                                    {"l.mrk.json", ""}, {"l.fcsv", ""},
                                                                    {"w.jsonld", ""},   {"f.glb", ""},
                                                                    {"p.ant", ""},      {"p.fct", ""}};
-    EXPECT_EQ(formats.size(), exchange_formats().size());
+    EXPECT_EQ(formats.size(), interchange_formats().size());
     for (const auto& [file, flags] : formats) {
         const auto out = folder.run("export", {"a.ant.json", file}, flags);
         ASSERT_EQ(out.code, 0) << file << out.err;
@@ -61,7 +61,7 @@ TEST(ExchangeCommand, EveryFormatGoesOutAndComesIn) {
     }
 }
 
-TEST(ExchangeCommand, ImportOntoAddsWithFreeIds) {
+TEST(InterchangeCommand, ImportOntoAddsWithFreeIds) {
     const Folder folder;
     ASSERT_EQ(folder.run("export", {"a.ant.json", "l.csv"}, "--format landmarks-csv").code, 0);
     ASSERT_EQ(folder.run("import", {"l.csv", "both.ant.json"}, "--onto " + folder.at("a.ant.json")).code, 0);
@@ -70,7 +70,7 @@ TEST(ExchangeCommand, ImportOntoAddsWithFreeIds) {
     for (std::size_t i = 0; i < before.annotations.size(); ++i) EXPECT_EQ(both.annotations[i].id, before.annotations[i].id);
 }
 
-TEST(ExchangeCommand, BadInputLeavesOutputsAlone) {
+TEST(InterchangeCommand, BadInputLeavesOutputsAlone) {
     const Folder folder;
     (void)folder.file("out.ant.json", "old");
     const auto refused = [&](const test::CommandResult& result, int code, const std::string& text) {
@@ -108,7 +108,7 @@ TEST(ExchangeCommand, BadInputLeavesOutputsAlone) {
     refused(folder.run("edit", {"a.ant.json", "out.ant.json"}, "--annotation 3 --colour red"), 2, "red");
 }
 
-TEST(ExchangeCommand, EditByFlagsAndByList) {
+TEST(InterchangeCommand, EditByFlagsAndByList) {
     const Folder folder;
     const auto flags = folder.run("edit", {"a.ant.json", "b.ant.json"},
                                   "--annotation 3 --tag '<new>' --colour '#ff0010' --attribute 'age=old, \"very\"' --json");
@@ -128,7 +128,7 @@ TEST(ExchangeCommand, EditByFlagsAndByList) {
     EXPECT_NE(list.out.find("added"), std::string::npos) << list.out;
 }
 
-TEST(ExchangeCommand, EditOfClassUnitAndUp) {
+TEST(InterchangeCommand, EditOfClassUnitAndUp) {
     const Folder folder;
     AnnotationSet set;
     set.unit = "mm";
@@ -169,7 +169,7 @@ TEST(ExchangeCommand, EditOfClassUnitAndUp) {
     EXPECT_FALSE(std::filesystem::exists(folder / "p.ant.json"));
 }
 
-TEST(ExchangeCommand, WhatIsWrittenIsCounted) {
+TEST(InterchangeCommand, WhatIsWrittenIsCounted) {
     const Folder folder;
     AnnotationSet set;
     set.unit = "mm";
@@ -207,7 +207,7 @@ TEST(ExchangeCommand, WhatIsWrittenIsCounted) {
     EXPECT_EQ(parse_json(report.out, "report")["result"]["annotations"].GetInt(), 1);
 }
 
-TEST(ExchangeCommand, TablesCutNoText) {
+TEST(InterchangeCommand, TablesCutNoText) {
     const Folder folder;
     const std::string text = std::string(150, 'x') + "end";
     const auto edited = folder.run("edit", {"a.ant.json", "b.ant.json"}, "--annotation 3 --attribute note=" + text);
@@ -221,7 +221,7 @@ TEST(ExchangeCommand, TablesCutNoText) {
     EXPECT_LT(list.out.find('\n'), 250U) << "the header keeps its width";
 }
 
-TEST(ExchangeCommand, DiffAndMerge) {
+TEST(InterchangeCommand, DiffAndMerge) {
     const Folder folder;
     EXPECT_EQ(folder.run("diff", {"a.ant.json", "a.ant.json"}).code, 0);
     ASSERT_EQ(folder.run("edit", {"a.ant.json", "ours.ant.json"}, "--annotation 3 --tag ours").code, 0);
@@ -256,7 +256,7 @@ TEST(ExchangeCommand, DiffAndMerge) {
     EXPECT_EQ(folder.read("n.ant.json").find(3)->tag, "theirs");
 }
 
-TEST(ExchangeCommand, RealSkullsWithTheirLandmarks) {
+TEST(InterchangeCommand, RealSkullsWithTheirLandmarks) {
     const Path data = Path(OSTRAKA_SHARED_DATA) / "landmarks-mouse-skulls";
     if (!std::filesystem::exists(data)) GTEST_SKIP() << "no real landmarks: " << data << " is not there";
     const Scratch scratch;
