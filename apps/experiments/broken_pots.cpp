@@ -1,4 +1,4 @@
-// Synthetic vessels, broken into sherds of known place, on the whole vessel: turns found again by the breaks.
+// Synthetic vessels, broken into sherds of known place, on the whole vessel: rotations found again by the breaks.
 #include "breaks.h"
 #include "experiments.h"
 #include "report.h"
@@ -99,31 +99,31 @@ void broken_pots(const BreakExperiment& options) {
                 for (const Facet facet : fragments[k].facets) counts.push_back(facet != Facet::fracture);
                 one.pose = align_part(fragments[k].mesh, counts, surface, one.pose).pose;
             }
-            const auto turns = decide_free_turns(whole, pointers, searched, placement.fragments);
+            const auto rotations = decide_open_rotations(whole, pointers, searched, placement.fragments);
             seconds += watch.seconds().processor;
             all += fragments.size();
             for (std::size_t k = 0; k < fragments.size(); ++k) {
                 if (!placement.fragments[k].problem.empty()) continue;
                 ++placed;
-                // But for the turn about the axis.
+                // But for the rotation about the axis.
                 const Motion back = placement.fragments[k].pose.after(motions[k]);
-                Motion turn;
-                turn.rotation = Eigen::AngleAxisd(std::atan2(back.rotation(0, 1) - back.rotation(1, 0),
-                                                             back.rotation(0, 0) + back.rotation(1, 1)),
-                                                  Vector3d::UnitZ())
-                                    .toRotationMatrix();
-                const double off = off_of(moved(fragments[k].mesh, motions[k].inverse()), turn.after(back));
+                Motion about_axis;
+                about_axis.rotation = Eigen::AngleAxisd(std::atan2(back.rotation(0, 1) - back.rotation(1, 0),
+                                                                   back.rotation(0, 0) + back.rotation(1, 1)),
+                                                        Vector3d::UnitZ())
+                                          .toRotationMatrix();
+                const double off = off_of(moved(fragments[k].mesh, motions[k].inverse()), about_axis.after(back));
                 well += off < 0.02 * box_diagonal(whole) ? 1 : 0;
             }
             own += belong;
-            if (!turns) continue;
+            if (!rotations) continue;
             std::vector<std::size_t> size(fragments.size(), 0);
             for (std::size_t k = 0; k < fragments.size(); ++k) {
-                if (turns->group[k] >= 0 && k < belong) ++size[static_cast<std::size_t>(turns->group[k])];
-                overlap = std::max(overlap, 100 * turns->overlap[k]);
+                if (rotations->group[k] >= 0 && k < belong) ++size[static_cast<std::size_t>(rotations->group[k])];
+                overlap = std::max(overlap, 100 * rotations->overlap[k]);
             }
             together += *std::max_element(size.begin(), size.end());
-            for (const BreakJoint& joint : turns->joints) {
+            for (const BreakJoint& joint : rotations->joints) {
                 const auto a = static_cast<std::size_t>(joint.first), b = static_cast<std::size_t>(joint.second);
                 const Motion back =
                     placement.fragments[a].pose.after(motions[a]).inverse().after(placement.fragments[b].pose.after(motions[b]));

@@ -150,9 +150,9 @@ struct BreakExperiment {
     int motions = 3;                      ///< random ones of all sherds
     int pots = 4;                         ///< synthetic vessels of each kind
 };
-/// The sherds on the template turned from them: axes, heights and turns.
-void sherd_turns(const BreakExperiment& options);
-/// Synthetic vessels, broken: turns by breaks with wear, noise, a piece that is missing, one of another vessel.
+/// The sherds on the template made of them as a surface of revolution: axes, heights and rotations.
+void sherd_rotations(const BreakExperiment& options);
+/// Synthetic vessels, broken: rotations by breaks with wear, noise, a piece that is missing, one of another vessel.
 void broken_pots(const BreakExperiment& options);
 
 }  // namespace ostraka::experiments

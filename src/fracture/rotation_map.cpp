@@ -18,8 +18,8 @@ int ProfileCells::row(const Vector3d& p, const Vector3d& normal, double reach) {
     return known_.try_emplace(cell, static_cast<int>(known_.size())).first->second;
 }
 
-TurnMap::TurnMap(ProfileCells& cells, const SurfaceSamples& surface, const std::vector<Vector3d>& fracture, int steps,
-                 double margin, double reach)
+RotationMap::RotationMap(ProfileCells& cells, const SurfaceSamples& surface, const std::vector<Vector3d>& fracture, int steps,
+                         double margin, double reach)
     : steps_(steps), area_(surface.area) {
     if (surface.places.empty()) return;
     each_ = surface.area / static_cast<double>(surface.places.size());
@@ -42,13 +42,13 @@ TurnMap::TurnMap(ProfileCells& cells, const SurfaceSamples& surface, const std::
     }
 }
 
-std::vector<double> TurnMap::shared(const TurnMap& other) const {
+std::vector<double> RotationMap::shared(const RotationMap& other) const {
     std::vector<double> area(static_cast<std::size_t>(steps_), 0);
     for (const Place& place : deep_) {
         const auto row = static_cast<std::size_t>(place.row);
         if (row >= other.covered_.size() || other.covered_[row].empty()) continue;
         const std::vector<bool>& line = other.covered_[row];
-        // The other turned by t covers the column c where it covered c - t before.
+        // The other rotated by t covers the column c where it covered c - t before.
         for (int t = 0; t < steps_; ++t)
             if (line[static_cast<std::size_t>((place.column - t + steps_) % steps_)]) area[static_cast<std::size_t>(t)] += each_;
     }

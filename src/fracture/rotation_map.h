@@ -24,13 +24,13 @@ private:
 };
 
 /// What a sherd covers at each of `steps` angles.
-class TurnMap {
+class RotationMap {
 public:
     /// Places closer than `margin` to the sherd's own break are covered, but do not complain of being covered twice.
-    TurnMap(ProfileCells& cells, const SurfaceSamples& surface, const std::vector<Eigen::Vector3d>& fracture, int steps,
-            double margin, double reach);
-    /// Area of this sherd on which `other` lies too when it is turned by each of the steps against this one: one a step.
-    [[nodiscard]] std::vector<double> shared(const TurnMap& other) const;
+    RotationMap(ProfileCells& cells, const SurfaceSamples& surface, const std::vector<Eigen::Vector3d>& fracture, int steps,
+                double margin, double reach);
+    /// Area of this sherd on which `other` lies too when it is rotated by each of the steps against this one: one a step.
+    [[nodiscard]] std::vector<double> shared(const RotationMap& other) const;
     [[nodiscard]] double area() const { return area_; }
 
 private:

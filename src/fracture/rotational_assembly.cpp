@@ -10,22 +10,22 @@ namespace ostraka {
 namespace {
 
 struct State {
-    std::vector<double> turns;
+    std::vector<double> rotations;
     std::vector<bool> placed;
     double value = 0;
 };
 
-/// States in which the same sherds have the same turns, to a degree or so.
+/// States in which the same sherds have the same rotations, to a degree or so.
 std::vector<long> signature(const State& state) {
     std::vector<long> key;
-    for (std::size_t k = 0; k < state.turns.size(); ++k)
-        key.push_back(state.placed[k] ? std::lround(std::fmod(state.turns[k] + 4 * pi, 2 * pi) * 60) % 377 : -1);
+    for (std::size_t k = 0; k < state.rotations.size(); ++k)
+        key.push_back(state.placed[k] ? std::lround(std::fmod(state.rotations[k] + 4 * pi, 2 * pi) * 60) % 377 : -1);
     return key;
 }
 
 }  // namespace
 
-TurnAssembly assemble_turns(const TurnPairs& pairs, const std::vector<bool>& fixed, std::size_t root, int beam) {
+RotationAssembly assemble_rotations(const RotationPairs& pairs, const std::vector<bool>& fixed, std::size_t root, int beam) {
     const std::size_t n = pairs.count();
     State first{std::vector<double>(n, 0), fixed, 0};
     if (std::find(fixed.begin(), fixed.end(), true) == fixed.end()) first.placed[root] = true;
@@ -39,14 +39,14 @@ TurnAssembly assemble_turns(const TurnPairs& pairs, const std::vector<bool>& fix
                 if (state.placed[u]) continue;
                 for (std::size_t p = 0; p < n; ++p) {
                     if (!state.placed[p]) continue;
-                    for (const MeetingTurn& meeting : pairs.of(p, u).meetings) {
-                        const double turn = state.turns[p] + (p < u ? meeting.turn : -meeting.turn);
+                    for (const MeetingRotation& meeting : pairs.of(p, u).meetings) {
+                        const double rotation = state.rotations[p] + (p < u ? meeting.rotation : -meeting.rotation);
                         double gain = 0;
                         for (std::size_t q = 0; q < n; ++q)
-                            if (state.placed[q]) gain += pairs.value(q, u, state.turns[q], turn);
+                            if (state.placed[q]) gain += pairs.value(q, u, state.rotations[q], rotation);
                         if (!(gain > 0)) continue;
                         State grown = state;
-                        grown.turns[u] = wrapped(turn);
+                        grown.rotations[u] = wrapped(rotation);
                         grown.placed[u] = true;
                         grown.value += gain;
                         if (known.insert(signature(grown)).second) next.push_back(std::move(grown));
@@ -58,51 +58,53 @@ TurnAssembly assemble_turns(const TurnPairs& pairs, const std::vector<bool>& fix
         if (!next.empty() && next.front().value > best.value) best = next.front();
         states = std::move(next);
     }
-    TurnAssembly result{best.turns, best.placed, best.value};
+    RotationAssembly result{best.rotations, best.placed, best.value};
     std::vector<bool> counts = best.placed;
     for (std::size_t u = 0; u < n; ++u) {
         if (counts[u]) continue;
         double shared = 0;
-        result.turns[u] = free_turn(pairs, result.turns, counts, u, shared);
+        result.rotations[u] = least_shared_rotation(pairs, result.rotations, counts, u, shared);
         counts[u] = true;
     }
     return result;
 }
 
-TurnLead lead_of(const TurnPairs& pairs, const std::vector<double>& turns, const std::vector<bool>& counts,
-                 const std::vector<bool>& side, int steps) {
-    TurnLead lead;
+RotationLead lead_of(const RotationPairs& pairs, const std::vector<double>& rotations, const std::vector<bool>& counts,
+                     const std::vector<bool>& side, int steps) {
+    RotationLead lead;
     double reach = 0;
     std::vector<std::pair<std::size_t, std::size_t>> across;
-    for (std::size_t i = 0; i < turns.size(); ++i)
-        for (std::size_t j = 0; j < turns.size(); ++j)
+    for (std::size_t i = 0; i < rotations.size(); ++i)
+        for (std::size_t j = 0; j < rotations.size(); ++j)
             if (counts[i] && counts[j] && !side[i] && side[j]) {
                 across.emplace_back(i, j);
                 reach = std::max(reach, pairs.of(i, j).reach);
             }
-    for (const auto& [i, j] : across) lead.here += pairs.value(i, j, turns[i], turns[j]);
-    // At other turns what overlaps is not held against it: that there is no room elsewhere says nothing of the breaks.
+    for (const auto& [i, j] : across) lead.here += pairs.value(i, j, rotations[i], rotations[j]);
+    // At other rotations what overlaps is not held against it: that there is no room elsewhere says nothing of the breaks.
     for (int k = 0; k < steps; ++k) {
-        const double turn = wrapped(2 * pi * k / steps);
-        if (std::abs(turn) < 2 * reach) continue;
+        const double rotation = wrapped(2 * pi * k / steps);
+        if (std::abs(rotation) < 2 * reach) continue;
         double sum = 0;
-        for (const auto& [i, j] : across) sum += pairs.of(i, j).met(TurnPairs::between(i, j, turns[i], turns[j] + turn));
+        for (const auto& [i, j] : across)
+            sum += pairs.of(i, j).met(RotationPairs::between(i, j, rotations[i], rotations[j] + rotation));
         lead.elsewhere = std::max(lead.elsewhere, sum);
     }
     return lead;
 }
 
-double free_turn(const TurnPairs& pairs, const std::vector<double>& turns, const std::vector<bool>& counts, std::size_t sherd,
-                 double& shared) {
+double least_shared_rotation(const RotationPairs& pairs, const std::vector<double>& rotations, const std::vector<bool>& counts,
+                             std::size_t sherd, double& shared) {
     std::size_t steps = 1;
-    for (std::size_t q = 0; q < turns.size(); ++q)
+    for (std::size_t q = 0; q < rotations.size(); ++q)
         if (q != sherd) steps = std::max(steps, pairs.of(q, sherd).shared.size());
-    // In the middle of the widest range of turns that share least.
+    // In the middle of the widest range of rotations that share least.
     std::vector<double> area(steps, 0);
     for (std::size_t k = 0; k < steps; ++k) {
-        const double turn = 2 * pi * static_cast<double>(k) / static_cast<double>(steps);
-        for (std::size_t q = 0; q < turns.size(); ++q)
-            if (q != sherd && counts[q]) area[k] += pairs.of(q, sherd).shared_at(TurnPairs::between(q, sherd, turns[q], turn));
+        const double rotation = 2 * pi * static_cast<double>(k) / static_cast<double>(steps);
+        for (std::size_t q = 0; q < rotations.size(); ++q)
+            if (q != sherd && counts[q])
+                area[k] += pairs.of(q, sherd).shared_at(RotationPairs::between(q, sherd, rotations[q], rotation));
     }
     const double least = *std::min_element(area.begin(), area.end());
     shared = least;

@@ -20,26 +20,26 @@ using Eigen::Vector3d;
 
 namespace {
 
-class TurnDecider {
+class RotationMatcher {
 public:
-    TurnDecider(const Mesh& whole, const Vector3d& point, const Vector3d& direction, const std::vector<TurnableSherd>& sherds,
-                const BreakTurnOptions& options)
+    RotationMatcher(const Mesh& whole, const Vector3d& point, const Vector3d& direction, const std::vector<SherdOnAxis>& sherds,
+                    const RotationMatchOptions& options)
         : given_(sherds), options_(options) {
         upright_.rotation = rotation_between(direction, Vector3d::UnitZ()).toRotationMatrix();
         upright_.translation = -(upright_.rotation * point);
         whole_ = moved(whole, upright_);
     }
 
-    BreakTurns run() {
+    RotationMatch run() {
         prepare();
         meet_all();
         std::vector<bool> fixed;
-        for (const TurnableSherd& one : given_) fixed.push_back(one.fixed);
+        for (const SherdOnAxis& one : given_) fixed.push_back(one.fixed);
         std::size_t root = 0;
         for (std::size_t k = 0; k < given_.size(); ++k)
             if (sherds_[k].map->area() > sherds_[root].map->area()) root = k;
-        assembly_ = assemble_turns(*pairs_, fixed, root, options_.beam);
-        for (std::size_t k = 0; k < given_.size(); ++k) now_.push_back(turned_by(assembly_.turns[k]));
+        assembly_ = assemble_rotations(*pairs_, fixed, root, options_.beam);
+        for (std::size_t k = 0; k < given_.size(); ++k) now_.push_back(rotated_by(assembly_.rotations[k]));
         join(fixed);
         put_aside(fixed);
         refine(fixed);
@@ -58,7 +58,7 @@ private:
         for (std::size_t k = 0; k < n; ++k) {
             const Fragment& fragment = *given_[k].fragment;
             const Motion pose = upright_.after(given_[k].pose);
-            TurningSherd& one = sherds_[k];
+            UprightSherd& one = sherds_[k];
             one.mesh = moved(fragment.mesh, pose);
             try {
                 const double radius = 0.04 * fragment_size(fragment.mesh);
@@ -77,7 +77,7 @@ private:
     void meet_all() {
         const std::size_t n = given_.size();
         double widest = 0;
-        for (const TurningSherd& one : sherds_)
+        for (const UprightSherd& one : sherds_)
             for (const Vertex v : one.mesh.vertices())
                 widest = std::max(widest, std::hypot(one.mesh.point(v).x(), one.mesh.point(v).y()));
         if (!(wall_ > 0)) wall_ = 0.1 * widest;
@@ -86,7 +86,7 @@ private:
         const double width = 0.5 * wall_;
         ProfileCells cells(surface, width);
         for (std::size_t k = 0; k < n; ++k) {
-            TurningSherd& one = sherds_[k];
+            UprightSherd& one = sherds_[k];
             std::vector<bool> intact(one.mesh.number_of_faces(), true);
             std::vector<Vector> normals;
             double area = 0;
@@ -102,12 +102,13 @@ private:
             double squares = 0;
             for (const Vector3d& p : surface_samples.places) squares += p.head<2>().squaredNorm();
             one.radius = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, surface_samples.places.size())));
-            one.map = std::make_unique<TurnMap>(cells, surface_samples, one.side.fracture.places, steps_, 2 * width, 0.5 * wall_);
+            one.map =
+                std::make_unique<RotationMap>(cells, surface_samples, one.side.fracture.places, steps_, 2 * width, 0.5 * wall_);
         }
-        std::vector<TurnPair> pairs(n * n);
+        std::vector<RotationPair> pairs(n * n);
         for (std::size_t i = 0; i < n; ++i)
             for (std::size_t j = i + 1; j < n; ++j) pairs[i * n + j] = meet(sherds_[i], sherds_[j], steps_, wall_, options_);
-        pairs_ = std::make_unique<TurnPairs>(n, std::move(pairs));
+        pairs_ = std::make_unique<RotationPairs>(n, std::move(pairs));
     }
 
     /// The joints of the assembly; those of the tree of best ones carry it.
@@ -117,13 +118,13 @@ private:
         for (std::size_t i = 0; i < n; ++i)
             for (std::size_t j = i + 1; j < n; ++j) {
                 if (!assembly_.joined[i] || !assembly_.joined[j]) continue;
-                const double turn = assembly_.turns[j] - assembly_.turns[i];
-                const TurnPair& pair = pairs_->of(i, j);
-                const MeetingTurn* meeting = pair.meeting(turn);
-                if (meeting == nullptr || !(pair.value(turn) > 0)) continue;
+                const double rotation = assembly_.rotations[j] - assembly_.rotations[i];
+                const RotationPair& pair = pairs_->of(i, j);
+                const MeetingRotation* meeting = pair.meeting(rotation);
+                if (meeting == nullptr || !(pair.value(rotation) > 0)) continue;
                 BreakJoint joint;
                 joint.first = static_cast<int>(i), joint.second = static_cast<int>(j);
-                list.emplace_back(pair.value(turn), joint);
+                list.emplace_back(pair.value(rotation), joint);
             }
         std::stable_sort(list.begin(), list.end(), [](const auto& x, const auto& y) { return x.first > y.first; });
         DisjointSets groups(n);
@@ -144,7 +145,7 @@ private:
         for (std::size_t k = 0; k < n; ++k) result_.group.push_back(static_cast<int>(groups.find(k)));
     }
 
-    /// All that hangs on the second sherd, turned against all else.
+    /// All that hangs on the second sherd, rotated against all else.
     void decide(BreakJoint& joint, const std::vector<bool>& fixed) {
         std::vector<bool> side(given_.size(), false);
         side[static_cast<std::size_t>(joint.second)] = true;
@@ -163,7 +164,7 @@ private:
                 if (side[a] != side[b]) side[a] = side[b] = grown = true;
             }
         }
-        const TurnLead lead = lead_of(*pairs_, assembly_.turns, assembly_.joined, side, steps_);
+        const RotationLead lead = lead_of(*pairs_, assembly_.rotations, assembly_.joined, side, steps_);
         double fracture[2] = {0, 0};
         for (std::size_t k = 0; k < side.size(); ++k)
             if (assembly_.joined[k]) fracture[side[k] ? 1 : 0] += sherds_[k].side.fracture.area;
@@ -194,13 +195,15 @@ private:
             others[k] = false;
             double here = 0, least = 0;
             for (std::size_t q = 0; q < n; ++q)
-                if (q != k) here += pairs_->of(q, k).shared_at(TurnPairs::between(q, k, assembly_.turns[q], assembly_.turns[k]));
-            const double turn = free_turn(*pairs_, assembly_.turns, others, k, least);
+                if (q != k)
+                    here +=
+                        pairs_->of(q, k).shared_at(RotationPairs::between(q, k, assembly_.rotations[q], assembly_.rotations[k]));
+            const double rotation = least_shared_rotation(*pairs_, assembly_.rotations, others, k, least);
             const double little = 0.02 * sherds_[k].map->area();
             if (here > little && least < here) {
-                assembly_.turns[k] = turn;
+                assembly_.rotations[k] = rotation;
                 assembly_.joined[k] = false;
-                now_[k] = turned_by(turn);
+                now_[k] = rotated_by(rotation);
                 here = least;
             }
             note += here > little ? "; wherever it stands it lies where others do" : "; it stands where it overlaps nothing";
@@ -235,9 +238,9 @@ private:
                 }
                 if (around.frames.empty()) continue;
                 const BreakAligner aligner(Mesh(), around, sherds_[k].side, wall_, 0.5 * wall_, 1);
-                // From the turn alone: what breaks say is not added up over the sweeps.
-                const double turn = turn_of(now_[k]);
-                now_[k] = aligner.align(turned_by(turn), static_cast<std::size_t>(options_.samples), 16, options_.hold);
+                // From the rotation alone: what breaks say is not added up over the sweeps.
+                const double rotation = rotation_about_axis(now_[k]);
+                now_[k] = aligner.align(rotated_by(rotation), static_cast<std::size_t>(options_.samples), 16, options_.hold);
             }
     }
 
@@ -248,43 +251,45 @@ private:
             const BreakAligner aligner(sherds_[a].mesh, sherds_[a].side, sherds_[b].side, wall_, 0.5 * wall_, 1);
             const PairCandidate fit =
                 aligner.judge(now_[a].inverse().after(now_[b]), static_cast<std::size_t>(options_.samples), 0.6);
-            joint.turn = 180 / pi * wrapped(turn_of(now_[b]) - turn_of(now_[a]));
+            joint.rotation = 180 / pi * wrapped(rotation_about_axis(now_[b]) - rotation_about_axis(now_[a]));
             joint.contact = fit.contact, joint.rim = fit.rim, joint.residual = fit.residual, joint.score = fit.score;
         }
         for (std::size_t k = 0; k < n; ++k) {
             double shared = 0;
             for (std::size_t q = 0; q < n; ++q)
-                if (q != k) shared += pairs_->of(q, k).shared_at(TurnPairs::between(q, k, turn_of(now_[q]), turn_of(now_[k])));
+                if (q != k)
+                    shared += pairs_->of(q, k).shared_at(
+                        RotationPairs::between(q, k, rotation_about_axis(now_[q]), rotation_about_axis(now_[k])));
             const double area = sherds_[k].map->area();
             result_.overlap.push_back(area > 0 ? std::min(1.0, shared / area) : 0);
         }
     }
 
-    const std::vector<TurnableSherd>& given_;
-    const BreakTurnOptions& options_;
+    const std::vector<SherdOnAxis>& given_;
+    const RotationMatchOptions& options_;
     Motion upright_;  ///< the axis becomes the vertical one through the origin
     Mesh whole_;
     double wall_ = 0;
     int steps_ = 0;
-    std::vector<TurningSherd> sherds_;
-    std::unique_ptr<TurnPairs> pairs_;
-    TurnAssembly assembly_;
+    std::vector<UprightSherd> sherds_;
+    std::unique_ptr<RotationPairs> pairs_;
+    RotationAssembly assembly_;
     std::vector<Motion> now_;  ///< of each sherd, from where it was given, in the upright frame
-    BreakTurns result_;
+    RotationMatch result_;
 };
 
 }  // namespace
 
-BreakTurns turn_by_breaks(const Mesh& whole, const Vector3d& point, const Vector3d& direction,
-                          const std::vector<TurnableSherd>& sherds, const BreakTurnOptions& options) {
+RotationMatch match_rotations(const Mesh& whole, const Vector3d& point, const Vector3d& direction,
+                              const std::vector<SherdOnAxis>& sherds, const RotationMatchOptions& options) {
     check_options(options, "turns by breaks");
     if (sherds.empty()) fail_usage("there is no sherd", "give one or more");
     if (!(direction.norm() > 0)) fail_usage("the axis has no direction", "give a vector that is not zero");
-    return TurnDecider(whole, point, direction.normalized(), sherds, options).run();
+    return RotationMatcher(whole, point, direction.normalized(), sherds, options).run();
 }
 
-void BreakTurnOptions::describe(OptionList& visit) {
-    visit("turns", turns, "turns about a vessel's axis that are open are decided by the breaks: auto; or never",
+void RotationMatchOptions::describe(OptionList& visit) {
+    visit("turns", rotations, "turns about a vessel's axis that are open are decided by the breaks: auto; or never",
           Choices{"auto", "never"});
     visit("turn-frames", frames, "places along the rim of each fracture", Range{4, 5000});
     visit("turn-samples", samples, "points on each fracture", Range{50, 1e6});

@@ -12,14 +12,14 @@ using Eigen::Vector3d;
 
 namespace {
 
-std::size_t step_of(double turn, std::size_t steps) {
+std::size_t step_of(double rotation, std::size_t steps) {
     const auto n = static_cast<long>(steps);
-    const long k = std::lround(turn / (2 * pi) * static_cast<double>(n));
+    const long k = std::lround(rotation / (2 * pi) * static_cast<double>(n));
     return static_cast<std::size_t>(((k % n) + n) % n);
 }
 
 /// Area of the second sherd's fracture that comes close to the first's, facing it, at each step.
-std::vector<double> contacts(const TurningSherd& a, const TurningSherd& b, int steps, double reach) {
+std::vector<double> contacts(const UprightSherd& a, const UprightSherd& b, int steps, double reach) {
     std::vector<double> area(static_cast<std::size_t>(steps), 0);
     const SampleGrid grid(a.side.fracture.places, reach);
     const std::size_t size = b.side.fracture.places.size(), count = std::min<std::size_t>(size, 500);
@@ -27,14 +27,14 @@ std::vector<double> contacts(const TurningSherd& a, const TurningSherd& b, int s
     parallel_for(
         area.size(),
         [&](std::size_t t) {
-            const Motion turn = turned_by(2 * pi * static_cast<double>(t) / steps);
+            const Motion motion = rotated_by(2 * pi * static_cast<double>(t) / steps);
             for (std::size_t i = 0; i < count; ++i) {
                 const std::size_t k = (2 * i + 1) * size / (2 * count);
-                const Vector3d p = turn(b.side.fracture.places[k]);
+                const Vector3d p = motion(b.side.fracture.places[k]);
                 const Index near = grid.near(p);
                 if (near == no_index) continue;
                 const double share = (p - a.side.fracture.places[near]).squaredNorm() / (reach * reach),
-                             facing = -a.side.fracture.normals[near].dot(turn.rotation * b.side.fracture.normals[k]);
+                             facing = -a.side.fracture.normals[near].dot(motion.rotation * b.side.fracture.normals[k]);
                 if (share < 1 && facing > 0.3) area[t] += each * (1 - share) * facing;
             }
         },
@@ -46,39 +46,39 @@ std::vector<double> contacts(const TurningSherd& a, const TurningSherd& b, int s
 
 double wrapped(double angle) { return std::remainder(angle, 2 * pi); }
 
-Motion turned_by(double angle) {
+Motion rotated_by(double angle) {
     Motion motion;
     motion.rotation = Eigen::AngleAxisd(angle, Vector3d::UnitZ()).toRotationMatrix();
     return motion;
 }
 
-double turn_of(const Motion& motion) {
+double rotation_about_axis(const Motion& motion) {
     return std::atan2(motion.rotation(1, 0) - motion.rotation(0, 1), motion.rotation(0, 0) + motion.rotation(1, 1));
 }
 
-double TurnPair::shared_at(double turn) const { return shared.empty() ? 0 : shared[step_of(turn, shared.size())]; }
+double RotationPair::shared_at(double rotation) const { return shared.empty() ? 0 : shared[step_of(rotation, shared.size())]; }
 
-double TurnPair::met(double turn) const {
+double RotationPair::met(double rotation) const {
     double best = 0;
-    for (const MeetingTurn& one : meetings) {
-        const double off = wrapped(turn - one.turn) / reach;
+    for (const MeetingRotation& one : meetings) {
+        const double off = wrapped(rotation - one.rotation) / reach;
         if (off * off < 1) best = std::max(best, one.value * (1 - off * off));
     }
     return best;
 }
 
-const MeetingTurn* TurnPair::meeting(double turn) const {
-    const MeetingTurn* best = nullptr;
+const MeetingRotation* RotationPair::meeting(double rotation) const {
+    const MeetingRotation* best = nullptr;
     double most = 0;
-    for (const MeetingTurn& one : meetings) {
-        const double off = wrapped(turn - one.turn) / reach, value = one.value * (1 - off * off);
+    for (const MeetingRotation& one : meetings) {
+        const double off = wrapped(rotation - one.rotation) / reach, value = one.value * (1 - off * off);
         if (value > most) best = &one, most = value;
     }
     return best;
 }
 
-TurnPair meet(const TurningSherd& a, const TurningSherd& b, int steps, double wall, const BreakTurnOptions& options) {
-    TurnPair pair;
+RotationPair meet(const UprightSherd& a, const UprightSherd& b, int steps, double wall, const RotationMatchOptions& options) {
+    RotationPair pair;
     const auto n = static_cast<std::size_t>(steps);
     pair.shared.assign(n, 0);
     const auto ab = a.map->shared(*b.map), ba = b.map->shared(*a.map);
@@ -103,28 +103,30 @@ TurnPair meet(const TurningSherd& a, const TurningSherd& b, int steps, double wa
 
     const BreakAligner aligner(a.mesh, a.side, b.side, wall, 0.5 * wall, 1);
     const double area = std::min(a.side.fracture.area, b.side.fracture.area);
-    std::vector<MeetingTurn> found(tops.size());
+    std::vector<MeetingRotation> found(tops.size());
     parallel_for(
         tops.size(),
         [&](std::size_t i) {
-            const Motion start = turned_by(2 * pi * static_cast<double>(tops[i]) / steps);
+            const Motion start = rotated_by(2 * pi * static_cast<double>(tops[i]) / steps);
             const auto samples = static_cast<std::size_t>(options.samples);
-            MeetingTurn& one = found[i];
+            MeetingRotation& one = found[i];
             one.fit = aligner.judge(aligner.align(start, std::min<std::size_t>(samples, 600), 16, options.hold), samples, 0.6);
-            one.turn = turn_of(one.fit.pose);
+            one.rotation = rotation_about_axis(one.fit.pose);
             one.value = one.fit.score * area;
             // Off the template it is no place of this vessel.
-            const Motion off = one.fit.pose.after(turned_by(-one.turn));
+            const Motion off = one.fit.pose.after(rotated_by(-one.rotation));
             double squares = 0;
             for (const Vector3d& p : b.side.intact.places) squares += (off(p) - p).squaredNorm();
             if (!(squares < wall * wall * static_cast<double>(b.side.intact.places.size()))) one.value = 0;
         },
         1);
-    std::stable_sort(found.begin(), found.end(), [](const MeetingTurn& x, const MeetingTurn& y) { return x.value > y.value; });
-    for (MeetingTurn& one : found) {
+    std::stable_sort(found.begin(), found.end(),
+                     [](const MeetingRotation& x, const MeetingRotation& y) { return x.value > y.value; });
+    for (MeetingRotation& one : found) {
         if (!(one.value > 0)) break;
-        if (std::none_of(pair.meetings.begin(), pair.meetings.end(),
-                         [&](const MeetingTurn& k) { return std::abs(wrapped(k.turn - one.turn)) < 0.5 * pair.reach; }))
+        if (std::none_of(pair.meetings.begin(), pair.meetings.end(), [&](const MeetingRotation& k) {
+                return std::abs(wrapped(k.rotation - one.rotation)) < 0.5 * pair.reach;
+            }))
             pair.meetings.push_back(std::move(one));
     }
     return pair;

@@ -190,7 +190,7 @@ struct Fit final : Operation {
 
     void tell(Report& report, const Reconstruction& result) const {
         for (std::size_t k = 0; k < names.fragments.size(); ++k) tell_fragment(report, result, k);
-        if (result.turns) tell_turns(report, *result.turns);
+        if (result.rotations) report_rotations(report, *result.rotations);
         report.line("scale of the template " + number(result.placement.scale, 4) + "; observed " +
                     number(100 * result.observed_share, 3) + " % of the surface");
         if (result.crossings > 0)
@@ -233,17 +233,17 @@ struct Fit final : Operation {
     }
 
     /// The joints by which turns were decided, and the fragments without one.
-    void tell_turns(Report& report, const BreakTurns& turns) const {
-        for (const BreakJoint& joint : turns.joints)
+    void report_rotations(Report& report, const RotationMatch& rotations) const {
+        for (const BreakJoint& joint : rotations.joints)
             report.row("joints", {names.fragments[static_cast<std::size_t>(joint.first)] + " - " +
                                       names.fragments[static_cast<std::size_t>(joint.second)],
-                                  number(joint.turn, 4), number(100 * joint.contact, 3), number(100 * joint.rim, 3),
+                                  number(joint.rotation, 4), number(100 * joint.contact, 3), number(100 * joint.rim, 3),
                                   number(joint.residual, 3), joint.carries ? number(joint.confidence, 2) : "-",
                                   !joint.carries  ? "closes a cycle"
                                   : joint.decided ? "decided"
                                                   : "not decided"});
-        for (std::size_t k = 0; k < names.fragments.size() && k < turns.notes.size(); ++k)
-            if (!turns.notes[k].empty()) report.line(printable(names.fragments[k]) + ": " + printable(turns.notes[k]));
+        for (std::size_t k = 0; k < names.fragments.size() && k < rotations.notes.size(); ++k)
+            if (!rotations.notes[k].empty()) report.line(printable(names.fragments[k]) + ": " + printable(rotations.notes[k]));
     }
 
     static void tell_constraint(Report& report, const Reconstruction& result, const ConstraintReport& constraint) {

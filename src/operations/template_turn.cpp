@@ -28,7 +28,7 @@ struct TemplateTurn final : Operation {
         std::vector<const Fragment*> sherds;
         for (std::size_t k = 0; k < files.size(); ++k) sherds.push_back(&files.load<Fragment>(read_sherd, k));
         output.open();
-        TurnedTemplate turned = turn_template(sherds, options);
+        RevolutionTemplate turned = template_of_revolution(sherds, options);
         turned.annotations.unit = unit;
         write(context, turned);
         tell(report, turned);
@@ -46,7 +46,7 @@ struct TemplateTurn final : Operation {
         return sherd;
     }
 
-    void write(Context& context, const TurnedTemplate& turned) const {
+    void write(Context& context, const RevolutionTemplate& turned) const {
         const Provenance provenance = context.provenance();
         TemplateFile file;
         file.object_class = turned.annotations.object_class;
@@ -78,7 +78,7 @@ struct TemplateTurn final : Operation {
         write_json(output.in("turned.template.json"), template_to_json(file, provenance));
     }
 
-    static void tell(Report& report, const TurnedTemplate& turned) {
+    static void tell(Report& report, const RevolutionTemplate& turned) {
         const auto triple = [](const auto& v) { return std::vector<double>{v.x(), v.y(), v.z()}; };
         double height = 0, widest = 0;
         for (const auto& p : turned.profile) height = std::max(height, p.y()), widest = std::max(widest, p.x());
@@ -101,7 +101,7 @@ struct TemplateTurn final : Operation {
     FileInput files;
     FolderOutput output;
     std::string unit;
-    TurnOptions options;
+    RevolutionOptions options;
 };
 
 }  // namespace

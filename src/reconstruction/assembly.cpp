@@ -89,8 +89,8 @@ JsonValue assembly_to_json(const Reconstruction& result, const AssemblyNames& na
         if (searched || result.placement.fragments[k].problem.empty())
             add_member(entry, "source", searched ? "search" : "landmarks", allocator);
         if (searched) add_member(entry, "search", search_of(*result.searched[k], allocator), allocator);
-        if (result.turns && result.turns->group[k] >= 0)
-            add_member(entry, "turn", turn_to_json(*result.turns, k, names.fragments, allocator), allocator);
+        if (result.rotations && result.rotations->group[k] >= 0)
+            add_member(entry, "turn", rotation_to_json(*result.rotations, k, names.fragments, allocator), allocator);
         if (k < result.annotations.size())
             for (const AnnotationMatch& match : result.annotations[k]) {
                 JsonValue item = json_object(allocator, "ofFragment", match.of_fragment, "ofTemplate", match.of_template, "score",
@@ -107,9 +107,9 @@ JsonValue assembly_to_json(const Reconstruction& result, const AssemblyNames& na
         fragments.PushBack(entry, allocator);
     }
     add_member(assembly, "fragments", std::move(fragments), allocator);
-    if (result.turns) {
-        add_members(assembly, allocator, "joints", joints_to_json(*result.turns, names.fragments, allocator), "wall",
-                    result.turns->wall);
+    if (result.rotations) {
+        add_members(assembly, allocator, "joints", joints_to_json(*result.rotations, names.fragments, allocator), "wall",
+                    result.rotations->wall);
     }
     for (const NonRigidFit::Level& level : result.fit.levels) {
         JsonValue item = json_object(allocator, "smoothing", level.smoothing, "matched", level.matched, "residual",

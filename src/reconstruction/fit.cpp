@@ -39,19 +39,20 @@ private:
 class Fitter {
 public:
     /// Lengths are in the template's unit. All outlive it.
-    Fitter(LevelSystem& system, const MatchSearch& search, MatchSearch::Labels labels, std::vector<Guide> guides, double diagonal,
-           const NonRigidOptions& options)
+    Fitter(LevelSystem& system, const MatchSearch& search, MatchSearch::Labels labels,
+           std::vector<CorrespondenceConstraint> correspondences, double diagonal, const NonRigidOptions& options)
         : system_(system),
           mesh_(system.mesh),
           search_(search),
           labels_(std::move(labels)),
-          guides_(system.mesh.number_of_vertices()),
+          correspondences_(system.mesh.number_of_vertices()),
           diagonal_(diagonal),
           options_(options),
           rest_(system.rest),
           now_(system.rest),
           rings_(system.rings) {
-        for (Guide& guide : guides) guides_[guide.vertex].push_back(guide);
+        for (CorrespondenceConstraint& correspondence : correspondences)
+            correspondences_[correspondence.vertex].push_back(correspondence);
     }
 
     /// Solves for the points of a cage instead; `weights` outlive it, a row for each vertex.
@@ -131,10 +132,10 @@ public:
         }
     }
 
-    /// How the surroundings of each vertex have turned.
-    [[nodiscard]] std::vector<Matrix3d> turns() const {
+    /// How the surroundings of each vertex have rotated.
+    [[nodiscard]] std::vector<Matrix3d> rotations() const {
         const auto n = static_cast<std::size_t>(rest_.cols());
-        std::vector<Matrix3d> covariances(n), turns(n);
+        std::vector<Matrix3d> covariances(n), rotations(n);
         parallel_for(n, [&](std::size_t i) {
             Matrix3d sum = Matrix3d::Zero();
             for (std::size_t k = rings_.begin[i]; k < rings_.begin[i + 1]; ++k) {
@@ -151,9 +152,9 @@ public:
             const Svd3 svd(sum);
             Vector3d signs(1, 1, 1);
             if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0) signs.z() = -1;
-            turns[i] = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+            rotations[i] = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
         });
-        return turns;
+        return rotations;
     }
 
 private:
@@ -194,10 +195,10 @@ private:
         const VertexMatch& one = matches_[i];
         double weight = one.fragment < 0 ? hold * area : shorten * area;
         Vector3d pull = one.fragment < 0 ? Vector3d(weight * (left.col(v) - x)) : Vector3d::Zero();
-        for (const Guide& guide : guides_[i]) {
-            const double share = weight_of(guide, smoothing);
+        for (const CorrespondenceConstraint& correspondence : correspondences_[i]) {
+            const double share = weight_of(correspondence, smoothing);
             weight += share;
-            pull += share * (guide.place - x);
+            pull += share * (correspondence.place - x);
         }
         const auto w = weights_->row(v).transpose();
         place_row = std::sqrt(weight) * w;
@@ -236,7 +237,7 @@ private:
     void solve(double smoothing, double transition, bool new_level) {
         // In units of mean areas, and of lengths of the smoothing, so that weights are near one.
         const double stay = std::pow(std::min(1.0, smoothing / transition), 4), mean_area = system_.mean_area;
-        turn();
+        rotate_displacements();
         const bool renew = new_level || !matched_as_before();
         if (renew && weights_ != nullptr) {
             // So much changes that its small matrix is best made anew.
@@ -253,13 +254,13 @@ private:
                 const double share = rings_.area[i] / mean_area;
                 weighted_[i] = matched;
                 match_weight_[i] = matched ? share : 0;
-                solver_->set_weight(system_.match(i), match_weight_[i] + guide_weight(i, smoothing));
+                solver_->set_weight(system_.match(i), match_weight_[i] + correspondence_weight(i, smoothing));
                 solver_->set_weight(system_.stay(i), stay * std::max(share, 1e-6));
                 if (new_level || weights_ != nullptr)
                     solver_->set_target(system_.stay(i), start_.col(static_cast<Eigen::Index>(i)));
             }
             const Vector3d goal = matched ? matches_[i].place : Vector3d(now_.col(static_cast<Eigen::Index>(i)));
-            if (!guides_[i].empty()) solver_->set_target(system_.match(i), Points(guided(i, smoothing, goal)));
+            if (!correspondences_[i].empty()) solver_->set_target(system_.match(i), Points(drawn_together(i, smoothing, goal)));
             else if (weighted_[i]) solver_->set_target(system_.match(i), Points(goal));
             if (system_.laplacian(i) == LevelSystem::no_constraint) continue;
             solver_->set_target(system_.laplacian(i), displacement_.col(static_cast<Eigen::Index>(i)));
@@ -278,37 +279,39 @@ private:
     }
 
     /// What a patch of the smoothing's size would weigh: of a landmark the whole, of an outline the share of its length.
-    [[nodiscard]] double weight_of(const Guide& guide, double smoothing) const {
-        const double width = guide.length > 0 ? guide.length * smoothing : smoothing * smoothing;
-        return options_.guides * width / system_.mean_area;
+    [[nodiscard]] double weight_of(const CorrespondenceConstraint& correspondence, double smoothing) const {
+        const double width = correspondence.length > 0 ? correspondence.length * smoothing : smoothing * smoothing;
+        return options_.correspondences * width / system_.mean_area;
     }
-    [[nodiscard]] double guide_weight(std::size_t vertex, double smoothing) const {
+    [[nodiscard]] double correspondence_weight(std::size_t vertex, double smoothing) const {
         double sum = 0;
-        for (const Guide& guide : guides_[vertex]) sum += weight_of(guide, smoothing);
+        for (const CorrespondenceConstraint& correspondence : correspondences_[vertex])
+            sum += weight_of(correspondence, smoothing);
         return sum;
     }
-    /// Where a vertex's match and its guides draw it together: sums of squares about several places are one about their mean.
-    [[nodiscard]] Vector3d guided(std::size_t vertex, double smoothing, const Vector3d& match) const {
+    /// Where a vertex's match and its correspondences draw it together: sums of squares about several places are one about their
+    /// mean.
+    [[nodiscard]] Vector3d drawn_together(std::size_t vertex, double smoothing, const Vector3d& match) const {
         double weight = match_weight_[vertex];
         Vector3d sum = weight * match;
-        for (const Guide& guide : guides_[vertex]) {
-            const double share = weight_of(guide, smoothing);
-            sum += share * guide.place;
+        for (const CorrespondenceConstraint& correspondence : correspondences_[vertex]) {
+            const double share = weight_of(correspondence, smoothing);
+            sum += share * correspondence.place;
             weight += share;
         }
         return weight > 0 ? Vector3d(sum / weight) : match;
     }
 
-    /// Rest displacements turned with the surroundings of each vertex.
-    void turn() {
-        const std::vector<Matrix3d> turned = turns();
+    /// Rest displacements rotated with the surroundings of each vertex.
+    void rotate_displacements() {
+        const std::vector<Matrix3d> rotation = rotations();
         displacement_.setZero(3, rest_.cols());
-        parallel_for(turned.size(), [&](std::size_t i) {
+        parallel_for(rotation.size(), [&](std::size_t i) {
             Vector3d rest = Vector3d::Zero();
             for (std::size_t k = rings_.begin[i]; k < rings_.begin[i + 1]; ++k)
                 rest +=
                     rings_.weight[k] / rings_.sum[i] * (rest_.col(rings_.neighbour[k]) - rest_.col(static_cast<Eigen::Index>(i)));
-            displacement_.col(static_cast<Eigen::Index>(i)) = turned[i] * rest;
+            displacement_.col(static_cast<Eigen::Index>(i)) = rotation[i] * rest;
         });
     }
 
@@ -316,7 +319,7 @@ private:
     const Mesh& mesh_;
     const MatchSearch& search_;
     MatchSearch::Labels labels_;
-    std::vector<std::vector<Guide>> guides_;  ///< of each vertex
+    std::vector<std::vector<CorrespondenceConstraint>> correspondences_;  ///< of each vertex
     double diagonal_;
     const NonRigidOptions& options_;
     const Points& rest_;
@@ -380,7 +383,7 @@ struct TemplateFitter::State {
 
     /// The fine mesh moved with the surroundings of the nearest place of the coarse one.
     [[nodiscard]] Points follow(const Fitter& fitter) const {
-        const std::vector<Matrix3d> turns = fitter.turns();
+        const std::vector<Matrix3d> rotations = fitter.rotations();
         Points points(3, static_cast<Eigen::Index>(mesh.number_of_vertices()));
         parallel_for(nearest.size(), [&](std::size_t i) {
             const Vector3d p = eigen(mesh.point(Vertex(static_cast<Index>(i))));
@@ -388,7 +391,7 @@ struct TemplateFitter::State {
             Vector3d sum = Vector3d::Zero();
             for (std::size_t k = 0; k < 3; ++k) {
                 const auto v = static_cast<Eigen::Index>(c[k]);
-                sum += nearest[i].barycentric[k] * (turns[c[k]] * (p - fitter.rest().col(v)) + fitter.now().col(v));
+                sum += nearest[i].barycentric[k] * (rotations[c[k]] * (p - fitter.rest().col(v)) + fitter.now().col(v));
             }
             points.col(static_cast<Eigen::Index>(i)) = sum;
         });
@@ -397,16 +400,19 @@ struct TemplateFitter::State {
 
     /// Over the coarse mesh, or the template where there is none.
     [[nodiscard]] Fitter smooth_fitter(const MatchSearch& search, const NonRigidOptions& options) {
-        std::vector<Guide> guides = search.guides();
-        if (!coarse) return {fine, search, search.labels(mesh, {}), std::move(guides), diagonal, options};
-        for (Guide& guide : guides) {
-            const Index here = coarse->vertex_map[guide.vertex];
+        std::vector<CorrespondenceConstraint> correspondences = search.correspondences();
+        if (!coarse) return {fine, search, search.labels(mesh, {}), std::move(correspondences), diagonal, options};
+        for (CorrespondenceConstraint& correspondence : correspondences) {
+            const Index here = coarse->vertex_map[correspondence.vertex];
             if (here != no_index)
-                guide.place += eigen(coarse->mesh.point(Vertex(here))) - eigen(mesh.point(Vertex(guide.vertex)));
-            guide.vertex = here;
+                correspondence.place +=
+                    eigen(coarse->mesh.point(Vertex(here))) - eigen(mesh.point(Vertex(correspondence.vertex)));
+            correspondence.vertex = here;
         }
-        std::erase_if(guides, [&](const Guide& guide) { return guide.vertex >= coarse->mesh.number_of_vertices(); });
-        return {*smooth, search, search.labels(coarse->mesh, coarse->face_origin), std::move(guides), diagonal, options};
+        std::erase_if(correspondences, [&](const CorrespondenceConstraint& correspondence) {
+            return correspondence.vertex >= coarse->mesh.number_of_vertices();
+        });
+        return {*smooth, search, search.labels(coarse->mesh, coarse->face_origin), std::move(correspondences), diagonal, options};
     }
 
     /// Levels through the cage; gives the first one that is left for the template's vertices.
@@ -477,7 +483,7 @@ NonRigidFit TemplateFitter::fit(double scale, const std::vector<PlacedFragment>&
         const Stopwatch watch(fit.seconds_coarsening);
         s.prepare();
     }
-    Fitter fine(s.fine, search, search.labels(s.mesh, {}), search.guides(), s.diagonal, options);
+    Fitter fine(s.fine, search, search.labels(s.mesh, {}), search.correspondences(), s.diagonal, options);
     int level = 0;
     if (options.space != NonRigidOptions::Space::mesh) level = s.fit_cage(search, options, fine, fit);
     else if (s.coarse) level = s.fit_coarse(search, options, fine, fit);
@@ -525,7 +531,7 @@ void NonRigidOptions::describe(OptionList& visit) {
     visit("boundary-weight", vertices.boundary, "equation 5.1: of vertices on an outline against vertices inside", Range{0, 1e6});
     visit("distance-weight", vertices.distance, "equation 5.1: of the distance", Range{0, 1e6});
     visit("outline-weight", vertices.outline, "equation 5.1: of the positions along the outline", Range{0, 1e6});
-    visit("guides", guides, "weight of matched outlines and landmarks against that of the surface", Range{0, 1e6});
+    visit("guides", correspondences, "weight of matched outlines and landmarks against that of the surface", Range{0, 1e6});
     visit("outlines", outlines, "matched outlines and lines guide the fit by the position along them, from landmark to landmark",
           Anything{});
 }

@@ -52,7 +52,7 @@ MatchSearch::MatchSearch(const Mesh& mesh, const AnnotationSet& set, const std::
                 if (std::none_of(ours.begin(), ours.end(), [&](const auto& one) { return one.first == a; }))
                     ours.emplace_back(a, a->id);
             } else if (a->type == AnnotationType::point && a->points.size() == 1 && b->points.size() == 1) {
-                guides_.push_back({a->points.front(), eigen(fragment.mesh.point(Vertex(b->points.front()))) / scale, 0});
+                correspondences_.push_back({a->points.front(), eigen(fragment.mesh.point(Vertex(b->points.front()))) / scale, 0});
                 landmarks_.emplace_back(a->points.front(), b->points.front());
                 landmark_fragment_.push_back(static_cast<int>(k));
             }
@@ -74,10 +74,10 @@ MatchSearch::MatchSearch(const Mesh& mesh, const AnnotationSet& set, const std::
         for (const auto& [label, part] : trees_.back()->parts(labels)) parts_[label].push_back({static_cast<int>(k), &part});
     }
     face_labels_ = face_labels(mesh, ours);
-    if (outlines) add_outline_guides(mesh, set);
+    if (outlines) add_outline_correspondences(mesh, set);
 }
 
-void MatchSearch::add_outline_guides(const Mesh& mesh, const AnnotationSet& set) {
+void MatchSearch::add_outline_correspondences(const Mesh& mesh, const AnnotationSet& set) {
     for (std::size_t k = 0; k < fragments_.size(); ++k) {
         const PlacedFragment& fragment = fragments_[k];
         std::vector<bool> broken(fragment.facets.size());
@@ -92,13 +92,15 @@ void MatchSearch::add_outline_guides(const Mesh& mesh, const AnnotationSet& set)
                 continue;
             Annotation outer = *b;
             if (!broken.empty()) std::erase_if(outer.faces, [&](Index f) { return broken[f]; });
-            for (const OutlineGuide& guide : outline_guides(mesh, *a, fragment.mesh, outer, broken, landmarks, scale_)) {
+            for (const OutlineCorrespondence& correspondence :
+                 outline_correspondences(mesh, *a, fragment.mesh, outer, broken, landmarks, scale_)) {
                 // Of parts in parts the inner one decides.
-                const auto ring = mesh.faces_around_target(mesh.halfedge(Vertex(guide.vertex)));
+                const auto ring = mesh.faces_around_target(mesh.halfedge(Vertex(correspondence.vertex)));
                 const bool ours = a->type == AnnotationType::line || std::any_of(ring.begin(), ring.end(), [&](Face face) {
                                       return face != Mesh::null_face() && face_labels_[face] == a->id;
                                   });
-                if (ours) guides_.push_back({guide.vertex, guide.place / scale_, guide.length});
+                if (ours)
+                    correspondences_.push_back({correspondence.vertex, correspondence.place / scale_, correspondence.length});
             }
         }
     }

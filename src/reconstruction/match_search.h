@@ -14,7 +14,7 @@
 namespace ostraka {
 
 /// A template vertex with a place that annotations name: a landmark, or a place of an outline.
-struct Guide {
+struct CorrespondenceConstraint {
     Index vertex = no_index;
     Eigen::Vector3d place;
     double length = 0;  ///< of the outline that it stands for; 0 for a landmark
@@ -31,7 +31,7 @@ class MatchSearch {
 public:
     /// `mesh` is the template, whose unit is `scale` times that of the placed fragments: all that is asked and told is in the
     /// template's. Trees are those of the fragments, in their own coordinates, where they bring them along.
-    /// `outlines`: guides are not only landmarks, but also the places along matched outlines and lines.
+    /// `outlines`: correspondences are not only landmarks, but also the places along matched outlines and lines.
     MatchSearch(const Mesh& mesh, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments, double scale = 1,
                 bool outlines = false);
     ~MatchSearch();
@@ -58,7 +58,7 @@ public:
     /// About this many places of all fragments together.
     [[nodiscard]] std::vector<FragmentSample> samples(int count) const;
     /// Landmarks of matched point annotations, then places along outlines and lines.
-    [[nodiscard]] std::vector<Guide> guides() const { return guides_; }
+    [[nodiscard]] std::vector<CorrespondenceConstraint> correspondences() const { return correspondences_; }
 
 private:
     /// The faces of one fragment that carry one label.
@@ -75,14 +75,14 @@ private:
         int fragment = 0, label = 0;
         Annotation region;  ///< its faces that carry the label
     };
-    void add_outline_guides(const Mesh& mesh, const AnnotationSet& set);
+    void add_outline_correspondences(const Mesh& mesh, const AnnotationSet& set);
 
     const std::vector<PlacedFragment>& fragments_;
     std::vector<Counterpart> counterparts_;
-    std::vector<std::pair<Index, Index>> landmarks_;  ///< vertices of the template and of the fragment, as guides_
+    std::vector<std::pair<Index, Index>> landmarks_;  ///< vertices of the template and of the fragment, as correspondences_
     std::vector<int> landmark_fragment_;
     std::vector<int> face_labels_;  ///< of the template
-    std::vector<Guide> guides_;
+    std::vector<CorrespondenceConstraint> correspondences_;
 };
 
 }  // namespace ostraka

@@ -13,8 +13,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// Does what the search left open hold a turn about the axis? On a small or nearly round part it is one of several motions.
-bool turns_about(const SlippableMotions& slippable, const Vector3d& direction) {
+/// Does what the search left open hold a rotation about the axis? On a small or nearly round part it is one of several motions.
+bool rotates_about(const SlippableMotions& slippable, const Vector3d& direction) {
     switch (slippable.kind) {
         case SlippableKind::none:
         case SlippableKind::translation:
@@ -34,9 +34,9 @@ bool broken(const Fragment& fragment) {
 
 }  // namespace
 
-std::optional<BreakTurns> decide_free_turns(const Mesh& scaled, const std::vector<const Fragment*>& fragments,
-                                            const std::vector<std::optional<PoseSearchResult>>& searched,
-                                            std::vector<FragmentPlacement>& placed, const BreakTurnOptions& options) {
+std::optional<RotationMatch> decide_open_rotations(const Mesh& scaled, const std::vector<const Fragment*>& fragments,
+                                                   const std::vector<std::optional<PoseSearchResult>>& searched,
+                                                   std::vector<FragmentPlacement>& placed, const RotationMatchOptions& options) {
     const auto open = [&](std::size_t k) {
         return k < searched.size() && searched[k] && searched[k]->decided && searched[k]->slippable.kind != SlippableKind::none;
     };
@@ -48,21 +48,22 @@ std::optional<BreakTurns> decide_free_turns(const Mesh& scaled, const std::vecto
         free += open(k) ? 1 : 0;
         breaks += broken(*fragments[k]) ? 1 : 0;
     }
-    if (options.turns == BreakTurnOptions::Turns::never || number.size() < 2 || free == 0 || breaks == 0) return std::nullopt;
+    if (options.rotations == RotationMatchOptions::Turns::never || number.size() < 2 || free == 0 || breaks == 0)
+        return std::nullopt;
     std::vector<Index> faces(scaled.number_of_faces());
     std::iota(faces.begin(), faces.end(), Index(0));
     const Axis axis = rotation_axis(scaled, faces);
     if (!axis.found) return std::nullopt;
     const Vector3d direction = eigen(axis.direction);
-    std::vector<TurnableSherd> sherds;
+    std::vector<SherdOnAxis> sherds;
     free = 0;
     for (const std::size_t k : number) {
-        const bool turns = open(k) && turns_about(searched[k]->slippable, direction);
-        free += turns ? 1 : 0;
-        sherds.push_back({fragments[k], placed[k].pose, !turns});
+        const bool rotates = open(k) && rotates_about(searched[k]->slippable, direction);
+        free += rotates ? 1 : 0;
+        sherds.push_back({fragments[k], placed[k].pose, !rotates});
     }
     if (free == 0) return std::nullopt;
-    BreakTurns found = turn_by_breaks(scaled, eigen(axis.point), direction, sherds, options), result;
+    RotationMatch found = match_rotations(scaled, eigen(axis.point), direction, sherds, options), result;
     result.wall = found.wall;
     result.group.assign(fragments.size(), -1);
     result.poses.resize(fragments.size());

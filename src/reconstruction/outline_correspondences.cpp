@@ -99,11 +99,11 @@ std::pair<int, double> on_chain(const std::vector<Way>& ways, const Vector3d& pl
 }
 
 struct Along {
-    std::vector<OutlineGuide> guides;
+    std::vector<OutlineCorrespondence> correspondences;
     std::size_t pieces = 0;  ///< between landmarks that follow each other on both
 };
 
-/// Guides of one chain by the landmarks on it (way along ours, along theirs). A way of ours is `scale` of theirs.
+/// Correspondences of one chain by the landmarks on it (way along ours, along theirs). A way of ours is `scale` of theirs.
 Along along(const Way& ours, const Way& theirs, std::vector<std::pair<double, double>> marks, double scale) {
     constexpr double share_beyond = 0.25;
     std::sort(marks.begin(), marks.end());
@@ -136,14 +136,14 @@ Along along(const Way& ours, const Way& theirs, std::vector<std::pair<double, do
         double length = 0;
         if (i > 0 || ours.chain.closed) length += 0.5 * (ours.places[i] - ours.places[(i + count - 1) % count]).norm();
         if (i + 1 < count || ours.chain.closed) length += 0.5 * (ours.places[(i + 1) % count] - ours.places[i]).norm();
-        OutlineGuide guide{ours.chain.vertices[i], Vector3d::Zero(), length};
+        OutlineCorrespondence correspondence{ours.chain.vertices[i], Vector3d::Zero(), length};
         bool found = false;
         for (const double way : {ours.at[i], ours.at[i] + ours.length}) {
             if (way > ours.length && !ours.chain.closed) break;
             for (const Piece& piece : pieces) {
                 if (found || way < piece.from || way > piece.to) continue;
                 const double share = piece.to > piece.from ? (way - piece.from) / (piece.to - piece.from) : 0;
-                guide.place = theirs.place(piece.there_from + share * (piece.there_to - piece.there_from));
+                correspondence.place = theirs.place(piece.there_from + share * (piece.there_to - piece.there_from));
                 found = true;
             }
         }
@@ -161,25 +161,26 @@ Along along(const Way& ours, const Way& theirs, std::vector<std::pair<double, do
             if (!std::isfinite(nearest) || (!theirs.chain.closed && (there < 0 || there > theirs.length))) continue;
             // Half a turn away nothing is known.
             if (ours.chain.closed && nearest > 0.4 * ours.length) continue;
-            guide.place = theirs.place(there);
-            if (nearest > 0) guide.length *= share_beyond;
+            correspondence.place = theirs.place(there);
+            if (nearest > 0) correspondence.length *= share_beyond;
         }
-        result.guides.push_back(guide);
+        result.correspondences.push_back(correspondence);
     }
     return result;
 }
 
-double mean_square(const Mesh& mesh, const std::vector<OutlineGuide>& guides, double scale) {
+double mean_square(const Mesh& mesh, const std::vector<OutlineCorrespondence>& correspondences, double scale) {
     double sum = 0;
-    for (const OutlineGuide& guide : guides) sum += (scale * eigen(mesh.point(Vertex(guide.vertex))) - guide.place).squaredNorm();
-    return guides.empty() ? std::numeric_limits<double>::infinity() : sum / static_cast<double>(guides.size());
+    for (const OutlineCorrespondence& correspondence : correspondences)
+        sum += (scale * eigen(mesh.point(Vertex(correspondence.vertex))) - correspondence.place).squaredNorm();
+    return correspondences.empty() ? std::numeric_limits<double>::infinity() : sum / static_cast<double>(correspondences.size());
 }
 
 }  // namespace
 
-std::vector<OutlineGuide> outline_guides(const Mesh& mesh, const Annotation& part, const Mesh& fragment,
-                                         const Annotation& of_fragment, const std::vector<bool>& broken,
-                                         const std::vector<std::pair<Index, Index>>& landmarks, double scale) {
+std::vector<OutlineCorrespondence> outline_correspondences(const Mesh& mesh, const Annotation& part, const Mesh& fragment,
+                                                           const Annotation& of_fragment, const std::vector<bool>& broken,
+                                                           const std::vector<std::pair<Index, Index>>& landmarks, double scale) {
     const std::vector<Way> ours = ways_of(mesh, chains_of(mesh, part));
     const auto theirs_turned = [&](bool turned) {
         std::vector<VertexChain> chains = chains_of(fragment, of_fragment, broken);
@@ -201,20 +202,20 @@ std::vector<OutlineGuide> outline_guides(const Mesh& mesh, const Annotation& par
         both.first.emplace_back(way, way_there);
         if (line) both.second.emplace_back(way, on_chain(backward, place).second);
     }
-    std::vector<OutlineGuide> guides;
+    std::vector<OutlineCorrespondence> correspondences;
     for (const auto& [chains, both] : marks) {
         const Way& way = ours[static_cast<std::size_t>(chains.first)];
         const auto there = static_cast<std::size_t>(chains.second);
         Along best = along(way, forward[there], both.first, scale);
         if (line) {
             Along other = along(way, backward[there], both.second, scale);
-            if (other.pieces > best.pieces ||
-                (other.pieces == best.pieces && mean_square(mesh, other.guides, scale) < mean_square(mesh, best.guides, scale)))
+            if (other.pieces > best.pieces || (other.pieces == best.pieces && mean_square(mesh, other.correspondences, scale) <
+                                                                                  mean_square(mesh, best.correspondences, scale)))
                 best = std::move(other);
         }
-        guides.insert(guides.end(), best.guides.begin(), best.guides.end());
+        correspondences.insert(correspondences.end(), best.correspondences.begin(), best.correspondences.end());
     }
-    return guides;
+    return correspondences;
 }
 
 }  // namespace ostraka

@@ -22,7 +22,7 @@ struct VertexChain {
 std::vector<VertexChain> chains_of(const Mesh& mesh, const Annotation& part, const std::vector<bool>& broken = {});
 
 /// A template vertex and where it belongs.
-struct OutlineGuide {
+struct OutlineCorrespondence {
     Index vertex = no_index;
     Eigen::Vector3d place;
     double length = 0;  ///< of the template's line that it stands for
@@ -30,13 +30,13 @@ struct OutlineGuide {
 
 /// By the position between landmarks that both have on a chain (vertex of the template, vertex of the fragment): between two of
 /// them by the share of the way from the one to the other, beyond the last one of an open chain by the way from it, as the pieces
-/// between landmarks are longer or shorter on the fragment, and as far as both chains go; such guides count for a quarter. All
-/// the way round a closed chain that has one landmark. A landmark is on the chain whose vertex is nearest, if it is nearer to it
-/// than a twentieth of its length. Chains without a common landmark give none. Outlines have the same sense on both sides; lines
-/// are turned so that more landmarks follow each other, or else so that they lie nearer to each other. The fragment lies where
-/// the template is when made `scale` times as large; places are on it.
-std::vector<OutlineGuide> outline_guides(const Mesh& mesh, const Annotation& part, const Mesh& fragment,
-                                         const Annotation& of_fragment, const std::vector<bool>& broken,
-                                         const std::vector<std::pair<Index, Index>>& landmarks, double scale);
+/// between landmarks are longer or shorter on the fragment, and as far as both chains go; such correspondences count for a
+/// quarter. All the way round a closed chain that has one landmark. A landmark is on the chain whose vertex is nearest, if it is
+/// nearer to it than a twentieth of its length. Chains without a common landmark give none. Outlines have the same sense on both
+/// sides; lines are turned so that more landmarks follow each other, or else so that they lie nearer to each other. The fragment
+/// lies where the template is when made `scale` times as large; places are on it.
+std::vector<OutlineCorrespondence> outline_correspondences(const Mesh& mesh, const Annotation& part, const Mesh& fragment,
+                                                           const Annotation& of_fragment, const std::vector<bool>& broken,
+                                                           const std::vector<std::pair<Index, Index>>& landmarks, double scale);
 
 }  // namespace ostraka

@@ -288,12 +288,12 @@ CommonPlacement place_by_landmarks(const std::vector<std::vector<LandmarkPair>>&
 
     // One scale for all: rotations first, which do not depend on it.
     double across = 0, squares = 0;
-    std::vector<Matrix3d> turns(pairs.size());
+    std::vector<Matrix3d> rotations(pairs.size());
     for (std::size_t k = 0; k < pairs.size(); ++k) {
         if (!placement.fragments[k].problem.empty()) continue;
         const Landmarks::Moments m = all[k].moments();
-        turns[k] = Landmarks::rotation(m.cross, true);  // of the fragment onto the template
-        across += (turns[k].transpose() * m.cross).trace();
+        rotations[k] = Landmarks::rotation(m.cross, true);  // of the fragment onto the template
+        across += (rotations[k].transpose() * m.cross).trace();
         squares += m.spread_from;
     }
     if (squares > 0) placement.scale = across / squares;
@@ -304,8 +304,8 @@ CommonPlacement place_by_landmarks(const std::vector<std::vector<LandmarkPair>>&
             continue;
         }
         const Landmarks::Moments m = all[k].moments();
-        one.pose.rotation = turns[k];
-        one.pose.translation = placement.scale * m.from - turns[k] * m.to;
+        one.pose.rotation = rotations[k];
+        one.pose.translation = placement.scale * m.from - rotations[k] * m.to;
         one.swapped = all[k].swapped();
         double sum = 0;
         for (std::size_t i = 0; i < pairs[k].size(); ++i) {

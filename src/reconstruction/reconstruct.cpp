@@ -201,8 +201,8 @@ private:
         diagonal_ = box_diagonal(scaled_);
         if (known_.options.refine) timed("refinement", [&] { refine(); });
         timed("turns", [&] {
-            result_.turns =
-                decide_free_turns(scaled_, fragments_, result_.searched, result_.placement.fragments, known_.options.turns);
+            result_.rotations = decide_open_rotations(scaled_, fragments_, result_.searched, result_.placement.fragments,
+                                                      known_.options.rotations);
         });
         timed("annotations", [&] { match(); });
         if (known_.prior != nullptr) timed("class", [&] { take_shape_of_class(); });
@@ -297,7 +297,7 @@ private:
                                   result_.annotations[k],
                                   placement.pose,
                                   known_.fragments[k].trees};
-            // A landmark that was found to be a wrong one guides nothing.
+            // A landmark that was found to be a wrong one constrains nothing.
             std::erase_if(placed.matches, [&](const AnnotationMatch& one) {
                 const Annotation* a = known_.set.find(one.of_template);
                 return a != nullptr && a->type == AnnotationType::point &&
@@ -438,7 +438,7 @@ void ReconstructOptions::describe(OptionList& visit) {
     search.describe(visit);
     visit("refine", refine, "poses are refined by closest points of the surface, landmarks as anchors", Anything{});
     alignment.describe(visit);
-    turns.describe(visit);
+    rotations.describe(visit);
     annotations.describe(visit);
     prior.describe(visit);
     fit.describe(visit);

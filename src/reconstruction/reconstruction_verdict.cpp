@@ -72,8 +72,8 @@ public:
             result_.verdict = Compatibility::incompatible;
         } else if (placed < pairs_.size()) {
             result_.undecided = "not all fragments could be placed";
-        } else if (result_.turns && std::any_of(result_.turns->notes.begin(), result_.turns->notes.end(),
-                                                [](const std::string& note) { return !note.empty(); })) {
+        } else if (result_.rotations && std::any_of(result_.rotations->notes.begin(), result_.rotations->notes.end(),
+                                                    [](const std::string& note) { return !note.empty(); })) {
             result_.undecided = "the turns of some fragments about the axis are not decided";
         } else if (placed == 1 && !tested) {
             result_.undecided = "one fragment and no constraint: nothing can contradict it";

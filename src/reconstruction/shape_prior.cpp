@@ -99,7 +99,7 @@ public:
         place_ = fit_motion(prior.mean, there, {}, free);
         coefficients_ = VectorXd::Zero(prior.modes.cols());
         const MatchSearch search(scaled, set, fragments);
-        guides_ = search.guides();
+        correspondences_ = search.correspondences();
         constexpr int most = 3000;
         samples_ = search.samples(most);
         const MatchSearch::Labels labels = search.labels(scaled, {});
@@ -194,7 +194,7 @@ private:
         for (const Residual& one : matches) spread += one.weight * (one.place - centre).squaredNorm();
         spread = std::sqrt(spread);
         if (!(spread > 0)) return false;
-        // Unknown: turn and scale (times the spread), shift, coefficients (in deviations).
+        // Unknown: rotation and scale (times the spread), translation, coefficients (in deviations).
         const Eigen::Index modes = coefficients_.size(), unknowns = 7 + modes;
         MatrixXd normal = MatrixXd::Zero(unknowns, unknowns);
         VectorXd right = VectorXd::Zero(unknowns), row(unknowns);
@@ -204,12 +204,12 @@ private:
             row.head<3>() = arm.cross(one.normal);
             row[3] = one.normal.dot(arm);
             row.segment<3>(4) = one.normal;
-            const Eigen::RowVector3d turned = one.normal.transpose() * linear;
+            const Eigen::RowVector3d rotated = one.normal.transpose() * linear;
             row.tail(modes).setZero();
             for (std::size_t c = 0; c < 3; ++c)
                 for (Eigen::Index k = 0; k < modes && one.barycentric[c] > 0; ++k)
                     row[7 + k] += one.barycentric[c] * prior_.deviations[static_cast<std::size_t>(k)] *
-                                  turned.dot(prior_.modes.col(k).segment<3>(3 * static_cast<Eigen::Index>(one.corners[c])));
+                                  rotated.dot(prior_.modes.col(k).segment<3>(3 * static_cast<Eigen::Index>(one.corners[c])));
             normal.selfadjointView<Eigen::Lower>().rankUpdate(row, one.weight);
             right += one.weight * one.off * row;
         };
@@ -219,14 +219,19 @@ private:
         fit.samples = independent_samples(matches, static_cast<std::size_t>(unknowns), options_.samples);
         // A landmark is one place more, less sure where the landmarks are off by more than the surface.
         double apart = 0;
-        for (const Guide& guide : guides_)
-            apart += (guide.place - now.col(static_cast<Eigen::Index>(guide.vertex))).squaredNorm() /
-                     (3 * static_cast<double>(guides_.size()));
+        for (const CorrespondenceConstraint& correspondence : correspondences_)
+            apart += (correspondence.place - now.col(static_cast<Eigen::Index>(correspondence.vertex))).squaredNorm() /
+                     (3 * static_cast<double>(correspondences_.size()));
         const double of_landmark = (apart > squares ? squares / apart : 1) / fit.samples;
-        for (const Guide& guide : guides_) {
-            const Vector3d p = now.col(static_cast<Eigen::Index>(guide.vertex));
+        for (const CorrespondenceConstraint& correspondence : correspondences_) {
+            const Vector3d p = now.col(static_cast<Eigen::Index>(correspondence.vertex));
             for (int axis = 0; axis < 3; ++axis)
-                add({p, Vector3d::Unit(axis), guide.place[axis] - p[axis], of_landmark, {guide.vertex, 0, 0}, {1, 0, 0}});
+                add({p,
+                     Vector3d::Unit(axis),
+                     correspondence.place[axis] - p[axis],
+                     of_landmark,
+                     {correspondence.vertex, 0, 0},
+                     {1, 0, 0}});
         }
         normal = normal.selfadjointView<Eigen::Lower>();
         // The observed surface counts as so many places with the residual as their error, which is never taken for less than
@@ -246,10 +251,10 @@ private:
             coefficients_[k] =
                 std::clamp(coefficients_[k] + deviation * x[7 + k], -options_.most * deviation, options_.most * deviation);
         }
-        const Vector3d turn = x.head<3>() / spread;
-        const double angle = turn.norm();
+        const Vector3d rotation = x.head<3>() / spread;
+        const double angle = rotation.norm();
         Motion about;
-        if (angle > 0) about.rotation = Eigen::AngleAxisd(std::min(angle, 0.5), turn / angle).toRotationMatrix();
+        if (angle > 0) about.rotation = Eigen::AngleAxisd(std::min(angle, 0.5), rotation / angle).toRotationMatrix();
         about.scale = std::clamp(1 + x[3] / spread, 0.8, 1.25);
         about.translation = centre + x.segment<3>(4) - about.scale * (about.rotation * centre);
         place_ = about.after(place_);
@@ -260,7 +265,7 @@ private:
     const ShapePrior& prior_;
     const PriorOptions& options_;
     double diagonal_;
-    std::vector<Guide> guides_;
+    std::vector<CorrespondenceConstraint> correspondences_;
     std::vector<FragmentSample> samples_;
     std::map<int, SubMesh> parts_;  ///< of the template, by label
     Motion place_;

@@ -33,7 +33,8 @@ JoinedSherds joined(const std::vector<const Fragment*>& sherds, const std::vecto
     return all;
 }
 
-std::vector<Motion> common_axis(const std::vector<const Fragment*>& sherds, const TurnOptions& options, TurnedTemplate& result) {
+std::vector<Motion> common_axis(const std::vector<const Fragment*>& sherds, const RevolutionOptions& options,
+                                RevolutionTemplate& result) {
     std::vector<Motion> motions(sherds.size());
     const JoinedSherds all = joined(sherds, motions);
     result.axis = rotation_axis(all.mesh, all.faces, options.axis);

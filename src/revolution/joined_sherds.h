@@ -15,6 +15,7 @@ JoinedSherds joined(const std::vector<const Fragment*>& sherds, const std::vecto
 
 /// Each sherd's own axis is laid onto the mean of all: sherds put together by hand stand off each other by their joints. Fills in
 /// axis, sherds and notes of the template. The motions, one a sherd.
-std::vector<Motion> common_axis(const std::vector<const Fragment*>& sherds, const TurnOptions& options, TurnedTemplate& result);
+std::vector<Motion> common_axis(const std::vector<const Fragment*>& sherds, const RevolutionOptions& options,
+                                RevolutionTemplate& result);
 
 }  // namespace ostraka

@@ -15,29 +15,29 @@ void ProfileImage::add(std::size_t row, double from, double to) {
     const double a = from / step, b = to / step;
     for (auto c = static_cast<std::size_t>(std::max(0.0, a)); c < columns && static_cast<double>(c) < b; ++c) {
         const auto left = static_cast<double>(c);
-        clay[row * columns + c] += std::max(0.0, std::min(b, left + 1) - std::max(a, left));
+        wall_share[row * columns + c] += std::max(0.0, std::min(b, left + 1) - std::max(a, left));
     }
 }
 
 void ProfileImage::clear(std::size_t row) {
     present[row] = 0;
-    std::fill_n(clay.begin() + static_cast<long>(row * columns), columns, 0.0);
+    std::fill_n(wall_share.begin() + static_cast<long>(row * columns), columns, 0.0);
 }
 
 double ProfileImage::at(long row, long column) const {
     if (column < 0) column = -1 - column;
     if (row < 0 || row >= static_cast<long>(rows) || column >= static_cast<long>(columns)) return 0;
-    return clay[static_cast<std::size_t>(row) * columns + static_cast<std::size_t>(column)];
+    return wall_share[static_cast<std::size_t>(row) * columns + static_cast<std::size_t>(column)];
 }
 
 bool ProfileImage::reaches_axis_below() const {
     for (std::size_t row = 0; row < rows / 2; ++row)
-        if (clay[row * columns] > 0.5) return true;
+        if (wall_share[row * columns] > 0.5) return true;
     return false;
 }
 bool ProfileImage::reaches_axis_above() const {
     for (std::size_t row = rows / 2; row < rows; ++row)
-        if (clay[row * columns] > 0.5) return true;
+        if (wall_share[row * columns] > 0.5) return true;
     return false;
 }
 
@@ -45,7 +45,7 @@ void ProfileImage::bridge(std::vector<std::string>* notes) {
     const auto wall = [&](std::size_t row) {
         std::pair<double, double> found{-1, -1};
         for (std::size_t c = 0; c < columns; ++c)
-            if (clay[row * columns + c] > 0.5) {
+            if (wall_share[row * columns + c] > 0.5) {
                 if (found.first < 0) found.first = static_cast<double>(c) * step;
                 found.second = static_cast<double>(c + 1) * step;
             }
@@ -58,7 +58,7 @@ void ProfileImage::bridge(std::vector<std::string>* notes) {
             const auto a = wall(last), b = wall(row);
             for (std::size_t between = last + 1; between < row; ++between) {
                 const double t = static_cast<double>(between - last) / static_cast<double>(row - last);
-                std::fill_n(clay.begin() + static_cast<long>(between * columns), columns, 0.0);
+                std::fill_n(wall_share.begin() + static_cast<long>(between * columns), columns, 0.0);
                 add(between, (1 - t) * a.first + t * b.first, (1 - t) * a.second + t * b.second);
             }
             if (notes != nullptr)
@@ -79,14 +79,14 @@ void ProfileImage::smooth(double deviation) {
         sum += kernel.back();
     }
     for (const bool along_rows : {true, false}) {
-        std::vector<double> result(clay.size(), 0);
+        std::vector<double> result(wall_share.size(), 0);
         for (std::size_t row = 0; row < rows; ++row)
             for (std::size_t c = 0; c < columns; ++c)
                 for (long k = -reach; k <= reach; ++k)
                     result[row * columns + c] +=
                         kernel[static_cast<std::size_t>(k + reach)] / sum *
                         at(static_cast<long>(row) + (along_rows ? 0 : k), static_cast<long>(c) + (along_rows ? k : 0));
-        clay = std::move(result);
+        wall_share = std::move(result);
     }
 }
 
@@ -120,7 +120,7 @@ Outline right_of_axis(const std::vector<Vector2d>& loop) {
 
 Outline ProfileImage::outline() const {
     // The whole cross-section, both sides of the axis. Nodes are the cells' middles; a crossing lies on the edge from a node to
-    // the next one to the right (0) or above (1). Pieces lead from crossing to crossing, the clay on the left.
+    // the next one to the right (0) or above (1). Pieces lead from crossing to crossing, the wall on the left.
     using Crossing = std::array<long, 3>;
     const long low = -static_cast<long>(columns) - 1, right = static_cast<long>(columns) + 1, top = static_cast<long>(rows) + 1;
     std::map<Crossing, Crossing> next;
@@ -131,7 +131,7 @@ Outline ProfileImage::outline() const {
             const bool corner[4] = {in(row, column), in(row, column + 1), in(row + 1, column + 1), in(row + 1, column)};
             const Crossing side[4] = {{row, column, 0}, {row, column + 1, 1}, {row + 1, column, 0}, {row, column, 1}};
             for (int k = 0; k < 4; ++k) {
-                // The curve enters the square where, counter-clockwise, clay ends, and leaves where it begins again behind it.
+                // The curve enters the square where, counter-clockwise, wall ends, and leaves where it begins again behind it.
                 if (!(corner[k] && !corner[(k + 1) % 4])) continue;
                 int j = (k + 1) % 4;
                 while (!(!corner[j] && corner[(j + 1) % 4])) j = (j + 1) % 4;

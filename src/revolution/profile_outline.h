@@ -1,4 +1,4 @@
-// Where clay is, by radius and height, and the outline of it.
+// Where the wall is, by radius and height, and the outline of it.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,24 +8,24 @@
 
 namespace ostraka::detail {
 
-/// A curve around the clay right of the axis, the clay on its left: from the axis to the axis, or closed.
+/// A curve around the wall right of the axis, the wall on its left: from the axis to the axis, or closed.
 struct Outline {
     std::vector<Eigen::Vector2d> points;  ///< radius, height
-    bool closed = false;                  ///< the clay does not reach the axis
+    bool closed = false;                  ///< the wall does not reach the axis
 };
 
 /// Square cells: rows are heights, columns radii from the axis on.
 struct ProfileImage {
     double step = 0;
     std::size_t rows = 0, columns = 0;
-    std::vector<double> clay;     ///< share of the rays that meet anything that is inside the clay
-    std::vector<double> present;  ///< rays that meet anything, of each row
+    std::vector<double> wall_share;  ///< share of the rays that meet anything that is inside the wall
+    std::vector<double> present;     ///< rays that meet anything, of each row
 
     void add(std::size_t row, double from, double to);
     void clear(std::size_t row);
     [[nodiscard]] bool reaches_axis_below() const;
     [[nodiscard]] bool reaches_axis_above() const;
-    /// Rows without clay between others get the wall between those, straight.
+    /// Rows without wall between others get the wall between those, straight.
     void bridge(std::vector<std::string>* notes);
     /// Gaussian of a standard deviation in cells, mirrored at the axis.
     void smooth(double deviation);

@@ -18,7 +18,7 @@ AxisFrame frame_of(const Axis& axis) {
     return frame;
 }
 
-void Lathe::ring(const Vector2d& at) {
+void ProfileSweep::ring(const Vector2d& at) {
     Ring ring;
     ring.pole = at.x() < 1e-9 * edge_;
     const int count = ring.pole ? 1 : std::max(6, static_cast<int>(std::lround(2 * pi * at.x() / edge_)));
@@ -28,7 +28,7 @@ void Lathe::ring(const Vector2d& at) {
     rings.push_back(std::move(ring));
 }
 
-void Lathe::sew(std::size_t a, std::size_t b) {
+void ProfileSweep::sew(std::size_t a, std::size_t b) {
     const auto &p = rings[a].vertices, &q = rings[b].vertices;
     const std::size_t n = rings[a].pole ? 0 : p.size(), m = rings[b].pole ? 0 : q.size();
     for (std::size_t i = 0, j = 0; i < n || j < m;) {
@@ -44,7 +44,7 @@ void Lathe::sew(std::size_t a, std::size_t b) {
     }
 }
 
-TriangleSoup Lathe::soup() const {
+TriangleSoup ProfileSweep::soup() const {
     TriangleSoup result = to_soup(mesh_);
     result.triangles = triangles_;
     return result;

@@ -1,4 +1,4 @@
-// A profile turned about an axis, as a mesh.
+// A profile swept about an axis, as a mesh.
 #pragma once
 
 #include "axis_frame.h"
@@ -6,10 +6,10 @@
 namespace ostraka {
 
 /// Rings of vertices around the axis, each with as many as its size asks for, sewn together.
-class Lathe {
+class ProfileSweep {
 public:
     /// Heights are above `lowest`; the triangles' edges are about as long as `edge`.
-    Lathe(const AxisFrame& frame, double lowest, double edge) : frame_(frame), lowest_(lowest), edge_(edge) {}
+    ProfileSweep(const AxisFrame& frame, double lowest, double edge) : frame_(frame), lowest_(lowest), edge_(edge) {}
 
     /// At this radius and height; one vertex where the radius is 0.
     void ring(const Eigen::Vector2d& at);

@@ -8,7 +8,7 @@ namespace ostraka {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-void annotate_turned(TurnedTemplate& result, const AxisFrame& frame, double lowest, const TurnedRings& made) {
+void annotate_revolution(RevolutionTemplate& result, const AxisFrame& frame, double lowest, const ProfileRings& made) {
     const std::vector<std::vector<Vertex>>& rings = made.vertices;
     const std::vector<std::size_t>& ring_of = made.of_vertex;
     AnnotationSet& set = result.annotations;

@@ -1,4 +1,4 @@
-// Annotations of a vessel that was turned.
+// Annotations of a template that is a surface of revolution.
 #pragma once
 
 #include "axis_frame.h"
@@ -7,13 +7,13 @@
 namespace ostraka {
 
 /// The rings of vertices of the template, one a point of its profile.
-struct TurnedRings {
+struct ProfileRings {
     std::vector<std::vector<Vertex>> vertices;
     std::vector<std::size_t> of_vertex;
 };
 
 /// Regions "outer", "inner", "base", lines "rim" or "upper end", "widest girth", "foot", points "base centre", "floor centre",
 /// and the axis, whose foot is `lowest` above that of the frame.
-void annotate_turned(TurnedTemplate& result, const AxisFrame& frame, double lowest, const TurnedRings& made);
+void annotate_revolution(RevolutionTemplate& result, const AxisFrame& frame, double lowest, const ProfileRings& made);
 
 }  // namespace ostraka

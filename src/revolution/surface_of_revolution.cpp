@@ -21,11 +21,12 @@ using Eigen::Vector3d;
 
 namespace {
 
-class Turner {
+class RevolutionBuilder {
 public:
-    Turner(const std::vector<const Fragment*>& sherds, const TurnOptions& options) : sherds_(sherds), options_(options) {}
+    RevolutionBuilder(const std::vector<const Fragment*>& sherds, const RevolutionOptions& options)
+        : sherds_(sherds), options_(options) {}
 
-    TurnedTemplate run() {
+    RevolutionTemplate run() {
         for (const Fragment* sherd : sherds_)
             if (!CGAL::is_closed(sherd->mesh))
                 fail_input("sherd " + sherd->name, "is not closed, so that where its clay is cannot be told",
@@ -44,7 +45,7 @@ public:
             mend_heights(all);
         }
         result_.notes.insert(result_.notes.end(), bridged_.begin(), bridged_.end());
-        annotate_turned(result_, frame_, lowest_, rings_);
+        annotate_revolution(result_, frame_, lowest_, rings_);
         return std::move(result_);
     }
 
@@ -76,7 +77,7 @@ private:
         bridged_.clear();
         result_.present.clear();
         rings_ = {};
-        for (int turn = 0; turn < 2; ++turn) {
+        for (int attempt = 0; attempt < 2; ++attempt) {
             frame_ = frame_of(result_.axis);
             low = 1e300, high = -1e300, far = 0;
             for (const Vertex v : all.mesh.vertices()) {
@@ -85,14 +86,14 @@ private:
                 high = std::max(high, frame_.height(p));
                 far = std::max(far, frame_.across(p).norm());
             }
-            ClayImage clay = look_at_clay(search, frame_, low, high, far, options_);
-            clay.drop_rare(options_);
-            result_.rim = clay.has_rim(options_);
-            image_ = std::move(clay.image);
+            WallSection section = wall_section(search, frame_, low, high, far, options_);
+            section.drop_rare(options_);
+            result_.rim = section.has_rim(options_);
+            image_ = std::move(section.image);
             result_.base = image_.reaches_axis_below();
-            // The foot is where the clay reaches the axis; of an open tube the narrower end.
+            // The foot is where the wall reaches the axis; of an open tube the narrower end.
             const bool upside_down = !result_.base && image_.reaches_axis_above();
-            if (turn == 1 || !upside_down) break;
+            if (attempt == 1 || !upside_down) break;
             result_.axis.direction = -result_.axis.direction;
         }
         image_.bridge(&bridged_);
@@ -126,12 +127,12 @@ private:
         result_.profile =
             detail::resampled(line, closed_, std::max(8, static_cast<int>(std::lround(length / (edge * std::sqrt(0.75))))));
         if (!closed_) result_.profile.front().x() = result_.profile.back().x() = 0;
-        Lathe lathe(frame_, lowest_, edge);
-        for (const Vector2d& p : result_.profile) lathe.ring(p);
+        ProfileSweep sweep(frame_, lowest_, edge);
+        for (const Vector2d& p : result_.profile) sweep.ring(p);
         const std::size_t count = result_.profile.size();
-        for (std::size_t i = 0; i + 1 < count; ++i) lathe.sew(i, i + 1);
-        if (closed_) lathe.sew(count - 1, 0);
-        TriangleSoup soup = lathe.soup();
+        for (std::size_t i = 0; i + 1 < count; ++i) sweep.sew(i, i + 1);
+        if (closed_) sweep.sew(count - 1, 0);
+        TriangleSoup soup = sweep.soup();
         double volume = 0;
         const auto at = [&](Index i) -> Vector3d {
             return Vector3d(soup.points[i][0], soup.points[i][1], soup.points[i][2]) - frame_.foot;
@@ -140,7 +141,7 @@ private:
         if (volume < 0)
             for (auto& t : soup.triangles) std::swap(t[1], t[2]);
         result_.mesh = build_mesh(soup);
-        for (const auto& ring : lathe.rings) {
+        for (const auto& ring : sweep.rings) {
             rings_.of_vertex.insert(rings_.of_vertex.end(), ring.vertices.size(), rings_.vertices.size());
             rings_.vertices.push_back(ring.vertices);
         }
@@ -170,26 +171,26 @@ private:
     }
 
     const std::vector<const Fragment*>& sherds_;
-    const TurnOptions& options_;
+    const RevolutionOptions& options_;
     AxisFrame frame_;
     std::vector<Motion> motions_;  ///< of each sherd to where its axis and height are those of all
     std::vector<std::string> bridged_;
     ProfileImage image_;
     double lowest_ = 0;
     bool closed_ = false;
-    TurnedRings rings_;
-    TurnedTemplate result_;
+    ProfileRings rings_;
+    RevolutionTemplate result_;
 };
 
 }  // namespace
 
-TurnedTemplate turn_template(const std::vector<const Fragment*>& sherds, const TurnOptions& options) {
+RevolutionTemplate template_of_revolution(const std::vector<const Fragment*>& sherds, const RevolutionOptions& options) {
     check_options(options, "turned template");
     if (sherds.empty()) fail_usage("there is no sherd", "give one or more");
-    return Turner(sherds, options).run();
+    return RevolutionBuilder(sherds, options).run();
 }
 
-void TurnOptions::describe(OptionList& visit) {
+void RevolutionOptions::describe(OptionList& visit) {
     visit("rows", rows, "heights at which the walls are looked at", Range{10, 20000});
     visit("columns", columns, "directions around the axis", Range{8, 7200});
     visit("presence", presence, "degrees of wall that a height must have to count", Range{0, 360});

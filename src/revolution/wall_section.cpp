@@ -10,13 +10,13 @@ namespace ostraka {
 
 using Eigen::Vector3d;
 
-void ClayImage::drop_rare(const TurnOptions& options) {
+void WallSection::drop_rare(const RevolutionOptions& options) {
     const double least = options.presence / 360 * 2 * std::max(4, options.columns / 2);
     for (std::size_t row = 0; row < image.rows; ++row)
         if (image.present[row] < std::max(1.0, least)) image.clear(row);
 }
 
-bool ClayImage::has_rim(const TurnOptions& options) const {
+bool WallSection::has_rim(const RevolutionOptions& options) const {
     const double highest = *std::max_element(tops.begin(), tops.end());
     double near = 0, at = 0;
     for (const double top : tops) {
@@ -27,14 +27,14 @@ bool ClayImage::has_rim(const TurnOptions& options) const {
     return at > 0.8 * near && near > options.presence / 360 * static_cast<double>(tops.size());
 }
 
-ClayImage look_at_clay(const SurfaceSearch& search, const AxisFrame& frame, double low, double high, double far,
-                       const TurnOptions& options) {
-    ClayImage clay;
-    detail::ProfileImage& image = clay.image;
+WallSection wall_section(const SurfaceSearch& search, const AxisFrame& frame, double low, double high, double far,
+                         const RevolutionOptions& options) {
+    WallSection section;
+    detail::ProfileImage& image = section.image;
     image.step = (high - low) / options.rows;
     image.rows = static_cast<std::size_t>(options.rows);
     image.columns = static_cast<std::size_t>(std::ceil(far / image.step)) + 2;
-    image.clay.assign(image.rows * image.columns, 0);
+    image.wall_share.assign(image.rows * image.columns, 0);
     image.present.assign(image.rows, 0);
     const int half = std::max(4, options.columns / 2);
     std::vector<std::vector<bool>> met(image.rows, std::vector<bool>(2 * static_cast<std::size_t>(half), false));
@@ -79,13 +79,13 @@ ClayImage look_at_clay(const SurfaceSearch& search, const AxisFrame& frame, doub
         4);
     for (std::size_t row = 0; row < image.rows; ++row)
         for (std::size_t c = 0; c < image.columns; ++c)
-            if (image.present[row] > 0) image.clay[row * image.columns + c] /= image.present[row];
-    std::vector<double>& tops = clay.tops;
+            if (image.present[row] > 0) image.wall_share[row * image.columns + c] /= image.present[row];
+    std::vector<double>& tops = section.tops;
     tops.assign(2 * static_cast<std::size_t>(half), -1);
     for (std::size_t row = 0; row < image.rows; ++row)
         for (std::size_t k = 0; k < tops.size(); ++k)
             if (met[row][k]) tops[k] = static_cast<double>(row) * image.step;
-    return clay;
+    return section;
 }
 
 }  // namespace ostraka

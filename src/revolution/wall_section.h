@@ -1,4 +1,4 @@
-// Clay of a vessel as rays from its axis meet it.
+// Section of the wall of a vessel, as rays from its axis meet it.
 #pragma once
 
 #include "axis_frame.h"
@@ -8,18 +8,18 @@
 
 namespace ostraka {
 
-struct ClayImage {
+struct WallSection {
     detail::ProfileImage image;
-    std::vector<double> tops;  ///< in each direction: the highest clay, above the lowest row; none: -1
+    std::vector<double> tops;  ///< in each direction: the highest wall, above the lowest row; none: -1
 
     /// Heights with too little wall do not count.
-    void drop_rare(const TurnOptions& options);
+    void drop_rare(const RevolutionOptions& options);
     /// A rim: where there is wall near the top, it ends at one height.
-    [[nodiscard]] bool has_rim(const TurnOptions& options) const;
+    [[nodiscard]] bool has_rim(const RevolutionOptions& options) const;
 };
 
-/// How much clay rays from the axis meet, by height and radius.
-ClayImage look_at_clay(const SurfaceSearch& search, const AxisFrame& frame, double low, double high, double far,
-                       const TurnOptions& options);
+/// How much of the wall rays from the axis meet, by height and radius.
+WallSection wall_section(const SurfaceSearch& search, const AxisFrame& frame, double low, double high, double far,
+                         const RevolutionOptions& options);
 
 }  // namespace ostraka

@@ -62,7 +62,7 @@ ObjectPointer make_statuette() {
     const std::vector<Vector2d> profile{{0, 3},    {30, 3},   {38, 0},    {42, 4},   {41, 10},  {36, 16},
                                         {27, 24},  {22, 36},  {19.5, 56}, {19, 80},  {21, 105}, {25, 126},
                                         {23, 140}, {13, 149}, {10, 156},  {10, 163}, {0, 166}};
-    add_divided_member(*object, make_lathe({}, profile), profile, 0, {{6, base}, {99, body}});
+    add_divided_member(*object, make_revolved({}, profile), profile, 0, {{6, base}, {99, body}});
     // Shoulders, wider than deep.
     add_member(*object, make_ellipsoid({{0, 0, 132}, Eigen::Matrix3d::Identity()}, {18, 34, 13}), body, 12);
     add_member(*object, make_ellipsoid({{3, 0, 178}, Eigen::Matrix3d::Identity()}, {17, 15, 20}), head, 6);
@@ -70,7 +70,7 @@ ObjectPointer make_statuette() {
     for (const double side : {1.0, -1.0})
         add_member(*object, make_ellipsoid({{1, side * 15.5, 177}, Eigen::Matrix3d::Identity()}, {4, 3.5, 6}), head, 3);
     const std::vector<Vector2d> hat{{0, 0}, {14, 0.5}, {18, 3}, {16.5, 8}, {12, 18}, {7, 27}, {0, 31}};
-    add_member(*object, make_lathe({{0, 0, 189}, turned(-8, Vector3d::UnitY())}, hat), cap, 3);
+    add_member(*object, make_revolved({{0, 0, 189}, turned(-8, Vector3d::UnitY())}, hat), cap, 3);
     // The drum's axis points forward; its rear skin rests on the chest.
     add_member(*object, make_cylinder({{30, 0, 112}, turned(90, Vector3d::UnitY())}, 25, 9, 3.5), drum, 10);
     for (const double side : {1.0, -1.0}) {

@@ -217,7 +217,7 @@ private:
             profile = {{0, 0}, {r - 1, 0}, {r + 1, 2}, {r - 1, 5}, {0.72 * r, 13}, {0.62 * r, 16.5}, {0, 17.5}};
         else profile = {{0, 0}, {r - 1, 0}, {r + 3, 4}, {r + 1.5, 9}, {0.7 * r, 13}, {0, 14}};
         const double lean = 3 * s_.nose_skew;
-        add(make_lathe(at({-2.5, 0, rim}, turned(-6, Vector3d::UnitY()) * turned(lean, Vector3d::UnitX())), profile),
+        add(make_revolved(at({-2.5, 0, rim}, turned(-6, Vector3d::UnitY()) * turned(lean, Vector3d::UnitX())), profile),
             HeadPart::hat, 1.2);
     }
 

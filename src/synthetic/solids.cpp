@@ -196,9 +196,9 @@ private:
     AlignedBox3d box_;
 };
 
-class Lathe final : public PlacedSolid {
+class RevolvedSolid final : public PlacedSolid {
 public:
-    Lathe(const Placement& placement, const std::vector<Vector2d>& profile)
+    RevolvedSolid(const Placement& placement, const std::vector<Vector2d>& profile)
         : PlacedSolid(placement), curve_(chord_lengths(profile), profile, Vector2d(1, 0), Vector2d(-1, 0)) {
         for (const double t : curve_.samples(samples_per_piece)) {
             samples_.emplace_back(t, curve_.at(t).value);
@@ -306,10 +306,10 @@ SolidPointer make_tube(const std::vector<Bead>& beads) {
     for (const auto& bead : beads) check_sizes("a tube", {bead.radius});
     return std::make_unique<Tube>(beads);
 }
-SolidPointer make_lathe(const Placement& placement, const std::vector<Vector2d>& profile) {
+SolidPointer make_revolved(const Placement& placement, const std::vector<Vector2d>& profile) {
     check_path(profile, "a lathe's profile");
     if (profile.front().x() != 0 || profile.back().x() != 0) fail_usage("a lathe's profile must start and end on the axis");
-    return std::make_unique<Lathe>(placement, profile);
+    return std::make_unique<RevolvedSolid>(placement, profile);
 }
 std::vector<double> chord_lengths(const std::vector<Bead>& beads) {
     return cumulative(beads, [](const Bead& bead) { return bead.centre; });

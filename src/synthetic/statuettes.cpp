@@ -236,7 +236,7 @@ void add_head(SyntheticObject& object, const StatuetteParameters& p, const Statu
     std::vector<Vector2d> profile = p.hat == Hat::cone ? cone : cap;
     const double rise = p.hat == Hat::cone ? 0.60 : top - 0.24;
     for (Vector2d& point : profile) point *= h;
-    add_member(object, make_lathe({at(0, 0, rise), Matrix3d::Identity()}, profile), hat, 0.05 * h);
+    add_member(object, make_revolved({at(0, 0, rise), Matrix3d::Identity()}, profile), hat, 0.05 * h);
 }
 
 }  // namespace
@@ -256,7 +256,7 @@ std::unique_ptr<SyntheticObject> build_statuette(const StatuetteParameters& p, c
     const int right = add_part(*object, "right arm", {80, 140, 90}), left = add_part(*object, "left arm", {190, 70, 60});
     const std::vector<Vector2d> profile = body_profile(p, frame);
     Member trunk;
-    trunk.solid = make_warped(make_lathe({}, profile), body.outside);
+    trunk.solid = make_warped(make_revolved({}, profile), body.outside);
     trunk.stretches = {{chord_lengths(profile)[15], base}, {std::numeric_limits<double>::infinity(), tube}};
     object->members.push_back(std::move(trunk));
     const double shoulders = 0.85 * frame.joint_height, r = frame.tube_radius;
@@ -275,7 +275,7 @@ std::unique_ptr<SyntheticObject> build_statuette(const StatuetteParameters& p, c
                    add_part(*object, "offering", {220, 180, 70}), 0.1 * r);
     }
     if (p.wall > 0) {
-        carve(*object, make_below(make_warped(make_lathe({}, cavity_profile(p, frame)), body.inside), frame.cavity_depth),
+        carve(*object, make_below(make_warped(make_revolved({}, cavity_profile(p, frame)), body.inside), frame.cavity_depth),
               add_part(*object, "inside", {120, 100, 90}), 0);
         object->thinnest = std::max(p.wall * (1 - 1.5 * p.wall_noise - p.off_centre), 0.3 * p.wall);
     }

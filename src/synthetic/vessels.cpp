@@ -22,7 +22,7 @@ ObjectPointer make_teapot() {
     const std::vector<Vector2d> profile{{0, 3},    {24, 3},    {31, 0},  {35, 3},  {35, 8},    {43, 15},     {54, 30},
                                         {59, 48},  {55, 68},   {44, 82}, {33, 88}, {30, 91},   {31.5, 95},   {27, 100},
                                         {17, 105}, {8, 108.5}, {5, 112}, {8, 117}, {8.5, 122}, {4.5, 126.5}, {0, 127.5}};
-    add_divided_member(*object, make_lathe({}, profile), profile, 0, {{4, base}, {11, body}, {15.5, lid}, {99, knob}});
+    add_divided_member(*object, make_revolved({}, profile), profile, 0, {{4, base}, {11, body}, {15.5, lid}, {99, knob}});
     const std::vector<Bead> spout_beads{
         {{44, 0, 30}, 17}, {{62, 0, 38}, 13}, {{76, 0, 56}, 9.5}, {{85, 0, 78}, 7.5}, {{97, 0, 92}, 7}};
     add_member(*object, make_tube(spout_beads), spout, 9);
@@ -61,7 +61,7 @@ ObjectPointer make_vase() {
                                         {42, 252}, {44, 256},   {41, 258.5},  // band, shoulder, neck, lip
                                         {34, 252}, {25.5, 240}, {21.5, 226}, {22, 208}, {26.5, 192}, {39, 172},   {54.5, 152},
                                         {61, 134}, {62, 118},   {57, 90},    {45, 62},  {28, 36},    {12, 26},    {0, 24}};
-    add_divided_member(*object, make_lathe({}, profile), profile, 0,
+    add_divided_member(*object, make_revolved({}, profile), profile, 0,
                        {{5, foot}, {9, belly}, {10, band}, {12.5, shoulder}, {17, neck}, {20, lip}, {99, inside}});
     for (const double side : {1.0, -1.0}) {
         const int handle = add_part(*object, side > 0 ? "right handle" : "left handle",

@@ -30,8 +30,8 @@ Vector unit(double x, double y, double z) {
 }
 
 /// A surface of revolution about z with the given profile, turned so that z becomes `a` and moved to `at`.
-Mesh lathe(const std::function<std::array<double, 2>(double)>& profile, const Vector& a, const Point& at,
-           double turn = 2 * M_PI) {
+Mesh revolved(const std::function<std::array<double, 2>(double)>& profile, const Vector& a, const Point& at,
+              double turn = 2 * M_PI) {
     const Vector u = std::abs(a.x()) < 0.9 ? CGAL::cross_product(a, Vector(1, 0, 0)) : CGAL::cross_product(a, Vector(0, 1, 0));
     const Vector v = u / std::sqrt(u.squared_length()), w = CGAL::cross_product(a, v);
     const bool whole = turn > 6.28;
@@ -80,7 +80,7 @@ TEST(RotationAxis, OfTurnedShapesWithAndWithoutNoise) {
         {"cylinder", cylinder}, {"vase", vase}, {"cone", cone}, {"capsule", capsule}};
     for (const auto& [name, profile] : shapes)
         for (const double noise : {0.0, 0.001, 0.005}) {
-            Mesh mesh = lathe(profile, a, at);
+            Mesh mesh = revolved(profile, a, at);
             add_noise(mesh, noise);
             const Axis axis = rotation_axis(mesh, all(mesh));
             ASSERT_TRUE(axis.found) << name << " " << noise << ": " << axis.reason << " " << axis.quality;
@@ -97,7 +97,7 @@ TEST(RotationAxis, OfASherd) {
     const Vector a = unit(0, 0.6, 0.8);
     for (const double degrees : {60.0, 120.0})
         for (const double noise : {0.0, 0.001}) {
-            Mesh mesh = lathe(vase, a, Point(1, 2, 3), degrees * M_PI / 180);
+            Mesh mesh = revolved(vase, a, Point(1, 2, 3), degrees * M_PI / 180);
             add_noise(mesh, noise);
             const Axis axis = rotation_axis(mesh, all(mesh));
             ASSERT_TRUE(axis.found) << degrees << " " << noise << ": " << axis.reason;
@@ -158,7 +158,7 @@ TEST(SliceAxis, OfTubes) {
     const Vector a = unit(1, 2, -0.5);
     for (const double turn : {2 * M_PI, 2.0})
         for (const double noise : {0.0, 0.001, 0.005}) {
-            Mesh mesh = lathe(cylinder, a, Point(0, 0, 0), turn);
+            Mesh mesh = revolved(cylinder, a, Point(0, 0, 0), turn);
             add_noise(mesh, noise);
             const Axis axis = slice_axis(mesh, all(mesh));
             ASSERT_TRUE(axis.found) << turn << " " << noise << ": " << axis.reason;
@@ -231,7 +231,7 @@ TEST(Axis, AsAnObjFile) {
 
 TEST(SkeletonAxis, OfClosedAndCappedParts) {
     const Vector a = unit(0.2, 0.3, 1);
-    const Mesh open = lathe(cylinder, a, Point(1, 1, 1));
+    const Mesh open = revolved(cylinder, a, Point(1, 1, 1));
     const Axis tube = skeleton_axis(open, all(open));
     ASSERT_TRUE(tube.found) << tube.reason;
     EXPECT_LT(angle(tube, a), 1.5);

@@ -148,7 +148,7 @@ TEST_F(SlidParts, APartOfAnOutlineWithOneLandmarkHelps) {
     EXPECT_LT(error(with, whole, disc), 0.8 * error(without, whole, disc));
 }
 
-TEST_F(SlidParts, LinesGuideWhicheverWayTheyAreTold) {
+TEST_F(SlidParts, LinesCorrespondWhicheverWayTheyAreGiven) {
     // A meridian's part, and its end as a landmark; the fragment's line is told from its other end.
     Annotation line;
     line.id = 100;

@@ -29,11 +29,11 @@ PotOptions small_pot(std::uint64_t shape) {
     return options;
 }
 
-/// Sherds of a synthetic pot, each turned about the axis at random and a little off its place, as a search leaves them.
+/// Sherds of a synthetic pot, each rotated about the axis at random and a little off its place, as a search leaves them.
 struct BrokenPot {
     Mesh whole;
     std::vector<Fragment> fragments;
-    std::vector<TurnableSherd> sherds;
+    std::vector<SherdOnAxis> sherds;
     Motion frame;  ///< of everything
 
     BrokenPot(const PotOptions& pot, const ShatterOptions& breaking, double off = 0.003, Motion where = {}) : frame(where) {
@@ -53,18 +53,18 @@ struct BrokenPot {
             one.facets.push_back(piece.broken[f] ? Facet::fracture : out ? Facet::outer : Facet::inner);
         }
         one.mesh = moved(piece.mesh, frame);
-        Motion turn, lean, back = frame.inverse();
-        turn.rotation = Eigen::AngleAxisd(random.uniform(-3, 3), Vector3d::UnitZ()).toRotationMatrix();
+        Motion rotated, lean, back = frame.inverse();
+        rotated.rotation = Eigen::AngleAxisd(random.uniform(-3, 3), Vector3d::UnitZ()).toRotationMatrix();
         lean.rotation = Eigen::AngleAxisd(off * random.normal(), Vector3d(random.normal(), random.normal(), 0).normalized())
                             .toRotationMatrix();
         lean.translation = off * pot.height * Vector3d(random.normal(), random.normal(), random.normal()) / 3;
-        sherds.push_back({&fragments[k], frame.after(turn.after(lean)).after(back), false});
+        sherds.push_back({&fragments[k], frame.after(rotated.after(lean)).after(back), false});
     }
-    [[nodiscard]] BreakTurns turn(const BreakTurnOptions& options = {}) const {
-        return turn_by_breaks(whole, frame(Vector3d::Zero()), frame.rotation * Vector3d::UnitZ(), sherds, options);
+    [[nodiscard]] RotationMatch match(const RotationMatchOptions& options = {}) const {
+        return match_rotations(whole, frame(Vector3d::Zero()), frame.rotation * Vector3d::UnitZ(), sherds, options);
     }
     /// Root mean square way of the second sherd's vertices from where it belongs against the first.
-    [[nodiscard]] double off(const BreakTurns& result, int a, int b) const {
+    [[nodiscard]] double off(const RotationMatch& result, int a, int b) const {
         const Motion between =
             result.poses[static_cast<std::size_t>(a)].inverse().after(result.poses[static_cast<std::size_t>(b)]);
         const Mesh& mesh = fragments[static_cast<std::size_t>(b)].mesh;
@@ -81,7 +81,7 @@ ShatterOptions breaking(std::uint64_t seed, int pieces = 5) {
     return options;
 }
 
-void expect_together(const BrokenPot& pot, const BreakTurns& result) {
+void expect_together(const BrokenPot& pot, const RotationMatch& result) {
     for (std::size_t k = 0; k < pot.sherds.size(); ++k) {
         EXPECT_EQ(result.group[k], result.group[0]) << "sherd " << k + 1 << ": " << result.notes[k];
         EXPECT_LT(result.overlap[k], 0.03);
@@ -96,42 +96,42 @@ void expect_together(const BrokenPot& pot, const BreakTurns& result) {
     EXPECT_EQ(carry + 1, pot.sherds.size()) << "a tree";
 }
 
-TEST(BreakTurns, SherdsOfAPotComeTogether) {
+TEST(RotationMatch, SherdsOfAPotComeTogether) {
     for (const std::uint64_t seed : {1, 2}) {
         const BrokenPot pot(small_pot(seed), breaking(seed));
-        const BreakTurns result = pot.turn();
+        const RotationMatch result = pot.match();
         expect_together(pot, result);
         EXPECT_NEAR(result.wall, 0.6, 0.2);
     }
 }
 
-TEST(BreakTurns, AlsoWornAndNoisy) {
+TEST(RotationMatch, AlsoWornAndNoisy) {
     ShatterOptions worn = breaking(3);
     worn.erosion = 0.002;
     worn.noise = 0.0005;
     const BrokenPot pot(small_pot(3), worn);
-    expect_together(pot, pot.turn());
+    expect_together(pot, pot.match());
 }
 
-TEST(BreakTurns, DoNotDependOnThePlaceOrTheUnit) {
+TEST(RotationMatch, DoNotDependOnThePlaceOrTheUnit) {
     Motion far;
     far.rotation = Eigen::AngleAxisd(1.1, Vector3d(1, 2, -1).normalized()).toRotationMatrix();
     far.translation = Vector3d(300, -200, 500);
     const BrokenPot pot(small_pot(1), breaking(1)), there(small_pot(1), breaking(1), 0.003, far);
-    expect_together(there, there.turn());
+    expect_together(there, there.match());
     PotOptions tiny = small_pot(1);
     tiny.height *= 1e-3, tiny.radius *= 1e-3, tiny.wall *= 1e-3, tiny.edge *= 1e-3;
     const BrokenPot small(tiny, breaking(1));
-    expect_together(small, small.turn());
+    expect_together(small, small.match());
 }
 
-TEST(BreakTurns, AreTheSameForAnyNumberOfThreads) {
+TEST(RotationMatch, AreTheSameForAnyNumberOfThreads) {
     const BrokenPot pot(small_pot(2), breaking(2, 4));
     const int before = threads();
     set_threads(1);
-    const BreakTurns one = pot.turn();
+    const RotationMatch one = pot.match();
     set_threads(3);
-    const BreakTurns three = pot.turn();
+    const RotationMatch three = pot.match();
     set_threads(before);
     ASSERT_EQ(one.poses.size(), three.poses.size());
     for (std::size_t k = 0; k < one.poses.size(); ++k) {
@@ -140,15 +140,15 @@ TEST(BreakTurns, AreTheSameForAnyNumberOfThreads) {
     }
 }
 
-TEST(BreakTurns, WhatIsFixedStays) {
+TEST(RotationMatch, WhatIsFixedStays) {
     BrokenPot pot(small_pot(1), breaking(1));
     pot.sherds[1].fixed = true;
-    const BreakTurns result = pot.turn();
+    const RotationMatch result = pot.match();
     EXPECT_LT((result.poses[1].rotation - pot.sherds[1].pose.rotation).norm(), 1e-9);
     expect_together(pot, result);
 }
 
-TEST(BreakTurns, ASherdOfAnotherBreakIsNamedAndOverlapsNothing) {
+TEST(RotationMatch, ASherdOfAnotherBreakIsNamedAndOverlapsNothing) {
     const PotOptions shape = small_pot(4);
     BrokenPot pot(shape, breaking(4, 6));
     const std::vector<Sherd> others = shatter(make_pot(shape), breaking(77, 12));
@@ -164,58 +164,58 @@ TEST(BreakTurns, ASherdOfAnotherBreakIsNamedAndOverlapsNothing) {
     pot.sherds.clear();
     for (std::size_t k = 0; k + 1 < pot.fragments.size(); ++k) pot.sherds.push_back({&pot.fragments[k], Motion(), false});
     pot.add(pot.fragments.size() - 1, others[smallest], shape, 0.003, random);
-    const BreakTurns result = pot.turn();
+    const RotationMatch result = pot.match();
     EXPECT_FALSE(result.notes.back().empty());
     for (const BreakJoint& joint : result.joints)
         EXPECT_FALSE(joint.decided && joint.second + 1 == static_cast<int>(pot.sherds.size()));
 }
 
-TEST(BreakTurns, OneSherdAndNoBreaks) {
+TEST(RotationMatch, OneSherdAndNoBreaks) {
     BrokenPot pot(small_pot(1), breaking(1, 2));
     pot.sherds.resize(1);
-    const BreakTurns alone = pot.turn();
+    const RotationMatch alone = pot.match();
     ASSERT_EQ(alone.poses.size(), 1U);
     EXPECT_TRUE(alone.joints.empty());
     EXPECT_LT((alone.poses[0].rotation - pot.sherds[0].pose.rotation).norm(), 1e-9);
 
     BrokenPot whole(small_pot(1), breaking(1, 3));
     for (Fragment& one : whole.fragments) one.facets.assign(one.mesh.number_of_faces(), Facet::outer);
-    const BreakTurns none = whole.turn();
+    const RotationMatch none = whole.match();
     EXPECT_TRUE(none.joints.empty());
     for (const std::string& note : none.notes) EXPECT_NE(note.find("no break"), std::string::npos);
 
-    EXPECT_THROW((void)turn_by_breaks(whole.whole, Vector3d::Zero(), Vector3d::UnitZ(), {}), Error);
-    EXPECT_THROW((void)turn_by_breaks(whole.whole, Vector3d::Zero(), Vector3d::Zero(), whole.sherds), Error);
+    EXPECT_THROW((void)match_rotations(whole.whole, Vector3d::Zero(), Vector3d::UnitZ(), {}), Error);
+    EXPECT_THROW((void)match_rotations(whole.whole, Vector3d::Zero(), Vector3d::Zero(), whole.sherds), Error);
 }
 
-TEST(FreeTurns, OnlyWhereASearchLeftThemOpen) {
+TEST(OpenRotations, OnlyWhereASearchLeftThemOpen) {
     const BrokenPot pot(small_pot(1), breaking(1, 3));
     std::vector<const Fragment*> fragments;
     std::vector<FragmentPlacement> placed;
     std::vector<std::optional<PoseSearchResult>> searched;
-    for (const TurnableSherd& one : pot.sherds) {
+    for (const SherdOnAxis& one : pot.sherds) {
         fragments.push_back(one.fragment);
         placed.emplace_back();
         placed.back().pose = one.pose;
         searched.emplace_back();
     }
-    EXPECT_FALSE(decide_free_turns(pot.whole, fragments, searched, placed)) << "none was searched";
+    EXPECT_FALSE(decide_open_rotations(pot.whole, fragments, searched, placed)) << "none was searched";
     for (auto& one : searched) {
         one.emplace();
         one->decided = true;
     }
-    EXPECT_FALSE(decide_free_turns(pot.whole, fragments, searched, placed)) << "nothing is open";
+    EXPECT_FALSE(decide_open_rotations(pot.whole, fragments, searched, placed)) << "nothing is open";
     for (auto& one : searched) one->slippable.kind = SlippableKind::rotation;
-    BreakTurnOptions never;
-    never.turns = BreakTurnOptions::Turns::never;
-    EXPECT_FALSE(decide_free_turns(pot.whole, fragments, searched, placed, never));
+    RotationMatchOptions never;
+    never.rotations = RotationMatchOptions::Turns::never;
+    EXPECT_FALSE(decide_open_rotations(pot.whole, fragments, searched, placed, never));
     placed[1].problem = "lost";
-    const auto turns = decide_free_turns(pot.whole, fragments, searched, placed);
-    ASSERT_TRUE(turns);
-    EXPECT_EQ(turns->group[1], -1);
-    for (const BreakJoint& joint : turns->joints) EXPECT_TRUE(joint.first != 1 && joint.second != 1);
+    const auto rotations = decide_open_rotations(pot.whole, fragments, searched, placed);
+    ASSERT_TRUE(rotations);
+    EXPECT_EQ(rotations->group[1], -1);
+    for (const BreakJoint& joint : rotations->joints) EXPECT_TRUE(joint.first != 1 && joint.second != 1);
     const Mesh box = build_mesh(test::octahedron_sphere(3));
-    EXPECT_FALSE(decide_free_turns(box, fragments, searched, placed)) << "a ball has no axis";
+    EXPECT_FALSE(decide_open_rotations(box, fragments, searched, placed)) << "a ball has no axis";
 }
 
 }  // namespace

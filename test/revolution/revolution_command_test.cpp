@@ -18,7 +18,7 @@ using test::run_command;
 std::string quoted(const Path& path) { return "'" + path.string() + "'"; }
 
 /// A coarse pot in three sherds, where they were.
-class TurnCommand : public ::testing::Test {
+class RevolutionCommand : public ::testing::Test {
 protected:
     void SetUp() override {
         PotOptions pot;
@@ -39,7 +39,7 @@ protected:
     std::vector<Path> files;
 };
 
-TEST_F(TurnCommand, ReportsAsTheSchemaSays) {
+TEST_F(RevolutionCommand, ReportsAsTheSchemaSays) {
     const auto run =
         run_command("template turn " + all() + "--vertices 3000 --unit mm --json --output " + quoted(scratch / "out"));
     ASSERT_EQ(run.code, 0) << run.err;
@@ -60,7 +60,7 @@ TEST_F(TurnCommand, ReportsAsTheSchemaSays) {
     EXPECT_THROW(validate(broken["result"], "turned", "report"), Error);
 }
 
-TEST_F(TurnCommand, AFitOnItTurnsSherdsByTheirBreaks) {
+TEST_F(RevolutionCommand, AFitOnItMatchesRotationsByBreaks) {
     ASSERT_EQ(run_command("template turn " + all() + "--vertices 6000 --output " + quoted(scratch / "out")).code, 0);
     // Half a turn for the first one: about the vessel's axis, which tells nothing of where it is.
     Mesh mesh = read_mesh(files[0]).mesh;
@@ -99,7 +99,7 @@ TEST_F(TurnCommand, AFitOnItTurnsSherdsByTheirBreaks) {
     EXPECT_EQ(run_command(fit + " --turns perhaps").code, 2);
 }
 
-TEST_F(TurnCommand, BadInputIsNamedAndNothingIsWritten) {
+TEST_F(RevolutionCommand, BadInputIsNamedAndNothingIsWritten) {
     const Path out = scratch / "out";
     const std::string rest = " --output " + quoted(out);
     const auto missing = run_command("template turn " + quoted(scratch / "nope.ply") + rest);

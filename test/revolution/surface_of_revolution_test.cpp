@@ -71,14 +71,14 @@ Motion shifted(const Motion& motion, const Vector3d& by) {
 }
 
 /// Largest distance of the wall, as it was made, from the template, both laid on one axis with their lowest places level.
-double worst(const TurnedTemplate& turned) {
+double worst(const RevolutionTemplate& revolved) {
     double most = 0;
     const double low = outside(0).y();
     for (int i = 0; i <= 50; ++i)
         for (const Vector2d& p : {outside(0.04 + 0.92 * i / 50), inside(0.04 + 0.92 * i / 50)}) {
             double least = 1e300;
-            for (std::size_t k = 0; k + 1 < turned.profile.size(); ++k) {
-                const Vector2d a = turned.profile[k], d = turned.profile[k + 1] - a, q = p - Vector2d(0, low) - a;
+            for (std::size_t k = 0; k + 1 < revolved.profile.size(); ++k) {
+                const Vector2d a = revolved.profile[k], d = revolved.profile[k + 1] - a, q = p - Vector2d(0, low) - a;
                 least = std::min(least, (q - std::clamp(q.dot(d) / d.squaredNorm(), 0.0, 1.0) * d).norm());
             }
             most = std::max(most, least);
@@ -86,75 +86,75 @@ double worst(const TurnedTemplate& turned) {
     return most;
 }
 
-TEST(TurnedTemplate, IsTheVesselOfItsSherds) {
+TEST(RevolutionTemplate, IsTheVesselOfItsSherds) {
     const Motion there = tilted();
     const Vector3d up = there.rotation * Vector3d::UnitZ();
     const Fragment a = sherd(0, 2, 0, 0.7, there), b = sherd(2.2, 4, 0.3, 1, there), c = sherd(4.1, 6, 0, 1, there);
-    const TurnedTemplate turned = turn_template({&a, &b, &c});
-    EXPECT_GT(std::abs(eigen(turned.axis.direction).dot(up)), 1 - 1e-5);
-    EXPECT_LT((eigen(turned.axis.point) - there.translation).cross(up).norm(), 0.01);
-    EXPECT_FALSE(turned.base);
-    EXPECT_TRUE(turned.rim);
-    EXPECT_TRUE(CGAL::is_closed(turned.mesh));
-    EXPECT_NEAR(double(turned.mesh.number_of_vertices()), 25000, 1000);
+    const RevolutionTemplate revolved = template_of_revolution({&a, &b, &c});
+    EXPECT_GT(std::abs(eigen(revolved.axis.direction).dot(up)), 1 - 1e-5);
+    EXPECT_LT((eigen(revolved.axis.point) - there.translation).cross(up).norm(), 0.01);
+    EXPECT_FALSE(revolved.base);
+    EXPECT_TRUE(revolved.rim);
+    EXPECT_TRUE(CGAL::is_closed(revolved.mesh));
+    EXPECT_NEAR(double(revolved.mesh.number_of_vertices()), 25000, 1000);
     // Either end may be up: there is no base to tell.
-    const bool same_way = eigen(turned.axis.direction).dot(up) > 0;
+    const bool same_way = eigen(revolved.axis.direction).dot(up) > 0;
     if (same_way) {
-        EXPECT_LT(worst(turned), 0.02);
+        EXPECT_LT(worst(revolved), 0.02);
     }
-    const SurfaceSearch surface(turned.mesh);
+    const SurfaceSearch surface(revolved.mesh);
     for (const Fragment* one : {&a, &b, &c})
         for (const Vertex v : one->mesh.vertices()) EXPECT_LT(surface.closest(one->mesh.point(v)).distance, 0.12);
-    for (const SherdOnProfile& one : turned.sherds) {
+    for (const SherdOnProfile& one : revolved.sherds) {
         EXPECT_TRUE(one.axis.found);
         EXPECT_LT(one.lean, 0.3);
         EXPECT_LT(one.aside, 0.01);
         EXPECT_LT(one.residual, 0.01);
     }
-    ASSERT_NO_THROW(check_annotations(turned.annotations, turned.mesh, "turned"));
+    ASSERT_NO_THROW(check_annotations(revolved.annotations, revolved.mesh, "turned"));
     double outer = 0, inner = 0;
-    for (const Annotation& one : turned.annotations.annotations) {
+    for (const Annotation& one : revolved.annotations.annotations) {
         if (one.tag == "outer") outer = double(one.faces.size());
         if (one.tag == "inner") inner = double(one.faces.size());
     }
     EXPECT_GT(outer, inner);
-    EXPECT_EQ(outer + inner, double(turned.mesh.number_of_faces()));
+    EXPECT_EQ(outer + inner, double(revolved.mesh.number_of_faces()));
 }
 
-TEST(TurnedTemplate, JointsOfALayoutGo) {
+TEST(RevolutionTemplate, JointsOfALayoutGo) {
     const Motion there = tilted();
     const Vector3d up = there.rotation * Vector3d::UnitZ(), x = there.rotation * Vector3d::UnitX();
     const Fragment a = sherd(0, 2, 0, 1, shifted(there, 0.08 * x + 0.05 * up)), b = sherd(2.2, 4, 0, 1, there),
                    c = sherd(4.1, 6, 0, 1, shifted(there, -0.06 * x));
-    const TurnedTemplate turned = turn_template({&a, &b, &c});
-    for (const SherdOnProfile& one : turned.sherds) EXPECT_LT(one.residual, 0.02);
-    EXPECT_GT((turned.sherds[0].motion.translation - turned.sherds[1].motion.translation).norm(), 0.05);
-    EXPECT_NEAR((turned.sherds[0].motion(there.translation + 0.05 * up) - turned.sherds[1].motion(there.translation)).dot(up), 0,
-                0.03);
+    const RevolutionTemplate revolved = template_of_revolution({&a, &b, &c});
+    for (const SherdOnProfile& one : revolved.sherds) EXPECT_LT(one.residual, 0.02);
+    EXPECT_GT((revolved.sherds[0].motion.translation - revolved.sherds[1].motion.translation).norm(), 0.05);
+    EXPECT_NEAR((revolved.sherds[0].motion(there.translation + 0.05 * up) - revolved.sherds[1].motion(there.translation)).dot(up),
+                0, 0.03);
 }
 
-TEST(TurnedTemplate, OneSherdIsEnough) {
+TEST(RevolutionTemplate, OneSherdIsEnough) {
     const Fragment one = sherd(0, 2.5, 0, 1, {});
-    const TurnedTemplate turned = turn_template({&one});
-    EXPECT_GT(std::abs(turned.axis.direction.z()), 1 - 1e-4);
-    EXPECT_TRUE(CGAL::is_closed(turned.mesh));
+    const RevolutionTemplate revolved = template_of_revolution({&one});
+    EXPECT_GT(std::abs(revolved.axis.direction.z()), 1 - 1e-4);
+    EXPECT_TRUE(CGAL::is_closed(revolved.mesh));
     double widest = 0;
-    for (const Vector2d& p : turned.profile) widest = std::max(widest, p.x());
+    for (const Vector2d& p : revolved.profile) widest = std::max(widest, p.x());
     EXPECT_NEAR(widest, 1.5, 0.02);
 }
 
-TEST(TurnedTemplate, RefusesWhatCannotBeTurned) {
-    EXPECT_THROW(turn_template({}), Error);
+TEST(RevolutionTemplate, RefusesWhatIsNoSurfaceOfRevolution) {
+    EXPECT_THROW(template_of_revolution({}), Error);
     Fragment open = sherd(0, 2, 0, 1, {});
     const Face first = *open.mesh.faces().begin();
     CGAL::Euler::remove_face(open.mesh.halfedge(first), open.mesh);
     open.mesh.collect_garbage();
-    EXPECT_THROW(turn_template({&open}), Error);
+    EXPECT_THROW(template_of_revolution({&open}), Error);
     // Two that do not lie as they did in one vessel.
     Motion aside;
     aside.rotation = Eigen::AngleAxisd(0.7, Vector3d::UnitX()).toRotationMatrix();
     const Fragment a = sherd(0, 2, 0, 1, {}), b = sherd(2.2, 4, 0, 1, aside);
-    EXPECT_THROW(turn_template({&a, &b}), Error);
+    EXPECT_THROW(template_of_revolution({&a, &b}), Error);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Turns decided by breaks, in the assembly.
+// Rotations decided by breaks, in the assembly.
 #pragma once
 
 #include "ostraka/core/json.h"
@@ -7,9 +7,9 @@
 namespace ostraka {
 
 /// "joints" of an assembly.
-JsonValue joints_to_json(const BreakTurns& turns, const std::vector<std::string>& names, JsonAllocator& allocator);
+JsonValue joints_to_json(const RotationMatch& rotations, const std::vector<std::string>& names, JsonAllocator& allocator);
 /// "turn" of a fragment.
-JsonValue turn_to_json(const BreakTurns& turns, std::size_t fragment, const std::vector<std::string>& names,
-                       JsonAllocator& allocator);
+JsonValue rotation_to_json(const RotationMatch& rotations, std::size_t fragment, const std::vector<std::string>& names,
+                           JsonAllocator& allocator);
 
 }  // namespace ostraka

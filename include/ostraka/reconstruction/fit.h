@@ -30,8 +30,8 @@ struct NonRigidOptions {
     Counterparts counterparts =
         Counterparts::surface;         ///< in matched annotations: closest places, or the vertices of equation 5.1
     VertexAssignmentOptions vertices;  ///< its weights; reach and angle are those of the level
-    double guides = 1;                 ///< weight of outlines and landmarks of matched annotations
-    bool outlines = true;              ///< outlines and lines guide by the position along them, not only landmarks
+    double correspondences = 1;        ///< weight of outlines and landmarks of matched annotations
+    bool outlines = true;              ///< outlines and lines correspond by the position along them, not only landmarks
 
     void describe(OptionList& visit);
 };
@@ -91,7 +91,7 @@ private:
 
 /// Minimises, level by level,  sum over vertices of A_i (w_i |x_i - q_i|^2 + (s/t)^4 |x_i - p_i|^2 + s^4 |Delta x_i - R_i Delta
 /// r_i|^2): the three costs of equation 5.2 (match, stay, Laplacian displacement of the template r) with areas A_i, so that the
-/// result does not depend on the resolution. s is the smoothing length of the level; R_i follows the turn of each vertex's
+/// result does not depend on the resolution. s is the smoothing length of the level; R_i follows the rotation of each vertex's
 /// surroundings. In the first level p is the template and t the length of transition; later p is what the level before left and t
 /// = `fade` s, so that what a level adds, and with it the noise of a fragment's edge, ends near what was observed. Matches are
 /// the closest points of the fragments' outer facets with a like normal, within the same matched annotations on either side (the

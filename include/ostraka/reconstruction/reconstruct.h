@@ -20,7 +20,7 @@ struct ReconstructOptions {
     SearchOptions search;
     bool refine = true;  ///< poses are refined by the surface, with the landmarks as anchors
     PartAlignmentOptions alignment;
-    BreakTurnOptions turns;
+    RotationMatchOptions rotations;
     AnnotationMatchOptions annotations;
     PriorOptions prior;
     NonRigidOptions fit;
@@ -55,7 +55,7 @@ struct Reconstruction {
     CommonPlacement placement;
     std::vector<std::optional<PoseSearchResult>> searched;  ///< of each fragment whose pose was searched
     std::vector<PartAlignment> alignment;                   ///< of each fragment placed, where poses were refined
-    std::optional<BreakTurns> turns;                        ///< where turns about the template's axis were open
+    std::optional<RotationMatch> rotations;                 ///< where rotations about the template's axis were open
     std::vector<std::vector<AnnotationMatch>> annotations;  ///< of each fragment
     std::vector<std::vector<std::string>> notes;            ///< of each fragment
     std::optional<PriorFit> prior;                          ///< where a class was given

@@ -30,9 +30,9 @@ std::vector<std::optional<PoseSearchResult>> place_by_search(PoseSearches& searc
                                                              const SearchOptions& options, double& scale,
                                                              std::vector<FragmentPlacement>& placed);
 
-/// What the shape leaves open of a pose that was found, decided by the landmarks there are, be it one: turned about or shifted
-/// along each way so that their squared distances from the template's are least. False, and nothing is changed, where nothing is
-/// open, or where they are still farther off than `limit`, a length. `scale` of the template.
+/// What the shape leaves open of a pose that was found, decided by the landmarks there are, be it one: rotated about or
+/// translated along each way so that their squared distances from the template's are least. False, and nothing is changed, where
+/// nothing is open, or where they are still farther off than `limit`, a length. `scale` of the template.
 bool close_by_landmarks(const std::vector<LandmarkPair>& pairs, double scale, double limit, PoseSearchResult& search,
                         FragmentPlacement& placed);
 

@@ -42,10 +42,10 @@ struct PriorFit {
 
 /// The most probable shape of the class for what is observed (maximum a posteriori; cf. statistical shape models, Cootes et al.
 /// 1995, Blanz and Vetter 1999): by turns, the nearest places of the class's shape to places
-/// spread over the fragments (about 3000, like among like as in `fit_template`), and a linear least squares problem for a turn,
-/// shift and scale of the shape and the coefficients, point to plane with Tukey's biweight, with the landmarks and the
-/// coefficients' Mahalanobis distance, against which the residuals count as the independent places that they show. Starts at the
-/// mean laid onto `scaled`. Throws Error as ShapePrior::check.
+/// spread over the fragments (about 3000, like among like as in `fit_template`), and a linear least squares problem for a
+/// rotation, translation and scale of the shape and the coefficients, point to plane with Tukey's biweight, with the landmarks
+/// and the coefficients' Mahalanobis distance, against which the residuals count as the independent places that they show. Starts
+/// at the mean laid onto `scaled`. Throws Error as ShapePrior::check.
 PriorFit fit_prior(const Mesh& scaled, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments,
                    const ShapePrior& prior, const PriorOptions& options = {});
 

@@ -10,7 +10,7 @@
 
 namespace ostraka {
 
-struct TurnOptions {
+struct RevolutionOptions {
     int rows = 400;                  ///< heights at which the walls are looked at
     int columns = 360;               ///< directions around the axis
     double presence = 3;             ///< degrees of wall that a height must have to count
@@ -32,7 +32,7 @@ struct SherdOnProfile {
     double residual = 0;             ///< root mean square distance of its walls from the template
 };
 
-struct TurnedTemplate {
+struct RevolutionTemplate {
     Axis axis;                             ///< common to all sherds; its direction points up
     std::vector<Eigen::Vector2d> profile;  ///< radius and height above the lowest place, from the foot outside up and inside down
     bool base = false;                     ///< the sherds reach the axis at the bottom
@@ -44,14 +44,14 @@ struct TurnedTemplate {
     std::vector<std::string> notes;
 };
 
-/// Sherds that lie as they did in the vessel (all in one frame, or a single one), each closed: solid clay. The axis is that of
+/// Sherds that lie as they did in the vessel (all in one frame, or a single one), each closed: a solid wall. The axis is that of
 /// the surface of revolution that fits all faces but those of breaks (`rotation_axis`; breaks are few and its fit is robust where
-/// facets are not known). From the axis rays go out at each height in all directions: clay is where most of the rays that meet
-/// any clay at that height are inside a sherd, which drops what a break cut away. The outline of that, a level line with
-/// precision below a row, is the profile, turned about the axis with triangles of even size. Heights without a sherd between
+/// facets are not known). From the axis rays go out at each height in all directions: the wall is where most of the rays that
+/// meet any wall at that height are inside a sherd, which drops what a break cut away. The outline of that, a level line with
+/// precision below a row, is the profile, swept about the axis with triangles of even size. Heights without a sherd between
 /// others are bridged straight. Annotations: regions "outer", "inner" and "base", lines "rim", "widest girth" and "foot", points
 /// "base centre" and "floor centre" (where they exist), the axis as an attribute. Throws Error (input) for sherds that are not
 /// closed, without a common axis, or not round; (usage) without sherds.
-TurnedTemplate turn_template(const std::vector<const Fragment*>& sherds, const TurnOptions& options = {});
+RevolutionTemplate template_of_revolution(const std::vector<const Fragment*>& sherds, const RevolutionOptions& options = {});
 
 }  // namespace ostraka

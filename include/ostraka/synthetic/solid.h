@@ -64,7 +64,7 @@ std::vector<double> chord_lengths(const std::vector<Bead>& beads);
 
 /// Solid of revolution around the vertical axis; the profile is the cubic spline through points (distance from the axis,
 /// height), from the axis at the bottom, outside upward, to the axis again, which it meets at right angles. True signed distance.
-SolidPointer make_lathe(const Placement& placement, const std::vector<Eigen::Vector2d>& profile);
+SolidPointer make_revolved(const Placement& placement, const std::vector<Eigen::Vector2d>& profile);
 std::vector<double> chord_lengths(const std::vector<Eigen::Vector2d>& profile);
 
 }  // namespace ostraka

@@ -1,4 +1,5 @@
-// Five scanned sherds of a vessel, moved at random, on the template turned from them: axes, heights and turns found again.
+// Five scanned sherds of a vessel, moved at random, on the template made of them as a surface of revolution: axes, heights and
+// rotations found again.
 #include "breaks.h"
 #include "experiments.h"
 #include "report.h"
@@ -55,7 +56,7 @@ std::vector<std::pair<std::string, Mesh>> scanned_sherds(const std::string& data
     return sherds;
 }
 
-void sherd_turns(const BreakExperiment& options) {
+void sherd_rotations(const BreakExperiment& options) {
     const auto sherds = scanned_sherds(options.data);
     if (sherds.empty()) return;
     std::vector<Fragment> given(sherds.size());
@@ -74,7 +75,7 @@ void sherd_turns(const BreakExperiment& options) {
     for (const auto& p : all.points)
         low = low.cwiseMin(Vector3d(p[0], p[1], p[2])), high = high.cwiseMax(Vector3d(p[0], p[1], p[2]));
     const double diagonal = (high - low).norm();
-    const TurnedTemplate turned = turn_template(pointers);
+    const RevolutionTemplate turned = template_of_revolution(pointers);
     const Vector3d axis = eigen(turned.axis.direction);
     for (Fragment& one : given) one.facets = find_facets(one.mesh).of_face;
     std::ostringstream csv;
@@ -113,8 +114,8 @@ void sherd_turns(const BreakExperiment& options) {
             continue;
         }
         const Motion common = fit_motion(from, to).inverse();
-        if (result.turns)
-            for (const BreakJoint& joint : result.turns->joints) {
+        if (result.rotations)
+            for (const BreakJoint& joint : result.rotations->joints) {
                 const Motion between =
                     back[static_cast<std::size_t>(joint.first)].inverse().after(back[static_cast<std::size_t>(joint.second)]);
                 const double off = degrees_of(between);
@@ -131,7 +132,7 @@ void sherd_turns(const BreakExperiment& options) {
         for (std::size_t k = 0; k < given.size(); ++k) {
             const Motion off = common.after(back[k]);
             const double d = degrees_of(off), p = 100 * off_of(given[k].mesh, off) / diagonal,
-                         shared = result.turns ? result.turns->overlap[k] : 0;
+                         shared = result.rotations ? result.rotations->overlap[k] : 0;
             degrees = std::max(degrees, d), percent = std::max(percent, p), overlap = std::max(overlap, 100 * shared);
             const Vector3d turned_axis = back[k].rotation * axis;
             csv << round << ',' << given[k].name << ',' << result.placement.fragments[k].problem.empty() << ',' << d << ',' << p
