@@ -10,7 +10,7 @@ namespace {
 /// Balls around 200 vertices, of radii that nest and overlap: at most 10 million faces in all of them together.
 AnnotationSet overlapping_regions(const Mesh& mesh) {
     constexpr int count = 200;
-    constexpr std::size_t most_faces = 10'000'000;
+    constexpr std::size_t max_faces = 10'000'000;
     const double diagonal = box_diagonal(mesh);
     AnnotationSet set;
     std::size_t faces = 0;
@@ -24,8 +24,8 @@ AnnotationSet overlapping_regions(const Mesh& mesh) {
         faces += annotation.faces.size();
         set.annotations.push_back(std::move(annotation));
     }
-    if (faces > most_faces)  // the largest give some up
-        for (auto& annotation : set.annotations) annotation.faces.resize(annotation.faces.size() * most_faces / faces);
+    if (faces > max_faces)  // the largest give some up
+        for (auto& annotation : set.annotations) annotation.faces.resize(annotation.faces.size() * max_faces / faces);
     return set;
 }
 

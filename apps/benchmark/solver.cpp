@@ -172,7 +172,7 @@ void same_level(benchmark::State& state, int window) {
     options.iterations = 1000;
     options.window = 10;
     Points best = stretched;
-    const double least = MeshSpaceSolver(build(), stretched).solve(best, options).objective.back();
+    const double minimum = MeshSpaceSolver(build(), stretched).solve(best, options).objective.back();
     options.window = window;
     options.iterations = 300;
     SolveSummary summary;
@@ -184,7 +184,7 @@ void same_level(benchmark::State& state, int window) {
     const double start = summary.objective.front(), first = summary.objective[1];
     const auto until = [&](double from) {
         std::size_t count = 0;
-        while (count + 1 < summary.objective.size() && summary.objective[count] - least > 1e-3 * (from - least)) ++count;
+        while (count + 1 < summary.objective.size() && summary.objective[count] - minimum > 1e-3 * (from - minimum)) ++count;
         return count;
     };
     state.counters["from_start"] = static_cast<double>(until(start));
@@ -192,7 +192,7 @@ void same_level(benchmark::State& state, int window) {
     state.counters["seconds"] = summary.seconds[until(first)];
     state.counters["refused"] = summary.refused;
     state.counters["objective"] = summary.objective.back() / start;
-    state.counters["best"] = least / start;
+    state.counters["best"] = minimum / start;
 }
 
 /// Smooth weights of a cage: a made-up, well-conditioned stand-in, since the time does not depend on their values.

@@ -83,7 +83,7 @@ void cage_reach(const CageReachOptions& options) {
                 const double seconds = watch.seconds().wall;
                 const std::vector<double> lengths = displacements(result.edited, result.points);
                 const double mean = std::accumulate(lengths.begin(), lengths.end(), 0.0) / static_cast<double>(lengths.size()),
-                             most = *std::max_element(lengths.begin(), lengths.end());
+                             maximum = *std::max_element(lengths.begin(), lengths.end());
                 std::string how;
                 for (const ConstraintReport& constraint : result.constraints) {
                     how += (how.empty() ? "" : "; ") + std::to_string(constraint.id) + ": " + deviations(constraint, true) +
@@ -94,12 +94,12 @@ void cage_reach(const CageReachOptions& options) {
                                 format(",%g,%.4g,%d,", way.closeness, seconds, constraint.id) + d.quantity +
                                 format(",%.6g,%.6g,%.6g,", constraint.before_values.at(i), d.value.value_or(-1),
                                        d.tolerance.value_or(-1)) +
-                                d.unit + ',' + to_string(constraint.verdict) + format(",%.6g,%.6g\n", mean, most);
+                                d.unit + ',' + to_string(constraint.verdict) + format(",%.6g,%.6g\n", mean, maximum);
                     }
                 }
                 text += "| " + edit_name + " | " + cage_name + format(" | %ld of %u | ", handles, cage.number_of_vertices()) +
                         way.about + " | " + how +
-                        format(" | %.3f (%.2f) | %.2f |\n", 100 * mean / diagonal, 100 * most / diagonal, seconds);
+                        format(" | %.3f (%.2f) | %.2f |\n", 100 * mean / diagonal, 100 * maximum / diagonal, seconds);
                 write_coloured(folder / (stem + way.name + ".ply"), with_points(mesh, result.points), lengths);
                 if (way.space == "cage") write_mesh(folder / (stem + way.name + "-cage.ply"), with_points(cage, result.cage));
                 if (&way == &ways.front())

@@ -18,12 +18,13 @@ namespace ostraka::experiments {
 
 namespace {
 
-/// The largest connected part of the faces on vertices below `most`: what is not skin is left out. `vertices` are the old ones.
-SubMesh shell(const Mesh& mesh, std::size_t most) {
+/// The largest connected part of the faces on vertices below `maximum`: what is not skin is left out. `vertices` are the old
+/// ones.
+SubMesh shell(const Mesh& mesh, std::size_t maximum) {
     std::vector<bool> keep(mesh.number_of_faces());
     for (const Face face : mesh.faces()) {
         const auto c = corners(mesh, face);
-        keep[face] = std::all_of(c.begin(), c.end(), [&](Vertex v) { return v.idx() < most; });
+        keep[face] = std::all_of(c.begin(), c.end(), [&](Vertex v) { return v.idx() < maximum; });
     }
     return keep_faces(mesh, keep);
 }

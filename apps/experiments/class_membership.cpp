@@ -42,18 +42,18 @@ std::vector<std::int32_t> typical_labels(const Path& folder, const Mesh& mesh) {
     std::vector<std::vector<int>> lists;
     for (const auto& [name, file] : files) lists.push_back(read_labels(file, mesh.number_of_faces()));
     std::size_t best = 0;
-    double most = -2 * static_cast<double>(lists.size());
+    double maximum = -2 * static_cast<double>(lists.size());
     for (std::size_t i = 0; i < lists.size(); ++i) {
         double sum = 0;
         for (std::size_t j = 0; j < lists.size(); ++j) sum += i == j ? 0 : adjusted_rand_index(lists[i], lists[j]);
-        if (sum > most) most = sum, best = i;
+        if (sum > maximum) maximum = sum, best = i;
     }
     return lists[best];
 }
 
 /// A region for each connected part of a label that has half a per cent of the surface; less is not seen on a simplified mesh.
 AnnotationSet parts_by_label(const Mesh& mesh, const std::vector<std::int32_t>& labels) {
-    constexpr double least = 0.005;
+    constexpr double minimum = 0.005;
     AnnotationSet set;
     std::vector<bool> seen(mesh.number_of_faces());
     const double area = surface_area(mesh);
@@ -73,7 +73,7 @@ AnnotationSet parts_by_label(const Mesh& mesh, const std::vector<std::int32_t>& 
                 if (!seen[next] && labels[next] == labels[seed]) seen[next] = true, front.push_back(next);
             }
         }
-        if (own < least * area) continue;
+        if (own < minimum * area) continue;
         std::sort(part.faces.begin(), part.faces.end());
         part.id = static_cast<int>(set.annotations.size());
         part.tag = "piece";
@@ -90,7 +90,7 @@ AnnotationSet parts_on(const Mesh& mesh, const Mesh& labelled, const std::vector
 }
 
 /// <class>/<number>.off, by class and number.
-std::vector<Object> read_objects(const std::string& folder, std::size_t most) {
+std::vector<Object> read_objects(const std::string& folder, std::size_t maximum) {
     std::map<std::string, std::map<int, Path>> files;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
         if (extension(entry.path()) == ".off")
@@ -99,7 +99,7 @@ std::vector<Object> read_objects(const std::string& folder, std::size_t most) {
     for (const auto& [class_name, list] : files) {
         std::size_t taken = 0;
         for (const auto& [number, file] : list) {
-            if (taken++ == most) break;
+            if (taken++ == maximum) break;
             Object object;
             object.class_name = class_name;
             object.member.name = class_name + " " + std::to_string(number);

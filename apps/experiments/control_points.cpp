@@ -37,8 +37,8 @@ struct Owners {
         for (const Index v : vertices)
             colours[v] = count[v]++ > 0 ? several_mark : Colour{channel(0), channel(1), channel(2), 255};
     }
-    [[nodiscard]] long of(int least, int most) const {
-        return std::count_if(count.begin(), count.end(), [&](int n) { return n >= least && n <= most; });
+    [[nodiscard]] long of(int minimum, int maximum) const {
+        return std::count_if(count.begin(), count.end(), [&](int n) { return n >= minimum && n <= maximum; });
     }
 };
 

@@ -106,13 +106,13 @@ void figure_4_6(const Figure46Options& options) {
         body += "| " + cases[i].about +
                 format(" | %d | %.4f | %.2f |", one.summary.iterations, 100 * after / diagonal, 100 * after / flat);
         const auto column = [&](const std::string& tag, const std::vector<Index>& vertices) {
-            double sum = 0, most = 0;
-            for (const Index v : vertices) sum += one.moved[v], most = std::max(most, one.moved[v]);
+            double sum = 0, maximum = 0;
+            for (const Index v : vertices) sum += one.moved[v], maximum = std::max(maximum, one.moved[v]);
             const double mean = sum / static_cast<double>(vertices.size());
-            body += format(" %.3f (%.3f) |", 100 * mean / diagonal, 100 * most / diagonal);
+            body += format(" %.3f (%.3f) |", 100 * mean / diagonal, 100 * maximum / diagonal);
             rows += cases[i].name +
                     format(",%d,%d,%.6g,%.6g,\"", one.summary.iterations, int(one.summary.regularised), after, after / flat) +
-                    tag + format("\",%.6g,%.6g\n", mean, most);
+                    tag + format("\",%.6g,%.6g\n", mean, maximum);
         };
         column(options.region, region);
         for (const auto& [annotation, vertices] : others) column(annotation->tag, vertices);

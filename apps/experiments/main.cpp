@@ -17,8 +17,8 @@ namespace ostraka::experiments {
 namespace {
 
 template <class Number>
-void ranged(CLI::App& command, const char* name, Number& value, const char* text, int least, int most) {
-    command.add_option(name, value, text)->check(CLI::Range(least, most))->capture_default_str();
+void ranged(CLI::App& command, const char* name, Number& value, const char* text, int minimum, int maximum) {
+    command.add_option(name, value, text)->check(CLI::Range(minimum, maximum))->capture_default_str();
 }
 
 void declare_transfer_table(CLI::App& command, TableOptions& options) {
@@ -106,8 +106,8 @@ void declare_pose_search(CLI::App& command, PoseSearchExperiment& options) {
     command.add_option("--erosion", options.erosion, "share of the diagonal")->capture_default_str();
     command.add_option("--pieces", options.pieces, "of each kind")->capture_default_str();
     command.add_option("--vertices", options.vertices, "of made objects")->capture_default_str();
-    command.add_option("--least-scale", options.search.least_scale, "of the template")->capture_default_str();
-    command.add_option("--most-scale", options.search.most_scale, "of the template")->capture_default_str();
+    command.add_option("--least-scale", options.search.min_scale, "of the template")->capture_default_str();
+    command.add_option("--most-scale", options.search.max_scale, "of the template")->capture_default_str();
     command.add_option("--csv", options.csv, "raw rows");
 }
 

@@ -43,12 +43,12 @@ void moved(const MovedOptions& options) {
         const std::vector<Index> vertices = touched_vertices(mesh, annotation);
         body += "| " + annotation.tag + " |";
         for (std::size_t i = 0; i < ways.size(); ++i) {
-            double sum = 0, most = 0;
-            for (const Index v : vertices) sum += ways[i][v], most = std::max(most, ways[i][v]);
+            double sum = 0, maximum = 0;
+            for (const Index v : vertices) sum += ways[i][v], maximum = std::max(maximum, ways[i][v]);
             const double mean = sum / static_cast<double>(vertices.size());
-            body += format(" %.3f (%.3f) |", 100 * mean / diagonal, 100 * most / diagonal);
+            body += format(" %.3f (%.3f) |", 100 * mean / diagonal, 100 * maximum / diagonal);
             rows += '"' + annotation.tag + "\",\"" + Path(options.shapes[i]).stem().string() +
-                    format("\",%.6g,%.6g,%.6g\n", mean, most, most / diagonal);
+                    format("\",%.6g,%.6g,%.6g\n", mean, maximum, maximum / diagonal);
         }
         body += '\n';
     }

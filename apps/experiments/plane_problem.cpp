@@ -49,8 +49,8 @@ double flatness(const Points& points, const std::vector<Index>& region) {
     for (std::size_t i = 0; i < region.size(); ++i) part.col(static_cast<Eigen::Index>(i)) = points.col(region[i]);
     part.colwise() -= part.rowwise().mean().eval();
     const Eigen::Matrix3d scatter = part * part.transpose();
-    const double least = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvalues()[0];
-    return std::sqrt(std::max(0.0, least) / static_cast<double>(region.size()));
+    const double minimum = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvalues()[0];
+    return std::sqrt(std::max(0.0, minimum) / static_cast<double>(region.size()));
 }
 
 }  // namespace ostraka::experiments

@@ -190,16 +190,16 @@ std::string iterations_of(const Outcome& outcome) {
 }
 
 std::array<double, 2> moved(const std::vector<Index>& vertices, const std::vector<Point>& from, const std::vector<Point>& to) {
-    double mean = 0, most = 0;
+    double mean = 0, maximum = 0;
     for (const Index v : vertices) {
         const double distance = std::sqrt(CGAL::squared_distance(from[v], to[v]));
         mean += distance / static_cast<double>(vertices.size());
-        most = std::max(most, distance);
+        maximum = std::max(maximum, distance);
     }
-    return {mean, most};
+    return {mean, maximum};
 }
-std::string both(const std::array<double, 2>& mean_and_most, int after_point) {
-    return digits(mean_and_most[0], after_point) + " (" + digits(mean_and_most[1], after_point) + ")";
+std::string both(const std::array<double, 2>& mean_and_max, int after_point) {
+    return digits(mean_and_max[0], after_point) + " (" + digits(mean_and_max[1], after_point) + ")";
 }
 
 std::string digits(double value, int after_point) {

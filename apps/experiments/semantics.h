@@ -72,7 +72,7 @@ std::string iterations_of(const Outcome& outcome);
 /// Mean and greatest distance of vertices between two shapes.
 std::array<double, 2> moved(const std::vector<Index>& vertices, const std::vector<Point>& from, const std::vector<Point>& to);
 /// "mean (most)".
-std::string both(const std::array<double, 2>& mean_and_most, int after_point);
+std::string both(const std::array<double, 2>& mean_and_max, int after_point);
 
 std::string digits(double value, int after_point);
 

@@ -52,11 +52,11 @@ public:
     explicit Subject(const Table41Options& options) : options_(options) {
         if (options.scan.empty()) return;
         finest_ = read_mesh(options.scan).mesh;
-        const std::uint64_t most = *std::max_element(options.sizes.begin(), options.sizes.end());
+        const std::uint64_t maximum = *std::max_element(options.sizes.begin(), options.sizes.end());
         RefineOptions refining;
         refining.scheme = RefineOptions::Scheme::loop;
         refining.levels = 1;
-        while (finest_.number_of_vertices() < most) refine(finest_, refining);
+        while (finest_.number_of_vertices() < maximum) refine(finest_, refining);
     }
     [[nodiscard]] std::string name() const {
         return options_.scan.empty() ? "made " + options_.made : Path(options_.scan).stem().string();

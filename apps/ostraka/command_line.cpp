@@ -39,13 +39,13 @@ const OperationEntry* named_operation(int argc, char** argv) {
     std::vector<std::string> given;
     for (int i = 1; i < argc && argv[i][0] != '-'; ++i) given.emplace_back(argv[i]);
     const OperationEntry* best = nullptr;
-    std::size_t most = 0, agreeing = 0;
+    std::size_t maximum = 0, agreeing = 0;
     std::vector<std::string> next;  // words that may follow those that agree
     for (const OperationEntry& entry : operations()) {
         const auto words = words_of(entry.name);
         std::size_t same = 0;
         while (same < words.size() && same < given.size() && words[same] == given[same]) ++same;
-        if (same == words.size() && same > most) best = &entry, most = same;
+        if (same == words.size() && same > maximum) best = &entry, maximum = same;
         if (same > agreeing) agreeing = same, next.clear();
         if (same == agreeing && same < words.size()) next.push_back(words[same]);
     }

@@ -75,14 +75,14 @@ Axis principal_axis(const Mesh& mesh, const std::vector<Index>& faces, const Axi
     const Vector3d centre = eigen(moments.centroid);
     for (std::size_t k = 0; k < 3; ++k) {
         const Vector3d d = eigen(moments.directions[k]);
-        double least = 0, most = 0;
+        double minimum = 0, maximum = 0;
         for (const Index f : faces)
             for (const Vertex v : corners(mesh, Face(f))) {
                 const double h = d.dot(eigen(mesh.point(v)) - centre);
-                least = std::min(least, h), most = std::max(most, h);
+                minimum = std::min(minimum, h), maximum = std::max(maximum, h);
             }
-        axis.lines.push_back({point_of(centre + least * d), point_of(centre + most * d)});
-        axis.figures.push_back({"extent " + std::to_string(k + 1), most - least, "length"});
+        axis.lines.push_back({point_of(centre + minimum * d), point_of(centre + maximum * d)});
+        axis.figures.push_back({"extent " + std::to_string(k + 1), maximum - minimum, "length"});
     }
     set_line(axis, centre, eigen(moments.directions[0]), centre);
     axis.quality = moments.variances[0] > 0 ? 1 - moments.variances[1] / moments.variances[0] : 0;
@@ -161,7 +161,7 @@ void AxisOptions::describe(OptionList& visit) {
     visit("method", method, "how the axis is found", Choices{"rotation", "slices", "skeleton", "principal"});
     visit("tolerance", tolerance, "rotation: distance from the turned profile that counts as on it", Range{0, 1},
           "share of its largest diameter");
-    visit("least-quality", least_quality, "rotation: share of the surface that must lie on the turned profile", Range{0, 1});
+    visit("least-quality", min_quality, "rotation: share of the surface that must lie on the turned profile", Range{0, 1});
     visit("slices", slices, "slices: number of planes across the part", Range{4, 10000});
     visit("trials", trials, "rotation: random sets of normals tried", Range{0, 1000000});
     visit("smoothing", smoothing, "rotation: how often normals are averaged over their neighbours", Range{0, 100});

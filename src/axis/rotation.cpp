@@ -56,7 +56,7 @@ std::vector<Sample> take_samples(const Mesh& mesh, const std::vector<Index>& fac
         }
         normals = std::move(sums);
     }
-    const std::size_t most = 8000;
+    const std::size_t maximum = 8000;
     std::vector<Sample> samples;
     double passed = 0;
     std::size_t taken = 0;
@@ -65,10 +65,10 @@ std::vector<Sample> take_samples(const Mesh& mesh, const std::vector<Index>& fac
         if (!(area > 0)) continue;
         passed += area;
         double weight = area / total;
-        if (faces.size() > most) {
-            const auto due = static_cast<std::size_t>(passed / total * double(most));
+        if (faces.size() > maximum) {
+            const auto due = static_cast<std::size_t>(passed / total * double(maximum));
             if (due <= taken) continue;
-            weight = double(due - taken) / double(most);
+            weight = double(due - taken) / double(maximum);
             taken = due;
         }
         Vector3d p = Vector3d::Zero(), n = Vector3d::Zero();
@@ -140,10 +140,10 @@ Line first_guess(const std::vector<Sample>& samples, const AreaMoments& moments,
             return all.solve();
         }(),
         10);
-    double most = score(samples, step, best);
+    double maximum = score(samples, step, best);
     const auto consider = [&](const Line& line) {
         const double value = score(samples, step, line);
-        if (value > most) most = value, best = line;
+        if (value > maximum) maximum = value, best = line;
     };
     for (const auto& d : moments.directions) consider({Vector3d::Zero(), eigen(d)});
     std::mt19937_64 random(options.seed);
@@ -175,7 +175,7 @@ struct Profile {
           error(samples.size(), 0),
           robust(samples.size(), 1) {
         const int count = 20;
-        double least = 1e300, most = -1e300;
+        double minimum = 1e300, maximum = -1e300;
         std::vector<double> facing(samples.size(), 0);
         for (std::size_t i = 0; i < samples.size(); ++i) {
             const Vector3d d = samples[i].p - axis.point;
@@ -184,13 +184,15 @@ struct Profile {
             radius[i] = away.norm();
             if (radius[i] > 0.01) facing[i] = samples[i].n.dot(away) / radius[i];
             if (std::abs(facing[i]) < 0.3) continue;
-            least = std::min(least, height[i]), most = std::max(most, height[i]);
+            minimum = std::min(minimum, height[i]), maximum = std::max(maximum, height[i]);
         }
-        if (least > most) return;
+        if (minimum > maximum) return;
         bins.resize(2 * static_cast<std::size_t>(count));
         for (std::size_t i = 0; i < samples.size(); ++i) {
             if (std::abs(facing[i]) < 0.3) continue;
-            const int at = most > least ? std::min(count - 1, static_cast<int>((height[i] - least) / (most - least) * count)) : 0;
+            const int at = maximum > minimum
+                               ? std::min(count - 1, static_cast<int>((height[i] - minimum) / (maximum - minimum) * count))
+                               : 0;
             bin_of[i] = 2 * at + (facing[i] > 0 ? 1 : 0);
             bins[static_cast<std::size_t>(bin_of[i])].members.push_back(i);
         }
@@ -372,7 +374,7 @@ Axis rotation_axis(const Mesh& mesh, const std::vector<Index>& faces, const Axis
         axis.reason = "it is like a part of a sphere: many axes would do";
         return axis;
     }
-    if (axis.quality < options.least_quality) {
+    if (axis.quality < options.min_quality) {
         axis.reason = "it is not round about any line";
         return axis;
     }
@@ -382,14 +384,14 @@ Axis rotation_axis(const Mesh& mesh, const std::vector<Index>& faces, const Axis
     }
     axis.found = true;
     set_line(axis, centroid + scale * line.point, line.direction, centroid);
-    double least = 1e300, most = -1e300;
+    double minimum = 1e300, maximum = -1e300;
     const Vector3d a = eigen(axis.direction), at = eigen(axis.point);
     for (const Index f : faces)
         for (const Vertex v : corners(mesh, Face(f))) {
             const double h = a.dot(eigen(mesh.point(v)) - at);
-            least = std::min(least, h), most = std::max(most, h);
+            minimum = std::min(minimum, h), maximum = std::max(maximum, h);
         }
-    axis.lines = {{point_of(at + least * a), point_of(at + most * a)}};
+    axis.lines = {{point_of(at + minimum * a), point_of(at + maximum * a)}};
     return axis;
 }
 

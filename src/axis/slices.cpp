@@ -82,11 +82,11 @@ Axis slice_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOpt
         return axis;
     }
     const Vector3d centroid = eigen(moments.centroid), direction = eigen(moments.directions[0]);
-    double least = 0, most = 0;
+    double minimum = 0, maximum = 0;
     for (const Index f : faces)
         for (const Vertex v : corners(mesh, Face(f))) {
             const double h = direction.dot(eigen(mesh.point(v)) - centroid);
-            least = std::min(least, h), most = std::max(most, h);
+            minimum = std::min(minimum, h), maximum = std::max(maximum, h);
         }
     const double diagonal = part_diagonal(mesh, faces);
     const auto count = static_cast<std::size_t>(options.slices);
@@ -94,7 +94,7 @@ Axis slice_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOpt
     parallel_for(
         count,
         [&](std::size_t i) {
-            const double h = least + (most - least) * (0.03 + 0.94 * (double(i) + 0.5) / double(count));
+            const double h = minimum + (maximum - minimum) * (0.03 + 0.94 * (double(i) + 0.5) / double(count));
             first[i] = cut(mesh, faces, centroid + h * direction, direction, 2 * diagonal);
         },
         1);

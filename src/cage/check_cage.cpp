@@ -15,7 +15,7 @@ namespace ostraka {
 
 namespace {
 
-constexpr std::size_t most_listed = 1000;
+constexpr std::size_t max_listed = 1000;
 
 std::size_t count_components(const Mesh& mesh) {
     std::vector<bool> seen(mesh.number_of_faces(), false);
@@ -63,7 +63,7 @@ CageCheck check_in_unit(const Mesh& cage, const Mesh& mesh) {
         const auto [a, b, c] = corners(cage, f);
         result.degenerate += CGAL::collinear(cage.point(a), cage.point(b), cage.point(c));
     }
-    result.intersections = self_intersections(to_soup(cage), most_listed).pairs;
+    result.intersections = self_intersections(to_soup(cage), max_listed).pairs;
     result.closed = std::none_of(cage.halfedges().begin(), cage.halfedges().end(), [&](Halfedge h) { return cage.is_border(h); });
     if (!result.closed) return result;
     result.flat =
@@ -112,7 +112,7 @@ CageCheck check_in_unit(const Mesh& cage, const Mesh& mesh) {
                          ? tree.do_intersect(Kernel::Segment_3(p, q)) || tree.do_intersect(Kernel::Segment_3(q, r))
                          : tree.do_intersect(Kernel::Triangle_3(p, q, r));
     });
-    for (Index f = 0; f < crossed.size() && result.crossing.size() < most_listed; ++f)
+    for (Index f = 0; f < crossed.size() && result.crossing.size() < max_listed; ++f)
         if (crossed[f]) result.crossing.push_back(f);
     if (!result.encloses()) result.clearance = 0;
     return result;

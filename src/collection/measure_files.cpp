@@ -101,9 +101,9 @@ MeasureTable measure_table(const std::vector<std::string>& names, const std::vec
         for (const ObjectMeasures* row : rows)
             if (row->values[j]) ++kinds[{row->powers[j], row->units[j]}];
         std::pair<int, std::string> kind{1, ""};
-        std::size_t most = 0;
+        std::size_t maximum = 0;
         for (const auto& [key, count] : kinds)
-            if (count > most) kind = key, most = count;
+            if (count > maximum) kind = key, maximum = count;
         table.measures.push_back({definitions.list[j].name, kind.first, kind.second});
         for (std::size_t i = 0; i < rows.size(); ++i) {
             if (!rows[i]->values[j]) continue;

@@ -73,12 +73,12 @@ UnifiedMeasures unify_units(const MeasureTable& table) {
     if (counts.empty() || !lengths) return result;
 
     std::string common;
-    std::size_t most = 0;
+    std::size_t maximum = 0;
     for (const LengthUnit& known : length_units())
-        if (const auto found = counts.find(known.name); found != counts.end() && found->second > most)
-            common = known.name, most = found->second;
+        if (const auto found = counts.find(known.name); found != counts.end() && found->second > maximum)
+            common = known.name, maximum = found->second;
     for (const auto& [unit, count] : counts)
-        if (count > most) common = unit, most = count;
+        if (count > maximum) common = unit, maximum = count;
 
     std::map<std::string, std::size_t> converted, foreign;
     std::size_t unknown = 0;

@@ -57,19 +57,19 @@ double knn_epsilon(const Eigen::MatrixXd& d, int k) {
 double knee_epsilon(const Eigen::MatrixXd& d) {
     std::vector<double> nearest;
     for (Eigen::Index i = 0; i < d.rows(); ++i) {
-        double least = std::numeric_limits<double>::infinity();
+        double minimum = std::numeric_limits<double>::infinity();
         for (Eigen::Index j = 0; j < d.cols(); ++j)
-            if (j != i) least = std::min(least, d(i, j));
-        if (std::isfinite(least)) nearest.push_back(least);
+            if (j != i) minimum = std::min(minimum, d(i, j));
+        if (std::isfinite(minimum)) nearest.push_back(minimum);
     }
     if (nearest.empty()) return 0;
     std::sort(nearest.begin(), nearest.end());
     const double low = nearest.front(), high = nearest.back();
-    double most = 0, knee = high;
+    double maximum = 0, knee = high;
     for (std::size_t i = 0; i < nearest.size() && high > low; ++i) {
         const double along = static_cast<double>(i) / static_cast<double>(nearest.size() - 1);
         const double below = along - (nearest[i] - low) / (high - low);
-        if (below > most) most = below, knee = nearest[i];
+        if (below > maximum) maximum = below, knee = nearest[i];
     }
     return knee;
 }
@@ -115,7 +115,7 @@ Eigen::MatrixXd part_of(const Eigen::MatrixXd& d, const std::vector<std::size_t>
 
 /// What a silhouette must reach for groups to stand out. Synthetic heads of one mould, or each of its own, stay below both
 /// (doc/moulds.md); an embedding makes more of what there is.
-constexpr double least_in_distances = 0.2, least_in_embedding = 0.7;
+constexpr double min_in_distances = 0.2, min_in_embedding = 0.7;
 
 /// Groups that stand out, and again within each of them; in an embedding, where the least differences can look large, they must
 /// also stand out by the distances it was made of. Gives the largest height at which a group hangs together.
@@ -126,8 +126,8 @@ double nested_groups(const Eigen::MatrixXd& d, const Eigen::MatrixXd& distances,
     const auto [epsilon, silhouette] = grouping.best_epsilon();
     const bool embedded = options.method == GroupOptions::Method::embedding;
     const bool apart =
-        silhouette >= (embedded ? least_in_embedding : least_in_distances) &&
-        (!embedded || mean(silhouettes_of_distances(part_of(distances, heads), grouping.at(epsilon))) >= least_in_distances);
+        silhouette >= (embedded ? min_in_embedding : min_in_distances) &&
+        (!embedded || mean(silhouettes_of_distances(part_of(distances, heads), grouping.at(epsilon))) >= min_in_distances);
     if (!apart) {
         for (const std::size_t head : heads) labels[head] = next;
         ++next;
@@ -185,8 +185,7 @@ MouldGroups group_heads(const Eigen::MatrixXd& distances, const GroupOptions& op
     groups.tree = grouping.tree();
     std::vector<int> labels = grouping.at(groups.epsilon);
     groups.silhouette = mean(silhouettes_of_distances(d, by_size(labels)));
-    groups.clear =
-        groups.silhouette >= (options.method == GroupOptions::Method::embedding ? least_in_embedding : least_in_distances);
+    groups.clear = groups.silhouette >= (options.method == GroupOptions::Method::embedding ? min_in_embedding : min_in_distances);
     if (rule == EpsilonRule::nested && groups.clear) {
         std::vector<std::size_t> all(labels.size());
         std::iota(all.begin(), all.end(), std::size_t{0});

@@ -43,7 +43,7 @@ OutlineHarmonics outline_harmonics(const Contour& contour, const Vector2d& centr
     OutlineHarmonics result;
     if (contour.points.size() < 2) return result;
     const auto radii = radii_of(contour, centre);
-    constexpr int columns = 1 + 2 * static_cast<int>(most_harmonics);
+    constexpr int columns = 1 + 2 * static_cast<int>(max_harmonics);
     Eigen::Matrix<double, columns, columns> normal = Eigen::Matrix<double, columns, columns>::Zero();
     Eigen::Matrix<double, columns, 1> right = Eigen::Matrix<double, columns, 1>::Zero(), row;
     int met = 0;
@@ -53,7 +53,7 @@ OutlineHarmonics outline_harmonics(const Contour& contour, const Vector2d& centr
         ++met;
         const double angle = (d + 0.5) * 2 * pi / directions;
         row[0] = 1;
-        for (int k = 1; k <= static_cast<int>(most_harmonics); ++k)
+        for (int k = 1; k <= static_cast<int>(max_harmonics); ++k)
             row[2 * k - 1] = std::cos(k * angle), row[2 * k] = std::sin(k * angle);
         normal += row * row.transpose();
         right += r * row;
@@ -64,7 +64,7 @@ OutlineHarmonics outline_harmonics(const Contour& contour, const Vector2d& centr
     normal.diagonal().tail<columns - 1>().array() += 0.5e-4 * met;
     const Eigen::Matrix<double, columns, 1> x = normal.ldlt().solve(right);
     result.radius = x[0];
-    for (std::size_t k = 1; k <= most_harmonics; ++k) {
+    for (std::size_t k = 1; k <= max_harmonics; ++k) {
         result.cosine.at(k) = x[static_cast<Eigen::Index>(2 * k - 1)];
         result.sine.at(k) = x[static_cast<Eigen::Index>(2 * k)];
     }

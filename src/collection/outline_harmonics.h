@@ -7,12 +7,12 @@
 
 namespace ostraka {
 
-inline constexpr std::size_t most_harmonics = 6;
+inline constexpr std::size_t max_harmonics = 6;
 
 struct OutlineHarmonics {
     double turn = 0;    ///< share of the directions from the centre that meet the contour
     double radius = 0;  ///< mean of the radius over the angle; 0 where too few directions meet it
-    std::array<double, most_harmonics + 1> cosine{}, sine{};  ///< of k times the angle; 0 is not used
+    std::array<double, max_harmonics + 1> cosine{}, sine{};  ///< of k times the angle; 0 is not used
 };
 
 /// Harmonics of the distance from `centre` over the angle, by least squares over 360 evenly spread directions (the farthest

@@ -18,7 +18,7 @@ namespace {
 using proportions::Pair;
 
 constexpr double no_ratio = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t most_measures = 60;
+constexpr std::size_t max_measures = 60;
 constexpr std::size_t enough_objects = 10;
 
 MeasureRow row_of(const std::string& name, const std::string& unit, const std::vector<double>& values, double confidence) {
@@ -78,15 +78,15 @@ struct Candidate {
 };
 
 /// The same number, but for the rounding of a division.
-bool all_same(double least, double most) { return most - least <= 1e-12 * std::abs(most); }
+bool all_same(double minimum, double maximum) { return maximum - minimum <= 1e-12 * std::abs(maximum); }
 
 /// Whether each measure is the same in all objects that have it.
 bool are_identical(const MeasureTable& table) {
     for (Eigen::Index j = 0; j < table.values.cols(); ++j) {
-        double least = std::numeric_limits<double>::infinity(), most = -least;
+        double minimum = std::numeric_limits<double>::infinity(), maximum = -minimum;
         for (const double value : table.values.col(j))
-            if (!std::isnan(value)) least = std::min(least, value), most = std::max(most, value);
-        if (least < most && !all_same(least, most)) return false;
+            if (!std::isnan(value)) minimum = std::min(minimum, value), maximum = std::max(maximum, value);
+        if (minimum < maximum && !all_same(minimum, maximum)) return false;
     }
     return true;
 }
@@ -176,9 +176,9 @@ Fixedness verdict(const Candidate& candidate, bool identical, double alpha, doub
 void check(const MeasureTable& table, std::vector<std::string>& notes) {
     if (table.measures.empty()) fail_input("measures", "there is no measure", "define at least one");
     if (table.objects.empty()) fail_input("measures", "there is no object", "give at least one");
-    if (table.measures.size() > most_measures)
+    if (table.measures.size() > max_measures)
         fail_usage("there are " + std::to_string(table.measures.size()) + " measures, and a ratio for each two of them",
-                   "use at most " + std::to_string(most_measures));
+                   "use at most " + std::to_string(max_measures));
     std::size_t missing = 0, not_positive = 0;
     for (Eigen::Index i = 0; i < table.values.rows(); ++i)
         for (Eigen::Index j = 0; j < table.values.cols(); ++j) {

@@ -51,7 +51,7 @@ std::optional<std::size_t> main_outline(const Slice& slice) {
 }
 
 /// What the slice of the body says; the turn alone where its outline is too open.
-TechniqueSlice measure_slice(const Slice& slice, std::size_t outline, double least_turn) {
+TechniqueSlice measure_slice(const Slice& slice, std::size_t outline, double min_turn) {
     TechniqueSlice result;
     const Slice body = alone(slice, outline);
     const SliceDescriptors d = describe_slice(body);
@@ -59,13 +59,13 @@ TechniqueSlice measure_slice(const Slice& slice, std::size_t outline, double lea
     const Contour& contour = body.contours[0];
     const OutlineHarmonics shape = outline_harmonics(contour, d.fitted_centre);
     result.turn = contour.closed ? 1 : shape.turn;
-    if (result.turn < least_turn) return result;
+    if (result.turn < min_turn) return result;
     result.radius = d.fitted_radius;
     result.centre = {d.fitted_centre.x(), d.fitted_centre.y()};
     result.roundness = d.roundness_fitted_relative;
     result.ovality = {shape.cosine[2] / shape.radius, shape.sine[2] / shape.radius};
     double squares = 0;
-    for (std::size_t k = 3; k <= most_harmonics; ++k)
+    for (std::size_t k = 3; k <= max_harmonics; ++k)
         squares += 0.5 * (shape.cosine[k] * shape.cosine[k] + shape.sine[k] * shape.sine[k]);
     result.marks = std::sqrt(squares) / shape.radius;
     if (!contour.closed) return result;
@@ -199,7 +199,7 @@ TechniqueMeasures measure_technique(const Mesh& mesh, const Vector& up, const Te
             const Slice& slice = stack.slices[i];
             const auto outline = main_outline(slice);
             if (!outline) return;
-            measured[i] = measure_slice(slice, *outline, options.least_turn);
+            measured[i] = measure_slice(slice, *outline, options.min_turn);
             measured[i]->height = (slice.height - low) / height;
         },
         1);
@@ -211,7 +211,7 @@ TechniqueMeasures measure_technique(const Mesh& mesh, const Vector& up, const Te
             result.slices.push_back(*slice);
         }
     }
-    if (result.slices.size() < static_cast<std::size_t>(options.least_slices))
+    if (result.slices.size() < static_cast<std::size_t>(options.min_slices))
         fail_input("mesh",
                    "only " + std::to_string(result.slices.size()) + " of " + std::to_string(result.asked) +
                        " slices can be used: " + std::to_string(result.too_open) + " are too open, " +
@@ -269,8 +269,8 @@ void TechniqueOptions::describe(OptionList& visit) {
     visit("slices", slices, "slices of each object", Range{2, 100000});
     visit("from", from, "where they begin", Range{0, 1}, "share of the height");
     visit("to", to, "where they end (the thesis: the lowest two fifths)", Range{0, 1}, "share of the height");
-    visit("least-turn", least_turn, "an open outline is used if it covers as much", Range{0.5, 1}, "share of the full turn");
-    visit("least-slices", least_slices, "an object needs as many slices that can be used", Range{2, 100000});
+    visit("least-turn", min_turn, "an open outline is used if it covers as much", Range{0.5, 1}, "share of the full turn");
+    visit("least-slices", min_slices, "an object needs as many slices that can be used", Range{2, 100000});
 }
 
 }  // namespace ostraka

@@ -21,7 +21,7 @@ DescriptorTable descriptor_table(const std::vector<TechniqueObject>& objects, co
         VectorXd row(columns);
         for (Eigen::Index k = 0; k < columns; ++k) {
             const double value = objects[i].measures.value(descriptors[static_cast<std::size_t>(k)]);
-            row[k] = positive[static_cast<std::size_t>(k)] ? std::log(std::max(value, least_positive)) : value;
+            row[k] = positive[static_cast<std::size_t>(k)] ? std::log(std::max(value, min_positive)) : value;
             if (std::isnan(value)) row[k] = value;
         }
         if (!row.allFinite()) continue;

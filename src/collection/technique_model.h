@@ -29,7 +29,7 @@ struct Labelled {
 Labelled labelled(const std::vector<TechniqueObject>& objects, const DescriptorTable& table, const std::string& positive);
 
 /// Zero and less count as this: identical slices have no variance.
-inline constexpr double least_positive = 1e-12;
+inline constexpr double min_positive = 1e-12;
 
 /// Score of an object: weights . (x - middle) - limit, positive from 0 up.
 struct TechniqueModel {
@@ -46,10 +46,10 @@ TechniqueModel learn(const Eigen::MatrixXd& values, const std::vector<bool>& tru
 ClassifierResult validate_classifier(const std::vector<TechniqueObject>& objects, const TechniqueClassifier& classifier,
                                      const std::string& positive, const TechniqueStudyOptions& options);
 
-/// Of each object what says most that it is unlike the labelled ones; none where nothing does, or fewer than `least_compared`
+/// Of each object what says most that it is unlike the labelled ones; none where nothing does, or fewer than `min_compared`
 /// others of each label are there to compare with (technique_range.cpp).
 std::vector<std::optional<TechniqueOutlier>> unlike_the_labelled(const std::vector<TechniqueObject>& objects,
                                                                  const std::string& positive, double unlike_from);
-inline constexpr std::size_t least_compared = 3;
+inline constexpr std::size_t min_compared = 3;
 
 }  // namespace ostraka

@@ -11,7 +11,7 @@ namespace ostraka {
 namespace {
 
 /// Differences that say nothing, however alike the labelled objects are: a twentieth.
-constexpr double least_spread = 0.05;
+constexpr double min_spread = 0.05;
 
 /// On the scale on which distances are taken: logarithms, of the ratio of sides that of what is missing to 1. Coherence is not
 /// compared: it has bounds, and near them no scale.
@@ -26,7 +26,7 @@ double from_scale(const DescriptorMeaning& descriptor, double value) {
 /// Values of one descriptor of the labelled objects, by kind.
 struct Known {
     std::vector<double> values[2];
-    [[nodiscard]] bool enough() const { return std::min(values[0].size(), values[1].size()) >= least_compared; }
+    [[nodiscard]] bool enough() const { return std::min(values[0].size(), values[1].size()) >= min_compared; }
 };
 
 /// Distance of `x` from the nearer median, outwards, in robust standard deviations about the medians (Rousseeuw and Croux 1993),
@@ -37,7 +37,7 @@ double distance_outside(const Known& known, double x) {
     for (int kind = 0; kind < 2; ++kind)
         for (const double value : known.values[kind]) away.push_back(std::abs(value - medians[kind]));
     const double n = static_cast<double>(away.size());
-    const double spread = std::max(least_spread, 1.4826 * sample_quantile(std::move(away), 0.5)) * (1 + 5 / n);
+    const double spread = std::max(min_spread, 1.4826 * sample_quantile(std::move(away), 0.5)) * (1 + 5 / n);
     return std::max({0.0, std::min(medians[0], medians[1]) - x, x - std::max(medians[0], medians[1])}) / spread;
 }
 
@@ -61,13 +61,13 @@ std::vector<std::optional<TechniqueOutlier>> unlike_the_labelled(const std::vect
                     if (other != row) others.values[known.truth[other] ? 1 : 0].push_back(value(other));
                 if (!others.enough()) return;
                 const double distance = distance_outside(others, value(row));
-                auto& most = result[table.objects[row]];
-                if (distance < unlike_from || (most && most->distance >= distance)) return;
+                auto& maximum = result[table.objects[row]];
+                if (distance < unlike_from || (maximum && maximum->distance >= distance)) return;
                 std::vector<double> all = others.values[0];
                 all.insert(all.end(), others.values[1].begin(), others.values[1].end());
                 for (double& each : all) each = from_scale(descriptor, each);
                 const auto [low, high] = std::minmax_element(all.begin(), all.end());
-                most = TechniqueOutlier{descriptor.name, from_scale(descriptor, value(row)), *low, *high, distance};
+                maximum = TechniqueOutlier{descriptor.name, from_scale(descriptor, value(row)), *low, *high, distance};
             },
             8);
     }

@@ -30,13 +30,13 @@ const std::string component_name = "first component";
 /// The label whose objects are rounder in the median.
 std::string rounder_label(const std::vector<TechniqueObject>& objects, const std::set<std::string>& labels) {
     std::string best;
-    double least = std::numeric_limits<double>::infinity();
+    double minimum = std::numeric_limits<double>::infinity();
     for (const auto& label : labels) {
         std::vector<double> values;
         for (const auto& object : objects)
             if (object.label == label) values.push_back(object.measures.value("roundness mean"));
         const double median = sample_quantile(values, 0.5, "roundness");
-        if (median < least) least = median, best = label;
+        if (median < minimum) minimum = median, best = label;
     }
     return best;
 }

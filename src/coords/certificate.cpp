@@ -74,7 +74,7 @@ void certify_kind(const Mesh& cage, const CoordinateOptions& options, Coordinate
 
 /// What one point adds to the certificate.
 struct OfPoint {
-    double partition = 0, linear = 0, least = 0, most = 0, negative_sum = 0;
+    double partition = 0, linear = 0, minimum = 0, maximum = 0, negative_sum = 0;
     Index negative = 0;
     bool finite = true;
 };
@@ -117,12 +117,12 @@ CoordinateCertificate certify(const Coordinates& coordinates, const Mesh& cage, 
         const double* w = W.row(static_cast<Eigen::Index>(i)).data();
         double sum = 0;
         Vector off(0, 0, 0);
-        one.least = one.most = w[0];
+        one.minimum = one.maximum = w[0];
         for (std::size_t j = 0; j < corner.size(); ++j) {
             sum += w[j];
             off += w[j] / extent * (corner[j] - points[i]);
-            one.least = std::min(one.least, w[j]);
-            one.most = std::max(one.most, w[j]);
+            one.minimum = std::min(one.minimum, w[j]);
+            one.maximum = std::max(one.maximum, w[j]);
             if (w[j] < 0) ++one.negative, one.negative_sum -= w[j];
         }
         if (coordinates.has_normals()) {
@@ -134,16 +134,16 @@ CoordinateCertificate certify(const Coordinates& coordinates, const Mesh& cage, 
         one.finite = std::isfinite(sum) && std::isfinite(one.linear);
     });
     double negative = 0, negative_rows = 0;
-    result.least = found[0].least;
-    result.most = found[0].most;
+    result.minimum = found[0].minimum;
+    result.maximum = found[0].maximum;
     for (std::size_t i = 0; i < found.size(); ++i) {
         const OfPoint& one = found[i];
         if (!one.finite)
             fail_input("coordinates", "the weights of point " + std::to_string(i) + " are not finite", "compute them anew");
         result.partition = std::max(result.partition, one.partition);
         if (one.linear > result.linear || i == 0) result.linear = one.linear, result.worst_linear = static_cast<Index>(i);
-        result.least = std::min(result.least, one.least);
-        result.most = std::max(result.most, one.most);
+        result.minimum = std::min(result.minimum, one.minimum);
+        result.maximum = std::max(result.maximum, one.maximum);
         result.negative_sum = std::max(result.negative_sum, one.negative_sum);
         negative += one.negative;
         negative_rows += one.negative > 0 ? 1 : 0;
@@ -153,7 +153,7 @@ CoordinateCertificate certify(const Coordinates& coordinates, const Mesh& cage, 
     result.negative_rows = negative_rows / count;
     for (const Index n : carriers(W)) {
         result.carriers_mean += n / count;
-        result.carriers_most = std::max(result.carriers_most, n);
+        result.carriers_max = std::max(result.carriers_max, n);
     }
     return result;
 }
@@ -170,10 +170,10 @@ JsonValue to_json(const CoordinateCertificate& c, JsonAllocator& allocator) {
     put("negativeShare", JsonValue(c.negative));
     put("negativeRows", JsonValue(c.negative_rows));
     put("negativeSum", JsonValue(c.negative_sum));
-    put("least", JsonValue(c.least));
-    put("most", JsonValue(c.most));
+    put("least", JsonValue(c.minimum));
+    put("most", JsonValue(c.maximum));
     put("carriersMean", JsonValue(c.carriers_mean));
-    put("carriersMost", JsonValue(c.carriers_most));
+    put("carriersMost", JsonValue(c.carriers_max));
     return object;
 }
 

@@ -12,7 +12,7 @@ namespace ostraka {
 namespace {
 
 constexpr const char* schema = "coordinates";
-constexpr double most_off = 1e-6;  ///< of a sum of weights, and of a point at rest in diagonals of the cage
+constexpr double max_off = 1e-6;  ///< of a sum of weights, and of a point at rest in diagonals of the cage
 constexpr const char* anew = "compute them anew with 'ostraka cage weights'";
 
 void check_name(const Path& weights) {
@@ -84,7 +84,7 @@ void check_sums(const Path& file, const WeightMatrix& W) {
             sum += W(i, j);
             size += std::fabs(W(i, j));
         }
-        if (!(std::isfinite(size) && std::fabs(sum - 1) <= most_off * size))
+        if (!(std::isfinite(size) && std::fabs(sum - 1) <= max_off * size))
             fail_input(file.string(), "the weights of row " + std::to_string(i) + " do not sum to 1", anew);
     }
 }
@@ -92,10 +92,10 @@ void check_sums(const Path& file, const WeightMatrix& W) {
 /// With normals the weights, too, bring each point where it is at rest: what holds an array of normal weights to account.
 void check_rest(const Path& file, const Coordinates& coordinates, const Mesh& mesh, const Mesh& cage) {
     const std::vector<Point> rest = deformed(coordinates, cage, points_of(cage));
-    const double most = most_off * box_diagonal(cage);
+    const double maximum = max_off * box_diagonal(cage);
     for (const Vertex v : mesh.vertices()) {
         const Vector off = rest[v] - mesh.point(v);
-        if (!(std::max({std::fabs(off.x()), std::fabs(off.y()), std::fabs(off.z())}) <= most))
+        if (!(std::max({std::fabs(off.x()), std::fabs(off.y()), std::fabs(off.z())}) <= maximum))
             fail_input(file.string(), "the weights of row " + std::to_string(v) + " move their point of the mesh at rest", anew);
     }
 }

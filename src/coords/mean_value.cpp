@@ -167,18 +167,18 @@ void add_slivers(const CageArrays& cage, Work& work) {
 /// The weights of a point that lies on the cage: linear on the vertex, edge or face nearest to it, in this order.
 bool weights_on_cage(const CageArrays& cage, const Three& x, double snap, double* row) {
     const auto clear = [&] { std::fill(row, row + cage.points.size(), 0.0); };
-    double least = snap;
+    double minimum = snap;
     std::size_t best = cage.points.size();
     for (std::size_t i = 0; i < cage.points.size(); ++i) {
         const double d = length(cage.from(x, static_cast<Index>(i)));
-        if (d <= least && (best == cage.points.size() || d < least)) least = d, best = i;
+        if (d <= minimum && (best == cage.points.size() || d < minimum)) minimum = d, best = i;
     }
     if (best < cage.points.size()) {
         clear();
         row[best] = 1;
         return true;
     }
-    best = cage.edges.size(), least = snap;
+    best = cage.edges.size(), minimum = snap;
     double share = 0;
     for (std::size_t i = 0; i < cage.edges.size(); ++i) {
         const CageEdge& edge = cage.edges[i];
@@ -186,7 +186,7 @@ bool weights_on_cage(const CageArrays& cage, const Three& x, double snap, double
         const double t = -dot(cage.from(x, edge.from), edge.along) / (edge.length * edge.length);
         if (!(t >= 0 && t <= 1)) continue;
         const double d = length(cage.from(x, edge.from) + t * edge.along);
-        if (d <= least && (best == cage.edges.size() || d < least)) least = d, best = i, share = t;
+        if (d <= minimum && (best == cage.edges.size() || d < minimum)) minimum = d, best = i, share = t;
     }
     if (best < cage.edges.size()) {
         clear();
@@ -194,18 +194,18 @@ bool weights_on_cage(const CageArrays& cage, const Three& x, double snap, double
         row[cage.edges[best].to] = share;
         return true;
     }
-    best = cage.faces.size(), least = snap;
+    best = cage.faces.size(), minimum = snap;
     Three barycentric{};
     for (std::size_t i = 0; i < cage.faces.size(); ++i) {
         const CageFace& face = cage.faces[i];
         if (!(face.double_area > 0)) continue;
         const Three p[3]{cage.from(x, face.corner[0]), cage.from(x, face.corner[1]), cage.from(x, face.corner[2])};
         const double d = std::fabs(dot(p[0], face.normal)) / face.double_area;
-        if (!(d <= least) || (best < cage.faces.size() && !(d < least))) continue;
+        if (!(d <= minimum) || (best < cage.faces.size() && !(d < minimum))) continue;
         Three b;
         for (std::size_t k = 0; k < 3; ++k) b[k] = dot(cross(p[(k + 1) % 3], p[(k + 2) % 3]), face.normal);
         if (!(b[0] >= 0 && b[1] >= 0 && b[2] >= 0)) continue;
-        least = d, best = i, barycentric = 1 / (b[0] + b[1] + b[2]) * b;
+        minimum = d, best = i, barycentric = 1 / (b[0] + b[1] + b[2]) * b;
     }
     if (best == cage.faces.size()) return false;
     clear();

@@ -231,9 +231,9 @@ NpyView view_npy(std::string_view bytes, const std::string& where) {
     if (view.shape.empty() || view.shape.size() > 2)
         fail_input(where, "holds an array of " + std::to_string(view.shape.size()) + " dimensions", remedy);
     const std::size_t size = kind_of(view.type, where).size;
-    const std::size_t most = view.data.size() / size;
-    const bool overflows = view.rows() != 0 && view.columns() > most / view.rows();
-    if (overflows || view.rows() > std::max<std::size_t>(most, 1) || view.count() * size != view.data.size()) {
+    const std::size_t maximum = view.data.size() / size;
+    const bool overflows = view.rows() != 0 && view.columns() > maximum / view.rows();
+    if (overflows || view.rows() > std::max<std::size_t>(maximum, 1) || view.count() * size != view.data.size()) {
         std::string text;
         for (const std::size_t one : view.shape) text += (text.empty() ? "" : " x ") + std::to_string(one);
         fail_input(where,

@@ -78,13 +78,13 @@ public:
     /// The way from `origin` to the first face, other than the one it starts from, that the ray leaves the solid through;
     /// `expected` says how far is looked at first.
     [[nodiscard]] std::optional<double> way(const Point& origin, Index start, const Vector& direction, double expected) const {
-        const double least = 1e-9 * diagonal_;
+        const double minimum = 1e-9 * diagonal_;
         for (double reach = std::max(expected, diagonal_ / 64);; reach *= 4) {
             reach = std::min(reach, 1.01 * diagonal_);
             // The segment of the query runs both ways: its middle stands half way along the ray.
             for (const SurfaceHit& hit : search_.line_hits(origin + direction * (reach / 2), direction, reach / 2)) {
                 const double way = hit.distance + reach / 2;
-                if (hit.face != start && way > least && search_.normal(hit.face) * direction > 0) return way;
+                if (hit.face != start && way > minimum && search_.normal(hit.face) * direction > 0) return way;
             }
             if (reach > diagonal_) return {};
         }

@@ -126,8 +126,8 @@ std::vector<Scored> best_of_frames(const BreakSide& a, const BreakSide& b, doubl
 
 /// How sure the best candidate is, or why it is not.
 void decide(BreakPair& result, const PairOptions& options) {
-    if (result.candidates.empty() || result.candidates.front().contact < options.least_contact) {
-        result.undecided = "no pose brings " + std::to_string(static_cast<int>(std::lround(100 * options.least_contact))) +
+    if (result.candidates.empty() || result.candidates.front().contact < options.min_contact) {
+        result.undecided = "no pose brings " + std::to_string(static_cast<int>(std::lround(100 * options.min_contact))) +
                            " % of the smaller fracture into contact with the other";
         return;
     }
@@ -136,7 +136,7 @@ void decide(BreakPair& result, const PairOptions& options) {
     const double ahead = best.score > 0 ? std::clamp(1 - next / best.score, 0.0, 1.0) : 0;
     // Even a half of the fracture in contact, a third ahead, is sure.
     result.confidence = std::min(1.0, 2 * best.contact) * std::min(1.0, 3 * ahead) * std::max(0.0, 1 - best.penetration);
-    if (result.confidence < options.least_confidence)
+    if (result.confidence < options.min_confidence)
         result.undecided = "the best pose is not far enough ahead of the next, or little of the fracture is in contact";
 }
 
@@ -194,8 +194,8 @@ void PairOptions::describe(OptionList& visit) {
     visit("last-reach", last_reach, "the same at the end; deeper in each other than this they do not go together",
           Range{1e-4, 1});
     visit("edges", edges, "weight of the fractures' rims against their surfaces", Range{0, 1000});
-    visit("least-contact", least_contact, "share of the smaller fracture that must be in contact", Range{0, 1});
-    visit("least-confidence", least_confidence, "below this it cannot be told how they go together", Range{0, 1});
+    visit("least-contact", min_contact, "share of the smaller fracture that must be in contact", Range{0, 1});
+    visit("least-confidence", min_confidence, "below this it cannot be told how they go together", Range{0, 1});
     visit("candidates", candidates, "poses told, best first", Range{1, 1000});
 }
 

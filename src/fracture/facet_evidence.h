@@ -23,8 +23,8 @@ Walls walls_under(const Mesh& mesh, const std::vector<Vector>& normals, std::siz
 
 /// For each face the label with the least sum of `costs[label][face]` and, over edges whose faces have different ones,
 /// `boundary[edge]` (alpha expansion from the cheapest labels).
-std::vector<std::size_t> least_labels(const Mesh& mesh, const std::vector<std::vector<double>>& costs,
-                                      const std::vector<double>& boundary);
+std::vector<std::size_t> min_labels(const Mesh& mesh, const std::vector<std::vector<double>>& costs,
+                                    const std::vector<double>& boundary);
 
 /// Parts between which the surface turns outward by more than `sharpest` (radians), averaged over their boundary: small patches
 /// joined over the least turns first, then those pairs whose boundary turns least. Number of the part of each face.

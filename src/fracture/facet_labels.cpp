@@ -4,8 +4,8 @@
 
 namespace ostraka {
 
-std::vector<std::size_t> least_labels(const Mesh& mesh, const std::vector<std::vector<double>>& costs,
-                                      const std::vector<double>& boundary) {
+std::vector<std::size_t> min_labels(const Mesh& mesh, const std::vector<std::vector<double>>& costs,
+                                    const std::vector<double>& boundary) {
     std::vector<std::size_t> labels(mesh.number_of_faces(), 0);
     for (std::size_t f = 0; f < labels.size(); ++f)
         for (std::size_t label = 1; label < costs.size(); ++label)

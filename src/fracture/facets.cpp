@@ -109,7 +109,7 @@ private:
             costs[1][f] = areas_[f] * ((1 - wall[f]) + 0.5 * o);
             costs[2][f] = areas_[f] * (wall[f] + 0.25);
         }
-        labels_ = least_labels(mesh_, costs, boundary(result_.thickness));
+        labels_ = min_labels(mesh_, costs, boundary(result_.thickness));
         shown_.resize(n);
         for (std::size_t f = 0; f < n; ++f) {
             const double o = ramp(outward[f], -0.3, 0.3);
@@ -123,7 +123,7 @@ private:
         if (sides.empty()) return result;
         AxisOptions how;
         how.tolerance = 0.03;
-        how.least_quality = 0.5;
+        how.min_quality = 0.5;
         const Axis axis = find_axis(mesh_, sides, how);
         if (axis.found) {
             result_.notes.emplace_back("outer and inner are told by an axis of rotation");
@@ -173,9 +173,9 @@ private:
         const auto largest = static_cast<std::size_t>(std::max_element(area.begin(), area.end()) - area.begin());
         labels_.assign(areas_.size(), 0);
         shown_.assign(areas_.size(), 0.5);
-        constexpr double least = 0.003;  // of the area: less tells nothing
+        constexpr double minimum = 0.003;  // of the area: less tells nothing
         for (std::size_t p = 0; p < count; ++p) {
-            if (p == largest || area[p] < least * total_) continue;
+            if (p == largest || area[p] < minimum * total_) continue;
             const double rough = unevenness(faces[p], area[p]);
             const bool broken = rough > options_.rough;
             for (const Index f : faces[p]) {

@@ -106,12 +106,12 @@ double least_shared_rotation(const RotationPairs& pairs, const std::vector<doubl
             if (q != sherd && counts[q])
                 area[k] += pairs.of(q, sherd).shared_at(RotationPairs::between(q, sherd, rotations[q], rotation));
     }
-    const double least = *std::min_element(area.begin(), area.end());
-    shared = least;
+    const double minimum = *std::min_element(area.begin(), area.end());
+    shared = minimum;
     std::size_t begin = 0, longest = 0;
     for (std::size_t k = 0; k < steps; ++k) {
         std::size_t length = 0;
-        while (length < steps && area[(k + length) % steps] <= least * (1 + 1e-9)) ++length;
+        while (length < steps && area[(k + length) % steps] <= minimum * (1 + 1e-9)) ++length;
         if (length > longest) begin = k, longest = length;
     }
     return wrapped(2 * pi * static_cast<double>(begin + longest / 2) / static_cast<double>(steps));

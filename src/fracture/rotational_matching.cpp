@@ -168,11 +168,11 @@ private:
         double fracture[2] = {0, 0};
         for (std::size_t k = 0; k < side.size(); ++k)
             if (assembly_.joined[k]) fracture[side[k] ? 1 : 0] += sherds_[k].side.fracture.area;
-        const double least = std::min(fracture[0], fracture[1]);
+        const double minimum = std::min(fracture[0], fracture[1]);
         joint.lead = lead.here > 0 ? std::clamp(1 - lead.elsewhere / lead.here, 0.0, 1.0) : 0;
-        joint.share = least > 0 ? std::clamp(lead.here / least, 0.0, 2.0) : 0;
+        joint.share = minimum > 0 ? std::clamp(lead.here / minimum, 0.0, 2.0) : 0;
         joint.confidence = std::min(1.0, 2 * joint.share) * std::min(1.0, 3 * joint.lead);
-        joint.decided = joint.confidence >= options_.least_confidence;
+        joint.decided = joint.confidence >= options_.min_confidence;
     }
 
     /// Groups that hang on nothing decided stay where they meet the others if they share nothing with them there; else sherds of
@@ -193,18 +193,18 @@ private:
             if (note.empty()) note = "no turn about the axis is decided by its break";
             std::vector<bool> others(n, true);
             others[k] = false;
-            double here = 0, least = 0;
+            double here = 0, minimum = 0;
             for (std::size_t q = 0; q < n; ++q)
                 if (q != k)
                     here +=
                         pairs_->of(q, k).shared_at(RotationPairs::between(q, k, assembly_.rotations[q], assembly_.rotations[k]));
-            const double rotation = least_shared_rotation(*pairs_, assembly_.rotations, others, k, least);
+            const double rotation = least_shared_rotation(*pairs_, assembly_.rotations, others, k, minimum);
             const double little = 0.02 * sherds_[k].map->area();
-            if (here > little && least < here) {
+            if (here > little && minimum < here) {
                 assembly_.rotations[k] = rotation;
                 assembly_.joined[k] = false;
                 now_[k] = rotated_by(rotation);
-                here = least;
+                here = minimum;
             }
             note += here > little ? "; wherever it stands it lies where others do" : "; it stands where it overlaps nothing";
         }
@@ -296,7 +296,7 @@ void RotationMatchOptions::describe(OptionList& visit) {
     visit("turn-candidates", candidates, "turns of two sherds that are refined: the best of all tried", Range{1, 1000});
     visit("turn-beam", beam, "assemblies of all sherds that are followed at once", Range{1, 100000});
     visit("turn-hold", hold, "weight of a sherd's place on the template against the breaks", Range{0, 1000});
-    visit("least-joint", least_confidence, "confidence of a joint; below it is not decided", Range{0, 1});
+    visit("least-joint", min_confidence, "confidence of a joint; below it is not decided", Range{0, 1});
 }
 
 }  // namespace ostraka

@@ -69,10 +69,10 @@ double RotationPair::met(double rotation) const {
 
 const MeetingRotation* RotationPair::meeting(double rotation) const {
     const MeetingRotation* best = nullptr;
-    double most = 0;
+    double maximum = 0;
     for (const MeetingRotation& one : meetings) {
         const double off = wrapped(rotation - one.rotation) / reach, value = one.value * (1 - off * off);
-        if (value > most) best = &one, most = value;
+        if (value > maximum) best = &one, maximum = value;
     }
     return best;
 }

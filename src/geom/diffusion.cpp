@@ -27,8 +27,8 @@ double cotangent(const Mesh& mesh, Halfedge h) {
     const Vector a = mesh.point(mesh.source(h)) - apex, b = mesh.point(mesh.target(h)) - apex;
     const double sine = std::sqrt(CGAL::cross_product(a, b).squared_length());
     // A triangle without area pulls its corners together no stronger than a very thin one.
-    constexpr double most = 1e4;
-    return sine > 0 ? std::clamp(a * b / sine, 0.0, most) : 0;
+    constexpr double maximum = 1e4;
+    return sine > 0 ? std::clamp(a * b / sine, 0.0, maximum) : 0;
 }
 
 }  // namespace

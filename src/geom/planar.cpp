@@ -48,27 +48,27 @@ PlaneRectangle smallest_rectangle(const std::vector<Vector2d>& hull) {
     };
     Calipers calipers(corners);
     std::vector<PlaneRectangle> all;
-    double least = std::numeric_limits<double>::infinity();
+    double minimum = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < corners.size(); ++i) {
         const Vector2d a = (corners[(i + 1) % corners.size()] - corners[i]).normalized();
         all.push_back(rectangle(a, calipers.along(i, a)));
-        least = std::min(least, all.back().area());
+        minimum = std::min(minimum, all.back().area());
     }
     best.length = -1;
     for (const auto& r : all)
-        if (r.area() <= least * (1 + 1e-9) && r.length > best.length) best = r;
+        if (r.area() <= minimum * (1 + 1e-9) && r.length > best.length) best = r;
     // Sides of no length to speak of point anywhere, and the calipers may lose their way: then all corners are looked at.
     const Vector2d a = best.along;
     if (const auto check = rectangle(a, extent_along(a, corners));
         !(std::abs(check.area() - best.area()) <= 1e-12 * check.area())) {
-        best.length = -1, least = std::numeric_limits<double>::infinity();
+        best.length = -1, minimum = std::numeric_limits<double>::infinity();
         for (std::size_t i = 0; i < corners.size(); ++i) {
             const Vector2d side = (corners[(i + 1) % corners.size()] - corners[i]).normalized();
             all[i] = rectangle(side, extent_along(side, corners));
-            least = std::min(least, all[i].area());
+            minimum = std::min(minimum, all[i].area());
         }
         for (const auto& r : all)
-            if (r.area() <= least * (1 + 1e-9) && r.length > best.length) best = r;
+            if (r.area() <= minimum * (1 + 1e-9) && r.length > best.length) best = r;
     }
     return best;
 }

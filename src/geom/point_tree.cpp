@@ -77,18 +77,18 @@ struct PointTree::Tree {
         into(into, 1, 0, order.size());
     }
 
-    /// Raises `most` to the greatest squared distance of a range.
-    void walk_far(const Place& place, double& most, std::size_t range, std::size_t begin, std::size_t end) const {
+    /// Raises `maximum` to the greatest squared distance of a range.
+    void walk_far(const Place& place, double& maximum, std::size_t range, std::size_t begin, std::size_t end) const {
         if (end - begin <= leaf) {
-            for (std::size_t i = begin; i < end; ++i) most = std::max(most, squared_distance(i, place));
+            for (std::size_t i = begin; i < end; ++i) maximum = std::max(maximum, squared_distance(i, place));
             return;
         }
         const std::size_t middle = begin + (end - begin) / 2, lower = 2 * range, upper = lower + 1;
         const double below = boxes[lower].farthest(place), above = boxes[upper].farthest(place);
         const bool first = below >= above;
-        if (first && below > most) walk_far(place, most, lower, begin, middle);
-        if (above > most) walk_far(place, most, upper, middle, end);
-        if (!first && below > most) walk_far(place, most, lower, begin, middle);
+        if (first && below > maximum) walk_far(place, maximum, lower, begin, middle);
+        if (above > maximum) walk_far(place, maximum, upper, middle, end);
+        if (!first && below > maximum) walk_far(place, maximum, lower, begin, middle);
     }
 };
 
@@ -145,9 +145,9 @@ void PointTree::within(const Point& place, double reach, std::vector<Index>& fou
 }
 
 double PointTree::farthest_squared(const Point& place) const {
-    double most = 0;
-    tree_->walk_far(Tree::place_of(place), most, 1, 0, size());
-    return most;
+    double maximum = 0;
+    tree_->walk_far(Tree::place_of(place), maximum, 1, 0, size());
+    return maximum;
 }
 
 }  // namespace ostraka

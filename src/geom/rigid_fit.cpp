@@ -45,7 +45,7 @@ Motion fit_motion(const std::vector<Vector3d>& from, const std::vector<Vector3d>
     Motion result;
     result.rotation = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
     if (options.scale && spread > 0)
-        result.scale = std::clamp(svd.singularValues().dot(sign) / spread, options.least_scale, options.most_scale);
+        result.scale = std::clamp(svd.singularValues().dot(sign) / spread, options.min_scale, options.max_scale);
     result.translation = b - result.scale * (result.rotation * a);
     return result;
 }

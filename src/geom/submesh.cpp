@@ -13,7 +13,7 @@ namespace {
 /// The faces of the largest piece.
 std::vector<Index> largest_piece(const Mesh& mesh, const std::vector<bool>& keep) {
     std::vector<Index> best;
-    double most = -1;
+    double maximum = -1;
     std::vector<bool> seen(mesh.number_of_faces(), false);
     for (const Face start : mesh.faces()) {
         if (!keep[start] || seen[start]) continue;
@@ -29,7 +29,7 @@ std::vector<Index> largest_piece(const Mesh& mesh, const std::vector<bool>& keep
                 piece.push_back(next);
             }
         }
-        if (area > most) most = area, best = std::move(piece);
+        if (area > maximum) maximum = area, best = std::move(piece);
     }
     std::sort(best.begin(), best.end());
     return best;

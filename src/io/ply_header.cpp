@@ -65,7 +65,7 @@ std::size_t size_of(PlyType type) {
     return sizes[static_cast<std::size_t>(type)];
 }
 
-std::size_t PlyElement::least_bytes(PlyFormat format) const {
+std::size_t PlyElement::min_bytes(PlyFormat format) const {
     if (format == PlyFormat::ascii) return 2 * properties.size();  // a digit and a blank or line end
     std::size_t sum = 0;
     for (const PlyProperty& property : properties) sum += size_of(property.is_list ? property.count_type : property.type);

@@ -26,7 +26,7 @@ struct PlyElement {
     std::size_t count = 0;
     std::vector<PlyProperty> properties;
     /// The fewest bytes one such element can take in a file of the format.
-    [[nodiscard]] std::size_t least_bytes(PlyFormat format) const;
+    [[nodiscard]] std::size_t min_bytes(PlyFormat format) const;
 };
 
 struct PlyHeader {

@@ -36,7 +36,7 @@ public:
         return static_cast<double>(whole);
     }
     /// Least number of bytes that `count` values take.
-    static std::size_t least(PlyType, std::size_t count) { return 2 * count; }
+    static std::size_t minimum(PlyType, std::size_t count) { return 2 * count; }
     void skip(PlyType, std::size_t count) {
         for (std::size_t i = 0; i < count; ++i)
             if (reader_.word().empty()) reader_.fail("the line ends inside a list", "the file may be cut off or damaged");
@@ -82,10 +82,10 @@ public:
         }
         return 0;
     }
-    static std::size_t least(PlyType type, std::size_t count) { return size_of(type) * count; }
+    static std::size_t minimum(PlyType type, std::size_t count) { return size_of(type) * count; }
     void skip(PlyType type, std::size_t count) {
-        if (least(type, count) > remaining()) cut_off();
-        position_ += least(type, count);
+        if (minimum(type, count) > remaining()) cut_off();
+        position_ += minimum(type, count);
     }
     [[nodiscard]] std::size_t remaining() const { return static_cast<std::size_t>(end_ - position_); }
     [[noreturn]] void fail(const std::string& what, const std::string& remedy = {}) {

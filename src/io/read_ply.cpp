@@ -136,16 +136,16 @@ public:
 private:
     /// No memory is asked for before the file is known to be large enough for what its header claims.
     void check_size(const PlyElement& element) {
-        const std::size_t least = element.least_bytes(header_.format);
-        if (least > 0 && element.count > rows_.remaining() / least)
+        const std::size_t minimum = element.min_bytes(header_.format);
+        if (minimum > 0 && element.count > rows_.remaining() / minimum)
             rows_.fail("the header promises " + std::to_string(element.count) + " elements '" + element.name + "' of at least " +
-                           std::to_string(least) + " bytes, but only " + std::to_string(rows_.remaining()) + " bytes follow",
+                           std::to_string(minimum) + " bytes, but only " + std::to_string(rows_.remaining()) + " bytes follow",
                        "the file is cut off or its header is wrong");
     }
 
     std::size_t list_length(const PlyProperty& property) {
         const double length = rows_.value(property.count_type);
-        if (!(length >= 0) || Rows::least(property.type, 1) * length > static_cast<double>(rows_.remaining()))
+        if (!(length >= 0) || Rows::minimum(property.type, 1) * length > static_cast<double>(rows_.remaining()))
             rows_.fail("a list '" + property.name + "' claims " + std::to_string(static_cast<std::int64_t>(length)) + " entries",
                        "the file is cut off or damaged");
         return static_cast<std::size_t>(length);

@@ -76,8 +76,8 @@ public:
         std::vector<Triple> triangles;
         std::vector<Index> ring(n);
         for (Index i = 0; i < n; ++i) ring[i] = i;
-        constexpr std::size_t most = 100;
-        if (n > most && !cut_corners(ring, most, triangles)) return {};
+        constexpr std::size_t maximum = 100;
+        if (n > maximum && !cut_corners(ring, maximum, triangles)) return {};
         if (!best_triangulation(ring, triangles)) return {};
         return triangles;
     }
@@ -94,7 +94,7 @@ private:
         return CGAL::cross_product(places_[k] - places_[i], places_[j] - places_[i]);
     }
 
-    bool cut_corners(std::vector<Index>& ring, std::size_t most, std::vector<Triple>& triangles) {
+    bool cut_corners(std::vector<Index>& ring, std::size_t maximum, std::vector<Triple>& triangles) {
         const auto n = static_cast<Index>(ring.size());
         std::vector<Index> previous(n), next(n), stamp(n, 0);
         for (Index i = 0; i < n; ++i) previous[i] = (i + n - 1) % n, next[i] = (i + 1) % n;
@@ -111,7 +111,7 @@ private:
         for (Index i = 0; i < n; ++i) push(i);
         std::size_t left = n;
         std::vector<std::uint8_t> gone(n, 0);
-        while (left > most && !queue.empty()) {
+        while (left > maximum && !queue.empty()) {
             const Corner corner = queue.top();
             queue.pop();
             const Index i = corner.position, p = previous[i], q = next[i];
@@ -133,7 +133,7 @@ private:
         ring.clear();
         for (Index i = 0; i < n; ++i)
             if (gone[i] == 0) ring.push_back(i);
-        return left <= most;
+        return left <= maximum;
     }
 
     struct Weight {

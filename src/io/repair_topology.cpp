@@ -301,12 +301,12 @@ Counts flip_degenerate(Worksoup& work) {
         if (without_area[t] != 0) queue.push_back(t);
     std::vector<std::uint8_t> keep(soup.triangles.size(), 1);
     std::size_t flipped = 0, dropped = 0;
-    const std::size_t most = 20 * queue.size();
+    const std::size_t maximum = 20 * queue.size();
     const auto join = [&](Index h, Index o) {
         opposite[h] = o;
         if (o != no_index) opposite[o] = h;
     };
-    for (std::size_t i = 0; i < queue.size() && i < most; ++i) {
+    for (std::size_t i = 0; i < queue.size() && i < maximum; ++i) {
         const Index t = queue[i];
         if (keep[t] == 0 || !has_no_area(soup, soup.triangles[t])) continue;
         // The middle corner lies on the longest side, opposite to it.

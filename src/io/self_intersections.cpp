@@ -104,7 +104,7 @@ SelfIntersections detail::self_intersections(const TriangleSoup& soup, const std
     const PairTest meets(soup, place);
     // Fixed batches and fixed budgets: where the search is given up does not depend on the threads.
     constexpr std::size_t batch = 8192, tests_of_leaf = 1 << 17, pairs_of_leaf = 4096;
-    const std::size_t most_tests = 400 * soup.triangles.size() + 50'000'000;
+    const std::size_t max_tests = 400 * soup.triangles.size() + 50'000'000;
     const std::size_t leaves = tree.leaf_count();
     std::vector<std::vector<std::pair<Index, Index>>> found(std::min(batch, leaves));
     std::vector<std::size_t> tested(found.size());
@@ -128,7 +128,7 @@ SelfIntersections detail::self_intersections(const TriangleSoup& soup, const std
             tests += tested[i];
             result.complete = result.complete && tested[i] < tests_of_leaf && found[i].size() < pairs_of_leaf;
         }
-        result.complete = result.complete && result.pairs.size() <= limit && (tests < most_tests || begin + count == leaves);
+        result.complete = result.complete && result.pairs.size() <= limit && (tests < max_tests || begin + count == leaves);
     }
     std::sort(result.pairs.begin(), result.pairs.end());
     if (result.pairs.size() > limit) result.pairs.resize(limit);

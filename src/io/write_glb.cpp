@@ -58,12 +58,13 @@ Notes write_glb(const Path& file, const TriangleSoup& soup, const MeshExtras& ex
     }
     JsonValue attributes(rapidjson::kObjectType), primitive(rapidjson::kObjectType), mesh(rapidjson::kObjectType),
         node(rapidjson::kObjectType), scene(rapidjson::kObjectType), surface(rapidjson::kObjectType),
-        material(rapidjson::kObjectType), least(rapidjson::kArrayType), most(rapidjson::kArrayType);
-    for (const float x : low) least.PushBack(static_cast<double>(x), allocator);
-    for (const float x : high) most.PushBack(static_cast<double>(x), allocator);
-    add_member(attributes, "POSITION",
-               JsonValue(builder.announce_accessor(12 * count, glb::array_buffer, glb::single, count, "VEC3", &least, &most)),
-               allocator);
+        material(rapidjson::kObjectType), minimum(rapidjson::kArrayType), maximum(rapidjson::kArrayType);
+    for (const float x : low) minimum.PushBack(static_cast<double>(x), allocator);
+    for (const float x : high) maximum.PushBack(static_cast<double>(x), allocator);
+    add_member(
+        attributes, "POSITION",
+        JsonValue(builder.announce_accessor(12 * count, glb::array_buffer, glb::single, count, "VEC3", &minimum, &maximum)),
+        allocator);
     if (coloured) {
         const int colours = builder.announce_accessor(8 * count, glb::array_buffer, glb::short_word, count, "VEC4");
         builder.mark_normalised(colours);

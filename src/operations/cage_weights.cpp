@@ -61,9 +61,9 @@ struct CageCoordinates final : Operation {
         on_cage("linear on faces", c.on_faces, "largest deviation at three points a face");
         row("negative weights", share(c.negative), "of all");
         row("points with one", share(c.negative_rows), "of all");
-        row("least, most", number(c.least) + ", " + number(c.most), "weight");
+        row("least, most", number(c.minimum) + ", " + number(c.maximum), "weight");
         row("negative sum", number(c.negative_sum), "largest of a point");
-        row("locality", number(c.carriers_mean, 4) + " mean, " + std::to_string(c.carriers_most) + " most",
+        row("locality", number(c.carriers_mean, 4) + " mean, " + std::to_string(c.carriers_max) + " most",
             "weights that carry 95 % at a point");
         report("holds", c.holds(),
                c.holds() ? "fit for deformation" : "not fit for deformation: partition or linear precision fails");

@@ -192,9 +192,9 @@ struct Deform final : Operation {
         row("hard", constraint.hard)("used", constraint.used)("before", to_string(constraint.before));
         row("verdict", to_string(constraint.verdict), constraint.used ? to_string(constraint.verdict) : "left out");
         row("text", constraint.text)("deviations", std::move(deviations)).shown("deviations", joined(words, "; "));
-        row("residual.mean", constraint.mean)("residual.median", constraint.median)("residual.min", constraint.least)(
-            "residual.max", constraint.most)("residual.greatest distance", constraint.distance)("residual.constraints",
-                                                                                                constraint.low_level);
+        row("residual.mean", constraint.mean)("residual.median", constraint.median)("residual.min", constraint.minimum)(
+            "residual.max", constraint.maximum)("residual.greatest distance", constraint.distance)("residual.constraints",
+                                                                                                   constraint.low_level);
     }
 
     /// What fights with what.

@@ -11,7 +11,7 @@ using namespace fields;
 
 namespace {
 
-constexpr std::size_t most_listed = 100;
+constexpr std::size_t max_listed = 100;
 
 struct DiagnosisCount {
     const char* name;
@@ -69,9 +69,9 @@ JsonValue to_json(const MeshDiagnosis& d, JsonAllocator& allocator) {
     JsonValue components(rapidjson::kArrayType), loops(rapidjson::kArrayType), pairs(rapidjson::kArrayType);
     for (const auto& [name, count] : diagnosis_counts) add_members(result, allocator, name, d.*count);
     for (const auto& [a, b] : d.self_intersection_examples) pairs.PushBack(json_value(std::array{a, b}, allocator), allocator);
-    for (std::size_t i = 0; i < std::min(most_listed, d.components.size()); ++i)
+    for (std::size_t i = 0; i < std::min(max_listed, d.components.size()); ++i)
         components.PushBack(component_json(d.components[i], allocator), allocator);
-    for (std::size_t i = 0; i < std::min(most_listed, d.border_loops.size()); ++i)
+    for (std::size_t i = 0; i < std::min(max_listed, d.border_loops.size()); ++i)
         loops.PushBack(json_object(allocator, "edges", d.border_loops[i].edges, "length", d.border_loops[i].length), allocator);
     add_members(result, allocator, "closed", d.closed(), "manifold", d.manifold(), "oriented", d.oriented(), "euler", d.euler(),
                 "self_intersections", d.self_intersections_checked ? std::optional(d.self_intersections) : std::nullopt,
@@ -85,9 +85,9 @@ std::vector<std::pair<std::string, std::string>> rows_of(const MeshDiagnosis& d)
     std::vector<std::pair<std::string, std::string>> rows;
     const auto add = [&](const char* name, const ReportText& value) { rows.emplace_back(name, value.text); };
     const auto triple = [](const std::array<double, 3>& v) { return number(v[0]) + " x " + number(v[1]) + " x " + number(v[2]); };
-    const auto first = [](const auto& list, std::size_t most, const auto& text_of) {
+    const auto first = [](const auto& list, std::size_t maximum, const auto& text_of) {
         std::vector<std::string> texts;
-        for (std::size_t i = 0; i < std::min(most, list.size()); ++i) texts.push_back(text_of(list[i]));
+        for (std::size_t i = 0; i < std::min(maximum, list.size()); ++i) texts.push_back(text_of(list[i]));
         return joined(texts);
     };
     const auto genus = [](const auto& part) { return part.genus() < 0 ? "-" : std::to_string(part.genus()); };

@@ -44,7 +44,7 @@ struct MeasureClay final : Operation {
         report("unit", length_unit)("volume of the mesh", own);
         report.line(sentence(clay, own));
         add_notes(report, clay);
-        if (std::isnan(clay.most)) report.answer_no();
+        if (std::isnan(clay.maximum)) report.answer_no();
     }
 
     struct Figure {
@@ -53,13 +53,13 @@ struct MeasureClay final : Operation {
         std::string unit;
     };
     static std::vector<Figure> figures_of(const ClayVolume& clay) {
-        return {{"most clay", clay.most, "length^3"},
-                {"least clay", clay.least, "length^3"},
+        return {{"most clay", clay.maximum, "length^3"},
+                {"least clay", clay.minimum, "length^3"},
                 {"within the outer surface", clay.envelope, "length^3"},
                 {"wall taken for least", clay.wall, "length"},
                 {"wall seen, mean", clay.wall_mean, "length"},
-                {"wall seen, least (5 % quantile)", clay.wall_least, "length"},
-                {"wall seen, most (95 % quantile)", clay.wall_most, "length"},
+                {"wall seen, least (5 % quantile)", clay.wall_min, "length"},
+                {"wall seen, most (95 % quantile)", clay.wall_max, "length"},
                 {"slices", double(clay.slices), ""},
                 {"slices with a cavity seen", double(clay.with_cavity), ""},
                 {"slices without an outline", double(clay.without_outline), ""},
@@ -81,9 +81,9 @@ struct MeasureClay final : Operation {
     }
 
     [[nodiscard]] std::string sentence(const ClayVolume& clay, double own) const {
-        std::string text = std::isnan(clay.most)    ? "the clay is not known"
-                           : std::isnan(clay.least) ? "clay: at most " + volume(clay.most)
-                                                    : "clay: between " + volume(clay.least) + " and " + volume(clay.most);
+        std::string text = std::isnan(clay.maximum)   ? "the clay is not known"
+                           : std::isnan(clay.minimum) ? "clay: at most " + volume(clay.maximum)
+                                                      : "clay: between " + volume(clay.minimum) + " and " + volume(clay.maximum);
         if (std::isnan(own)) return text + "; the mesh is open, so that it has no volume of its own";
         return text + "; the mesh is closed, and its own volume is " + volume(own);
     }
@@ -92,7 +92,7 @@ struct MeasureClay final : Operation {
         const auto some = [&](int count, const std::string& what) {
             if (count > 0) report.note(std::to_string(count) + " slices have " + what);
         };
-        if (std::isnan(clay.least) && !std::isnan(clay.most))
+        if (std::isnan(clay.minimum) && !std::isnan(clay.maximum))
             report.note("no wall is seen, so there is no least: give one with --wall");
         some(clay.without_outline, "no closed outline: taken as between their neighbours");
         some(clay.crossing,
@@ -102,7 +102,7 @@ struct MeasureClay final : Operation {
              "contours that ran against their nesting, as a cavity does that is oriented outwards: read by their nesting");
         if (clay.reversed) report.note("the mesh is inside out: read the other way round (ostraka mesh repair mends it)");
         if (clay.slices == 0) report.note("no slice meets the mesh: it has no height along this direction; give another --up");
-        else if (std::isnan(clay.most))
+        else if (std::isnan(clay.maximum))
             report.note(
                 "no slice has a closed outline, so there is no volume: is the mesh open along its height, or inside out?");
     }

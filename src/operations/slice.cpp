@@ -261,18 +261,18 @@ struct SliceObject final : Operation {
 
     /// The slices drawn: all, or as many as asked for, spread evenly.
     [[nodiscard]] SliceSheet sheet(const CutObject& cut) const {
-        const std::size_t n = cut.slices.size(), most = static_cast<std::size_t>(drawn);
+        const std::size_t n = cut.slices.size(), maximum = static_cast<std::size_t>(drawn);
         SliceSheet content;
         content.title = name_of_drawing() + ": " + std::to_string(n) + (n == 1 ? " slice" : " slices");
         content.unit = unit_of_lengths;
-        for (std::size_t k = 0; k < std::min(n, most); ++k) {
-            const std::size_t i = n <= most ? k : k * (n - 1) / std::max<std::size_t>(1, most - 1);
+        for (std::size_t k = 0; k < std::min(n, maximum); ++k) {
+            const std::size_t i = n <= maximum ? k : k * (n - 1) / std::max<std::size_t>(1, maximum - 1);
             DrawnSlice entry{&cut.slices[i], &cut.descriptors[i], {}, i + 1};
             if (!cut.medial.empty() && !cut.medial[i].levels.empty())
                 for (const auto& branch : cut.medial[i].levels[0].branches) entry.lines.push_back(branch.points);
             content.slices.push_back(entry);
         }
-        if (n > most) content.title += ", " + std::to_string(most) + " of them drawn";
+        if (n > maximum) content.title += ", " + std::to_string(maximum) + " of them drawn";
         if (cut.parallel && plane.empty()) {
             SliceFrame view = cut.frames[0];
             view.v = view.normal;

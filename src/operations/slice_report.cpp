@@ -146,7 +146,7 @@ void add_compared_axis(Report& report, const ComparedAxis& axis) {
         row("polyline", std::move(points));
     }
     const Straightness& s = axis.straightness;
-    row("straightness.mean_distance", s.mean)("straightness.deviation", s.deviation)("straightness.largest_distance", s.most)(
+    row("straightness.mean_distance", s.mean)("straightness.deviation", s.deviation)("straightness.largest_distance", s.maximum)(
         "straightness.length", s.length)("straightness.relative", s.relative, number(100 * s.relative, 3));
 }
 

@@ -48,7 +48,8 @@ struct StudySegments final : Operation {
 
         report.set_unit(set.unit);
         if (!set.unit.empty()) report("unit", set.unit);
-        report("clusters", segments.clusters)("proposed", segments.count.proposed)("criterion", option_text(options.count, "criterion"));
+        report("clusters", segments.clusters)("proposed", segments.count.proposed)("criterion",
+                                                                                   option_text(options.count, "criterion"));
         report.empty_table("curve");
         for (const ClusterCount::Row& row : segments.count.rows)
             report.row("curve")("clusters", row.clusters)("cost", row.cost)("silhouette", row.silhouette)("gap", row.gap)(
@@ -92,7 +93,7 @@ struct StudySegments final : Operation {
         if (count > 0)
             report.line(std::to_string(count) + " of the " + std::to_string(segments.clusters) + " clusters " +
                         (count == 1 ? "has" : "have") + " no segment: " + gone + " in runs of fewer than " +
-                        std::to_string(options.least_run) + ", which joined their neighbours (--least-run)");
+                        std::to_string(options.min_run) + ", which joined their neighbours (--least-run)");
         if (!again.empty()) report.line("one cluster, and so one colour: segments " + again);
     }
 

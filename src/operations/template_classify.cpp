@@ -101,12 +101,12 @@ struct TemplateClassify final : Operation {
         for (const Classification& object : answers) {
             report.line("\n" + printable(object.object) + " " + printable(object.text));
             for (const ClassAnswer& one : object.answers) {
-                constexpr std::size_t most = 8;
+                constexpr std::size_t maximum = 8;
                 const auto reasons = one.reasons();
                 if (!one.undecided.empty()) report.line("  " + printable(one.name) + ": " + printable(one.undecided));
-                for (std::size_t i = 0; i < reasons.size() && i < most; ++i)
+                for (std::size_t i = 0; i < reasons.size() && i < maximum; ++i)
                     report.line("  against " + printable(one.name) + ": " + printable(reasons[i]));
-                if (reasons.size() > most) report.line("  and " + std::to_string(reasons.size() - most) + " more");
+                if (reasons.size() > maximum) report.line("  and " + std::to_string(reasons.size() - maximum) + " more");
             }
         }
     }

@@ -145,7 +145,7 @@ std::vector<AnnotationMatch> match_annotations(const Mesh& scaled, const Annotat
             const Annotation &x = *theirs[b].annotation, &y = *ours[a].annotation;
             if (settled[b] || taken[a] || x.type != y.type || x.all || y.all || x.tag.empty() || x.tag != y.tag) continue;
             const AnnotationMatch match = compare(theirs[b], ours[a], diagonal);
-            if (match.score < options.least_score) continue;
+            if (match.score < options.min_score) continue;
             candidates.emplace(std::pair(b, a), match);
             boost::add_edge(b, n + a, match.score, graph);
         }
@@ -160,7 +160,7 @@ std::vector<AnnotationMatch> match_annotations(const Mesh& scaled, const Annotat
 }
 
 void AnnotationMatchOptions::describe(OptionList& visit) {
-    visit("least-score", least_score, "annotations that agree less are not matched", Range{0, 1});
+    visit("least-score", min_score, "annotations that agree less are not matched", Range{0, 1});
 }
 
 }  // namespace ostraka

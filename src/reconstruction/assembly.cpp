@@ -48,7 +48,7 @@ JsonValue search_of(const PoseSearchResult& one, JsonAllocator& allocator) {
                     triple(one.slippable.direction));
     }
     for (const FreeWay& way : one.ways) {
-        JsonValue item = json_object(allocator, "turns", way.rotates, "least", way.least, "most", way.most);
+        JsonValue item = json_object(allocator, "turns", way.rotates, "least", way.minimum, "most", way.maximum);
         ways.PushBack(item, allocator);
     }
     add_member(slippable, "ways", std::move(ways), allocator);

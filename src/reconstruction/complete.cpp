@@ -60,11 +60,11 @@ private:
     std::vector<std::optional<SurfaceHit>> places(int number, const std::vector<Vector>& normals) {
         const PlacedFragment& fragment = fragments_[static_cast<std::size_t>(number)];
         const SurfaceSearch search(object_.mesh);
-        const double least = std::cos(options_.angle * pi / 180), reach = options_.tolerance * diagonal_;
+        const double minimum = std::cos(options_.angle * pi / 180), reach = options_.tolerance * diagonal_;
         std::vector<std::optional<SurfaceHit>> hits(fragment.mesh.number_of_vertices());
         parallel_for(hits.size(), [&](std::size_t v) {
             if (!(normals[v].squared_length() > 0)) return;
-            auto hit = search.closest_compatible(fragment.mesh.point(Vertex(static_cast<Index>(v))), normals[v], least, reach);
+            auto hit = search.closest_compatible(fragment.mesh.point(Vertex(static_cast<Index>(v))), normals[v], minimum, reach);
             if (hit) hits[v] = hit;
         });
         double whole = 0, lying = 0, shared = 0;
@@ -101,7 +101,7 @@ private:
                 return hits[v] && area_vector(fragment.mesh, face) * area_vector(object_.mesh, Face(hits[v]->face)) > 0;
             });
         }
-        const Joint joint = join_patch(object_.mesh, Patch(fragment.mesh, std::move(keep), options_.least), hits,
+        const Joint joint = join_patch(object_.mesh, Patch(fragment.mesh, std::move(keep), options_.minimum), hits,
                                        options_.blend * diagonal_, frozen());
         if (!joint.problem.empty()) {
             object_.notes.push_back({number, joint.problem});
@@ -190,7 +190,7 @@ void CompleteOptions::describe(OptionList& visit) {
     visit("confidence-length", halving, "length over which confidence halves away from what was observed", Range{1e-6, 1e6},
           "share of the diagonal");
     visit("join", join, "the completed mesh has the fragments' own triangles where they lie", Anything{});
-    visit("least-piece", least, "pieces of a fragment's surface below this share of its area are left out", Range{0, 1});
+    visit("least-piece", minimum, "pieces of a fragment's surface below this share of its area are left out", Range{0, 1});
 }
 
 }  // namespace ostraka

@@ -120,10 +120,10 @@ public:
     /// matched are held where the levels left them.
     /// At most 4000 vertices are looked at, evenly over their list.
     void polish(double reach, double smoothing, NonRigidFit& fit) {
-        constexpr int most_steps = 12;
+        constexpr int max_steps = 12;
         constexpr double settled = 1e-10;  // share of the diagonal
         const Points left = now_;
-        for (int step = 0; step < most_steps; ++step) {
+        for (int step = 0; step < max_steps; ++step) {
             match(reach, fit);
             const Stopwatch watch(fit.seconds_solving);
             const Points before = now_;

@@ -87,12 +87,12 @@ std::vector<Way> ways_of(const Mesh& mesh, std::vector<VertexChain> chains) {
 /// Where a vertex is on one of the chains: which, and how far along; -1 where it is on none.
 std::pair<int, double> on_chain(const std::vector<Way>& ways, const Vector3d& place) {
     std::pair<int, double> found{-1, 0};
-    double least = std::numeric_limits<double>::infinity();
+    double minimum = std::numeric_limits<double>::infinity();
     for (std::size_t c = 0; c < ways.size(); ++c)
         for (std::size_t i = 0; i < ways[c].places.size(); ++i) {
             const double distance = (ways[c].places[i] - place).norm();
-            if (distance >= least || distance > 0.05 * ways[c].length) continue;
-            least = distance;
+            if (distance >= minimum || distance > 0.05 * ways[c].length) continue;
+            minimum = distance;
             found = {static_cast<int>(c), ways[c].at[i]};
         }
     return found;

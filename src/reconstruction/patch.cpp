@@ -5,7 +5,7 @@
 
 namespace ostraka {
 
-Patch::Patch(const Mesh& mesh, std::vector<bool> keep, double least) : mesh_(mesh), keep_(std::move(keep)), least_(least) {
+Patch::Patch(const Mesh& mesh, std::vector<bool> keep, double minimum) : mesh_(mesh), keep_(std::move(keep)), minimum_(minimum) {
     regularise({mesh.vertices().begin(), mesh.vertices().end()});
 }
 
@@ -76,7 +76,8 @@ Patch::Pieces Patch::drop_small_pieces() {
         }
     }
     for (const Face face : mesh_.faces())
-        if (keep_[face] && !(pieces.area[static_cast<std::size_t>(pieces.of_face[face])] >= least_ * whole)) keep_[face] = false;
+        if (keep_[face] && !(pieces.area[static_cast<std::size_t>(pieces.of_face[face])] >= minimum_ * whole))
+            keep_[face] = false;
     return pieces;
 }
 

@@ -10,8 +10,8 @@ namespace ostraka {
 /// Faces of a mesh whose borders are simple loops.
 class Patch {
 public:
-    /// Of the faces marked, pieces with at least the share `least` of the mesh's area. The mesh outlives it.
-    Patch(const Mesh& mesh, std::vector<bool> keep, double least);
+    /// Of the faces marked, pieces with at least the share `minimum` of the mesh's area. The mesh outlives it.
+    Patch(const Mesh& mesh, std::vector<bool> keep, double minimum);
 
     [[nodiscard]] const Mesh& mesh() const { return mesh_; }
     [[nodiscard]] bool has(Index face) const { return keep_[face]; }
@@ -41,7 +41,7 @@ private:
 
     const Mesh& mesh_;
     std::vector<bool> keep_;
-    double least_;
+    double minimum_;
     std::vector<std::vector<Vertex>> loops_;
     std::vector<Face> closed_;
 };

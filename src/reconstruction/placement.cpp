@@ -61,7 +61,7 @@ bool CommonPlacement::any() const {
 
 namespace {
 
-constexpr std::size_t most_triples = 4000;
+constexpr std::size_t max_triples = 4000;
 
 /// What the landmarks of one fragment say.
 class Landmarks {
@@ -134,7 +134,7 @@ public:
 
     /// Second extent over first of the places used, the less of both sides.
     [[nodiscard]] double flatness() const {
-        double least = 1;
+        double minimum = 1;
         for (const bool ours : {true, false}) {
             const Moments m = moments();
             Matrix3d second = Matrix3d::Zero();
@@ -144,9 +144,9 @@ public:
                 second += p * p.transpose();
             }
             const Vector3d extents = symmetric_eigenvalues(second);
-            least = std::min(least, extents[2] > 0 ? std::sqrt(std::max(0.0, extents[1]) / extents[2]) : 0.0);
+            minimum = std::min(minimum, extents[2] > 0 ? std::sqrt(std::max(0.0, extents[1]) / extents[2]) : 0.0);
         }
-        return least;
+        return minimum;
     }
 
     /// Sets `used` by the similarity through three landmarks that explains most of the others.
@@ -154,7 +154,7 @@ public:
         const std::size_t n = pairs_.size();
         if (n < 5) return;
         // Shapes differ from their template, and what differs is no mistake: a few may be wrong, not half of them.
-        const std::size_t most_wrong = std::max<std::size_t>(1, n / 6), quantile = n - most_wrong;
+        const std::size_t max_wrong = std::max<std::size_t>(1, n / 6), quantile = n - max_wrong;
         double best = -1;
         Motion chosen;
         for_triples(n, [&](const std::array<std::size_t, 3>& triple) {
@@ -205,14 +205,14 @@ private:
     template <class Visit>
     static void for_triples(std::size_t n, Visit&& visit) {
         const double all = static_cast<double>(n) * static_cast<double>(n - 1) * static_cast<double>(n - 2) / 6;
-        if (all <= static_cast<double>(most_triples)) {
+        if (all <= static_cast<double>(max_triples)) {
             for (std::size_t i = 0; i < n; ++i)
                 for (std::size_t j = i + 1; j < n; ++j)
                     for (std::size_t k = j + 1; k < n; ++k) visit({i, j, k});
             return;
         }
         Random random(1, n);
-        for (std::size_t drawn = 0; drawn < most_triples;) {
+        for (std::size_t drawn = 0; drawn < max_triples;) {
             const std::array<std::size_t, 3> triple{random.below(n), random.below(n), random.below(n)};
             if (triple[0] == triple[1] || triple[1] == triple[2] || triple[0] == triple[2]) continue;
             visit(triple);

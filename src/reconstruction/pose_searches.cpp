@@ -23,25 +23,25 @@ PoseSearches::PoseSearches(const Mesh& mesh, const PoseSearchOptions& options) :
 PoseSearches::~PoseSearches() = default;
 PoseSearches::PoseSearches(PoseSearches&&) noexcept = default;
 
-std::string PoseSearches::key_of(const Fragment& fragment, double least_scale, double most_scale) const {
+std::string PoseSearches::key_of(const Fragment& fragment, double min_scale, double max_scale) const {
     std::string text = of_template_ + '\n' + mesh_checksum(fragment.mesh) + '\n';
     for (const Facet facet : fragment.facets) text += facet == Facet::fracture ? '-' : '+';
     Json scales(rapidjson::kArrayType);
-    scales.PushBack(least_scale, scales.GetAllocator()).PushBack(most_scale, scales.GetAllocator());
+    scales.PushBack(min_scale, scales.GetAllocator()).PushBack(max_scale, scales.GetAllocator());
     return sha256(text + '\n' + to_text(scales));
 }
 
-std::optional<PoseSearchResult> PoseSearches::find(const Fragment& fragment, double least_scale, double most_scale) {
+std::optional<PoseSearchResult> PoseSearches::find(const Fragment& fragment, double min_scale, double max_scale) {
     std::vector<bool> counts(fragment.facets.size());
     for (std::size_t f = 0; f < counts.size(); ++f) counts[f] = fragment.facets[f] != Facet::fracture;
     if (!counts.empty() && std::find(counts.begin(), counts.end(), true) == counts.end()) return {};
-    const std::string key = key_of(fragment, least_scale, most_scale);
+    const std::string key = key_of(fragment, min_scale, max_scale);
     if (const auto found = known_.find(key); found != known_.end()) {
         ++reused_;
         return found->second.result;
     }
     if (!whole_) whole_ = std::make_unique<Whole>(mesh_, options_);
-    PoseSearchResult result = whole_->search.find(fragment.mesh, counts, least_scale, most_scale);
+    PoseSearchResult result = whole_->search.find(fragment.mesh, counts, min_scale, max_scale);
     ++made_;
     known_.emplace(key, Known{fragment.name, result});
     return result;
@@ -79,7 +79,7 @@ JsonValue to_json(const PoseSearchResult& result, JsonAllocator& allocator) {
     for (const FreeWay& way : result.ways) {
         JsonValue item =
             json_object(allocator, "point", to_json(way.point, allocator), "direction", to_json(way.direction, allocator),
-                        "turns", way.rotates, "least", way.least, "most", way.most);
+                        "turns", way.rotates, "least", way.minimum, "most", way.maximum);
         ways.PushBack(item, allocator);
     }
     add_member(entry, "ways", std::move(ways), allocator);

@@ -72,11 +72,11 @@ RelationGraph with_observed_as_reference(const Mesh& mesh, const AnnotationSet& 
         if (!parameters.HasMember("minValue") || !parameters.HasMember("maxValue") || !parameters.HasMember("measure1") ||
             !parameters.HasMember("measure2"))
             continue;
-        const double least = parameters["minValue"].IsNumber() ? parameters["minValue"].GetDouble() : 0,
-                     most = parameters["maxValue"].IsNumber() ? parameters["maxValue"].GetDouble() : 0;
-        if (!(least > 0 && most >= least)) continue;
-        parameters["minValue"].SetDouble(1 / most);
-        parameters["maxValue"].SetDouble(1 / least);
+        const double minimum = parameters["minValue"].IsNumber() ? parameters["minValue"].GetDouble() : 0,
+                     maximum = parameters["maxValue"].IsNumber() ? parameters["maxValue"].GetDouble() : 0;
+        if (!(minimum > 0 && maximum >= minimum)) continue;
+        parameters["minValue"].SetDouble(1 / maximum);
+        parameters["maxValue"].SetDouble(1 / minimum);
         parameters["measure1"].Swap(parameters["measure2"]);
         std::swap(one.annotations[0], one.annotations[1]);
         one.constraint = to_text(parameters);

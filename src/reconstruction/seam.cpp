@@ -432,11 +432,11 @@ Stitched attempt_seam(const Mesh& surface, const Patch& patch, const std::vector
 
 Joint join_patch(const Mesh& surface, Patch patch, const std::vector<std::optional<SurfaceHit>>& places, double width,
                  const std::vector<bool>& frozen) {
-    constexpr int most_attempts = 40, most_crossed = 12;
+    constexpr int max_attempts = 40, max_crossed = 12;
     Joint none, best;
     std::size_t fewest = 0;
     int crossed_attempts = 0;
-    for (int attempt = 0; attempt < most_attempts; ++attempt) {
+    for (int attempt = 0; attempt < max_attempts; ++attempt) {
         if (patch.size() == 0) {
             if (crossed_attempts > 0) return best;
             none.problem = attempt == 0 ? "nothing of it lies on the fitted template" : "its border is not simple anywhere";
@@ -450,7 +450,7 @@ Joint join_patch(const Mesh& surface, Patch patch, const std::vector<std::option
                 fewest = failed.size();
                 best = std::move(stitched.joint);
             }
-            if (failed.empty() || ++crossed_attempts == most_crossed) return best;
+            if (failed.empty() || ++crossed_attempts == max_crossed) return best;
         }
         // Where little does not help, more is taken: a ring of a fine mesh is next to nothing.
         patch.erode(std::move(failed), 1 << (attempt / 8));

@@ -27,19 +27,19 @@ std::vector<std::optional<PoseSearchResult>> place_by_search(PoseSearches& searc
         else known = known || placed[k].problem.empty();
     }
     if (wanted.empty()) return results;
-    const auto all = [&](double least, double most) {
-        for (const std::size_t k : wanted) results[k] = searches.find(*fragments[k], least, most);
+    const auto all = [&](double minimum, double maximum) {
+        for (const std::size_t k : wanted) results[k] = searches.find(*fragments[k], minimum, maximum);
     };
     if (known) {
         all(scale, scale);
     } else {
-        const double least = options.poses.least_scale, most = options.poses.most_scale;
-        all(least, most);
+        const double minimum = options.poses.min_scale, maximum = options.poses.max_scale;
+        all(minimum, maximum);
         std::vector<double> scales;
         for (const std::size_t k : wanted)
             if (results[k] && results[k]->decided) scales.push_back(results[k]->candidates.front().scale);
         if (!scales.empty()) scale = upper_median(scales);
-        if (most > least && !scales.empty()) {
+        if (maximum > minimum && !scales.empty()) {
             const auto alone = results;
             all(scale, scale);
             for (const std::size_t k : wanted)
@@ -84,12 +84,12 @@ bool close_by_landmarks(const std::vector<LandmarkPair>& pairs, double scale, do
         }
         Motion move;
         if (way.rotates) {
-            const bool round = way.most - way.least >= 2 * pi - 0.2;
+            const bool round = way.maximum - way.minimum >= 2 * pi - 0.2;
             const double angle = std::atan2(sine, cosine);
-            move.rotation = Eigen::AngleAxisd(round ? angle : std::clamp(angle, way.least, way.most), d).toRotationMatrix();
+            move.rotation = Eigen::AngleAxisd(round ? angle : std::clamp(angle, way.minimum, way.maximum), d).toRotationMatrix();
             move.translation = way.point - move.rotation * way.point;
         } else {
-            move.translation = std::clamp(along, way.least, way.most) * d;
+            move.translation = std::clamp(along, way.minimum, way.maximum) * d;
         }
         pose = move.after(pose);
     }

@@ -44,14 +44,14 @@ struct Residual {
     std::array<double, 3> barycentric{};
 };
 
-/// As how many independent places residuals count, `least` at least: those of a rough surface are independent of each other,
+/// As how many independent places residuals count, `minimum` at least: those of a rough surface are independent of each other,
 /// those of a shape that the class does not have agree with their neighbours. The surface is halved across its longest side until
 /// there are patches enough; the mean residual of a patch varies by as much less than one residual does as the patch has
 /// independent ones.
-double independent_samples(std::vector<Residual> residuals, std::size_t unknowns, double least) {
-    const auto wanted = std::max(static_cast<std::size_t>(least), 2 * unknowns);
+double independent_samples(std::vector<Residual> residuals, std::size_t unknowns, double minimum) {
+    const auto wanted = std::max(static_cast<std::size_t>(minimum), 2 * unknowns);
     std::erase_if(residuals, [](const Residual& one) { return !(one.weight > 0); });
-    if (residuals.size() < 4 * wanted) return least;
+    if (residuals.size() < 4 * wanted) return minimum;
     std::vector<std::pair<std::size_t, std::size_t>> patches{{0, residuals.size()}};
     while (patches.size() < wanted) {
         std::vector<std::pair<std::size_t, std::size_t>> halves;
@@ -83,8 +83,8 @@ double independent_samples(std::vector<Residual> residuals, std::size_t unknowns
     const auto count = static_cast<double>(patches.size());
     // What is fitted takes its share of the means' variance.
     of_means *= count / (count - static_cast<double>(unknowns));
-    const double most = static_cast<double>(residuals.size());
-    return of_means > 0 ? std::clamp(count * squares / of_means, least, std::max(least, most)) : least;
+    const double maximum = static_cast<double>(residuals.size());
+    return of_means > 0 ? std::clamp(count * squares / of_means, minimum, std::max(minimum, maximum)) : minimum;
 }
 
 class PriorFitter {
@@ -100,8 +100,8 @@ public:
         coefficients_ = VectorXd::Zero(prior.modes.cols());
         const MatchSearch search(scaled, set, fragments);
         correspondences_ = search.correspondences();
-        constexpr int most = 3000;
-        samples_ = search.samples(most);
+        constexpr int maximum = 3000;
+        samples_ = search.samples(maximum);
         const MatchSearch::Labels labels = search.labels(scaled, {});
         for (const FragmentSample& sample : samples_) parts_.try_emplace(sample.label);
         for (auto& [label, part] : parts_) {
@@ -175,8 +175,7 @@ private:
         // Who is off by far more than most does not count (Tukey's biweight).
         std::vector<double> sizes;
         for (const Residual& one : matches) sizes.push_back(std::abs(one.off));
-        const double least_error = 1e-4 * diagonal_,
-                     limit = 4.685 * std::max(1.4826 * upper_median(std::move(sizes)), least_error);
+        const double min_error = 1e-4 * diagonal_, limit = 4.685 * std::max(1.4826 * upper_median(std::move(sizes)), min_error);
         double weight = 0;
         for (Residual& one : matches) {
             const double t = one.off / limit;
@@ -236,7 +235,7 @@ private:
         normal = normal.selfadjointView<Eigen::Lower>();
         // The observed surface counts as so many places with the residual as their error, which is never taken for less than
         // what registration leaves; each coefficient is off by one deviation at will.
-        const double error = std::max(fit.residual, least_error), stiffness = error * error / fit.samples;
+        const double error = std::max(fit.residual, min_error), stiffness = error * error / fit.samples;
         for (Eigen::Index k = 0; k < modes; ++k) {
             const double b = coefficients_[k] / prior_.deviations[static_cast<std::size_t>(k)];
             normal(7 + k, 7 + k) += stiffness;
@@ -249,7 +248,7 @@ private:
         for (Eigen::Index k = 0; k < modes; ++k) {
             const double deviation = prior_.deviations[static_cast<std::size_t>(k)];
             coefficients_[k] =
-                std::clamp(coefficients_[k] + deviation * x[7 + k], -options_.most * deviation, options_.most * deviation);
+                std::clamp(coefficients_[k] + deviation * x[7 + k], -options_.maximum * deviation, options_.maximum * deviation);
         }
         const Vector3d rotation = x.head<3>() / spread;
         const double angle = rotation.norm();
@@ -283,7 +282,7 @@ PriorFit fit_prior(const Mesh& scaled, const AnnotationSet& set, const std::vect
 
 void PriorOptions::describe(OptionList& visit) {
     visit("class-iterations", iterations, "most steps of the fit of a class's modes", Range{1, 1000});
-    visit("class-limit", most, "standard deviations that a mode may go from the mean", Range{0, 100});
+    visit("class-limit", maximum, "standard deviations that a mode may go from the mean", Range{0, 100});
     visit("class-samples", samples, "least number of independent places that the observed surface counts as, against the class",
           Range{1, 1e9});
 }

@@ -67,11 +67,11 @@ Part part_of(const Mesh& mesh, const Annotation& annotation, const std::vector<I
         const Point& place = mesh.point(Vertex(landmarks[l]));
         const VertexChain* nearest = nullptr;
         std::size_t goal = 0;
-        double least = std::numeric_limits<double>::infinity();
+        double minimum = std::numeric_limits<double>::infinity();
         for (const VertexChain& chain : chains)
             for (std::size_t i = 0; i < chain.vertices.size(); ++i)
-                if (const double d = CGAL::squared_distance(mesh.point(Vertex(chain.vertices[i])), place); d < least) {
-                    least = d;
+                if (const double d = CGAL::squared_distance(mesh.point(Vertex(chain.vertices[i])), place); d < minimum) {
+                    minimum = d;
                     nearest = &chain;
                     goal = i;
                 }
@@ -95,17 +95,16 @@ double outline_cost(const std::vector<double>& a, const std::vector<double>& b) 
 
 /// A cost brought to 0 to 1.
 struct Scale {
-    double least = 0, most = 0;
-    [[nodiscard]] double operator()(double value) const { return most > least ? (value - least) / (most - least) : 0; }
+    double minimum = 0, maximum = 0;
+    [[nodiscard]] double operator()(double value) const {
+        return maximum > minimum ? (value - minimum) / (maximum - minimum) : 0;
+    }
 };
 
 class Assigner {
 public:
     Assigner(Part ours, Part theirs, const VertexAssignmentOptions& options)
-        : ours_(std::move(ours)),
-          theirs_(std::move(theirs)),
-          options_(options),
-          least_cosine_(std::cos(options.angle * pi / 180)) {
+        : ours_(std::move(ours)), theirs_(std::move(theirs)), options_(options), min_cosine_(std::cos(options.angle * pi / 180)) {
         for (const bool outer : {false, true}) {
             std::vector<Point> places;
             for (const int j : outer ? theirs_.outer : theirs_.inner)
@@ -167,7 +166,7 @@ private:
     [[nodiscard]] bool allowed(int i, int j) const {
         if (options_.reach > 0 && distance(i, j) > options_.reach) return false;
         return options_.angle >= 180 ||
-               ours_.normals[static_cast<std::size_t>(i)] * theirs_.normals[static_cast<std::size_t>(j)] >= least_cosine_;
+               ours_.normals[static_cast<std::size_t>(i)] * theirs_.normals[static_cast<std::size_t>(j)] >= min_cosine_;
     }
 
     /// Least and greatest of each cost over all pairs.
@@ -188,20 +187,21 @@ private:
         const bool same = (!ours_.inner.empty() && !theirs_.inner.empty()) || (!ours_.outer.empty() && !theirs_.outer.empty());
         const bool differ = (!ours_.inner.empty() && !theirs_.outer.empty()) || (!ours_.outer.empty() && !theirs_.inner.empty());
         boundary_ = {same ? 0.0 : 1.0, differ ? 1.0 : 0.0};
-        std::vector<double> least(ours_.outer.size(), std::numeric_limits<double>::infinity()), most(ours_.outer.size(), 0);
+        std::vector<double> minimum(ours_.outer.size(), std::numeric_limits<double>::infinity()), maximum(ours_.outer.size(), 0);
         parallel_for(
             ours_.outer.size(),
             [&](std::size_t k) {
                 for (const int j : theirs_.outer) {
                     const double d = ways(ours_.outer[k], j);
-                    least[k] = std::min(least[k], d);
-                    most[k] = std::max(most[k], d);
+                    minimum[k] = std::min(minimum[k], d);
+                    maximum[k] = std::max(maximum[k], d);
                 }
             },
             16);
         const bool zero = !(ours_.inner.empty() && theirs_.inner.empty());  // pairs with one inside cost nothing
         if (!ours_.outer.empty() && !theirs_.outer.empty())
-            outline_ = {zero ? 0.0 : *std::min_element(least.begin(), least.end()), *std::max_element(most.begin(), most.end())};
+            outline_ = {zero ? 0.0 : *std::min_element(minimum.begin(), minimum.end()),
+                        *std::max_element(maximum.begin(), maximum.end())};
     }
 
     /// The best counterparts of a vertex that are allowed, best first; more than wanted of each kind are looked at where some are
@@ -234,7 +234,7 @@ private:
 
     Part ours_, theirs_;
     const VertexAssignmentOptions& options_;
-    double least_cosine_;
+    double min_cosine_;
     std::array<PointTree, 2> trees_;  ///< of the fragment's vertices inside, and on outlines
     Scale distance_, boundary_, outline_;
 };

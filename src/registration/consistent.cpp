@@ -76,8 +76,8 @@ ConsistentMatches consistent_matches(const FeatureSet& a, const FeatureSet& b, c
     }
     FitOptions fit;
     fit.scale = options.shrinkage > 0;
-    fit.least_scale = 1 - options.shrinkage;
-    fit.most_scale = 1 / (1 - options.shrinkage);
+    fit.min_scale = 1 - options.shrinkage;
+    fit.max_scale = 1 / (1 - options.shrinkage);
     for (int round = 0; round < 10 && best.size() >= 3; ++round) {
         std::vector<Vector3d> from, to;
         for (const std::size_t i : best) {

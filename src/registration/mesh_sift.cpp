@@ -208,14 +208,14 @@ public:
                 histograms(FeatureSet::bins + (first + 1) % FeatureSet::bins, disc) += weight * tilt * (a - first);
             }
         }
-        const double most = 1 / std::sqrt(static_cast<double>(FeatureSet::bins));
+        const double maximum = 1 / std::sqrt(static_cast<double>(FeatureSet::bins));
         for (int disc = 0; disc < FeatureSet::discs; ++disc) {
             const bool there = covered[disc] > 0.5 * pi * disc_radius * disc_radius;
             for (int part = 0; part < 2; ++part) {
                 auto h = histograms.col(disc).segment<FeatureSet::bins>(part * FeatureSet::bins);
                 const double norm = h.norm();
                 if (norm > 0) h /= norm;
-                h = h.cwiseMin(most);
+                h = h.cwiseMin(maximum);
                 if (!there) h.setZero();
             }
             descriptor.segment<2 * FeatureSet::bins>(disc * 2 * FeatureSet::bins) = histograms.col(disc).cast<float>();

@@ -16,9 +16,9 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr int angles = 12;                     ///< bins from 0 to pi
-constexpr int turns = 36;                      ///< bins of the turn about a normal
-constexpr std::size_t most_entries = 1000000;  ///< that one reference point of the part looks at
+constexpr int angles = 12;                    ///< bins from 0 to pi
+constexpr int turns = 36;                     ///< bins of the turn about a normal
+constexpr std::size_t max_entries = 1000000;  ///< that one reference point of the part looks at
 
 /// A frame whose third axis is the normal.
 Matrix3d frame(const Vector3d& normal) {
@@ -128,7 +128,7 @@ std::vector<VotedMotion> PairTable::vote(const SurfacePoints& part, int referenc
                              [](const Kind& a, const Kind& b) { return a.end - a.begin < b.end - b.begin; });
             std::size_t seen = 0;
             for (const auto& [begin, end, j] : kinds) {
-                if (seen > most_entries) break;
+                if (seen > max_entries) break;
                 seen += end - begin;
                 const Vector3d d = part.places[j] - part.places[i];
                 const double mine = std::atan2(axes.col(1).dot(d), axes.col(0).dot(d)) / (2 * pi) * turns;
@@ -151,15 +151,15 @@ std::vector<VotedMotion> PairTable::vote(const SurfacePoints& part, int referenc
             best.reserve(whole);
             for (std::size_t p = 0; p < whole; ++p) {
                 const float* v = &votes[p * turns];
-                float most = 0;
+                float maximum = 0;
                 int at = 0;
                 for (int b = 0; b < turns; ++b) {
                     const float sum = v[b] + 0.5F * (v[(b + 1) % turns] + v[(b + turns - 1) % turns]);
-                    if (sum > most) most = sum, at = b;
+                    if (sum > maximum) maximum = sum, at = b;
                 }
                 const float before = v[(at + turns - 1) % turns], after = v[(at + 1) % turns];
                 const double shift = v[at] + before + after > 0 ? double(after - before) / double(v[at] + before + after) : 0;
-                if (most > 0) best.push_back({most, static_cast<std::uint32_t>(p), at + shift});
+                if (maximum > 0) best.push_back({maximum, static_cast<std::uint32_t>(p), at + shift});
             }
             const auto better = [](const Best& a, const Best& b) {
                 return a.votes != b.votes ? a.votes > b.votes : a.reference < b.reference;

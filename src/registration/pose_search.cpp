@@ -123,7 +123,7 @@ double angle_between(const Motion& a, const Motion& b) {
 
 // How often the best place was the right one among pieces broken off objects, off others of their class and off strangers
 // (ostraka_experiments pose-search; doc/pose-search.md), by logistic regression on the margin and the score.
-constexpr double confidence_at_rest = -6.5, confidence_of_margin = 14, confidence_of_score = 6, most_margin = 3;
+constexpr double confidence_at_rest = -6.5, confidence_of_margin = 14, confidence_of_score = 6, max_margin = 3;
 
 }  // namespace
 
@@ -137,18 +137,18 @@ struct PoseSearch::State {
 
     State(const SurfaceSearch& search, const PoseSearchOptions& given) : whole(search), options(given) {}
 
-    [[nodiscard]] std::vector<double> scales(double least, double most) const {
-        if (!(most > least * (1 + 1e-9))) return {least};
-        const int steps = std::max(1, static_cast<int>(std::ceil(std::log(most / least) / std::log(1 + scale_step))));
+    [[nodiscard]] std::vector<double> scales(double minimum, double maximum) const {
+        if (!(maximum > minimum * (1 + 1e-9))) return {minimum};
+        const int steps = std::max(1, static_cast<int>(std::ceil(std::log(maximum / minimum) / std::log(1 + scale_step))));
         std::vector<double> list;
-        for (int k = 0; k <= steps; ++k) list.push_back(least * std::pow(most / least, static_cast<double>(k) / steps));
+        for (int k = 0; k <= steps; ++k) list.push_back(minimum * std::pow(maximum / minimum, static_cast<double>(k) / steps));
         return list;
     }
 
     /// The part's points in its own unit, as dense as the whole's, about its middle.
     [[nodiscard]] SurfacePoints points_of(const Mesh& part, const std::vector<bool>& of_part, double scale) const {
-        constexpr double least = 300;
-        const double own = std::sqrt(0.7 * marked_area(part, of_part) / least);
+        constexpr double minimum = 300;
+        const double own = std::sqrt(0.7 * marked_area(part, of_part) / minimum);
         return spread_points(part, of_part, std::min(spacing * scale, own), radius * scale, options.seed);
     }
 
@@ -249,7 +249,7 @@ struct PoseSearch::State {
     /// for, are on the scaled whole.
     [[nodiscard]] SlippableMotions slippable_from(const SurfacePoints& points, const PoseCandidate& at, double tolerance,
                                                   std::vector<FreeWay>* ways) const {
-        constexpr double least_rotation = pi / 12;
+        constexpr double min_rotation = pi / 12;
         const SurfacePoints some = thinned(points, 300);
         const Extent extent = extent_of(points);
         const Nearness near(tolerance / at.scale);
@@ -283,17 +283,17 @@ struct PoseSearch::State {
                 reached = step.amount;
             }
             const bool rotates = way.front().rotates;
-            if (std::abs(reached) >= (rotates ? least_rotation : length_apart * extent.size))
+            if (std::abs(reached) >= (rotates ? min_rotation : length_apart * extent.size))
                 (rotates ? any_rotation : any_translation) = true;
             if (ways == nullptr) continue;
             // Ways come for one sign, then for the other.
             const auto number = static_cast<std::size_t>(&way - list.data());
             if (number >= list.size() / 2) {
-                (*ways)[number - list.size() / 2].least = reached;
+                (*ways)[number - list.size() / 2].minimum = reached;
             } else {
                 FreeWay& one = ways->emplace_back();
                 one.rotates = rotates;
-                one.most = reached;
+                one.maximum = reached;
                 one.point = at.pose(slippable.point);
                 one.direction = at.pose.rotation * (rotates ? Vector3d(Eigen::AngleAxisd(way.front().motion.rotation).axis())
                                                             : Vector3d(way.front().motion.translation.normalized()));
@@ -304,7 +304,7 @@ struct PoseSearch::State {
         if (!any_rotation && !any_translation) slippable.kind = SlippableKind::none;
         if (ways != nullptr)
             std::erase_if(*ways, [&](const FreeWay& one) {
-                return one.most - one.least < (one.rotates ? least_rotation : length_apart * extent.size);
+                return one.maximum - one.minimum < (one.rotates ? min_rotation : length_apart * extent.size);
             });
         return slippable;
     }
@@ -320,7 +320,7 @@ void PoseSearch::State::decide(const SurfacePoints& points, double tolerance, Po
     result.slippable.direction = best.pose.rotation * open.direction;
     const bool alone = result.candidates.size() < 2;
     const double second = alone ? 0 : result.candidates[1].score;
-    result.margin = std::min(most_margin, std::log((1 - second + 0.02) / (1 - best.score + 0.02)));
+    result.margin = std::min(max_margin, std::log((1 - second + 0.02) / (1 - best.score + 0.02)));
     const double rated = confidence_at_rest + confidence_of_margin * result.margin + confidence_of_score * best.score;
     result.confidence = 1 / (1 + std::exp(-rated));
     const auto per_cent = [](double share) { return digits(100 * share, 3) + " %"; };
@@ -332,7 +332,7 @@ void PoseSearch::State::decide(const SurfacePoints& points, double tolerance, Po
     } else if (open.kind == SlippableKind::more || own == SlippableKind::more || points.size() < 30) {
         result.confidence = 0;
         result.reason = "it has too little shape: it lies as well nearly anywhere";
-    } else if (result.confidence >= options.least_confidence) {
+    } else if (result.confidence >= options.min_confidence) {
         result.decided = true;
     } else if (!alone && result.margin < 0.1) {
         const PoseCandidate& other = result.candidates[1];
@@ -350,7 +350,7 @@ PoseSearch::PoseSearch(PoseSearch&&) noexcept = default;
 
 PoseSearch::PoseSearch(const SurfaceSearch& whole, const PoseSearchOptions& options) {
     check_options(options, "pose search");
-    if (options.least_scale > options.most_scale)
+    if (options.min_scale > options.max_scale)
         fail_usage("the smallest scale searched is larger than the largest", "exchange them");
     state_ = std::make_unique<State>(whole, options);
     State& s = *state_;
@@ -366,13 +366,12 @@ PoseSearch::PoseSearch(const SurfaceSearch& whole, const PoseSearchOptions& opti
 }
 
 PoseSearchResult PoseSearch::find(const Mesh& part, const std::vector<bool>& of_part) const {
-    return find(part, of_part, state_->options.least_scale, state_->options.most_scale);
+    return find(part, of_part, state_->options.min_scale, state_->options.max_scale);
 }
 
-PoseSearchResult PoseSearch::find(const Mesh& part, const std::vector<bool>& of_part, double least_scale,
-                                  double most_scale) const {
+PoseSearchResult PoseSearch::find(const Mesh& part, const std::vector<bool>& of_part, double min_scale, double max_scale) const {
     const State& s = *state_;
-    if (!(least_scale > 0 && most_scale >= least_scale)) fail_usage("the range of scales is empty", "give two scales above 0");
+    if (!(min_scale > 0 && max_scale >= min_scale)) fail_usage("the range of scales is empty", "give two scales above 0");
     if (!of_part.empty() && of_part.size() != part.number_of_faces())
         fail_usage("there are " + std::to_string(of_part.size()) + " marks for " + std::to_string(part.number_of_faces()) +
                    " faces");
@@ -381,19 +380,19 @@ PoseSearchResult PoseSearch::find(const Mesh& part, const std::vector<bool>& of_
     // A part is no larger than its whole, and one that is next to nothing of it cannot be told from noise.
     constexpr double too_large = 1.8, too_small = 0.01;  // diagonals of boxes, which turn
     const double ratio = marked_diagonal(part, of_part) / s.whole.diagonal();
-    if (ratio > too_large * most_scale || ratio < too_small * least_scale) {
+    if (ratio > too_large * max_scale || ratio < too_small * min_scale) {
         PoseSearchResult result;
         result.reason = "it is " +
-                        (ratio > most_scale ? digits(ratio / most_scale, 3) + " times as large as"
-                                            : "1/" + digits(least_scale / ratio, 3) + " of") +
+                        (ratio > max_scale ? digits(ratio / max_scale, 3) + " times as large as"
+                                           : "1/" + digits(min_scale / ratio, 3) + " of") +
                         " the template, a part of which it is to be: is it in another unit?";
         return result;
     }
-    const auto scales = s.scales(least_scale, most_scale);
+    const auto scales = s.scales(min_scale, max_scale);
     const bool free = scales.size() > 1;
 
     std::vector<Proposal> all;
-    const SurfacePoints middling = s.points_of(part, of_part, std::sqrt(least_scale * most_scale));
+    const SurfacePoints middling = s.points_of(part, of_part, std::sqrt(min_scale * max_scale));
     const Extent extent = extent_of(middling);
     for (const double scale : scales) {
         if (scales.size() == 1) s.propose(middling, extent, scale, free, all);
@@ -451,10 +450,10 @@ PoseSearchResult PoseSearch::find(const Mesh& part, const std::vector<bool>& of_
 }
 
 void PoseSearchOptions::describe(OptionList& visit) {
-    visit("search-least-scale", least_scale, "smallest scale of the template that is searched", Range{1e-6, 1e6});
-    visit("search-most-scale", most_scale, "largest scale of the template that is searched", Range{1e-6, 1e6});
+    visit("search-least-scale", min_scale, "smallest scale of the template that is searched", Range{1e-6, 1e6});
+    visit("search-most-scale", max_scale, "largest scale of the template that is searched", Range{1e-6, 1e6});
     visit("search-tolerance", tolerance, "what lies nearer is on the template", Range{1e-6, 1}, "share of the fragment's size");
-    visit("least-confidence", least_confidence, "of a pose that was searched; below it the fragment is not placed", Range{0, 1});
+    visit("least-confidence", min_confidence, "of a pose that was searched; below it the fragment is not placed", Range{0, 1});
     visit("search-points", points, "points spread over the template", Range{50, 4000});
     visit("search-references", references, "points of a fragment for which places are sought", Range{1, 4000});
     visit("search-partners", partners, "other points of the fragment that vote for each of them", Range{1, 100000});

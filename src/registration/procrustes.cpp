@@ -14,7 +14,7 @@ namespace ostraka {
 
 namespace {
 
-constexpr int most_iterations = 10000;
+constexpr int max_iterations = 10000;
 
 Eigen::RowVector3d centroid_of(const Landmarks& landmarks) {
     // About the first one, so that nothing is lost far from the origin.
@@ -93,7 +93,7 @@ GeneralisedProcrustes generalised_procrustes(const std::vector<Landmarks>& confi
     result.mean = centred.front();
     double before = std::numeric_limits<double>::infinity(), all = 0;
     for (const Landmarks& x : centred) all += x.squaredNorm();
-    while (result.iterations < most_iterations && !result.converged) {
+    while (result.iterations < max_iterations && !result.converged) {
         ++result.iterations;
         parallel_for(n, [&](std::size_t i) {
             turns[i] = best_turn(centred[i], result.mean, options.reflection).rotation;

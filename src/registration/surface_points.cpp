@@ -21,7 +21,7 @@ struct Raw {
 };
 
 Raw raw_points(const Mesh& mesh, const std::vector<bool>& faces, double patch) {
-    constexpr double most = 4096;  // of one face
+    constexpr double maximum = 4096;  // of one face
     Raw raw;
     for (const Face face : mesh.faces()) {
         if (!faces.empty() && !faces[face]) continue;
@@ -30,7 +30,7 @@ Raw raw_points(const Mesh& mesh, const std::vector<bool>& faces, double patch) {
         if (!(area > 0)) continue;
         const auto c = corners(mesh, face);
         const Vector3d a = eigen(mesh.point(c[0])), u = eigen(mesh.point(c[1])) - a, v = eigen(mesh.point(c[2])) - a;
-        const auto count = static_cast<int>(std::clamp(std::ceil(area / patch), 1.0, most));
+        const auto count = static_cast<int>(std::clamp(std::ceil(area / patch), 1.0, maximum));
         for (int k = 0; k < count; ++k) {
             // A sequence of low discrepancy (Roberts 2018), folded into the triangle; the first point is the centroid.
             double s = 1.0 / 3, t = 1.0 / 3;

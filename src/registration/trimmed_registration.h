@@ -57,9 +57,9 @@ struct Registration {
 };
 
 /// From `start`: measure(pose) fills `pairs` and judges, step(pose) gives the next pose. The pairs change from step to step, so
-/// that what is minimised may rise for a while: the best pose met is kept. Ends after some steps without a gain of `least_gain`.
+/// that what is minimised may rise for a while: the best pose met is kept. Ends after some steps without a gain of `min_gain`.
 template <class Measure, class Step>
-Registration register_from(const Motion& start, int iterations, double least_gain, const PlanePairs& pairs, Measure&& measure,
+Registration register_from(const Motion& start, int iterations, double min_gain, const PlanePairs& pairs, Measure&& measure,
                            Step&& step) {
     constexpr int patience = 4;
     Registration result{start, measure(start)};
@@ -67,7 +67,7 @@ Registration register_from(const Motion& start, int iterations, double least_gai
     for (int since = 0; result.iterations < iterations && since < patience && pairs.list.size() >= 6; ++result.iterations) {
         pose = step(pose);
         const PoseFit now = measure(pose);
-        since = now.minimised < result.fit.minimised * (1 - least_gain) ? 0 : since + 1;
+        since = now.minimised < result.fit.minimised * (1 - min_gain) ? 0 : since + 1;
         if (now.minimised < result.fit.minimised) result.pose = pose, result.fit = now;
         result.settled = since >= patience;
     }

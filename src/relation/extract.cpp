@@ -18,12 +18,12 @@ std::vector<std::vector<int>> clusters(std::vector<std::pair<double, int>> value
     for (std::size_t i = 0; i < values.size(); ++i) runs.emplace_back(i, i);
     while (runs.size() > 1) {
         std::size_t best = 0;
-        double least = std::numeric_limits<double>::infinity();
+        double minimum = std::numeric_limits<double>::infinity();
         for (std::size_t i = 0; i + 1 < runs.size(); ++i) {
             const double span = values[runs[i + 1].second].first - values[runs[i].first].first;
-            if (span < least) least = span, best = i;
+            if (span < minimum) minimum = span, best = i;
         }
-        if (!(least <= width)) break;
+        if (!(minimum <= width)) break;
         runs[best].second = runs[best + 1].second;
         runs.erase(runs.begin() + static_cast<std::ptrdiff_t>(best) + 1);
     }

@@ -101,13 +101,13 @@ void check_members(const Relationship& relationship, const AnnotationSet& set, c
     const RelationType* type = find_relation_type(relationship.type);
     if (type == nullptr) return;
     const std::size_t count = relationship.annotations.size();
-    if (count < type->least || (type->most > 0 && count > type->most)) {
-        const std::string least = std::to_string(type->least), most = std::to_string(type->most);
+    if (count < type->minimum || (type->maximum > 0 && count > type->maximum)) {
+        const std::string minimum = std::to_string(type->minimum), maximum = std::to_string(type->maximum);
         fail_input(place,
                    "'" + type->name + "' is said of " + std::to_string(count) + (count == 1 ? " annotation" : " annotations"),
-                   "name " + (type->most == 0             ? least + " or more"
-                              : type->least == type->most ? least
-                                                          : least + " to " + most));
+                   "name " + (type->maximum == 0               ? minimum + " or more"
+                              : type->minimum == type->maximum ? minimum
+                                                               : minimum + " to " + maximum));
     }
     if (type->geometric && relationship.directed != type->directed)
         fail_input(place, "'" + type->name + (type->directed ? "' has a direction" : "' has no direction"),
@@ -136,10 +136,10 @@ const RelationType* find_relation_type(const std::string& name) {
 std::string nearest_relation_type(const std::string& name) {
     const std::string wanted = lower(name).substr(0, 100);
     const RelationType* best = nullptr;
-    std::size_t least = std::numeric_limits<std::size_t>::max();
+    std::size_t minimum = std::numeric_limits<std::size_t>::max();
     for (const auto& type : relation_types()) {
         const std::size_t distance = edit_distance(wanted, type.name, 200);
-        if (distance < least) least = distance, best = &type;
+        if (distance < minimum) minimum = distance, best = &type;
     }
     return best->name;
 }

@@ -71,20 +71,20 @@ void measure_flatness(const std::vector<Part*>& parts, bool on_line, Findings& f
         all.points.insert(all.points.end(), part->cloud().points.begin(), part->cloud().points.end());
         all.weights.insert(all.weights.end(), part->cloud().weights.begin(), part->cloud().weights.end());
     }
-    const std::size_t least = on_line ? 3 : 4;
-    if (all.points.size() < least) throw Unknown{"fewer than " + std::to_string(least) + " points always are"};
+    const std::size_t minimum = on_line ? 3 : 4;
+    if (all.points.size() < minimum) throw Unknown{"fewer than " + std::to_string(minimum) + " points always are"};
     const Cloud::Plane plane = all.plane();
     findings.add_length("distance", on_line ? std::hypot(plane.rms, plane.spread) : plane.rms);
     if (!on_line) findings.parameters.plane = PointAndDirection{array_of(plane.point), array_of(plane.normal)};
 }
 
 void measure_level(const std::vector<Part*>& parts, const Vector3d& up, Findings& findings) {
-    double least = std::numeric_limits<double>::infinity(), most = -least;
+    double minimum = std::numeric_limits<double>::infinity(), maximum = -minimum;
     for (Part* part : parts) {
         const double height = up.dot(part->centroid());
-        least = std::min(least, height), most = std::max(most, height);
+        minimum = std::min(minimum, height), maximum = std::max(maximum, height);
     }
-    findings.add_length("height", most - least);
+    findings.add_length("height", maximum - minimum);
     findings.parameters.up = array_of(up);
 }
 
@@ -105,9 +105,9 @@ void measure_contact(const Cloud* contact, const std::vector<Part*>& parts, bool
 
 /// Largest relative difference of the values from their mean, per cent.
 double spread_percent(const std::vector<double>& values) {
-    const auto [least, most] = std::minmax_element(values.begin(), values.end());
-    const double size = std::max(std::abs(*least), std::abs(*most));
-    return size > 0 ? 100 * (*most - *least) / size : 0;
+    const auto [minimum, maximum] = std::minmax_element(values.begin(), values.end());
+    const double size = std::max(std::abs(*minimum), std::abs(*maximum));
+    return size > 0 ? 100 * (*maximum - *minimum) / size : 0;
 }
 
 double shape_difference(Part& a, Part& b) {

@@ -61,13 +61,13 @@ double Part::area() {
 
 const std::vector<Vector3d>& Part::samples() {
     if (samples_) return *samples_;
-    const std::size_t most = 500;
+    const std::size_t maximum = 500;
     std::vector<Vector3d> list;
     const double total = area();
     double passed = 0;
     for (std::size_t i = 0; i < cloud().points.size() && total > 0; ++i) {
         passed += cloud().weights[i];
-        if (cloud().points.size() <= most || passed / total * double(most) >= double(list.size()) + 0.5)
+        if (cloud().points.size() <= maximum || passed / total * double(maximum) >= double(list.size()) + 0.5)
             list.push_back(cloud().points[i]);
     }
     return samples_.emplace(std::move(list));

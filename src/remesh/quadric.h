@@ -41,14 +41,14 @@ struct Quadric {
     }
     /// The point where Q is smallest, by Cholesky; nothing where A is not safely positive definite.
     [[nodiscard]] std::optional<Vector> minimum() const {
-        const double least = 1e-10 * (xx + yy + zz);
-        if (!(xx > least)) return {};
+        const double tolerance = 1e-10 * (xx + yy + zz);
+        if (!(xx > tolerance)) return {};
         const double l11 = std::sqrt(xx), l21 = xy / l11, l31 = xz / l11;
         const double d2 = yy - l21 * l21;
-        if (!(d2 > least)) return {};
+        if (!(d2 > tolerance)) return {};
         const double l22 = std::sqrt(d2), l32 = (yz - l31 * l21) / l22;
         const double d3 = zz - l31 * l31 - l32 * l32;
-        if (!(d3 > least)) return {};
+        if (!(d3 > tolerance)) return {};
         const double l33 = std::sqrt(d3);
         const double y1 = -b.x() / l11, y2 = (-b.y() - l21 * y1) / l22, y3 = (-b.z() - l31 * y1 - l32 * y2) / l33;
         const double z = y3 / l33, y = (y2 - l32 * z) / l22, x = (y1 - l21 * y - l31 * z) / l11;

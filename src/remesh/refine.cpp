@@ -10,12 +10,12 @@ namespace ostraka {
 
 namespace {
 
-constexpr std::uint64_t most_edges = (std::uint64_t{1} << 31) - 2;  ///< two halfedges each must fit 32 bits
+constexpr std::uint64_t max_edges = (std::uint64_t{1} << 31) - 2;  ///< two halfedges each must fit 32 bits
 
 void check_size(std::uint64_t edges) {
-    if (edges > most_edges)
-        fail_usage("the refined mesh would have " + std::to_string(edges) + " edges, more than the " +
-                       std::to_string(most_edges) + " that 32-bit indices allow",
+    if (edges > max_edges)
+        fail_usage("the refined mesh would have " + std::to_string(edges) + " edges, more than the " + std::to_string(max_edges) +
+                       " that 32-bit indices allow",
                    "ask for fewer vertices or levels");
 }
 

@@ -153,7 +153,7 @@ private:
     [[nodiscard]] bool keeps_shape(Halfedge h, const Vector& x, bool target_stays) const {
         constexpr double thinnest = 0.02;  // area over sum of squared edge lengths, twice; 0.29 for an equilateral triangle
         constexpr double flat = 1e-9;
-        const double least_cosine = std::max(1e-3, std::cos(stage_.max_normal_change * pi / 180));
+        const double min_cosine = std::max(1e-3, std::cos(stage_.max_normal_change * pi / 180));
         bool fine = true;
         const auto check = [&](Halfedge g) {  // g ends in the vertex that moves
             if (mesh_.is_border(g) || mesh_.face(g) == mesh_.face(h) || mesh_.face(g) == mesh_.face(mesh_.opposite(h))) return;
@@ -167,7 +167,7 @@ private:
             const double length_old = std::sqrt(n_old.squared_length()), length_new = std::sqrt(n_new.squared_length());
             fine = length_new > flat * sides_new;
             if (!fine || !(length_old > flat * sides_old)) return;  // a face that was flat has no direction to keep
-            fine = n_old * n_new >= least_cosine * length_old * length_new;
+            fine = n_old * n_new >= min_cosine * length_old * length_new;
             if (fine && stage_.good_shapes)
                 fine = length_new >= thinnest * sides_new || length_new * sides_old >= length_old * sides_new;
         };

@@ -36,7 +36,7 @@ struct Step {
 
 std::vector<Step> steps_along(const SceneLine& line, const Surface& surface, const Camera& camera) {
     constexpr double spacing = 1.5;
-    constexpr double most = 4096;  // of one segment: enough for any that lies within the picture
+    constexpr double maximum = 4096;  // of one segment: enough for any that lies within the picture
     std::vector<Step> steps;
     const auto add = [&](const Eigen::Vector3d& point) {
         Step step{point, {}, false};
@@ -49,9 +49,9 @@ std::vector<Step> steps_along(const SceneLine& line, const Surface& surface, con
         if (i > 0) {
             const Eigen::Vector3d before = surface.to_local(line.points[i - 1]);
             double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
-            double count = most;
+            double count = maximum;
             if (camera.project(before, x0, y0) && camera.project(point, x1, y1))
-                count = std::clamp(std::ceil(std::hypot(x1 - x0, y1 - y0) / spacing), 1.0, most);
+                count = std::clamp(std::ceil(std::hypot(x1 - x0, y1 - y0) / spacing), 1.0, maximum);
             for (double k = 1; k < count; ++k) add(before + (k / count) * (point - before));
         }
         add(point);

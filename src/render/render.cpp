@@ -23,14 +23,14 @@ struct Size {
 };
 
 Size parse_size(const std::string& text) {
-    constexpr int least = 16, most = 16384;
-    constexpr double most_pixels = 1 << 25;
+    constexpr int minimum = 16, maximum = 16384;
+    constexpr double max_pixels = 1 << 25;
     Size size{};
     char cross = 0, rest = 0;
     const bool good =
         text.size() < 16 && std::sscanf(text.c_str(), "%d%c%d%c", &size.width, &cross, &size.height, &rest) == 3 && cross == 'x';
-    if (!good || size.width < least || size.height < least || size.width > most || size.height > most ||
-        double(size.width) * size.height > most_pixels)
+    if (!good || size.width < minimum || size.height < minimum || size.width > maximum || size.height > maximum ||
+        double(size.width) * size.height > max_pixels)
         fail_usage("size '" + text + "' is not possible",
                    "use WIDTHxHEIGHT such as 1200x900, each 16 to 16384, at most 33 million pixels");
     return size;
@@ -50,12 +50,12 @@ void share_scale(std::vector<Plan>& plans, const std::vector<std::unique_ptr<Sur
     for (const auto& surface : surfaces) largest = std::max(largest, surface->unit_length());
     const auto relative = [&](const Plan& plan) { return surfaces[plan.pane.scene]->unit_length() / largest; };
     for (std::size_t scene = 0; scene < surfaces.size(); ++scene) {
-        double least = std::numeric_limits<double>::infinity();
+        double minimum = std::numeric_limits<double>::infinity();
         for (const Plan& plan : plans)
-            if (all || plan.pane.scene == scene) least = std::min(least, plan.camera.scale / relative(plan));
+            if (all || plan.pane.scene == scene) minimum = std::min(minimum, plan.camera.scale / relative(plan));
         for (Plan& plan : plans) {
             if (plan.pane.scene != scene) continue;
-            const double scale = least * relative(plan);
+            const double scale = minimum * relative(plan);
             if (plan.camera.distance > 0) plan.camera.distance *= plan.camera.scale / scale;
             plan.camera.scale = scale;
         }
@@ -89,18 +89,18 @@ std::size_t column_count(const std::vector<std::array<double, 2>>& extents, bool
     if (six) return scenes == 1 ? 3 : 6;
     if (panes <= 3) return panes;
     std::size_t best = panes;
-    double most = -std::numeric_limits<double>::infinity();
+    double maximum = -std::numeric_limits<double>::infinity();
     for (std::size_t columns = panes; columns >= 1; --columns) {
         const std::size_t rows = (panes + columns - 1) / columns;
         const double width = room.width / double(columns), height = std::max(1.0, room.height / double(rows) - room.strip);
-        double least = std::numeric_limits<double>::infinity(), sum = 0;
+        double minimum = std::numeric_limits<double>::infinity(), sum = 0;
         for (const auto& [wide, high] : extents) {
             const double scale = std::min(width / wide, height / high);
-            least = std::min(least, scale);
+            minimum = std::min(minimum, scale);
             sum += std::log(scale);
         }
         // Rounding shall not choose among columns that do as well.
-        if (const double value = one_scale ? std::log(least) : sum; value > most + 1e-9) most = value, best = columns;
+        if (const double value = one_scale ? std::log(minimum) : sum; value > maximum + 1e-9) maximum = value, best = columns;
     }
     return best;
 }

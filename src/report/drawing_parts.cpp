@@ -16,8 +16,8 @@ std::string length_text(double value, const std::string& unit) {
     return significant(value, 4) + (unit.empty() ? "" : " " + unit);
 }
 
-void scale_bar(Sheet& sheet, double x, double y, double scale, double most, const std::string& unit) {
-    const double length = round_length(most / scale);
+void scale_bar(Sheet& sheet, double x, double y, double scale, double maximum, const std::string& unit) {
+    const double length = round_length(maximum / scale);
     if (!(length > 0)) return;
     const std::string digits = significant(length, 3);
     const int parts = digits.find('2') != std::string::npos ? 4 : 5;

@@ -19,8 +19,8 @@ struct Placing {
     [[nodiscard]] std::vector<std::array<double, 2>> operator()(const std::vector<Eigen::Vector2d>& points, bool closed) const;
 };
 
-/// A bar of a round length, at most `most` points long, white and black by turns, with its numbers; its left end at x.
-void scale_bar(Sheet& sheet, double x, double y, double scale, double most, const std::string& unit);
+/// A bar of a round length, at most `maximum` points long, white and black by turns, with its numbers; its left end at x.
+void scale_bar(Sheet& sheet, double x, double y, double scale, double maximum, const std::string& unit);
 
 /// A length with as many digits as a drawing bears, and its unit.
 std::string length_text(double value, const std::string& unit);

@@ -26,8 +26,8 @@ bool has_place(const PlotAxis& axis, double value) { return std::isfinite(value)
 Ruler::Ruler(const Plot& plot, std::size_t coordinate)
     : axis_(coordinate == 0 ? &plot.x : &plot.y),
       logarithmic_(axis_->logarithmic),
-      least_(std::numeric_limits<double>::infinity()),
-      most_(-least_) {
+      minimum_(std::numeric_limits<double>::infinity()),
+      maximum_(-minimum_) {
     for (const PlotSeries& series : plot.series)
         for (std::size_t i = 0; i < series.points.size(); ++i) {
             const auto& point = series.points[i];
@@ -39,40 +39,40 @@ Ruler::Ruler(const Plot& plot, std::size_t coordinate)
                 for (const double end : *series.intervals[i])
                     if (has_place(plot.y, end)) include(end);
         }
-    if (least_ > most_) fail_input("plot", "no point has a place on the axis '" + axis_->label + "'");
+    if (minimum_ > maximum_) fail_input("plot", "no point has a place on the axis '" + axis_->label + "'");
     if (!axis_->names.empty()) include(-0.5), include(static_cast<double>(axis_->names.size()) - 0.5);
     for (const PlotLine& mark : plot.lines)
         if (mark.upright == (coordinate == 0) && has_place(*axis_, mark.value)) include(mark.value);
-    if (axis_->minimum) least_ = place(*axis_->minimum);
-    if (axis_->maximum) most_ = place(*axis_->maximum);
-    if (!(most_ > least_)) {
-        const double half = logarithmic_ ? 0.5 : std::max(std::abs(least_) / 2, 0.5);
-        least_ -= half;
-        most_ += half;
+    if (axis_->minimum) minimum_ = place(*axis_->minimum);
+    if (axis_->maximum) maximum_ = place(*axis_->maximum);
+    if (!(maximum_ > minimum_)) {
+        const double half = logarithmic_ ? 0.5 : std::max(std::abs(minimum_) / 2, 0.5);
+        minimum_ -= half;
+        maximum_ += half;
     } else if (axis_->names.empty()) {
-        const double rim = 0.03 * (most_ - least_);
+        const double rim = 0.03 * (maximum_ - minimum_);
         // Bars stand on their line.
         const bool on_zero =
-            coordinate == 1 && least_ == 0 && !logarithmic_ &&
+            coordinate == 1 && minimum_ == 0 && !logarithmic_ &&
             std::any_of(plot.series.begin(), plot.series.end(), [](const auto& s) { return s.mark == Mark::bars; });
-        if (!axis_->minimum && !on_zero) least_ -= rim;
-        if (!axis_->maximum) most_ += rim;
+        if (!axis_->minimum && !on_zero) minimum_ -= rim;
+        if (!axis_->maximum) maximum_ += rim;
     }
 }
 
 double Ruler::place(double value) const { return logarithmic_ ? std::log10(value) : value; }
 
 void Ruler::include(double value) {
-    least_ = std::min(least_, place(value));
-    most_ = std::max(most_, place(value));
+    minimum_ = std::min(minimum_, place(value));
+    maximum_ = std::max(maximum_, place(value));
 }
 
-double Ruler::lowest() const { return logarithmic_ ? std::pow(10.0, least_) : least_; }
+double Ruler::lowest() const { return logarithmic_ ? std::pow(10.0, minimum_) : minimum_; }
 
 void Ruler::widen(double extent) {
-    const double more = (extent - (most_ - least_)) / 2;
-    least_ -= more;
-    most_ += more;
+    const double more = (extent - (maximum_ - minimum_)) / 2;
+    minimum_ -= more;
+    maximum_ += more;
 }
 
 std::vector<Tick> Ruler::ticks() const {
@@ -81,13 +81,13 @@ std::vector<Tick> Ruler::ticks() const {
         for (std::size_t i = 0; i < axis_->names.size(); ++i) list.push_back({static_cast<double>(i), axis_->names[i]});
         return list;
     }
-    if (!logarithmic_ || most_ - least_ < 0.5) return even_ticks();
-    const int decades = static_cast<int>(std::ceil(most_ - least_)), stride = std::max(1, decades / 8);
-    for (int e = static_cast<int>(std::floor(least_)); e <= most_; ++e)
+    if (!logarithmic_ || maximum_ - minimum_ < 0.5) return even_ticks();
+    const int decades = static_cast<int>(std::ceil(maximum_ - minimum_)), stride = std::max(1, decades / 8);
+    for (int e = static_cast<int>(std::floor(minimum_)); e <= maximum_; ++e)
         for (const double digit : {1.0, 2.0, 5.0}) {
             if (digit > 1 ? decades > 2 : e % stride != 0) continue;
             const double value = digit * std::pow(10.0, e);
-            if (place(value) < least_ || place(value) > most_) continue;
+            if (place(value) < minimum_ || place(value) > maximum_) continue;
             list.push_back({value, power_text(value)});
         }
     return list;
@@ -95,7 +95,7 @@ std::vector<Tick> Ruler::ticks() const {
 
 std::vector<Tick> Ruler::even_ticks() const {
     const auto value = [&](double at) { return logarithmic_ ? std::pow(10.0, at) : at; };
-    const std::vector<double> values = ostraka::ticks({value(least_), value(most_), false, ""}, 6);
+    const std::vector<double> values = ostraka::ticks({value(minimum_), value(maximum_), false, ""}, 6);
     std::vector<Tick> list;
     for (const double v : values) list.push_back({v, tick_text(v, values.size() > 1 ? values[1] - values[0] : v)});
     return list;

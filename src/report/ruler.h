@@ -23,12 +23,14 @@ public:
     Ruler(const Plot& plot, std::size_t coordinate);
 
     void stretch_over(double low, double high) { low_ = low, high_ = high; }
-    [[nodiscard]] double pixel(double value) const { return low_ + (place(value) - least_) / (most_ - least_) * (high_ - low_); }
+    [[nodiscard]] double pixel(double value) const {
+        return low_ + (place(value) - minimum_) / (maximum_ - minimum_) * (high_ - low_);
+    }
     [[nodiscard]] std::vector<Tick> ticks() const;
-    [[nodiscard]] bool inside(double value) const { return place(value) >= least_ && place(value) <= most_; }
+    [[nodiscard]] bool inside(double value) const { return place(value) >= minimum_ && place(value) <= maximum_; }
     /// Lower end, as a value.
     [[nodiscard]] double lowest() const;
-    [[nodiscard]] double extent() const { return most_ - least_; }
+    [[nodiscard]] double extent() const { return maximum_ - minimum_; }
     /// Makes the range `extent` wide about its middle.
     void widen(double extent);
 
@@ -39,7 +41,7 @@ private:
 
     const PlotAxis* axis_;
     bool logarithmic_;
-    double least_, most_;  ///< places: values, or their logarithms
+    double minimum_, maximum_;  ///< places: values, or their logarithms
     double low_ = 0, high_ = 1;
 };
 

@@ -34,13 +34,13 @@ struct Grid {
 };
 Grid grid_of(std::size_t count, const Vector2d& size) {
     Grid best;
-    double most = 0;
+    double maximum = 0;
     const double width = 720, height = 620, aspect = size.y() / size.x();
     for (int columns = 1; columns <= static_cast<int>(count); ++columns) {
         const int rows = (static_cast<int>(count) + columns - 1) / columns;
         const double field =
             std::min({(width - gap * (columns - 1)) / columns, ((height - (gap + caption) * rows) / rows) / aspect, 300.0});
-        if (field > most) most = field, best = {columns, rows, field, field * aspect};
+        if (field > maximum) maximum = field, best = {columns, rows, field, field * aspect};
     }
     // Very many slices stay legible: the sheet grows downward.
     if (best.width < 56) {

@@ -144,7 +144,7 @@ Outline ProfileImage::outline() const {
                         step * (static_cast<double>(c[0]) + 0.5 + (c[2] == 1 ? t : 0)));
     };
     Outline result;
-    double most = 0;
+    double maximum = 0;
     while (!next.empty()) {
         std::vector<Vector2d> loop;
         const Crossing first = next.begin()->first;
@@ -166,7 +166,7 @@ Outline ProfileImage::outline() const {
         Outline piece = right_of_axis(loop);
         if (piece.closed ? radius < 0 : area <= 0) continue;
         if (piece.closed) area *= 2;
-        if (area > most) most = area, result = std::move(piece);
+        if (area > maximum) maximum = area, result = std::move(piece);
     }
     return result;
 }

@@ -11,9 +11,9 @@ namespace ostraka {
 using Eigen::Vector3d;
 
 void WallSection::drop_rare(const RevolutionOptions& options) {
-    const double least = options.presence / 360 * 2 * std::max(4, options.columns / 2);
+    const double minimum = options.presence / 360 * 2 * std::max(4, options.columns / 2);
     for (std::size_t row = 0; row < image.rows; ++row)
-        if (image.present[row] < std::max(1.0, least)) image.clear(row);
+        if (image.present[row] < std::max(1.0, minimum)) image.clear(row);
 }
 
 bool WallSection::has_rim(const RevolutionOptions& options) const {

@@ -49,10 +49,10 @@ void check(const Mesh& mesh, const CreaseOptions& options) {
     const double edge = mean_edge_length(mesh), radius = options.scale * box_diagonal(mesh);
     // Within a ball smaller than an edge there is nothing to average over.
     if (radius >= edge) return;
-    const double least = std::ceil(1000 * edge / box_diagonal(mesh)) / 1000;
+    const double minimum = std::ceil(1000 * edge / box_diagonal(mesh)) / 1000;
     fail_usage("a scale of " + text(options.scale) + " of the diagonal is a radius of " + text(radius) +
                    ", but the mesh's edges are " + text(edge) + " long in the mean: it is too coarse for that",
-               (least <= 0.5 ? "use --scale " + text(least) + " or more, or refine" : std::string("refine")) +
+               (minimum <= 0.5 ? "use --scale " + text(minimum) + " or more, or refine" : std::string("refine")) +
                    " the mesh (ostraka mesh refine)");
 }
 
@@ -242,15 +242,15 @@ private:
 double rival(const Mesh& mesh, const std::vector<double>& strength, Index top, double reach) {
     std::set<Index> met{top};
     std::vector<Index> queue{top};
-    double most = 0;
+    double maximum = 0;
     for (std::size_t k = 0; k < queue.size(); ++k)
         for (const Vertex n : mesh.vertices_around_target(mesh.halfedge(Vertex(queue[k])))) {
             if (CGAL::squared_distance(mesh.point(n), mesh.point(Vertex(top))) > reach * reach || !met.insert(n.idx()).second)
                 continue;
-            most = std::max(most, -strength[n]);
+            maximum = std::max(maximum, -strength[n]);
             queue.push_back(n.idx());
         }
-    return most;
+    return maximum;
 }
 
 }  // namespace

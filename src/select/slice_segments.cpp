@@ -40,13 +40,13 @@ void fill_gaps(std::vector<int>& labels) {
                     labels[static_cast<std::size_t>(i)] = known[static_cast<std::size_t>(j)];
 }
 
-void join_short_runs(std::vector<int>& labels, std::size_t least) {
+void join_short_runs(std::vector<int>& labels, std::size_t minimum) {
     for (;;) {
         const std::vector<Run> runs = runs_of(labels);
         if (runs.size() < 2) return;
         const auto shortest =
             std::min_element(runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.size() < b.size(); });
-        if (shortest->size() >= least) return;
+        if (shortest->size() >= minimum) return;
         const bool has_below = shortest != runs.begin(), has_above = shortest + 1 != runs.end();
         const bool below = has_below && (!has_above || (shortest - 1)->size() >= (shortest + 1)->size());
         const int joined = below ? (shortest - 1)->cluster : (shortest + 1)->cluster;
@@ -104,7 +104,7 @@ SliceSegments segment_by_slices(const Mesh& mesh, const Vector& up, const SliceS
     for (std::size_t row = 0; row < numbers.size(); ++row) result.raw[numbers[row]] = found.labels[row];
     result.labels = result.raw;
     fill_gaps(result.labels);
-    join_short_runs(result.labels, static_cast<std::size_t>(options.least_run));
+    join_short_runs(result.labels, static_cast<std::size_t>(options.min_run));
 
     const double layer = height / static_cast<double>(heights.size());
     std::vector<std::int32_t> segment_of(heights.size());
@@ -145,7 +145,7 @@ std::optional<double> segment_agreement(const SliceSegments& segments, const std
 void SliceSegmentOptions::describe(OptionList& visit) {
     visit("slices", slices, "slices across the object, evenly spread", Range{4, 10000});
     visit("clusters", clusters, "kinds of slices; 0: as many as the criterion proposes", Range{0, 1000});
-    visit("least-run", least_run, "as many slices of one kind in a row make a segment; shorter runs join their longer neighbour",
+    visit("least-run", min_run, "as many slices of one kind in a row make a segment; shorter runs join their longer neighbour",
           Range{1, 1000});
     visit("size", size, "the radius of the circle of the slice's area counts as well", Anything{});
     count.describe(visit);

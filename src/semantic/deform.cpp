@@ -331,8 +331,8 @@ private:
                                std::to_string(report.distance) + (space_.set.unit.empty() ? "" : " ") + space_.set.unit +
                                " at its worst point";
             report.low_level = list.size();
-            report.least = list.front();
-            report.most = list.back();
+            report.minimum = list.front();
+            report.maximum = list.back();
             report.median = (list[(list.size() - 1) / 2] + list[list.size() / 2]) / 2;
             for (const double value : list) report.mean += value / static_cast<double>(list.size());
         }
@@ -340,14 +340,14 @@ private:
 
     /// Leaves out one constraint after another. Those that fail are tried first.
     void find_conflicts(DeformResult& result, const std::vector<bool>& all) {
-        const auto most = static_cast<std::size_t>(options_.conflicts);
+        const auto maximum = static_cast<std::size_t>(options_.conflicts);
         std::vector<std::size_t> order;
         for (const bool failing : {true, false})
             for (std::size_t i = 0; i < all.size(); ++i)
                 if (all[i] && (result.constraints[i].verdict != Verdict::holds) == failing) order.push_back(i);
         if (order.size() < 2) return;
-        if (order.size() > most) result.untried = order.size() - most;
-        order.resize(std::min(order.size(), most));
+        if (order.size() > maximum) result.untried = order.size() - maximum;
+        order.resize(std::min(order.size(), maximum));
         for (const std::size_t left_out : order) {
             std::vector<bool> active = all;
             active[left_out] = false;

@@ -74,10 +74,10 @@ private:
                                                        here ? vertices : std::vector<Index>());
             const auto found = influential(*space_.coordinates, vertices, state_.threshold);
             if (found.empty()) {
-                double most = 0;
-                for (const Index v : vertices) most = std::max(most, space_.coordinates->vertex.row(v).maxCoeff());
+                double maximum = 0;
+                for (const Index v : vertices) maximum = std::max(maximum, space_.coordinates->vertex.row(v).maxCoeff());
                 fail("no cage vertex has an influence of " + std::to_string(state_.threshold) + " on " + what +
-                         "; the largest is " + std::to_string(most),
+                         "; the largest is " + std::to_string(maximum),
                      "lower the threshold, use auto-mesh, or name cageVertices");
             }
             chosen.insert(found.begin(), found.end());
@@ -204,14 +204,14 @@ double influence_threshold(const WeightMatrix& weights, const std::string& rule,
     if (rule != "auto-mesh" && rule != "auto-cage")
         throw Error(ErrorKind::usage, "threshold", "'" + rule + "' is no rule", "use auto-mesh or auto-cage");
     Eigen::VectorXd columns = Eigen::VectorXd::Constant(weights.cols(), -std::numeric_limits<double>::infinity());
-    double least = std::numeric_limits<double>::infinity();
+    double minimum = std::numeric_limits<double>::infinity();
     const std::size_t count = rows.empty() ? static_cast<std::size_t>(weights.rows()) : rows.size();
     for (std::size_t i = 0; i < count; ++i) {
         const auto row = weights.row(static_cast<Eigen::Index>(rows.empty() ? i : rows[i]));
-        least = std::min(least, row.maxCoeff());
+        minimum = std::min(minimum, row.maxCoeff());
         columns = columns.cwiseMax(row.transpose());
     }
-    return rule == "auto-mesh" ? least : columns.minCoeff();
+    return rule == "auto-mesh" ? minimum : columns.minCoeff();
 }
 
 std::vector<Index> influential(const Coordinates& coordinates, const std::vector<Index>& rows, double threshold) {

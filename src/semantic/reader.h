@@ -43,11 +43,11 @@ public:
             fail("there is no annotation " + std::to_string(relationship_.annotations[i]), "see 'annotation list'");
         return *annotation;
     }
-    void need(std::size_t least, std::size_t most) const {
+    void need(std::size_t minimum, std::size_t maximum) const {
         const std::size_t n = relationship_.annotations.size();
-        if (n < least || (most > 0 && n > most))
+        if (n < minimum || (maximum > 0 && n > maximum))
             fail("has " + std::to_string(n) + " annotations",
-                 "give " + std::to_string(least) + (most == least ? "" : " or more"));
+                 "give " + std::to_string(minimum) + (maximum == minimum ? "" : " or more"));
     }
     [[nodiscard]] std::vector<Index> vertices(std::size_t i) const {
         const auto list = vertices_of(shape_.mesh, member(i));
@@ -111,11 +111,12 @@ public:
         if (!shape_.set.up) fail("no direction is up", "give direction in the constraint, or up in the annotations");
         return Vector3d((*shape_.set.up)[0], (*shape_.set.up)[1], (*shape_.set.up)[2]).normalized();
     }
-    [[nodiscard]] double number(const char* name, double otherwise, double least, double most) const {
+    [[nodiscard]] double number(const char* name, double otherwise, double minimum, double maximum) const {
         const JsonValue* value = given(name);
         if (value == nullptr) return otherwise;
-        if (!value->IsNumber() || !(value->GetDouble() >= least && value->GetDouble() <= most))
-            fail(std::string(name) + " is not a number from " + std::to_string(least) + " to " + std::to_string(most), "mend it");
+        if (!value->IsNumber() || !(value->GetDouble() >= minimum && value->GetDouble() <= maximum))
+            fail(std::string(name) + " is not a number from " + std::to_string(minimum) + " to " + std::to_string(maximum),
+                 "mend it");
         return value->GetDouble();
     }
     /// As the solver has them.

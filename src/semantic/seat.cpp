@@ -201,7 +201,7 @@ private:
     }
 
     /// The feature where it is placed, bent so that its outline lies on the base as far as it may.
-    void bend(const Feature& feature, const SurfaceSearch& search, double most) {
+    void bend(const Feature& feature, const SurfaceSearch& search, double maximum) {
         for (const Index v : feature.outline) {
             const Vector3d p = feature.placement(rest_.col(v));
             change_.col(v) = eigen(search.closest(point_of(p)).point) - p;
@@ -210,13 +210,13 @@ private:
         double sum = 0;
         for (const Index v : feature.vertices) sum += change_.col(v).squaredNorm();
         const double rms = std::sqrt(sum / static_cast<double>(feature.vertices.size()));
-        const double share = rms > most ? most / rms : 1;
+        const double share = rms > maximum ? maximum / rms : 1;
         for (const Index v : feature.vertices) seated_.col(v) = feature.placement(rest_.col(v)) + share * change_.col(v);
     }
 
     void place(const Group& group, const SurfaceSearch& search) {
-        const double most = group.bend * (rest_.rowwise().maxCoeff() - rest_.rowwise().minCoeff()).norm();
-        for (std::size_t i = group.begin; i < group.end; ++i) bend(features_[i], search, most);
+        const double maximum = group.bend * (rest_.rowwise().maxCoeff() - rest_.rowwise().minCoeff()).norm();
+        for (std::size_t i = group.begin; i < group.end; ++i) bend(features_[i], search, maximum);
         if (!group.up) return;
         const Vector3d& up = *group.up;
         const auto height = [&](const Feature& f) { return up.dot(centroid_of(mesh_, f.annotation->faces, seated_)); };
@@ -228,7 +228,7 @@ private:
             for (int round = 0; round < 5; ++round) {
                 const double wanted = mean - height(feature) + up.dot(feature.placement(feature.centroid));
                 settle(feature, search, std::pair{up, wanted});
-                bend(feature, search, most);
+                bend(feature, search, maximum);
             }
             const Vector3d rest = (mean - height(feature)) * up;
             for (const Index v : feature.vertices) seated_.col(v) += rest;

@@ -15,11 +15,11 @@ Index reference_vertex(const Points& rest, const std::vector<Index>& vertices) {
     for (const Index v : vertices) spread += (rest.col(v) - mean) * (rest.col(v) - mean).transpose();
     const Vector3d normal = SymmetricEigen3(spread).eigenvectors().col(0);
     Index best = vertices.front();
-    double least = std::numeric_limits<double>::infinity();
+    double minimum = std::numeric_limits<double>::infinity();
     for (const Index v : vertices) {
         const Vector3d d = rest.col(v) - mean;
         const double off = (d - normal * normal.dot(d)).squaredNorm();
-        if (off < least) least = off, best = v;
+        if (off < minimum) minimum = off, best = v;
     }
     return best;
 }

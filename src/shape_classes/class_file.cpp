@@ -276,7 +276,7 @@ JsonValue classification_to_json(const Classification& answer, JsonAllocator& al
             if (check.low) add_member(item, "low", JsonValue(*check.low), allocator);
             if (check.high) add_member(item, "high", JsonValue(*check.high), allocator);
             add_members(item, allocator, "decides", check.decides, "off", check.off, "excess", check.excess);
-            if (!check.most.empty()) add_member(item, "most", check.most, allocator);
+            if (!check.worst.empty()) add_member(item, "most", check.worst, allocator);
             checks.PushBack(item, allocator);
         }
         add_member(object, "checks", std::move(checks), allocator);

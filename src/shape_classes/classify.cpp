@@ -43,11 +43,11 @@ std::string words(const QuantityCheck& check) {
     const bool above = check.high && *quantity.value > *check.high;
     text += above ? ", at most " + digits(*check.high, 4) : ", at least " + digits(check.low.value_or(0), 4);
     return text + unit + " is accepted: " + digits(check.off, 3) + unit + (above ? " too much" : " too little") +
-           (check.most.empty() ? "" : "; most of all " + check.most);
+           (check.worst.empty() ? "" : "; most of all " + check.worst);
 }
 
-/// Adds what is measured of all parts together; `most` gets, by key, which of them is farthest off.
-void add_parts(const ShapeClass& learnt, std::vector<ClassQuantity>& quantities, std::map<std::string, std::string>& most) {
+/// Adds what is measured of all parts together; `worst` gets, by key, which of them is farthest off.
+void add_parts(const ShapeClass& learnt, std::vector<ClassQuantity>& quantities, std::map<std::string, std::string>& worst) {
     std::vector<std::optional<double>> values;
     for (const LearntRange& range : learnt.ranges) {
         const auto found = std::find_if(quantities.begin(), quantities.end(),
@@ -56,9 +56,9 @@ void add_parts(const ShapeClass& learnt, std::vector<ClassQuantity>& quantities,
     }
     for (PartsTogether& one : parts_together(learnt.ranges, values, expected_parts(learnt.ranges))) {
         if (one.quantity.value) {
-            const double value = *values[one.most];
-            most[one.quantity.key()] = learnt.ranges[one.most].quantity.text() + ": " + digits(value, 4) + ", " +
-                                       digits(value / one.expected, 3) + " times the members' mean";
+            const double value = *values[one.worst];
+            worst[one.quantity.key()] = learnt.ranges[one.worst].quantity.text() + ": " + digits(value, 4) + ", " +
+                                        digits(value / one.expected, 3) + " times the members' mean";
         }
         quantities.push_back(std::move(one.quantity));
     }
@@ -127,8 +127,8 @@ ClassAnswer compare_with(const ShapeClass& learnt, const LearntMember& object, c
     add("from the mean shape", answer.coordinates.distance);
     add("outside the modes", answer.coordinates.outside);
     if (learnt.sizes) add("centroid size", answer.coordinates.centroid_size);
-    std::map<std::string, std::string> most;
-    add_parts(learnt, quantities, most);
+    std::map<std::string, std::string> worst;
+    add_parts(learnt, quantities, worst);
     answer.score = score_of(learnt, object, quantities, answer.coordinates);
     bool any = false;
     for (const LearntRange& range : learnt.ranges) {
@@ -137,7 +137,7 @@ ClassAnswer compare_with(const ShapeClass& learnt, const LearntMember& object, c
         answer.checks.push_back(
             check_of(range, found == quantities.end() ? std::optional<double>() : found->value, options.attributes));
         QuantityCheck& check = answer.checks.back();
-        check.most = most[range.quantity.key()];
+        check.worst = worst[range.quantity.key()];
         any = any || check.decides;
         if (check.decides && check.off > 0) answer.against.push_back(answer.checks.size() - 1);
     }

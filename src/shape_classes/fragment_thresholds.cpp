@@ -14,7 +14,7 @@ namespace ostraka {
 
 namespace {
 
-constexpr std::size_t least_landmarks = 8, least_piece = 4;
+constexpr std::size_t min_landmarks = 8, min_piece = 4;
 
 Landmarks rows_of(const Landmarks& all, const std::vector<Eigen::Index>& rows) {
     Landmarks some(static_cast<Eigen::Index>(rows.size()), 3);
@@ -30,7 +30,7 @@ std::optional<std::array<double, 2>> worst_piece(const Landmarks& rest, const La
     ProcrustesOptions scaled;
     scaled.scaling = true;
     const double scale = procrustes(rest, member, scaled).scale;
-    const auto count = static_cast<std::size_t>(std::max<Eigen::Index>(least_piece, n / 4));
+    const auto count = static_cast<std::size_t>(std::max<Eigen::Index>(min_piece, n / 4));
     std::array<double, 2> worst{};
     bool any = false;
     for (Eigen::Index i = 0; i < n; ++i) {
@@ -66,7 +66,7 @@ std::vector<ClassQuantity> fragment_quantities(const ClassTemplate& known, const
             there.push_back(points[annotation.points.front()]);
         }
     std::optional<std::array<double, 2>> worst;
-    if (rest.size() >= least_landmarks && centroid_size(landmarks_of(rest)) > 0 && centroid_size(landmarks_of(there)) > 0)
+    if (rest.size() >= min_landmarks && centroid_size(landmarks_of(rest)) > 0 && centroid_size(landmarks_of(there)) > 0)
         worst = worst_piece(landmarks_of(rest), landmarks_of(there));
     std::optional<double> slack;
     for (const ClassQuantity& one : quantities)
@@ -98,12 +98,12 @@ std::vector<UsedThreshold> take_thresholds(ReconstructOptions& options, const Sh
     std::vector<UsedThreshold> used;
     const std::vector<FragmentThreshold> of_class =
         learnt != nullptr ? fragment_thresholds(*learnt) : std::vector<FragmentThreshold>();
-    const auto take = [&](const char* name, double& value, double most) {
+    const auto take = [&](const char* name, double& value, double maximum) {
         UsedThreshold& one = used.emplace_back(UsedThreshold{{name, 0, 0}, told(name) ? "told" : "default"});
         const auto found = std::find_if(of_class.begin(), of_class.end(), [&](const auto& each) { return each.option == name; });
         const bool is_slack = one.option == "slack";
         if (found != of_class.end() && one.from != "told" && !(is_slack && found->value < value)) {
-            value = std::min(found->value, most);
+            value = std::min(found->value, maximum);
             one.members = found->members;
             one.from = "class";
         }

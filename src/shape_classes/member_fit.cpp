@@ -18,11 +18,11 @@ using Eigen::Matrix2d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-std::string fit_is_off(const MemberFit& fit, double most) {
-    if (!fit.residuals || !(fit.residuals->off() > most)) return {};
+std::string fit_is_off(const MemberFit& fit, double maximum) {
+    if (!fit.residuals || !(fit.residuals->off() > maximum)) return {};
     const auto per_cent = [](double share) { return digits(100 * share, 3) + " %"; };
     return "the template does not lie on it: " + per_cent(fit.residuals->unmatched) + " of the template and " +
-           per_cent(fit.residuals->unexplained) + " of the object are off the other, " + per_cent(most) +
+           per_cent(fit.residuals->unexplained) + " of the object are off the other, " + per_cent(maximum) +
            " on average is the most";
 }
 
@@ -90,7 +90,7 @@ Spread spread_over(const Mesh& mesh, std::size_t count) {
     return spread;
 }
 
-constexpr std::size_t most_samples = 5000;
+constexpr std::size_t max_samples = 5000;
 constexpr double like_normals = 0.5;  ///< cosine: 60 degrees
 
 FitResiduals residuals_of(const Mesh& rest, const Mesh& fitted, const Mesh& object, double scale, double observed) {
@@ -112,8 +112,8 @@ FitResiduals residuals_of(const Mesh& rest, const Mesh& fitted, const Mesh& obje
         far = count / n;
         return std::sqrt(sum / n) / diagonal;
     };
-    residuals.distance = one_way(spread_over(fitted, most_samples), on_object, residuals.unmatched);
-    residuals.back = one_way(spread_over(object, most_samples), on_fitted, residuals.unexplained);
+    residuals.distance = one_way(spread_over(fitted, max_samples), on_object, residuals.unmatched);
+    residuals.back = one_way(spread_over(object, max_samples), on_fitted, residuals.unexplained);
     std::vector<Point> points(fitted.points().begin(), fitted.points().end());
     measure_distortion(rest, points, scale, residuals);
     return residuals;
@@ -181,7 +181,7 @@ void measure_distortion(const Mesh& mesh, const std::vector<Point>& points, doub
         now.push_back(eigen(points[v]));
     }
     double area = 0, squares = 0;
-    constexpr double most = 3;  // of a logarithm: triangles that collapse do not count without end
+    constexpr double maximum = 3;  // of a logarithm: triangles that collapse do not count without end
     for (const Face face : mesh.faces()) {
         const auto c = corners(mesh, face);
         const double weight = face_area(mesh, face);
@@ -190,7 +190,7 @@ void measure_distortion(const Mesh& mesh, const std::vector<Point>& points, doub
         const Vector2d s = singular_values(after * before.inverse());
         double sum = 0;
         for (int k = 0; k < 2; ++k) {
-            const double log = s[k] > 0 ? std::clamp(std::log(s[k]), -most, most) : -most;
+            const double log = s[k] > 0 ? std::clamp(std::log(s[k]), -maximum, maximum) : -maximum;
             sum += 0.5 * log * log;
         }
         area += weight;
@@ -234,7 +234,7 @@ MemberFit fit_member(const Mesh& mesh, const AnnotationSet& set, const WholeObje
         places = places_by_surface(mesh, member, options);
         best.placed_by = "surface";
     }
-    double least = std::numeric_limits<double>::infinity();
+    double minimum = std::numeric_limits<double>::infinity();
     for (const Place& place : places) {
         const Mesh scaled = scaled_by(mesh, place.scale);
         PlacedFragment placed{moved(member.mesh, place.pose), &member.annotations, {}, {}};
@@ -245,8 +245,8 @@ MemberFit fit_member(const Mesh& mesh, const AnnotationSet& set, const WholeObje
         const FitResiduals residuals =
             residuals_of(mesh, with_points(mesh, fit.points), list.front().mesh, place.scale, options.observed);
         const double cost = std::hypot(residuals.distance, residuals.back);
-        if (!(cost < least)) continue;
-        least = cost;
+        if (!(cost < minimum)) continue;
+        minimum = cost;
         best.scale = place.scale;
         best.share_placed = place.overlap;
         best.residuals = residuals;
@@ -270,7 +270,7 @@ void MemberFitOptions::describe(OptionList& visit) {
           Range{1, 5});
     visit("observed", observed, "surfaces farther apart than this do not lie on each other", Range{0, 1},
           "share of the diagonal");
-    visit("most-off", most_off,
+    visit("most-off", max_off,
           "a template does not lie on an object if a larger share of both surfaces (mean of unmatched and unexplained) is off "
           "the other after the fit",
           Range{0, 1});

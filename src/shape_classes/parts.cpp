@@ -179,8 +179,8 @@ std::optional<double> own_disagreement(const ClassTemplate& known, const std::ve
     }
     for (const auto& [label, share] : rows) row += share * share;
     for (const auto& [label, share] : columns) column += share * share;
-    const double chance = row * column, most = 0.5 * (row + column);
-    return most > chance ? 1 - (both - chance) / (most - chance) : 0;
+    const double chance = row * column, maximum = 0.5 * (row + column);
+    return maximum > chance ? 1 - (both - chance) / (maximum - chance) : 0;
 }
 
 PartsOff parts_off(std::span<const std::optional<double>> values, std::span<const std::optional<double>> expected) {
@@ -191,7 +191,7 @@ PartsOff parts_off(std::span<const std::optional<double>> values, std::span<cons
         const double off = std::abs(std::log(*values[i] / *expected[i]));
         squares += off * off;
         ++result.count;
-        if (off > largest) largest = off, result.most = i;
+        if (off > largest) largest = off, result.worst = i;
     }
     if (result.count > 0) result.off = std::sqrt(squares / static_cast<double>(result.count));
     return result;

@@ -28,7 +28,7 @@ Propagated propagate(const ClassTemplate& known, const WholeObject& member, cons
         result.lost = known.set.annotations.size();
         return result;
     }
-    if (std::string off = fit_is_off(result.fit, options.fit.most_off); !off.empty()) {
+    if (std::string off = fit_is_off(result.fit, options.fit.max_off); !off.empty()) {
         result.lies_on = false;
         result.notes.push_back(std::move(off));
     }

@@ -190,7 +190,7 @@ std::vector<ClassQuantity> geometry_quantities(const WholeShape& shape) {
     };
     add("compactness", shape.compactness);
     add("geodesic mean", shape.geodesic_mean);
-    add("geodesic most", shape.geodesic_most);
+    add("geodesic most", shape.geodesic_max);
     add("geodesic variation", shape.geodesic_variation);
     return list;
 }

@@ -67,9 +67,9 @@ public:
     Sampling run() {
         Sampling result;
         result.of_members = learnt_.diversity;
-        const auto most = static_cast<std::size_t>(options_.count) * static_cast<std::size_t>(options_.attempts);
+        const auto maximum = static_cast<std::size_t>(options_.count) * static_cast<std::size_t>(options_.attempts);
         std::vector<Landmarks> shapes;
-        while (result.samples.size() < static_cast<std::size_t>(options_.count) && result.tried < most) {
+        while (result.samples.size() < static_cast<std::size_t>(options_.count) && result.tried < maximum) {
             Random random(options_.seed, result.tried++);
             ClassSample sample;
             Landmarks shape = options_.by == SampleOptions::Way::modes ? by_modes(random, sample) : by_edits(random, sample);

@@ -138,13 +138,13 @@ using Moments = std::map<std::string, SampleMoments>;  ///< by key: what to take
 void set_thresholds(ShapeClass& learnt, const Moments& moderated) {
     std::map<QuantityKind, std::size_t> counts;
     for (const LearntRange& range : learnt.ranges)
-        if (!single_part(range) && range.count >= ShapeClass::least_members) ++counts[range.quantity.kind];
+        if (!single_part(range) && range.count >= ShapeClass::min_members) ++counts[range.quantity.kind];
     const auto kinds = std::max<std::size_t>(1, counts.size() - counts.count(QuantityKind::attribute));
     for (LearntRange& range : learnt.ranges) {
         range.low.reset();
         range.high.reset();
         range.reject = 0;
-        if (single_part(range) || range.count < ShapeClass::least_members) continue;
+        if (single_part(range) || range.count < ShapeClass::min_members) continue;
         range.reject = learnt.reject / static_cast<double>(kinds * counts.at(range.quantity.kind));
         const auto found = moderated.find(range.quantity.key());
         set_bounds(range, found == moderated.end() ? range_moments(range) : found->second, learnt.resolution);
@@ -158,7 +158,7 @@ void learn_thresholds(ShapeClass& learnt) { set_thresholds(learnt, {}); }
 void moderate_thresholds(std::vector<ShapeClass>& classes) {
     std::map<std::string, std::vector<SampleMoments>> samples;
     const auto shared = [](const LearntRange& range) {
-        return (range.logarithm || is_distance(range.quantity)) && range.count >= ShapeClass::least_members &&
+        return (range.logarithm || is_distance(range.quantity)) && range.count >= ShapeClass::min_members &&
                range.quantity.id < 0 &&
                (range.quantity.kind == QuantityKind::geometry || range.quantity.kind == QuantityKind::part);
     };
@@ -211,8 +211,8 @@ std::vector<PartsTogether> parts_together(const std::vector<LearntRange>& ranges
         const PartsOff off = parts_off(own, usual);
         if (off.count == 0) continue;
         one.quantity.value = off.off;
-        one.most = places[off.most];
-        one.expected = *usual[off.most];
+        one.worst = places[off.worst];
+        one.expected = *usual[off.worst];
     }
     return list;
 }
@@ -253,7 +253,7 @@ void add_fragment_ranges(ShapeClass& learnt, const std::vector<const LearntMembe
     learnt.fragments = collected(members, &LearntMember::fragments);
     for (LearntRange& range : learnt.fragments) {
         summarise_range(range);
-        if (range.count < ShapeClass::least_members) continue;
+        if (range.count < ShapeClass::min_members) continue;
         range.reject = learnt.reject / static_cast<double>(learnt.fragments.size());
         set_bounds(range, range_moments(range), learnt.resolution);
     }
@@ -322,7 +322,7 @@ ShapeClass learn_class(const ClassTemplate& known, const std::vector<LearntMembe
             learnt.notes.push_back(member.name + " is left out: " + off);
             continue;
         }
-        if (std::string off = fit_is_off(member.fit, options.fit.most_off); !off.empty()) {
+        if (std::string off = fit_is_off(member.fit, options.fit.max_off); !off.empty()) {
             learnt.notes.push_back(member.name + " counts, but is no archetype: " + off);
             poor.insert(used.size());
         }

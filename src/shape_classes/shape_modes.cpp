@@ -99,7 +99,7 @@ ShapeModes learn_modes(const std::vector<Landmarks>& members, const Landmarks& f
     for (const Eigen::Index k : kept) result.total += eigen.eigenvalues()[k] / static_cast<double>(n - 1);
     double sum = 0;
     std::size_t count = 0;
-    while (count < kept.size() && count < static_cast<std::size_t>(options.most) && sum < options.variance * result.total)
+    while (count < kept.size() && count < static_cast<std::size_t>(options.maximum) && sum < options.variance * result.total)
         sum += eigen.eigenvalues()[kept[count++]] / static_cast<double>(n - 1);
     result.modes.resize(static_cast<Eigen::Index>(count), mean.size());
     result.coefficients.resize(n, static_cast<Eigen::Index>(count));
@@ -160,7 +160,7 @@ Landmarks shape_of(const ShapeModes& modes, const std::vector<double>& coefficie
 
 void ModeOptions::describe(OptionList& visit) {
     visit("sizes", sizes, "the size of an object counts; else all are brought to one size first", Anything{});
-    visit("modes", most, "modes of variation that are kept, at most", Range{0, 1e6});
+    visit("modes", maximum, "modes of variation that are kept, at most", Range{0, 1e6});
     visit("variance", variance, "modes are kept until they have this share of the variance", Range{0, 1});
 }
 

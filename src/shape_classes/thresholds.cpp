@@ -49,8 +49,9 @@ PredictionInterval predict(const SampleMoments& known, bool one_sided, double re
         known.freedom < many
             ? boost::math::quantile(boost::math::complement(boost::math::students_t_distribution<double>(known.freedom), share))
             : boost::math::quantile(boost::math::complement(boost::math::normal_distribution<double>(), share));
-    const double most = t * std::sqrt((known.variance + resolution * resolution) * (1 + 1 / static_cast<double>(known.count)));
-    return {known.mean - most, known.mean + most};
+    const double half_width =
+        t * std::sqrt((known.variance + resolution * resolution) * (1 + 1 / static_cast<double>(known.count)));
+    return {known.mean - half_width, known.mean + half_width};
 }
 
 SampleMoments VariancePrior::moderate(const SampleMoments& own) const {

@@ -55,7 +55,7 @@ WholeShape measure_whole_shape(const Mesh& mesh) {
     std::vector<double> nearest(small.number_of_vertices(), -1);
     for (const Vertex v : small.vertices())
         if (weights[v] > 0) nearest[v] = (eigen(small.point(v)) - middle).norm();
-    double sum = 0, squares = 0, weight = 0, most = 0;
+    double sum = 0, squares = 0, weight = 0, maximum = 0;
     for (int s = 0; s < sources; ++s) {
         const auto at = std::max_element(nearest.begin(), nearest.end());
         if (!(*at > 0)) break;
@@ -66,7 +66,7 @@ WholeShape measure_whole_shape(const Mesh& mesh) {
             sum += weights[v] * distances[v];
             squares += weights[v] * distances[v] * distances[v];
             weight += weights[v];
-            most = std::max(most, distances[v]);
+            maximum = std::max(maximum, distances[v]);
         }
         // Other components are not reached: sources stay in the first one.
         for (std::size_t v = 0; v < distances.size(); ++v)
@@ -75,7 +75,7 @@ WholeShape measure_whole_shape(const Mesh& mesh) {
     if (!(weight > 0) || !(sum > 0)) return shape;
     const double mean = sum / weight, size = std::sqrt(area);
     shape.geodesic_mean = mean / size;
-    shape.geodesic_most = most / size;
+    shape.geodesic_max = maximum / size;
     shape.geodesic_variation = std::sqrt(std::max(0.0, squares / weight - mean * mean)) / mean;
     return shape;
 }

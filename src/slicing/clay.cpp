@@ -22,7 +22,7 @@ struct Layer {
 };
 
 /// No more than contours that cross enclose together: neither more than all of them one by one, nor than their convex hull.
-double most_of(const Slice& slice) {
+double max_of(const Slice& slice) {
     double sum = 0;
     std::vector<Eigen::Vector2d> points;
     for (const Contour& contour : slice.contours) {
@@ -40,7 +40,7 @@ Layer layer_of(const Slice& slice, const SliceDescriptors& descriptors) {
     layer.crossing = !slice.completeness.has_areas();
     if (layer.crossing) {
         layer.outlined = true;
-        layer.material = most_of(slice), layer.outline = ClayVolume::unknown;
+        layer.material = max_of(slice), layer.outline = ClayVolume::unknown;
         return layer;
     }
     if (std::isnan(descriptors.area)) return layer;
@@ -50,13 +50,13 @@ Layer layer_of(const Slice& slice, const SliceDescriptors& descriptors) {
     layer.cavity = descriptors.holes > 0 && std::isfinite(descriptors.thickness_mean);
     if (layer.cavity) {
         layer.wall = descriptors.thickness_mean;
-        layer.thinnest = descriptors.thickness_least, layer.thickest = descriptors.thickness_most;
+        layer.thinnest = descriptors.thickness_min, layer.thickest = descriptors.thickness_max;
     }
     return layer;
 }
 
 /// The least clay of a slice: contours with a hole are as they are, others may be hollow but for a wall.
-double least_of(const Slice& slice, double wall) {
+double min_of(const Slice& slice, double wall) {
     double sum = 0;
     std::vector<bool> holed(slice.contours.size(), false);
     for (const Contour& contour : slice.contours)
@@ -124,24 +124,24 @@ ClayVolume clay_volume(const Mesh& mesh, const SliceFrame& frame, const ClayOpti
     }
     if (result.with_cavity > 0) {
         result.wall_mean /= result.with_cavity;
-        result.wall_least = sample_quantile(thinnest, 0.05), result.wall_most = sample_quantile(thickest, 0.95);
+        result.wall_min = sample_quantile(thinnest, 0.05), result.wall_max = sample_quantile(thickest, 0.95);
     }
-    result.wall = options.wall > 0 ? options.wall : result.wall_least;
+    result.wall = options.wall > 0 ? options.wall : result.wall_min;
     fill_between(layers);
     const double height = (highest - lowest) / options.slices;
     for (const Layer& layer : layers) {
-        result.most += height * layer.material;
+        result.maximum += height * layer.material;
         result.envelope += height * layer.outline;
     }
-    if (result.without_outline == result.slices) result.most = result.envelope = ClayVolume::unknown;
-    if (std::isnan(result.wall) || std::isnan(result.most)) return result;
-    result.least = 0;
+    if (result.without_outline == result.slices) result.maximum = result.envelope = ClayVolume::unknown;
+    if (std::isnan(result.wall) || std::isnan(result.maximum)) return result;
+    result.minimum = 0;
     for (const Slice& slice : stack.slices) {
         if (!slice.completeness.has_areas()) continue;
         const bool at_end = std::min(slice.height - lowest, highest - slice.height) < result.wall;
-        result.least += height * least_of(slice, at_end ? std::numeric_limits<double>::infinity() : result.wall);
+        result.minimum += height * min_of(slice, at_end ? std::numeric_limits<double>::infinity() : result.wall);
     }
-    result.least = std::min(result.least, result.most);
+    result.minimum = std::min(result.minimum, result.maximum);
     return result;
 }
 

@@ -61,9 +61,9 @@ public:
             mark(pair);
             const Contour &one = contour(pair.first), &other = contour(pair.second);
             if (places.first.size() % 2 == 0)
-                doubtful += std::min(least_area(pair),
+                doubtful += std::min(min_area(pair),
                                      disc_of(lesser_side(places.first, one.length) + lesser_side(places.second, other.length)));
-            else doubtful += least_area(pair);
+            else doubtful += min_area(pair);
         }
         for (const auto& [c, length] : loops_) mark({c, c}), doubtful += std::min(length, disc_of(contour(c).length));
         judge_touching(result, doubtful);
@@ -74,7 +74,7 @@ public:
 
 private:
     [[nodiscard]] Contour& contour(int c) const { return contours_[static_cast<std::size_t>(c)]; }
-    [[nodiscard]] double least_area(const Pair& pair) const {
+    [[nodiscard]] double min_area(const Pair& pair) const {
         return std::min(std::abs(contour(pair.first).area), std::abs(contour(pair.second).area));
     }
     void mark(const Pair& pair) { contour(pair.first).crosses = contour(pair.second).crosses = true; }
@@ -142,7 +142,7 @@ private:
                 result.cancelled[static_cast<std::size_t>(pair.second)] = true;
             } else if (same || (inside && outside)) {
                 mark(pair);
-                doubtful += least_area(pair);
+                doubtful += min_area(pair);
             }
         }
     }

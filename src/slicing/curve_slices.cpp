@@ -42,26 +42,26 @@ private:
 
 /// Distance of the origin from a contour; 0 within a closed one.
 double distance_from(const Contour& contour) {
-    double least = std::numeric_limits<double>::infinity();
+    double minimum = std::numeric_limits<double>::infinity();
     bool inside = false;
     for (std::size_t i = 0; i < contour.faces.size(); ++i) {
         const Vector2d &a = contour.points[i], &b = contour.points[(i + 1) % contour.points.size()], along = b - a;
         const double t = std::clamp(-along.dot(a) / along.squaredNorm(), 0.0, 1.0);
-        least = std::min(least, (a + t * along).norm());
+        minimum = std::min(minimum, (a + t * along).norm());
         if ((a.y() <= 0) != (b.y() <= 0) && a.x() - a.y() / along.y() * along.x() < 0) inside = !inside;
     }
-    return contour.closed && inside ? 0 : least;
+    return contour.closed && inside ? 0 : minimum;
 }
 
 Slice nearest_part(const Slice& slice) {
-    double least = std::numeric_limits<double>::infinity();
+    double minimum = std::numeric_limits<double>::infinity();
     Slice kept{slice.height, {}, {}};
     for (const Slice& part : components(slice))
         // Later ones are smaller.
-        if (const double d = distance_from(part.contours[0]); d <= least) least = d, kept = part;
+        if (const double d = distance_from(part.contours[0]); d <= minimum) minimum = d, kept = part;
     for (const auto& contour : slice.contours) {
         if (contour.closed) continue;
-        if (const double d = distance_from(contour); d < least) least = d, kept.contours = {contour};
+        if (const double d = distance_from(contour); d < minimum) minimum = d, kept.contours = {contour};
     }
     kept.completeness = detail::completeness(kept.contours);
     if (kept.completeness.crossing > 0) kept.completeness.doubtful = slice.completeness.doubtful;

@@ -10,7 +10,7 @@ namespace ostraka {
 
 namespace {
 
-constexpr double most_planes = 1e6;
+constexpr double max_planes = 1e6;
 
 std::string text(double value) {
     std::ostringstream stream;
@@ -55,7 +55,7 @@ std::pair<double, double> height_range(const Mesh& mesh, const SliceFrame& frame
 
 std::vector<double> slice_heights(double lowest, double highest, int count) {
     check_range(lowest, highest);
-    if (count < 1 || count > most_planes) fail_usage("the number of slices is " + std::to_string(count), "use 1 to a million");
+    if (count < 1 || count > max_planes) fail_usage("the number of slices is " + std::to_string(count), "use 1 to a million");
     std::vector<double> heights;
     for (int i = 0; i < count; ++i) heights.push_back(lowest + (highest - lowest) * ((i + 0.5) / count));
     return heights;
@@ -65,11 +65,11 @@ std::vector<double> slice_heights_spaced(double lowest, double highest, double s
     check_range(lowest, highest);
     if (!(spacing > 0 && spacing <= largest_coordinate))
         fail_usage("the spacing of the slices is " + text(spacing), "use a length above 0");
-    if (const double height = highest - lowest; !(height / spacing < most_planes))
+    if (const double height = highest - lowest; !(height / spacing < max_planes))
         fail_usage(
             "a spacing of " + text(spacing) + " gives " + text(height / spacing) + " slices over a height of " + text(height),
-            "use at least " + text(1.001 * height / most_planes) + " for the most there may be, a million; " +
-                text(height / 200) + " gives two hundred");
+            "use at least " + text(1.001 * height / max_planes) + " for the most there may be, a million; " + text(height / 200) +
+                " gives two hundred");
     // The last one may be missed by rounding only.
     const double steps = std::floor((highest - lowest) / spacing * (1 + 1e-12));
     std::vector<double> heights;

@@ -119,12 +119,13 @@ Graph voronoi(const std::vector<Contour>& contours, int samples) {
     return graph;
 }
 
-/// The nodes of links no longer than `least` become one: the node of the lowest number.
-void contract(Graph& graph, double least, double floor) {
+/// The nodes of links no longer than `minimum` become one: the node of the lowest number.
+void contract(Graph& graph, double minimum, double floor) {
     DisjointSets sets(graph.places.size());
     for (const auto& link : graph.links) {
         if (link.residue < floor) continue;
-        if ((graph.places[static_cast<std::size_t>(link.from)] - graph.places[static_cast<std::size_t>(link.to)]).norm() > least)
+        if ((graph.places[static_cast<std::size_t>(link.from)] - graph.places[static_cast<std::size_t>(link.to)]).norm() >
+            minimum)
             continue;
         sets.unite(static_cast<std::size_t>(link.from), static_cast<std::size_t>(link.to));
     }

@@ -85,21 +85,21 @@ std::vector<Index> PlaneSearch::near(const SliceFrame& frame, double reach) cons
 }
 
 double PlaneSearch::lowest(const SliceFrame& frame) const {
-    double least = std::numeric_limits<double>::infinity();
+    double minimum = std::numeric_limits<double>::infinity();
     std::vector<std::size_t> stack{1};
     while (!stack.empty()) {
         const std::size_t node = stack.back();
         stack.pop_back();
-        if (boxes_[node].isEmpty() || !(heights(boxes_[node], frame).first < least)) continue;
+        if (boxes_[node].isEmpty() || !(heights(boxes_[node], frame).first < minimum)) continue;
         if (node < leaves_) {
             stack.push_back(2 * node), stack.push_back(2 * node + 1);
             continue;
         }
         const std::size_t first = (node - leaves_) * leaf;
         for (std::size_t i = first; i < std::min(first + leaf, faces_.size()); ++i)
-            for (const Vertex v : corners(mesh_, Face(faces_[i]))) least = std::min(least, frame.height(mesh_.point(v)));
+            for (const Vertex v : corners(mesh_, Face(faces_[i]))) minimum = std::min(minimum, frame.height(mesh_.point(v)));
     }
-    return least;
+    return minimum;
 }
 
 }  // namespace ostraka::detail

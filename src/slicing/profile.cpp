@@ -50,14 +50,14 @@ Half half_of(const Slice& section, double angle) {
 
 /// How far the section reaches from the axis at a height, to the left; 0 where it does not.
 double reach(const Slice& section, double height) {
-    double most = 0;
+    double maximum = 0;
     for (const auto& contour : section.contours)
         for (std::size_t i = 0; i < contour.faces.size(); ++i) {
             const Vector2d &a = contour.points[i], &b = contour.points[(i + 1) % contour.points.size()];
             if ((a.y() <= height) == (b.y() <= height)) continue;
-            most = std::max(most, -(a.x() + (height - a.y()) / (b.y() - a.y()) * (b.x() - a.x())));
+            maximum = std::max(maximum, -(a.x() + (height - a.y()) / (b.y() - a.y()) * (b.x() - a.x())));
         }
-    return most;
+    return maximum;
 }
 
 constexpr int steps = 200;
@@ -87,17 +87,17 @@ std::vector<Profile::Edge> breaks(const Profile& profile) {
 
 /// The one of 36 directions in which the mesh stands out farthest from the section's outer side.
 double widest(const Mesh& mesh, const SliceFrame& axis, const Profile& profile) {
-    std::vector<double> most(36, -std::numeric_limits<double>::infinity());
+    std::vector<double> maximum(36, -std::numeric_limits<double>::infinity());
     for (const Vertex v : mesh.vertices()) {
         const Vector2d place = axis.place(mesh.point(v));
         const double wall = profile.reach_at(axis.height(mesh.point(v)));
         for (std::size_t k = 0; k < 36; ++k)
-            most[k] =
-                std::max(most[k], std::cos(double(k) * pi / 18) * place.x() + std::sin(double(k) * pi / 18) * place.y() - wall);
+            maximum[k] = std::max(maximum[k],
+                                  std::cos(double(k) * pi / 18) * place.x() + std::sin(double(k) * pi / 18) * place.y() - wall);
     }
     std::size_t best = 0;
     for (std::size_t k = 1; k < 36; ++k)
-        if (most[k] > most[best] + 1e-9 * std::abs(most[best])) best = k;
+        if (maximum[k] > maximum[best] + 1e-9 * std::abs(maximum[best])) best = k;
     return double(best) * pi / 18;
 }
 
@@ -118,10 +118,10 @@ double Profile::reach_at(double height) const {
     if (reach.empty() || !(height >= low && height <= high)) return 0;
     const auto n = static_cast<long>(reach.size());
     const long place = std::clamp(static_cast<long>((height - low) / (high - low) * double(n)), 0L, n - 1);
-    double most = 0;
+    double maximum = 0;
     for (long k = std::max(0L, place - 1); k <= std::min(n - 1, place + 1); ++k)
-        most = std::max(most, reach[static_cast<std::size_t>(k)]);
-    return most;
+        maximum = std::max(maximum, reach[static_cast<std::size_t>(k)]);
+    return maximum;
 }
 
 Profile find_profile(const Mesh& mesh, const SliceFrame& axis, double angle) {

@@ -172,12 +172,12 @@ std::vector<Vector2d> thinned(const std::vector<Vector2d>& curve, double toleran
         const auto [from, to] = stack.back();
         stack.pop_back();
         const Vector2d a = curve[from], along = curve[to % n] - a;
-        double most = tolerance;
+        double maximum = tolerance;
         std::size_t worst = from;
         for (std::size_t i = from + 1; i < to; ++i) {
             const Vector2d q = curve[i] - a;
             const double t = along.squaredNorm() > 0 ? std::clamp(q.dot(along) / along.squaredNorm(), 0.0, 1.0) : 0;
-            if (const double d = (q - t * along).norm(); d > most) most = d, worst = i;
+            if (const double d = (q - t * along).norm(); d > maximum) maximum = d, worst = i;
         }
         if (worst == from) continue;
         keep[worst] = true;

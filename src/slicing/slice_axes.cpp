@@ -20,15 +20,15 @@ Straightness summary_of(const std::vector<double>& distances, double length) {
     Straightness result;
     if (distances.empty()) return result;
     const Summary summary = summarise(distances);
-    result.mean = summary.mean, result.deviation = summary.deviation.value_or(0), result.most = summary.max;
+    result.mean = summary.mean, result.deviation = summary.deviation.value_or(0), result.maximum = summary.max;
     result.length = length;
     if (length > 0) result.relative = result.mean / length;
     return result;
 }
 
 bool may_belong(const Slice& slice, const SliceDescriptors& d, const TubeOptions& options) {
-    return slice.completeness.complete() && d.components == 1 && d.eccentricity >= options.least_eccentricity &&
-           d.roundness_equivalent_relative <= options.most_roundness;
+    return slice.completeness.complete() && d.components == 1 && d.eccentricity >= options.min_eccentricity &&
+           d.roundness_equivalent_relative <= options.max_roundness;
 }
 
 struct Wall {
@@ -193,8 +193,8 @@ Tube tubular_part(const SliceStack& stack, const std::vector<SliceDescriptors>& 
 }
 
 void TubeOptions::describe(OptionList& visit) {
-    visit("least-eccentricity", least_eccentricity, "tube: least breadth / length of a slice's rectangle", Range{0, 1});
-    visit("most-roundness", most_roundness, "tube: largest mean distance of a slice's outline from its circle", Range{0, 10},
+    visit("least-eccentricity", min_eccentricity, "tube: least breadth / length of a slice's rectangle", Range{0, 1});
+    visit("most-roundness", max_roundness, "tube: largest mean distance of a slice's outline from its circle", Range{0, 10},
           "share of the radius");
     visit("similarity", similarity, "tube: largest rms distance of a group's slices from its centre", Range{1e-6, 1e6});
     visit("tube-seed", seed, "tube: seed of the grouping", Range{0, 1e18});

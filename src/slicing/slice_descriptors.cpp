@@ -48,9 +48,9 @@ double rectangle_deviation(const PlaneSegments& segments, const PlaneRectangle& 
             }
         std::sort(cuts.begin(), cuts.end());
         const auto square = [&](double t) {
-            double least = std::numeric_limits<double>::infinity();
-            for (std::size_t i = 0; i < 4; ++i) least = std::min(least, first.at(i) + t * (last.at(i) - first.at(i)));
-            return least * least;
+            double minimum = std::numeric_limits<double>::infinity();
+            for (std::size_t i = 0; i < 4; ++i) minimum = std::min(minimum, first.at(i) + t * (last.at(i) - first.at(i)));
+            return minimum * minimum;
         };
         const double piece = (to - from).norm();
         for (std::size_t k = 0; k + 1 < cuts.size(); ++k)
@@ -64,7 +64,7 @@ double rectangle_deviation(const PlaneSegments& segments, const PlaneRectangle& 
 /// Distances from the outer contour of a component to its holes.
 struct Walls {
     double length = 0, first = 0, second = 0;
-    double least = std::numeric_limits<double>::infinity(), most = 0;
+    double minimum = std::numeric_limits<double>::infinity(), maximum = 0;
 
     void add(const Slice& component) {
         PlaneSegments inner;
@@ -88,7 +88,7 @@ struct Walls {
     }
 
 private:
-    void note(double d) { least = std::min(least, d), most = std::max(most, d); }
+    void note(double d) { minimum = std::min(minimum, d), maximum = std::max(maximum, d); }
 };
 
 void describe_outline(SliceDescriptors& d, const PlaneSegments& outline, const std::vector<Vector2d>& corners) {
@@ -209,7 +209,7 @@ SliceDescriptors describe_slice(const Slice& slice) {
     if (walls.length > 0) {
         d.thickness_mean = walls.first / walls.length;
         d.thickness_variance = std::max(0.0, walls.second / walls.length - d.thickness_mean * d.thickness_mean);
-        d.thickness_least = walls.least, d.thickness_most = walls.most;
+        d.thickness_min = walls.minimum, d.thickness_max = walls.maximum;
     }
     return d;
 }
@@ -247,8 +247,8 @@ std::vector<NamedDescriptor> list_descriptors(const SliceDescriptors& d) {
             {"roundness_fitted_relative", "", d.roundness_fitted_relative},
             {"thickness_mean", "length", d.thickness_mean},
             {"thickness_variance", "area", d.thickness_variance},
-            {"thickness_least", "length", d.thickness_least},
-            {"thickness_most", "length", d.thickness_most},
+            {"thickness_least", "length", d.thickness_min},
+            {"thickness_most", "length", d.thickness_max},
             {"closed_length", "length", d.closed_length},
             {"open_length", "length", d.open_length}};
 }

@@ -103,8 +103,8 @@ public:
                 const auto [low, high] = std::minmax(e.a.y(), e.b.y());
                 for (std::size_t k = i + 1; k < sorted.size() && sorted[k].first <= right; ++k) {
                     const Edge& f = edges_[sorted[k].second];
-                    const auto [least, most] = std::minmax(f.a.y(), f.b.y());
-                    if (least > high + tolerance || most < low - tolerance || are_neighbours(e, f)) continue;
+                    const auto [minimum, maximum] = std::minmax(f.a.y(), f.b.y());
+                    if (minimum > high + tolerance || maximum < low - tolerance || are_neighbours(e, f)) continue;
                     // Only in the lowest strip that both lie in.
                     if (std::max(range(e).first, range(f).first) == s) visit(e, f);
                 }

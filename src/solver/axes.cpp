@@ -25,14 +25,14 @@ Matrix3d cross_matrix(const Vector3d& n) {
 /// closed form.
 Matrix3d turn_to(const Vector3d& a, const Vector3d& d, const Matrix3d& m) {
     Matrix3d best = Matrix3d::Identity();
-    double most = -std::numeric_limits<double>::infinity();
+    double maximum = -std::numeric_limits<double>::infinity();
     for (const double side : {1.0, -1.0}) {
         const Matrix3d turn = rotation_between(a, side * d).toRotationMatrix();
         const Matrix3d turned = turn * m;
         const double along = d.dot(turned * d), c = turned.trace() - along, s = (cross_matrix(d) * turned).trace();
         const double value = along + std::hypot(c, s);
-        if (value > most) {
-            most = value;
+        if (value > maximum) {
+            maximum = value;
             best = Eigen::AngleAxisd(c == 0 && s == 0 ? 0.0 : std::atan2(s, c), d).toRotationMatrix() * turn;
         }
     }
@@ -57,10 +57,10 @@ Matrix3d turn_to_angle(const Vector3d& a, const Vector3d& d, double angle, const
     const double wanted = std::pow(std::sin(angle / 2), 2);
     const auto too_far = [&](const Vector4d& q) { return (far * q).squaredNorm() > wanted * q.squaredNorm(); };
     const auto top = [&](double l) -> Vector4d { return SymmetricEigen4(n + l * c).eigenvectors().col(3); };
-    constexpr double most = 1e12;
+    constexpr double maximum = 1e12;
     double low = -1, high = 1;
-    while (low > -most && !too_far(top(low))) low *= 2;
-    while (high < most && too_far(top(high))) high *= 2;
+    while (low > -maximum && !too_far(top(low))) low *= 2;
+    while (high < maximum && too_far(top(high))) high *= 2;
     while (high - low > 1e-16 * std::max(1.0, std::abs(low))) {
         const double middle = low + (high - low) / 2;
         if (!(middle > low && middle < high)) break;

@@ -103,9 +103,9 @@ Eigen::Matrix3d best_rotation(const Eigen::Matrix3d& m) {
 SymmetricEigen3 principal(const Eigen::Matrix3d& symmetric) { return SymmetricEigen3(symmetric); }
 
 Eigen::Vector3d any_perpendicular(const Eigen::Vector3d& unit) {
-    Eigen::Index least = 0;
-    unit.cwiseAbs().minCoeff(&least);
-    return unit.cross(Eigen::Vector3d::Unit(least)).normalized();
+    Eigen::Index minimum = 0;
+    unit.cwiseAbs().minCoeff(&minimum);
+    return unit.cross(Eigen::Vector3d::Unit(minimum)).normalized();
 }
 
 void MomentConstraint::project(const RowsIn& rows, RowsOut projected) const {

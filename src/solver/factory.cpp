@@ -27,12 +27,12 @@ Eigen::Vector3d Making::point() const {
     return *parameters.point;
 }
 
-Making::Interval Making::range(double default_min, double default_max, double least) const {
+Making::Interval Making::range(double default_min, double default_max, double minimum) const {
     const Interval interval{parameters.min.value_or(default_min), parameters.max.value_or(default_max)};
     if (std::isnan(interval.min) || std::isnan(interval.max)) fail("the range is not a number");
     if (interval.min > interval.max)
         fail("the range's min, " + std::to_string(interval.min) + ", is above its max, " + std::to_string(interval.max));
-    if (interval.min < least) fail("the range begins below " + std::to_string(least));
+    if (interval.min < minimum) fail("the range begins below " + std::to_string(minimum));
     if (std::isinf(interval.min)) fail("the range's min is infinite");
     return interval;
 }
@@ -138,10 +138,10 @@ std::unique_ptr<Constraint> make_constraint(std::string_view kind, std::vector<i
     }
     const int count = static_cast<int>(ids.size());
     solver::Making making{found->kind.name, std::move(ids), weight, parameters, Points(3, count)};
-    if (count < found->kind.least_ids || (found->kind.most_ids > 0 && count > found->kind.most_ids))
+    if (count < found->kind.min_ids || (found->kind.max_ids > 0 && count > found->kind.max_ids))
         making.fail("there are " + std::to_string(count) + " points",
-                    found->kind.least_ids == found->kind.most_ids ? "give " + std::to_string(found->kind.least_ids)
-                                                                  : "give at least " + std::to_string(found->kind.least_ids));
+                    found->kind.min_ids == found->kind.max_ids ? "give " + std::to_string(found->kind.min_ids)
+                                                               : "give at least " + std::to_string(found->kind.min_ids));
     for (int i = 0; i < count; ++i) {
         const int id = making.ids[i];
         if (id < 0 || id >= rest.cols())

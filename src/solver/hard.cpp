@@ -75,7 +75,7 @@ HardSummary HardSolver::solve(Points& points, const HardOptions& options) {
     check_options(options, "solver");
     HardSummary summary;
     summary.tolerance = options.tolerance * state_->diagonal;
-    constexpr double raise = 4, most = 1e8;  // of weights, against where they start
+    constexpr double raise = 4, maximum = 1e8;  // of weights, against where they start
     for (std::size_t i = 0; i < state_->hard.size(); ++i)
         if (state_->hard[i] != nullptr) {
             state_->hard[i]->u.setZero();
@@ -86,7 +86,7 @@ HardSummary HardSolver::solve(Points& points, const HardOptions& options) {
     // Contradictory constraints pull ever harder: the state that came nearest is kept, and what does not come nearer is ended.
     constexpr int patience = 12;
     Points best = points;
-    double least = std::numeric_limits<double>::infinity();
+    double minimum = std::numeric_limits<double>::infinity();
     int since = 0;
     std::vector<double> of_best;
     while (summary.rounds < options.rounds && !summary.met && since < patience) {
@@ -101,7 +101,7 @@ HardSummary HardSolver::solve(Points& points, const HardOptions& options) {
             // Where multipliers alone are too slow, the weight grows; the multipliers themselves, weight times u, stay.
             constexpr double fast_enough = 0.5;
             const double weight = hard->weight();
-            if (now > summary.tolerance && now > fast_enough * before[i] && weight < most * constraint(i).weight()) {
+            if (now > summary.tolerance && now > fast_enough * before[i] && weight < maximum * constraint(i).weight()) {
                 state_->solver->set_weight(i, raise * weight);
                 hard->u /= raise;
             }
@@ -109,9 +109,9 @@ HardSummary HardSolver::solve(Points& points, const HardOptions& options) {
         }
         summary.violation.push_back(worst);
         summary.met = worst <= summary.tolerance;
-        since = worst < 0.9 * least ? 0 : since + 1;
-        if (worst < least || summary.met) {
-            least = worst;
+        since = worst < 0.9 * minimum ? 0 : since + 1;
+        if (worst < minimum || summary.met) {
+            minimum = worst;
             best = points;
             of_best = summary.of_constraint;
         }

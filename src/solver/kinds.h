@@ -22,8 +22,8 @@ struct Making {
         double min, max;
         [[nodiscard]] double clamp(double value) const { return value < min ? min : (value > max ? max : value); }
     };
-    /// The range, at least `least`; with `rest_measure` given, times that unless absolute.
-    [[nodiscard]] Interval range(double default_min, double default_max, double least = 0) const;
+    /// The range, at least `minimum`; with `rest_measure` given, times that unless absolute.
+    [[nodiscard]] Interval range(double default_min, double default_max, double minimum = 0) const;
     [[nodiscard]] Interval range_of(double rest_measure) const;
     /// The target's points or the rest points, as many as `columns`.
     [[nodiscard]] Points target_or(const Points& rest_rows) const;

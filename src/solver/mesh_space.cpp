@@ -128,7 +128,7 @@ bool MeshSpaceSolver::State::factorise() {
 
 /// False where too many rows have changed, or the update is ill-conditioned.
 bool MeshSpaceSolver::State::update(std::span<const std::unique_ptr<Constraint>> constraints) {
-    constexpr std::size_t most_rows = 24;
+    constexpr std::size_t max_rows = 24;
     updated_rows.clear();
     std::vector<double> change;
     for (const auto& [c, before] : factored_weight) {
@@ -137,12 +137,12 @@ bool MeshSpaceSolver::State::update(std::span<const std::unique_ptr<Constraint>>
                   row_weight.begin() + static_cast<std::ptrdiff_t>(unknowns.first_row[c + 1]), constraint.weight());
         if (constraint.weight() == before) continue;
         // What holds parts in place may have changed, too.
-        if (constraint.weight() == 0 || before == 0 || static_cast<std::size_t>(constraint.map().rows) > most_rows) return false;
+        if (constraint.weight() == 0 || before == 0 || static_cast<std::size_t>(constraint.map().rows) > max_rows) return false;
         for (std::size_t r = unknowns.first_row[c]; r < unknowns.first_row[c + 1]; ++r) {
             updated_rows.push_back(r);
             change.push_back(constraint.weight() - before);
         }
-        if (updated_rows.size() > most_rows) return false;
+        if (updated_rows.size() > max_rows) return false;
     }
     const auto rank = static_cast<Eigen::Index>(updated_rows.size());
     update_sign.resize(rank);
@@ -165,10 +165,10 @@ bool MeshSpaceSolver::State::update(std::span<const std::unique_ptr<Constraint>>
             small.row(k) += update_root[k] * unknowns.rows.value[e] * update_columns.row(unknowns.rows.unknown[e]);
     }
     // The update takes back what the old factors give: as many digits are lost as this has.
-    constexpr double most_lost = 1e3;
-    if (!(small.cwiseAbs().maxCoeff() < most_lost)) return false;
+    constexpr double max_lost = 1e3;
+    if (!(small.cwiseAbs().maxCoeff() < max_lost)) return false;
     capacity.compute(small);
-    return capacity.rcond() > 1 / most_lost;
+    return capacity.rcond() > 1 / max_lost;
 }
 
 void MeshSpaceSolver::State::solve(Eigen::MatrixXd& x) {

@@ -260,14 +260,14 @@ private:
     /// The factor nearest to s whose measure is in range: of constant + s growing, along the direction or in length.
     [[nodiscard]] double within(double s, double unit, const Vector3d& constant, const Vector3d& growing) const {
         const double low = range_.min * unit, high = std::isinf(range_.max) ? range_.max : range_.max * unit;
-        constexpr double least = 1e-3;  // a part does not vanish or turn inside out
-        s = std::max(s, least);
+        constexpr double minimum = 1e-3;  // a part does not vanish or turn inside out
+        s = std::max(s, minimum);
         const double now = length(constant + s * growing, along_first_);
         const double wanted = now < low ? low : now > high ? high : now;
         if (wanted == now) return s;
         double a = along_first_ ? along_first_->dot(growing) : growing.norm(), b = along_first_ ? along_first_->dot(constant) : 0;
         if (a < 0) a = -a, b = -b;
-        return a > 0 ? std::max((wanted - b) / a, least) : s;
+        return a > 0 ? std::max((wanted - b) / a, minimum) : s;
     }
 
     Making::Interval range_;

@@ -62,8 +62,8 @@ public:
         // For a given s the best rotation is known, for a given rotation the best s: the squared distance as a function of s
         // alone is smooth but may have several minima, so that it is sampled first.
         const double along = axis_.dot(outer_ * axis_);
-        const double most = std::sqrt(moments.rows.trace() / (along > 0 ? along : 1.0));
-        const double low = scale_.min, high = std::max(low, std::min(scale_.max, 2 * most + 1));
+        const double maximum = std::sqrt(moments.rows.trace() / (along > 0 ? along : 1.0));
+        const double low = scale_.min, high = std::max(low, std::min(scale_.max, 2 * maximum + 1));
         double best = cost(moments, low, along), s = low;
         constexpr int samples = 16;
         for (int i = 1; i <= samples && high > low; ++i) {

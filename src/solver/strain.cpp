@@ -64,8 +64,8 @@ std::array<double, 3> with_product(const std::array<double, 3>& a, int n, double
         for (int i = 0; i < n; ++i) sum += (s[i] - a[i]) * (s[i] - a[i]);
         return sum;
     };
-    const double least = a[n - 1];
-    const double start = least > 0 ? -least * least / 4 : 0.0;
+    const double minimum = a[n - 1];
+    const double start = minimum > 0 ? -minimum * minimum / 4 : 0.0;
     std::array<double, 3> best{};
     double best_distance = std::numeric_limits<double>::infinity();
     const auto consider = [&](const std::array<double, 3>& s) {
@@ -79,7 +79,7 @@ std::array<double, 3> with_product(const std::array<double, 3>& a, int n, double
         while (excess(high, false) < 0) high *= 2;
         consider(bisect(start, high, false));
     }
-    if (least > 0) {
+    if (minimum > 0) {
         // From `start` to 0 with the minus sign the product ends at 0, but it may rise before.
         constexpr int samples = 64;
         double previous = start, value = excess(start, true);

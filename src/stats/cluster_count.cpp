@@ -18,8 +18,8 @@ std::vector<double> silhouettes_by(std::size_t n, const std::vector<int>& labels
     if (labels.size() != n)
         fail_usage("there are " + std::to_string(labels.size()) + " labels for " + std::to_string(n) + " samples",
                    "give one label a sample");
-    const int most = *std::max_element(labels.begin(), labels.end());
-    std::vector<std::size_t> sizes(static_cast<std::size_t>(std::max(0, most + 1)));
+    const int maximum = *std::max_element(labels.begin(), labels.end());
+    std::vector<std::size_t> sizes(static_cast<std::size_t>(std::max(0, maximum + 1)));
     for (const int label : labels)
         if (label >= 0) ++sizes[static_cast<std::size_t>(label)];
     std::vector<double> result(n, 0.0);
@@ -74,7 +74,7 @@ ClusterCount propose_cluster_count(const Eigen::MatrixXd& samples, const Cluster
     const std::size_t different = distinct_rows(samples);
     const std::size_t possible =
         2 * different <= static_cast<std::size_t>(samples.rows()) ? different : std::max<std::size_t>(1, different - 1);
-    const int most = static_cast<int>(std::min(static_cast<std::size_t>(options.most), possible));
+    const int maximum = static_cast<int>(std::min(static_cast<std::size_t>(options.maximum), possible));
 
     // Version b of the paper: the box lies along the principal directions.
     Eigen::MatrixXd centred = samples.rowwise() - samples.row(0);
@@ -84,11 +84,11 @@ ClusterCount propose_cluster_count(const Eigen::MatrixXd& samples, const Cluster
     if (largest > 0) centred /= largest;
     const SymmetricEigenX principal(centred.transpose() * centred);
     const Eigen::MatrixXd turned = centred * principal.eigenvectors();
-    const double whole = centred.squaredNorm(), least = 1e-24 * (whole > 0 ? whole : 1);
+    const double whole = centred.squaredNorm(), minimum = 1e-24 * (whole > 0 ? whole : 1);
 
     ClusterCount result;
     double best = -std::numeric_limits<double>::infinity();
-    for (int k = 1; k <= most; ++k) {
+    for (int k = 1; k <= maximum; ++k) {
         KMeansOptions of_k = options.k_means;
         of_k.clusters = k;
         const KMeansResult found = k_means(centred, of_k);
@@ -104,17 +104,17 @@ ClusterCount propose_cluster_count(const Eigen::MatrixXd& samples, const Cluster
         parallel_for(
             logs.size(),
             [&](std::size_t b) {
-                logs[b] = std::log(std::max(least, k_means(reference(turned, Random(options.k_means.seed, b + 1)), of_k).cost));
+                logs[b] = std::log(std::max(minimum, k_means(reference(turned, Random(options.k_means.seed, b + 1)), of_k).cost));
             },
             1);
         double mean = 0, square = 0;
         for (const double value : logs) mean += value / static_cast<double>(logs.size());
         for (const double value : logs) square += (value - mean) * (value - mean) / static_cast<double>(logs.size());
-        row.gap = mean - std::log(std::max(least, found.cost));
+        row.gap = mean - std::log(std::max(minimum, found.cost));
         row.gap_error = std::sqrt(square * (1 + 1 / static_cast<double>(logs.size())));
         result.rows.push_back(row);
     }
-    result.by_gap = most;
+    result.by_gap = maximum;
     for (std::size_t k = 0; k + 1 < result.rows.size(); ++k)
         if (result.rows[k].gap >= result.rows[k + 1].gap - result.rows[k + 1].gap_error) {
             result.by_gap = result.rows[k].clusters;

@@ -158,17 +158,17 @@ Linkage linkage(const Eigen::MatrixXd& distances, LinkageMethod method) {
         const Eigen::Index last = chain.back(), before = chain.size() > 1 ? chain[chain.size() - 2] : -1;
         // The nearest other cluster; the one before in the chain is kept among equals, so that chains end.
         Eigen::Index nearest = before;
-        double least = before < 0 ? std::numeric_limits<double>::infinity() : between(last, before);
+        double minimum = before < 0 ? std::numeric_limits<double>::infinity() : between(last, before);
         for (Eigen::Index j = 0; j < n; ++j)
-            if (j != last && !gone[static_cast<std::size_t>(j)] && between(last, j) < least)
-                least = between(last, j), nearest = j;
+            if (j != last && !gone[static_cast<std::size_t>(j)] && between(last, j) < minimum)
+                minimum = between(last, j), nearest = j;
         if (nearest != before) {
             chain.push_back(nearest);
             continue;
         }
         chain.resize(chain.size() - 2);
         const Eigen::Index a = std::min(last, before), b = std::max(last, before);
-        steps.push_back({a, b, least});
+        steps.push_back({a, b, minimum});
         const double na = sizes[static_cast<std::size_t>(a)], nb = sizes[static_cast<std::size_t>(b)];
         for (Eigen::Index j = 0; j < n; ++j) {
             if (j == a || j == b || gone[static_cast<std::size_t>(j)]) continue;

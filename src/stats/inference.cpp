@@ -25,10 +25,10 @@ std::vector<double> stepped_up(const std::vector<double>& p, double factor) {
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return p[a] < p[b]; });
     std::vector<double> q(p.size());
-    double least = 1;
+    double minimum = 1;
     for (std::size_t rank = order.size(); rank-- > 0;) {
-        least = std::min(least, p[order[rank]] * factor * static_cast<double>(p.size()) / static_cast<double>(rank + 1));
-        q[order[rank]] = least;
+        minimum = std::min(minimum, p[order[rank]] * factor * static_cast<double>(p.size()) / static_cast<double>(rank + 1));
+        q[order[rank]] = minimum;
     }
     return q;
 }

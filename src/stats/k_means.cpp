@@ -54,15 +54,15 @@ Rows first_centres(const Rows& samples, Eigen::Index clusters, Random& random) {
 bool assign(const Rows& samples, Restart& run, std::vector<double>& distances) {
     bool changed = false;
     for (Eigen::Index i = 0; i < samples.rows(); ++i) {
-        double least = std::numeric_limits<double>::infinity();
+        double minimum = std::numeric_limits<double>::infinity();
         int best = 0;
         for (Eigen::Index k = 0; k < run.centres.rows(); ++k)
-            if (const double d = (samples.row(i) - run.centres.row(k)).squaredNorm(); d < least)
-                least = d, best = static_cast<int>(k);
+            if (const double d = (samples.row(i) - run.centres.row(k)).squaredNorm(); d < minimum)
+                minimum = d, best = static_cast<int>(k);
         int& label = run.labels[static_cast<std::size_t>(i)];
         changed = changed || label != best;
         label = best;
-        distances[static_cast<std::size_t>(i)] = least;
+        distances[static_cast<std::size_t>(i)] = minimum;
     }
     return changed;
 }
@@ -196,7 +196,7 @@ void KMeansOptions::describe(OptionList& visit) {
 }
 
 void ClusterCountOptions::describe(OptionList& visit) {
-    visit("most-clusters", most, "largest number of clusters that is tried", Range{1, 10000});
+    visit("most-clusters", maximum, "largest number of clusters that is tried", Range{1, 10000});
     visit("criterion", criterion, "how the number of clusters is proposed", Choices{"silhouette", "gap"});
     visit("references", references, "reference sets of the gap statistic", Range{2, 100000});
     visit("restarts", k_means.restarts, "beginnings of k-means, of which the best is kept", Range{1, 100000});

@@ -72,8 +72,8 @@ double adjusted_rand_index(const std::vector<int>& labels, const std::vector<int
     for (const auto& [key, count] : rows) in_rows += pairs(count);
     for (const auto& [key, count] : columns) in_columns += pairs(count);
     const double all = pairs(static_cast<double>(labels.size()));
-    const double expected = all > 0 ? in_rows * in_columns / all : 0, most = (in_rows + in_columns) / 2;
-    return most == expected ? 1.0 : (together - expected) / (most - expected);
+    const double expected = all > 0 ? in_rows * in_columns / all : 0, maximum = (in_rows + in_columns) / 2;
+    return maximum == expected ? 1.0 : (together - expected) / (maximum - expected);
 }
 
 double ConfusionScores::precision() const { return share(true_positive, true_positive + false_positive); }

@@ -12,9 +12,9 @@ using Eigen::Vector3d;
 namespace {
 
 /// A triangle may lean against the surface's normal by at most this (cosine).
-constexpr double least_agreement = 0.35;
+constexpr double min_agreement = 0.35;
 /// Twice the area over the square of the longest edge: 0.87 for an even triangle. Changes must not go below.
-constexpr double least_fullness = 0.12;
+constexpr double min_fullness = 0.12;
 
 class Evening {
 public:
@@ -67,7 +67,7 @@ private:
         const Vector3d cross = (b - a).cross(c - a);
         const double twice_area = cross.norm();
         const double longest = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
-        return twice_area > fullness * longest && cross.dot(normals) > least_agreement * twice_area * normals.norm();
+        return twice_area > fullness * longest && cross.dot(normals) > min_agreement * twice_area * normals.norm();
     }
     [[nodiscard]] double fullness(Index a, Index b, Index c) const {
         const Vector3d &p = points_[a], &q = points_[b], &r = points_[c];
@@ -91,7 +91,7 @@ private:
         const Vector3d normal = sum.normalized();
         const double longest = std::max(1.5, 1.4 * share) * edge_;
         // Thin triangles may stay thin (they will be mended later), but none may become thinner than the thinnest was.
-        double floor = least_fullness;
+        double floor = min_fullness;
         for (const Index v : {a, b}) {
             table_.around(v, [&](Index g) {
                 floor = std::min(floor, fullness(v, table_.target(g), table_.target(HalfedgeTable::next(g))));
@@ -138,7 +138,7 @@ private:
         const double size = std::sqrt(ca.squaredNorm() * cb.squaredNorm() * da.squaredNorm() * db.squaredNorm());
         if (sine_c * cosine_d + sine_d * cosine_c > -1e-9 * size) return false;
         const double before = std::min(fullness(a, b, c), fullness(b, a, d));
-        const double floor = std::min(least_fullness, before);
+        const double floor = std::min(min_fullness, before);
         const Vector3d both = normals_[c] + normals_[d];
         if (!sound(points_[c], points_[d], points_[b], both + normals_[b], floor)) return false;
         if (!sound(points_[d], points_[c], points_[a], both + normals_[a], floor)) return false;

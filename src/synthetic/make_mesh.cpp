@@ -94,9 +94,9 @@ void join_crumbs(const Mesh& mesh, std::vector<std::int32_t>& labels, std::size_
                 if (other != label) ++around[other];
             }
         }
-        const auto most =
+        const auto maximum =
             std::max_element(around.begin(), around.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
-        for (const Face face : patch) labels[face.idx()] = most->first;
+        for (const Face face : patch) labels[face.idx()] = maximum->first;
     }
 }
 

@@ -51,11 +51,11 @@ const SyntheticObject& synthetic_object(const std::string& name) {
     const auto found = made.find(name);
     if (found != made.end()) return *found->second;
     std::string nearest, all;
-    std::size_t least = std::max<std::size_t>(3, name.size() / 2 + 1);
+    std::size_t minimum = std::max<std::size_t>(3, name.size() / 2 + 1);
     for (const auto& [known, maker] : makers()) {
         all += (all.empty() ? "" : ", ") + known;
         const std::size_t distance = name.size() > 64 ? 64 : edits(name, known);
-        if (distance < least) least = distance, nearest = known;
+        if (distance < minimum) minimum = distance, nearest = known;
     }
     fail_usage("there is no made object '" + name + "'",
                nearest.empty() ? "use one of: " + all : "did you mean '" + nearest + "'? All: " + all);

@@ -257,8 +257,8 @@ std::vector<Sherd> shatter(const Mesh& whole, const ShatterOptions& options) {
                       [](const Mesh& x, const Mesh& y) { return surface_area(x) > surface_area(y); });
         }
         // Crumbs are no sherds: another cut.
-        const double least = 0.15 / options.pieces * surface_area(whole);
-        for (const Mesh& part : parts) sound = sound && CGAL::is_closed(part) && surface_area(part) > least;
+        const double minimum = 0.15 / options.pieces * surface_area(whole);
+        for (const Mesh& part : parts) sound = sound && CGAL::is_closed(part) && surface_area(part) > minimum;
         if (!sound) continue;
         pieces.erase(pieces.begin() + static_cast<std::ptrdiff_t>(largest));
         for (Mesh& part : parts) pieces.push_back(std::move(part));

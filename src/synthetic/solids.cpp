@@ -156,7 +156,7 @@ public:
     }
     [[nodiscard]] double parameter(const Vector3d& p) const override {
         const auto ball_distance = [&p](const Ball& ball) { return (p - ball.centre).norm() - ball.radius; };
-        const std::size_t best = shapes::SampleGroups{samples_per_piece, samples_.size()}.least(
+        const std::size_t best = shapes::SampleGroups{samples_per_piece, samples_.size()}.minimum(
             [&](std::size_t piece) { return ball_distance(balls_[piece]); },
             [&](std::size_t i) { return ball_distance(samples_[i]); });
         const double low = samples_[best == 0 ? 0 : best - 1].t, high = samples_[std::min(best + 1, samples_.size() - 1)].t;
@@ -234,7 +234,7 @@ protected:
 private:
     static constexpr int samples_per_piece = 8;
     [[nodiscard]] double closest(const Vector2d& q) const {
-        const std::size_t best = shapes::SampleGroups{samples_per_piece, samples_.size()}.least(
+        const std::size_t best = shapes::SampleGroups{samples_per_piece, samples_.size()}.minimum(
             [&](std::size_t piece) { return (q - discs_[piece].first).norm() - discs_[piece].second; },
             [&](std::size_t i) { return (q - samples_[i].second).norm(); });
         const double low = samples_[best == 0 ? 0 : best - 1].first,
@@ -276,11 +276,11 @@ void check_path(const Items& items, const char* what) {
 }
 
 void check_sizes(const char* what, std::initializer_list<double> sizes, double rounding = 0,
-                 double most = std::numeric_limits<double>::infinity()) {
+                 double maximum = std::numeric_limits<double>::infinity()) {
     for (const double size : sizes) {
         if (!(size > 0 && std::isfinite(size))) refuse(what, "has a size that is not positive");
     }
-    if (!(rounding >= 0 && rounding <= most)) refuse(what, "has a rounding that does not fit its size");
+    if (!(rounding >= 0 && rounding <= maximum)) refuse(what, "has a rounding that does not fit its size");
 }
 
 }  // namespace

@@ -102,24 +102,24 @@ struct SampleGroups {
     int per_piece;
     std::size_t samples;  ///< pieces * per_piece + 1
     template <class Bound, class Cost>
-    [[nodiscard]] std::size_t least(Bound&& lower_bound, Cost&& cost) const {
+    [[nodiscard]] std::size_t minimum(Bound&& lower_bound, Cost&& cost) const {
         const std::size_t pieces = samples / static_cast<std::size_t>(per_piece);
         std::size_t best = 0, first_piece = 0;
-        double least_bound = std::numeric_limits<double>::infinity(), least_cost = least_bound;
+        double min_bound = std::numeric_limits<double>::infinity(), min_cost = min_bound;
         for (std::size_t piece = 0; piece < pieces; ++piece) {
             const double bound = lower_bound(piece);
-            if (bound < least_bound) least_bound = bound, first_piece = piece;
+            if (bound < min_bound) min_bound = bound, first_piece = piece;
         }
         const auto scan = [&](std::size_t piece) {
             for (std::size_t i = piece * static_cast<std::size_t>(per_piece);
                  i <= (piece + 1) * static_cast<std::size_t>(per_piece); ++i) {
                 const double value = cost(i);
-                if (value < least_cost) least_cost = value, best = i;
+                if (value < min_cost) min_cost = value, best = i;
             }
         };
         scan(first_piece);
         for (std::size_t piece = 0; piece < pieces; ++piece) {
-            if (piece != first_piece && lower_bound(piece) < least_cost) scan(piece);
+            if (piece != first_piece && lower_bound(piece) < min_cost) scan(piece);
         }
         return best;
     }

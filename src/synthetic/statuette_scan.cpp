@@ -90,7 +90,7 @@ void take_away(Statuette& statuette, const std::vector<bool>& missing) {
     const Mesh& mesh = statuette.mesh;
     std::vector<Index> piece(mesh.number_of_faces(), no_index);
     Index pieces = 0, largest = 0;
-    std::size_t most = 0;
+    std::size_t maximum = 0;
     for (const Face start : mesh.faces()) {
         if (missing[start.idx()] || piece[start.idx()] != no_index) continue;
         std::vector<Face> list{start};
@@ -103,7 +103,7 @@ void take_away(Statuette& statuette, const std::vector<bool>& missing) {
                 list.push_back(next);
             }
         }
-        if (list.size() > most) most = list.size(), largest = pieces;
+        if (list.size() > maximum) maximum = list.size(), largest = pieces;
         ++pieces;
     }
     TriangleSoup soup;

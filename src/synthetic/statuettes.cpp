@@ -34,11 +34,11 @@ private:
 };
 
 /// Waves of random phase, each of the same size, whose root mean square over the body is `deviation`.
-std::vector<Wave> random_waves(Draws& draw, int count, double deviation, int least_around, int most_around, double shortest,
+std::vector<Wave> random_waves(Draws& draw, int count, double deviation, int min_around, int max_around, double shortest,
                                double longest) {
     std::vector<Wave> waves;
     for (int i = 0; i < count; ++i) {
-        const int around = least_around + i % (most_around - least_around + 1);
+        const int around = min_around + i % (max_around - min_around + 1);
         const double side = draw.between(-1, 1) < 0 ? -1 : 1;
         const double upward = side * 2 * pi / draw.between(shortest, longest);
         waves.push_back({deviation * std::sqrt(2.0 / count), around, upward, draw.angle()});

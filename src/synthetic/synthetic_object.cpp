@@ -82,9 +82,9 @@ Sample SyntheticObject::member_sample(std::size_t member, const Vector3d& p) con
 }
 
 double SyntheticObject::slack() const {
-    double most = 0;
-    for (const Relief& relief : reliefs) most = std::max(most, std::abs(relief.height));
-    return most;
+    double maximum = 0;
+    for (const Relief& relief : reliefs) maximum = std::max(maximum, std::abs(relief.height));
+    return maximum;
 }
 
 Sample SyntheticObject::sample(const Vector3d& p) const {
@@ -116,12 +116,12 @@ Vector SyntheticObject::gradient(const Point& p) const {
 
 int SyntheticObject::part(const Vector3d& p) const {
     std::size_t nearest = 0;
-    double least = std::numeric_limits<double>::infinity();
+    double minimum = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < members.size(); ++i) {
         if (members[i].carves && members[i].stretches.empty()) continue;
         const double value = member_sample(i, p).value;
         // A wall that a cut leaves lies inside what was there before.
-        if (members[i].carves ? -value > least : value < least) least = members[i].carves ? -value : value, nearest = i;
+        if (members[i].carves ? -value > minimum : value < minimum) minimum = members[i].carves ? -value : value, nearest = i;
     }
     const Member& member = members[nearest];
     int label = member.stretches.back().part;

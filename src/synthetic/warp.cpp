@@ -36,7 +36,7 @@ class Warped final : public Solid {
 public:
     Warped(SolidPointer solid, std::shared_ptr<const Warp> warp) : solid_(std::move(solid)), warp_(std::move(warp)) {
         const Eigen::AlignedBox3d inner = solid_->box();
-        double reach = 0, least = 1, sway = 0;
+        double reach = 0, minimum = 1, sway = 0;
         steepest_ = 1;
         const double widest = inner.max().cwiseAbs().cwiseMax(inner.min().cwiseAbs()).head<2>().norm();
         for (int up = 0; up <= samples_up; ++up) {
@@ -51,12 +51,12 @@ public:
                     const Matrix3d change = moved_back(p).second;
                     const Vector3d squares = symmetric_eigenvalues(change.transpose() * change);
                     steepest_ = std::max(steepest_, std::sqrt(squares[2]));
-                    least = std::min(least, std::sqrt(std::max(squares[0], 0.0)));
+                    minimum = std::min(minimum, std::sqrt(std::max(squares[0], 0.0)));
                 }
             }
         }
         steepest_ *= margin;
-        flatness_ = std::max(least / margin, 0.05) / steepest_ * solid_->flatness();
+        flatness_ = std::max(minimum / margin, 0.05) / steepest_ * solid_->flatness();
         const Vector3d grown((margin * (reach + sway)), (margin * (reach + sway)), 0);
         box_ = {inner.min() - grown, inner.max() + grown};
     }

@@ -22,7 +22,7 @@ Distortions distortions(const TransferScore& score) {
 }
 
 double overlapping_area(const Mesh& mesh, const std::vector<Index>& region, const SurfaceSearch& other,
-                        const CorrespondenceOptions& options, std::size_t most_inner,
+                        const CorrespondenceOptions& options, std::size_t max_inner,
                         const std::function<bool(const SurfaceHit&)>& contains) {
     // Vertices on the outline and their neighbours make the band that is sampled finely.
     std::vector<bool> on_rim(mesh.number_of_vertices(), false), near = on_rim;
@@ -36,7 +36,7 @@ double overlapping_area(const Mesh& mesh, const std::vector<Index>& region, cons
     const double fine = 0.3 * other.typical_edge();
     const double reach = options.max_distance * other.diagonal();
     const double min_cosine = std::cos(options.max_angle * CGAL_PI / 180);
-    const std::size_t stride = std::max<std::size_t>(1, (region.size() + most_inner - 1) / std::max<std::size_t>(1, most_inner));
+    const std::size_t stride = std::max<std::size_t>(1, (region.size() + max_inner - 1) / std::max<std::size_t>(1, max_inner));
     std::vector<double> inside(region.size(), -1), area_of(region.size(), 0);
     parallel_for(
         region.size(),
@@ -95,11 +95,11 @@ double overlapping_area(const Mesh& mesh, const std::vector<Index>& region, cons
 
 void score_overlap(const RegionOn& source, const RegionOn& target, const CorrespondenceOptions& options,
                    const std::function<bool(const SurfaceHit&)>& in_target, TransferScore& score) {
-    constexpr std::size_t most_inner = 5000;
+    constexpr std::size_t max_inner = 5000;
     std::vector<bool> in_source(source.mesh.number_of_faces(), false);
     for (const Index f : source.faces) in_source[f] = true;
-    const double arrived = overlapping_area(source.mesh, source.faces, target.search, options, most_inner, in_target);
-    const double came = overlapping_area(target.mesh, target.faces, source.search, options, most_inner,
+    const double arrived = overlapping_area(source.mesh, source.faces, target.search, options, max_inner, in_target);
+    const double came = overlapping_area(target.mesh, target.faces, source.search, options, max_inner,
                                          [&](const SurfaceHit& hit) { return static_cast<bool>(in_source[hit.face]); });
     const double common = (arrived + came) / 2;
     score.overlap = common / (score.source_area + score.target_area - common);

@@ -9,10 +9,10 @@ namespace ostraka {
 
 /// Area of a region of `mesh` whose places on the other mesh lie in the corresponding region there, as `contains` tells. Faces
 /// near the region's outline are sampled by up to 64 smaller triangles each, finer than the other mesh's faces (four, if these
-/// agree, where no corner is on the outline); the others at their centroids, or, of more than `most_inner` of them, every so
+/// agree, where no corner is on the outline); the others at their centroids, or, of more than `max_inner` of them, every so
 /// many.
 double overlapping_area(const Mesh& mesh, const std::vector<Index>& region, const SurfaceSearch& other,
-                        const CorrespondenceOptions& options, std::size_t most_inner,
+                        const CorrespondenceOptions& options, std::size_t max_inner,
                         const std::function<bool(const SurfaceHit&)>& contains);
 
 /// A region of a mesh, with the search tree of the surface it was made for (for a refined target: that of the target itself).

@@ -20,14 +20,14 @@ std::vector<Survival> smallest_resolutions(const Mesh& mesh, const AnnotationSet
         survivals.push_back({annotation.id, annotation.tag, mesh.number_of_vertices(), ""});
     Mesh coarse = mesh;
     const double steps =
-        std::log(static_cast<double>(options.least) / static_cast<double>(mesh.number_of_vertices())) / std::log(options.ratio);
+        std::log(static_cast<double>(options.minimum) / static_cast<double>(mesh.number_of_vertices())) / std::log(options.ratio);
     Progress progress("resolutions", static_cast<std::size_t>(std::max(1.0, steps)));
     std::size_t alive = survivals.size();
     bool tried = false;
     while (alive > 0) {
         SimplifyOptions simplifying;
         simplifying.vertices = static_cast<std::uint64_t>(options.ratio * static_cast<double>(coarse.number_of_vertices()));
-        if (simplifying.vertices < options.least) break;
+        if (simplifying.vertices < options.minimum) break;
         const SimplifyResult simplified = simplify(coarse, simplifying);
         if (!simplified.reached) break;
         tried = true;
@@ -56,7 +56,7 @@ std::vector<Survival> smallest_resolutions(const Mesh& mesh, const AnnotationSet
 void SurvivalOptions::describe(OptionList& visit) {
     visit("ratio", ratio, "vertices of each resolution tried, relative to the one before", Range{0.1, 0.95});
     visit("area-error", area_error, "a region survives while its area changes by less than this share", Range{0.001, 1});
-    visit("least", least, "smallest number of vertices tried", Range{4, 1e9});
+    visit("least", minimum, "smallest number of vertices tried", Range{4, 1e9});
 }
 
 }  // namespace ostraka

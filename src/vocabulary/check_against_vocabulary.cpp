@@ -190,7 +190,7 @@ bool compatible(const Side& a, const Side& b) {
 /// Rules that speak of one attribute of one concept (or of a narrower one) and can both hold with different results. There may
 /// be as many as pairs of rules: the first hundred are named, the others counted.
 void compare_rules(const VocabularySearch& search, std::vector<Finding>& findings) {
-    constexpr std::size_t most = 100;
+    constexpr std::size_t maximum = 100;
     const auto& rules = search.vocabulary().rules;
     std::vector<ResolvedRule> sides;
     std::map<std::string, std::vector<std::size_t>> by_attribute;
@@ -214,11 +214,11 @@ void compare_rules(const VocabularySearch& search, std::vector<Finding>& finding
             for (std::size_t y = x + 1; y < list.size(); ++y)
                 if (both_hold(sides[list[x]], sides[list[y]])) {
                     ++count;
-                    if (here++ < most) found.emplace_back(list[x], list[y]);
+                    if (here++ < maximum) found.emplace_back(list[x], list[y]);
                 }
     }
     std::sort(found.begin(), found.end());
-    if (found.size() > most) found.resize(most);
+    if (found.size() > maximum) found.resize(maximum);
     for (const auto& [i, k] : found)
         findings.push_back({false, "/rules/" + to_string(k),
                             "the rules '" + rules[i].id + "' and '" + rules[k].id + "' can both hold, and infer '" +

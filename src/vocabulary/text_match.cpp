@@ -110,7 +110,7 @@ std::string folded(std::string_view text) {
     return encoded(result);
 }
 
-std::vector<std::string> near_misses(const std::string& text, const std::vector<std::string>& candidates, std::size_t most) {
+std::vector<std::string> near_misses(const std::string& text, const std::vector<std::string>& candidates, std::size_t maximum) {
     if (text.size() > 200) return {};
     const std::string wanted = folded(text);
     std::vector<std::pair<std::size_t, std::size_t>> found;  // distance, candidate
@@ -124,7 +124,7 @@ std::vector<std::string> near_misses(const std::string& text, const std::vector<
     std::sort(found.begin(), found.end());
     std::vector<std::string> list;
     for (const auto& [distance, i] : found) {
-        if (list.size() == most) break;
+        if (list.size() == maximum) break;
         if (std::find(list.begin(), list.end(), candidates[i]) == list.end()) list.push_back(candidates[i]);
     }
     return list;

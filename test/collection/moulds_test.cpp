@@ -96,9 +96,9 @@ TEST(MouldGroups, StabilityTellsFirmGroupsFromLooseOnes) {
     options.epsilon = "0.27";  // in the midst of the distances within
     const Eigen::MatrixXd loose = blocks({16});
     const MouldGroups groups = group_heads(loose, options);
-    double least = 1;
-    for (const auto& group : group_stability(loose, groups, options)) least = std::min(least, group.jaccard);
-    EXPECT_LT(least, 0.9);
+    double minimum = 1;
+    for (const auto& group : group_stability(loose, groups, options)) minimum = std::min(minimum, group.jaccard);
+    EXPECT_LT(minimum, 0.9);
 }
 
 TEST(MouldDistances, AreSharesOfTheSelfSimilarity) {

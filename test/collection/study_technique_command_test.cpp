@@ -163,9 +163,9 @@ TEST(StudyTechniqueCommand, SaysWhereTheOptionOverridesTheAnnotations) {
 TEST(StudySegmentsCommand, SaysWhichClustersHaveNoSegment) {
     Scratch scratch;
     const Path mesh = population() / "statuette-1.ply", out = scratch / "segments.ant.json";
-    for (const int least : {1, 30}) {
+    for (const int minimum : {1, 30}) {
         const std::string words = "study segments " + mesh.string() + " " + out.string() + " --size --clusters 6 --unit mm " +
-                                  "--least-run " + std::to_string(least);
+                                  "--least-run " + std::to_string(minimum);
         const auto result = run_command(words);
         ASSERT_EQ(result.code, 0) << result.err;
         const auto report = run_command(words + " --json");
@@ -173,7 +173,7 @@ TEST(StudySegmentsCommand, SaysWhichClustersHaveNoSegment) {
         const Json json = parse_json(report.out, "report");
         for (const auto& each : json["result"]["segments"].GetArray()) clusters.insert(each["cluster"].GetInt());
         EXPECT_EQ(result.out.find("of the 6 clusters") != std::string::npos, clusters.size() < 6) << result.out;
-        EXPECT_EQ(clusters.size() == 6, least == 1);
+        EXPECT_EQ(clusters.size() == 6, minimum == 1);
         EXPECT_EQ(result.out.find("one cluster, and so one colour") != std::string::npos,
                   json["result"]["segments"].Size() > clusters.size());
         EXPECT_NE(result.out.find("area mm^2"), std::string::npos) << result.out;

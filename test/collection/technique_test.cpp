@@ -98,11 +98,11 @@ TEST(Technique, OpenAndHoledBodiesAreMeasuredAsFarAsTheyGo) {
     EXPECT_EQ(m.slices.size() + m.too_open + m.empty, m.asked);
     EXPECT_NEAR(m.value("roundness mean"), whole, 0.1 * whole);
     TechniqueOptions strict;
-    strict.least_turn = 1;
+    strict.min_turn = 1;
     const TechniqueMeasures closed = measure_technique(torn.mesh, up, strict);
     EXPECT_EQ(closed.open_used, 0U);
     EXPECT_LT(closed.slices.size(), m.slices.size());
-    strict.least_slices = 101;
+    strict.min_slices = 101;
     try {
         measure_technique(torn.mesh, up, strict);
         FAIL();

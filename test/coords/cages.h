@@ -114,16 +114,16 @@ inline double turns(const Mesh& cage, const Point& p) {
 /// Distance from the cage as a share of its diagonal.
 inline double distance(const Mesh& cage, const Point& p) {
     const double diagonal = box_diagonal(cage);
-    double least = INFINITY;
+    double minimum = INFINITY;
     for (const Face f : cage.faces()) {
         std::array<Point, 3> t;
         const auto corner = corners(cage, f);
         for (std::size_t k = 0; k < 3; ++k) t[k] = CGAL::ORIGIN + (cage.point(corner[k]) - p) / diagonal;
         const auto b = nearest_barycentric(t[0], t[1], t[2], CGAL::ORIGIN);
         const Vector way = b[0] * (t[0] - CGAL::ORIGIN) + b[1] * (t[1] - CGAL::ORIGIN) + b[2] * (t[2] - CGAL::ORIGIN);
-        least = std::min(least, std::sqrt(way.squared_length()));
+        minimum = std::min(minimum, std::sqrt(way.squared_length()));
     }
-    return least;
+    return minimum;
 }
 
 }  // namespace ostraka::test

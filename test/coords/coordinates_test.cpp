@@ -192,7 +192,7 @@ TEST(Coordinates, AFurtherKindNeedsNoChangeElsewhere) {
     EXPECT_GT(certificate.linear, 0.1);
     EXPECT_EQ(*certificate.lagrange, 0);
     EXPECT_GT(*certificate.edges, 0.1);
-    EXPECT_EQ(certificate.carriers_most, 1U);
+    EXPECT_EQ(certificate.carriers_max, 1U);
     EXPECT_FALSE(certificate.holds());
 }
 
@@ -213,7 +213,7 @@ TEST(Certificate, MeasuresWhatItSays) {
     EXPECT_DOUBLE_EQ(good.negative, negative / 24);
     EXPECT_DOUBLE_EQ(good.negative_rows, 1.0 / 3);
     EXPECT_DOUBLE_EQ(good.negative_sum, sum);
-    EXPECT_EQ(good.least, c.vertex.minCoeff());
+    EXPECT_EQ(good.minimum, c.vertex.minCoeff());
     c.vertex(1, 4) += 0.25;
     const CoordinateCertificate bad = certify(c, cage, points);
     EXPECT_NEAR(bad.partition, 0.25, 1e-15);

@@ -92,8 +92,8 @@ TEST(MeanValue, AgreeWithTheDefinitionInLongerArithmetic) {
         const Coordinates c = compute_coordinates("mean-value", cage.mesh, points);
         for (std::size_t i = 0; i < points.size(); ++i) {
             // Outside weights grow: relative to the largest.
-            const double most = c.vertex.row(Eigen::Index(i)).cwiseAbs().maxCoeff();
-            EXPECT_LT(difference(c, Eigen::Index(i), by_definition(cage.mesh, points[i])), 1e-10 * std::max(1.0, most))
+            const double maximum = c.vertex.row(Eigen::Index(i)).cwiseAbs().maxCoeff();
+            EXPECT_LT(difference(c, Eigen::Index(i), by_definition(cage.mesh, points[i])), 1e-10 * std::max(1.0, maximum))
                 << cage.name << ' ' << points[i];
         }
     }

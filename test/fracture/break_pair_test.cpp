@@ -131,7 +131,7 @@ TEST(BreakPair, WhatCannotBeLaidTogetherIsSaid) {
     EXPECT_THROW(pair_breaks(a, a, options), Error);
     // Far too small to touch a share of the other's break: cannot be told.
     options = quick();
-    options.least_contact = 1;
+    options.min_contact = 1;
     Motion smaller;
     smaller.scale = 0.2;
     const BreakPair pair = pair_breaks(a, fragment_of(synthetic_sherd(4, 5, 0, 1), "small", smaller), options);

@@ -45,10 +45,10 @@ TEST(CircleFit, IsTheLeastSquares) {
     // No circle nearby does better, for a figure that is no circle.
     const PlaneSegments egg{{{2, 0}, {0, 1.5}}, {{0, 1.5}, {-1.6, 0}}, {{-1.6, 0}, {0, -1.4}}, {{0, -1.4}, {2, 0}}};
     const Circle best = fit_circle(egg);
-    const double least = circle_deviation(egg, best).square;
+    const double minimum = circle_deviation(egg, best).square;
     for (const Vector2d& step : {Vector2d(1e-3, 0), Vector2d(-1e-3, 0), Vector2d(0, 1e-3), Vector2d(0, -1e-3)})
-        EXPECT_GT(circle_deviation(egg, {best.centre + step, best.radius}).square, least);
-    for (const double r : {-1e-3, 1e-3}) EXPECT_GT(circle_deviation(egg, {best.centre, best.radius + r}).square, least);
+        EXPECT_GT(circle_deviation(egg, {best.centre + step, best.radius}).square, minimum);
+    for (const double r : {-1e-3, 1e-3}) EXPECT_GT(circle_deviation(egg, {best.centre, best.radius + r}).square, minimum);
 }
 
 TEST(CircleFit, OfLinesAndNothing) {
@@ -93,16 +93,16 @@ TEST(Rectangle, IsTheSmallestOfAllDirections) {
     const auto next = [&] { return double((state = state * 1664525u + 1013904223u) >> 8) / (1 << 24); };
     for (int i = 0; i < 200; ++i) points.emplace_back(3 * next() + next(), next());
     const auto box = smallest_rectangle(convex_hull(points));
-    double least = 1e9;
+    double minimum = 1e9;
     for (int k = 0; k < 20000; ++k) {
         const Vector2d a(std::cos(k * M_PI / 20000), std::sin(k * M_PI / 20000)), b(-a.y(), a.x());
         double x0 = 1e9, x1 = -1e9, y0 = 1e9, y1 = -1e9;
         for (const auto& p : points)
             x0 = std::min(x0, a.dot(p)), x1 = std::max(x1, a.dot(p)), y0 = std::min(y0, b.dot(p)), y1 = std::max(y1, b.dot(p));
-        least = std::min(least, (x1 - x0) * (y1 - y0));
+        minimum = std::min(minimum, (x1 - x0) * (y1 - y0));
     }
-    EXPECT_LE(box.area(), least * (1 + 1e-12));
-    EXPECT_NEAR(box.area(), least, 1e-3 * least);
+    EXPECT_LE(box.area(), minimum * (1 + 1e-12));
+    EXPECT_NEAR(box.area(), minimum, 1e-3 * minimum);
 }
 
 TEST(LineFitTest, ThroughPointsWithWeights) {

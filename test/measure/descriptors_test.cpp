@@ -36,7 +36,7 @@ TEST(OrientedBox, IsExactOnBoxes) {
 }
 
 /// The least volume over many directions, each with its smallest rectangle found by brute force over turns.
-double least_box_by_search(const std::vector<std::array<double, 3>>& points) {
+double min_box_by_search(const std::vector<std::array<double, 3>>& points) {
     Eigen::Matrix3Xd p(3, static_cast<Eigen::Index>(points.size()));
     for (std::size_t i = 0; i < points.size(); ++i)
         p.col(static_cast<Eigen::Index>(i)) = Vector3d(points[i][0], points[i][1], points[i][2]);
@@ -80,9 +80,9 @@ TEST(OrientedBox, IsWithinOnePercentOfTheLeast) {
             soup.points.push_back({p[0], p[1], p[2]});
         }
         const auto points = moved(soup, some_turn(seed + 50), Vector3d::Zero()).points;
-        const double least = least_box_by_search(points), found = oriented_box(points).volume();
-        EXPECT_LE(found, 1.01 * least) << "kind " << kind;
-        RecordProperty("ratio_" + std::to_string(seed), std::to_string(found / least));
+        const double minimum = min_box_by_search(points), found = oriented_box(points).volume();
+        EXPECT_LE(found, 1.01 * minimum) << "kind " << kind;
+        RecordProperty("ratio_" + std::to_string(seed), std::to_string(found / minimum));
     }
 }
 

@@ -44,10 +44,10 @@ protected:
         return list;
     }
     [[nodiscard]] double worst(const NonRigidFit& fit) const {
-        double most = 0;
+        double maximum = 0;
         for (const Vertex v : whole.vertices())
-            most = std::max(most, std::sqrt(CGAL::squared_distance(fit.points[v], whole.point(v))));
-        return most / box_diagonal(mesh);
+            maximum = std::max(maximum, std::sqrt(CGAL::squared_distance(fit.points[v], whole.point(v))));
+        return maximum / box_diagonal(mesh);
     }
     [[nodiscard]] static NonRigidOptions in(const std::string& space) {
         NonRigidOptions options;

@@ -68,7 +68,7 @@ TEST(Placement, IsTheLeastSumOfSquares) {
         return sum;
     };
     const std::vector<Motion> best{found.fragments[0].pose, found.fragments[1].pose};
-    const double least = cost(found.scale, best);
+    const double minimum = cost(found.scale, best);
     for (int trial = 0; trial < 200; ++trial) {
         std::vector<Motion> other = best;
         for (Motion& pose : other) {
@@ -78,7 +78,7 @@ TEST(Placement, IsTheLeastSumOfSquares) {
             step.translation = 0.01 * random_place(random);
             pose = step.after(pose);
         }
-        EXPECT_GE(cost(found.scale * (1 + 0.01 * random.normal()), other), least);
+        EXPECT_GE(cost(found.scale * (1 + 0.01 * random.normal()), other), minimum);
     }
 }
 

@@ -85,7 +85,7 @@ TEST(ShapePrior, HoldsCoefficientsWithinItsLimitAndIsTheSameForAnyNumberOfThread
     half.share = 0.5;
     const Cut one = cut(whole, set, Point(0, 0, 1.9), half);
     ReconstructOptions options;
-    options.prior.most = 1;
+    options.prior.maximum = 1;
     const int before = threads();
     set_threads(1);
     const Reconstruction alone = reconstruct(mesh, set, {}, {&one.fragment}, options, {}, &prior);

@@ -58,9 +58,9 @@ Full full_costs(const Mesh& a, const Annotation& part, const Mesh& b, const Anno
     const Outline ours = extract_outlines(a, part.faces).at(0), theirs = extract_outlines(b, other.faces).at(0);
     const auto on = [](const Outline& loop, Index v) { return std::find(loop.begin(), loop.end(), v) != loop.end(); };
     std::vector<std::vector<std::array<double, 3>>> raw(full.ours.size());
-    std::array<double, 3> least, most;
-    least.fill(std::numeric_limits<double>::infinity());
-    most.fill(-1);
+    std::array<double, 3> minimum, maximum;
+    minimum.fill(std::numeric_limits<double>::infinity());
+    maximum.fill(-1);
     for (std::size_t i = 0; i < full.ours.size(); ++i)
         for (const Index w : full.theirs) {
             const Index v = full.ours[i];
@@ -71,8 +71,8 @@ Full full_costs(const Mesh& a, const Annotation& part, const Mesh& b, const Anno
             raw[i].push_back(
                 {x == y ? 0.0 : 1.0, std::sqrt(CGAL::squared_distance(a.point(Vertex(v)), b.point(Vertex(w)))), outline});
             for (std::size_t k = 0; k < 3; ++k) {
-                least[k] = std::min(least[k], raw[i].back()[k]);
-                most[k] = std::max(most[k], raw[i].back()[k]);
+                minimum[k] = std::min(minimum[k], raw[i].back()[k]);
+                maximum[k] = std::max(maximum[k], raw[i].back()[k]);
             }
         }
     const std::array<double, 3> weight{options.boundary, options.distance, options.outline};
@@ -81,7 +81,7 @@ Full full_costs(const Mesh& a, const Annotation& part, const Mesh& b, const Anno
         for (const auto& costs : row) {
             double sum = 0;
             for (std::size_t k = 0; k < 3; ++k)
-                sum += most[k] > least[k] ? weight[k] * (costs[k] - least[k]) / (most[k] - least[k]) : 0;
+                sum += maximum[k] > minimum[k] ? weight[k] * (costs[k] - minimum[k]) / (maximum[k] - minimum[k]) : 0;
             full.cost.back().push_back(sum);
         }
     }
@@ -103,10 +103,10 @@ TEST(VertexAssignment, IsTheMinimumOfTheFullMatrix) {
         ASSERT_EQ(found.vertices, full.ours);
         double total = 0;
         for (std::size_t i = 0; i < full.ours.size(); ++i) {
-            const auto least = std::min_element(full.cost[i].begin(), full.cost[i].end());
-            EXPECT_NEAR(found.cost[i], *least, 1e-12);
-            EXPECT_EQ(found.counterpart[i], full.theirs[static_cast<std::size_t>(least - full.cost[i].begin())]);
-            total += *least;
+            const auto minimum = std::min_element(full.cost[i].begin(), full.cost[i].end());
+            EXPECT_NEAR(found.cost[i], *minimum, 1e-12);
+            EXPECT_EQ(found.counterpart[i], full.theirs[static_cast<std::size_t>(minimum - full.cost[i].begin())]);
+            total += *minimum;
         }
         EXPECT_NEAR(found.total, total, 1e-9);
     }

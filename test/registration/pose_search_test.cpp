@@ -96,8 +96,8 @@ TEST(PoseSearch, FindsTheScaleToo) {
     const BrokenPiece piece = broken(whole, Point(0, 0.5, 1.6), 0.4);
     const Mesh larger = shaped(piece.mesh, [](const Vector3d& p) { return Vector3d(1.37 * p); });
     PoseSearchOptions options;
-    options.least_scale = 1.1;
-    options.most_scale = 1.8;
+    options.min_scale = 1.1;
+    options.max_scale = 1.8;
     const PoseSearchResult found = PoseSearch(surface, options).find(larger);
     ASSERT_TRUE(found.decided) << found.reason;
     const PoseCandidate& best = found.candidates.front();
@@ -138,7 +138,7 @@ TEST(PoseSearch, NamesWhatABallLeavesOpen) {
     EXPECT_EQ(found.ways.size(), 3u);
     for (const FreeWay& way : found.ways) {
         EXPECT_TRUE(way.rotates);
-        EXPECT_GT(way.most - way.least, 6);  // all around
+        EXPECT_GT(way.maximum - way.minimum, 6);  // all around
     }
     // But for that, the piece lies where it should.
     ASSERT_TRUE(found.decided) << found.reason;
@@ -219,7 +219,7 @@ TEST(PoseSearch, RefusesWhatMakesNoSense) {
     EXPECT_THROW((void)search.find(whole, {}, 2, 1), Error);
     EXPECT_THROW((void)search.find(whole, {}, 0, 1), Error);
     PoseSearchOptions wrong;
-    wrong.least_scale = 2;
+    wrong.min_scale = 2;
     EXPECT_THROW(PoseSearch(surface, wrong), Error);
     // One triangle has a place anywhere: nothing to decide by.
     Mesh one;

@@ -136,12 +136,12 @@ TEST(Refine, LoopSmooths) {
     options.levels = 5;
     options.scheme = RefineOptions::Scheme::loop;
     refine(mesh, options);
-    double least = 1;
+    double minimum = 1;
     for (const Edge e : mesh.edges()) {
         const Vector a = area_vector(mesh, mesh.face(mesh.halfedge(e, 0))), b = area_vector(mesh, mesh.face(mesh.halfedge(e, 1)));
-        least = std::min(least, a * b / std::sqrt(a.squared_length() * b.squared_length()));
+        minimum = std::min(minimum, a * b / std::sqrt(a.squared_length() * b.squared_length()));
     }
-    EXPECT_GT(least, std::cos(0.15));
+    EXPECT_GT(minimum, std::cos(0.15));
 }
 
 // A flat grid stays flat and keeps its border lines under Loop's rules.
@@ -157,15 +157,15 @@ TEST(Refine, LoopKeepsPlanes) {
 // Halving longest edges keeps every angle above half of the smallest one (Rivara).
 TEST(Refine, HalvingKeepsAnglesBounded) {
     const auto smallest_angle = [](const Mesh& mesh) {
-        double least = M_PI;
+        double minimum = M_PI;
         for (const Face f : mesh.faces()) {
             const auto c = corners(mesh, f);
             for (int k = 0; k < 3; ++k) {
                 const Vector a = mesh.point(c[(k + 1) % 3]) - mesh.point(c[k]), b = mesh.point(c[(k + 2) % 3]) - mesh.point(c[k]);
-                least = std::min(least, std::atan2(std::sqrt(CGAL::cross_product(a, b).squared_length()), a * b));
+                minimum = std::min(minimum, std::atan2(std::sqrt(CGAL::cross_product(a, b).squared_length()), a * b));
             }
         }
-        return least;
+        return minimum;
     };
     Mesh mesh = build_mesh(patch(7, 40));
     const double before = smallest_angle(mesh);

@@ -72,18 +72,18 @@ Motion shifted(const Motion& motion, const Vector3d& by) {
 
 /// Largest distance of the wall, as it was made, from the template, both laid on one axis with their lowest places level.
 double worst(const RevolutionTemplate& revolved) {
-    double most = 0;
+    double maximum = 0;
     const double low = outside(0).y();
     for (int i = 0; i <= 50; ++i)
         for (const Vector2d& p : {outside(0.04 + 0.92 * i / 50), inside(0.04 + 0.92 * i / 50)}) {
-            double least = 1e300;
+            double minimum = 1e300;
             for (std::size_t k = 0; k + 1 < revolved.profile.size(); ++k) {
                 const Vector2d a = revolved.profile[k], d = revolved.profile[k + 1] - a, q = p - Vector2d(0, low) - a;
-                least = std::min(least, (q - std::clamp(q.dot(d) / d.squaredNorm(), 0.0, 1.0) * d).norm());
+                minimum = std::min(minimum, (q - std::clamp(q.dot(d) / d.squaredNorm(), 0.0, 1.0) * d).norm());
             }
-            most = std::max(most, least);
+            maximum = std::max(maximum, minimum);
         }
-    return most;
+    return maximum;
 }
 
 TEST(RevolutionTemplate, IsTheVesselOfItsSherds) {

@@ -126,9 +126,10 @@ TEST(Creases, JointsOfASyntheticObjectAreHollows) {
             const Halfedge h = made.mesh.halfedge(e);
             const int a = made.face_labels[made.mesh.face(h)], b = made.face_labels[made.mesh.face(made.mesh.opposite(h))];
             if (std::minmax(a, b) != std::minmax(label(one), label(other))) continue;
-            double least = 1e300;
-            for (const Point& p : found) least = std::min(least, CGAL::squared_distance(p, made.mesh.point(made.mesh.source(h))));
-            near += std::sqrt(least) < tolerance ? 1 : 0;
+            double minimum = 1e300;
+            for (const Point& p : found)
+                minimum = std::min(minimum, CGAL::squared_distance(p, made.mesh.point(made.mesh.source(h))));
+            near += std::sqrt(minimum) < tolerance ? 1 : 0;
             ++total;
         }
         ASSERT_GT(total, 10U) << one;

@@ -103,9 +103,9 @@ TEST(SliceSegments, ShortRunsJoinTheirLongerNeighbour) {
         60, 401);
     SliceSegmentOptions options;
     options.clusters = 2;
-    options.least_run = 1;
+    options.min_run = 1;
     EXPECT_EQ(segment_by_slices(mesh, Vector(0, 0, 1), options).segments.size(), 4U);
-    options.least_run = 5;
+    options.min_run = 5;
     EXPECT_EQ(segment_by_slices(mesh, Vector(0, 0, 1), options).segments.size(), 2U);
 }
 

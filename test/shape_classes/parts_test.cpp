@@ -88,7 +88,7 @@ TEST(Parts, TheOneThatIsFarthestOffIsNamed) {
     const std::vector<std::optional<double>> own{1.0, 4.0, std::nullopt, 0.5, 3.0}, usual{1.0, 2.0, 1.0, 1.0, std::nullopt};
     const PartsOff off = parts_off(own, usual);
     EXPECT_EQ(off.count, 3U);
-    EXPECT_EQ(off.most, 1U) << "of two that are equally far off the first";
+    EXPECT_EQ(off.worst, 1U) << "of two that are equally far off the first";
     EXPECT_NEAR(off.off, std::log(2.0) * std::sqrt(2.0 / 3), 1e-12);
     EXPECT_EQ(parts_off({}, {}).count, 0U);
 
@@ -102,7 +102,7 @@ TEST(Parts, TheOneThatIsFarthestOffIsNamed) {
     ASSERT_EQ(bad.verdict, Membership::other);
     const QuantityCheck& first = bad.checks[bad.against.front()];
     EXPECT_EQ(first.quantity.kind, QuantityKind::part);
-    EXPECT_NE(first.most.find("of part "), std::string::npos) << first.most;
+    EXPECT_NE(first.worst.find("of part "), std::string::npos) << first.worst;
     EXPECT_NE(bad.reasons().front().find("times the members' mean"), std::string::npos) << bad.reasons().front();
 }
 

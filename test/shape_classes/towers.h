@@ -36,8 +36,8 @@ inline Annotation half(const Mesh& mesh, int id, const std::string& tag, bool up
     return annotation;
 }
 
-/// A box of 6 x 6 x 6 cells; the proportion of its halves may be anything from 0.2 to `most`.
-inline Tower tower(double most = 5) {
+/// A box of 6 x 6 x 6 cells; the proportion of its halves may be anything from 0.2 to `maximum`.
+inline Tower tower(double maximum = 5) {
     Tower tower;
     TriangleSoup soup = box(6);
     tower.mesh = build_mesh(soup);
@@ -56,7 +56,7 @@ inline Tower tower(double most = 5) {
     proportion.annotations = {2, 1};
     proportion.is_constraint = true;
     proportion.constraint =
-        R"({"measure1": "height", "measure2": "height", "minValue": 0.2, "maxValue": )" + std::to_string(most) + "}";
+        R"({"measure1": "height", "measure2": "height", "minValue": 0.2, "maxValue": )" + std::to_string(maximum) + "}";
     tower.graph.relationships.push_back(proportion);
     return tower;
 }

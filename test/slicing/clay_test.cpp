@@ -50,10 +50,10 @@ TEST(Clay, BoundsHoldWhatIsNotSeen) {
     for (const bool closed : {true, false}) {
         const ClayVolume clay = clay_volume(build_mesh(cup(10, closed)), upright());
         EXPECT_NEAR(clay.envelope, 40 * disc(10), 1e-6 * clay.envelope);
-        EXPECT_NEAR(clay.most, 40 * disc(10) - 10 * disc(7), 1e-6 * clay.envelope) << closed;
+        EXPECT_NEAR(clay.maximum, 40 * disc(10) - 10 * disc(7), 1e-6 * clay.envelope) << closed;
         EXPECT_NEAR(clay.wall_mean, 3, 1e-3);
         // Where nothing is seen: a wall of 3 around a disc of 10, and on top of it.
-        EXPECT_NEAR(clay.least, 37 * (disc(10) - disc(7)) + 3 * disc(10), 1e-3 * clay.envelope);
+        EXPECT_NEAR(clay.minimum, 37 * (disc(10) - disc(7)) + 3 * disc(10), 1e-3 * clay.envelope);
         EXPECT_EQ(clay.slices, 400);
         EXPECT_EQ(clay.with_cavity, 100);
         EXPECT_EQ(clay.without_outline, 0);
@@ -63,9 +63,9 @@ TEST(Clay, BoundsHoldWhatIsNotSeen) {
 TEST(Clay, ASolidObjectHasNoLeastUnlessAWallIsGiven) {
     const Mesh ball = build_mesh(test::octahedron_sphere(6));
     const ClayVolume unknown = clay_volume(ball, upright());
-    EXPECT_NEAR(unknown.most, 4 * pi / 3, 2e-3);
-    EXPECT_EQ(unknown.most, unknown.envelope);
-    EXPECT_TRUE(std::isnan(unknown.least));
+    EXPECT_NEAR(unknown.maximum, 4 * pi / 3, 2e-3);
+    EXPECT_EQ(unknown.maximum, unknown.envelope);
+    EXPECT_TRUE(std::isnan(unknown.minimum));
     ClayOptions options;
     options.wall = 0.1;
     const ClayVolume clay = clay_volume(ball, upright(), options);
@@ -76,9 +76,9 @@ TEST(Clay, ASolidObjectHasNoLeastUnlessAWallIsGiven) {
         const double z = -1 + 2 * (i + 0.5) / n, r = std::sqrt(1 - z * z);
         expected += 2.0 / n * pi * (r > 0.1 && std::abs(z) < 0.9 ? r * r - (r - 0.1) * (r - 0.1) : r * r);
     }
-    EXPECT_NEAR(clay.least, expected, 3e-3);
+    EXPECT_NEAR(clay.minimum, expected, 3e-3);
     options.wall = 5;
-    EXPECT_EQ(clay_volume(ball, upright(), options).least, unknown.most);
+    EXPECT_EQ(clay_volume(ball, upright(), options).minimum, unknown.maximum);
 }
 
 TEST(Clay, LeastIsABoundForSquares) {
@@ -100,9 +100,9 @@ TEST(Clay, LeastIsABoundForSquares) {
     ClayOptions options;
     options.wall = 1;
     const ClayVolume clay = clay_volume(box, upright(), options);
-    EXPECT_NEAR(clay.most, 4000, 1e-6);
-    EXPECT_LT(clay.least, 1568);
-    EXPECT_GT(clay.least, 0.8 * 1568);
+    EXPECT_NEAR(clay.maximum, 4000, 1e-6);
+    EXPECT_LT(clay.minimum, 1568);
+    EXPECT_GT(clay.minimum, 0.8 * 1568);
 }
 
 TEST(Clay, ScalesAndPlacesDoNotMatter) {
@@ -112,8 +112,8 @@ TEST(Clay, ScalesAndPlacesDoNotMatter) {
         for (auto& p : soup.points)
             for (auto& x : p) x = scale * (x + 1000);
         const ClayVolume other = clay_volume(build_mesh(soup), upright());
-        EXPECT_NEAR(other.most / (scale * scale * scale), base.most, 1e-7 * base.most);
-        EXPECT_NEAR(other.least / (scale * scale * scale), base.least, 1e-7 * base.least);
+        EXPECT_NEAR(other.maximum / (scale * scale * scale), base.maximum, 1e-7 * base.maximum);
+        EXPECT_NEAR(other.minimum / (scale * scale * scale), base.minimum, 1e-7 * base.minimum);
     }
 }
 
@@ -131,7 +131,7 @@ TEST(Clay, LayersWithoutOutlineAreTakenFromTheirNeighbours) {
     soup.triangles = kept;
     const ClayVolume clay = clay_volume(build_mesh(soup), upright());
     EXPECT_EQ(clay.without_outline, 100);
-    EXPECT_NEAR(clay.most, 40 * disc(5, around), 1e-6 * clay.most);
+    EXPECT_NEAR(clay.maximum, 40 * disc(5, around), 1e-6 * clay.maximum);
 }
 
 TEST(Clay, WhatMakesNoSenseIsRefused) {
@@ -140,7 +140,7 @@ TEST(Clay, WhatMakesNoSenseIsRefused) {
     options.wall = -1;
     EXPECT_THROW(clay_volume(build_mesh(cup(10, true)), upright(), options), Error);
     const ClayVolume flat = clay_volume(build_mesh({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}), upright());
-    EXPECT_TRUE(std::isnan(flat.most));
+    EXPECT_TRUE(std::isnan(flat.maximum));
 }
 
 TEST(ClayCommand, SaysBoundsAndWhatTheyRestOn) {

@@ -34,7 +34,7 @@ TEST(SliceAxes, OfALeaningTube) {
     // The mean line is 0.3 |i - 5| away, 0.3 * 30 / 11 on average; the fitted one passes through all.
     const Straightness from_mean = straightness(centres, mean), from_fit = straightness(centres, fit);
     EXPECT_NEAR(from_mean.mean, 0.3 * 30 / 11, 1e-9);
-    EXPECT_NEAR(from_mean.most, 1.5, 1e-9);
+    EXPECT_NEAR(from_mean.maximum, 1.5, 1e-9);
     EXPECT_NEAR(from_mean.length, 10, 1e-9);
     EXPECT_NEAR(from_mean.relative, 0.03 * 30 / 11, 1e-10);
     EXPECT_NEAR(from_fit.mean, 0, 1e-9);
@@ -122,7 +122,7 @@ TEST(SliceAxes, TheTubeBetweenFeetAndHead) {
     EXPECT_EQ(tube.cluster[22], -1);
     EXPECT_NE(tube.cluster[26], tube.cluster[10]);
     TubeOptions strict;
-    strict.most_roundness = 1e-6;
+    strict.max_roundness = 1e-6;
     EXPECT_FALSE(tubular_part(stack, descriptors, strict).found);
     EXPECT_FALSE(tubular_part({}, {}).found);
     EXPECT_THROW((void)tubular_part(stack, {}), Error);

@@ -42,8 +42,8 @@ std::vector<std::pair<std::string, double>> numbers(const SliceDescriptors& d, d
             {"roundness, fitted, relative", d.roundness_fitted_relative},
             {"thickness mean", d.thickness_mean / scale},
             {"thickness variance", d.thickness_variance / scale / scale},
-            {"thickness least", d.thickness_least / scale},
-            {"thickness most", d.thickness_most / scale}};
+            {"thickness least", d.thickness_min / scale},
+            {"thickness most", d.thickness_max / scale}};
 }
 
 void expect_same(const SliceDescriptors& a, const SliceDescriptors& b, double scale, double tolerance, bool thickness = true) {
@@ -173,8 +173,8 @@ TEST(SliceDescriptors, Rings) {
         }
         EXPECT_NEAR(d.thickness_mean, first, 1e-5);
         EXPECT_NEAR(d.thickness_variance, second - first * first, 1e-5);
-        EXPECT_NEAR(d.thickness_least, R - r - e, 1e-5);
-        EXPECT_NEAR(d.thickness_most, R - r + e, 1e-5);
+        EXPECT_NEAR(d.thickness_min, R - r - e, 1e-5);
+        EXPECT_NEAR(d.thickness_max, R - r + e, 1e-5);
         const auto profile = thickness_profile(slice, 36);
         ASSERT_EQ(profile.size(), 36U);
         for (int k = 0; k < 36; ++k) {

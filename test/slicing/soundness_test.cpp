@@ -149,7 +149,7 @@ TEST(SliceSoundness, AShellWithinAnotherIsReadByItsNesting) {
         EXPECT_NEAR(d.hole_area, inner, 1e-12);
         EXPECT_LE(d.solidity, 1);
         EXPECT_EQ(d.euler_number, 0);
-        EXPECT_NEAR(d.thickness_least, std::sqrt(0.99) - std::sqrt(0.24), 0.02);
+        EXPECT_NEAR(d.thickness_min, std::sqrt(0.99) - std::sqrt(0.24), 0.02);
     }
     // A body beside another, inside out: it is as large as the other way round.
     const Mesh pair = build_mesh(joined(big, inside_out(moved(small, 1, {4, 0, 0}))));
@@ -208,25 +208,25 @@ TEST(SliceSoundness, ACurveIsCutAsPlanesAre) {
 TEST(ClaySoundness, CrossingShellsAreNotCountedTwice) {
     const SliceFrame upright = slice_frame({0, 0, 0}, {0, 0, 1});
     // Two balls that cross around their middles: the most is a bound, and no better than both one by one.
-    const double ball = clay_volume(build_mesh(octahedron_sphere(5)), upright).most;
+    const double ball = clay_volume(build_mesh(octahedron_sphere(5)), upright).maximum;
     const ClayVolume clay =
         clay_volume(build_mesh(joined(octahedron_sphere(5), moved(octahedron_sphere(5), 1, {1, 0, 0}))), upright);
     EXPECT_GT(clay.crossing, clay.slices / 2);
     EXPECT_LT(clay.crossing, clay.slices);
-    EXPECT_GE(clay.most, 2 * ball - 5 * M_PI / 12);  // less what is in both
-    EXPECT_LT(clay.most, 2 * ball);
+    EXPECT_GE(clay.maximum, 2 * ball - 5 * M_PI / 12);  // less what is in both
+    EXPECT_LT(clay.maximum, 2 * ball);
     EXPECT_TRUE(std::isnan(clay.envelope));
     const ClayVolume all = clay_volume(build_mesh(joined(tube(90, 5), moved(tube(90, 5), 1, {0.5, 0, 0}))), upright);
     EXPECT_EQ(all.crossing, all.slices);
-    EXPECT_NEAR(all.most, 3 * (M_PI + 1), 0.02);  // the hull
+    EXPECT_NEAR(all.maximum, 3 * (M_PI + 1), 0.02);  // the hull
     EXPECT_EQ(all.without_outline, 0);
     // A cavity oriented outwards, and all of it inside out.
     const TriangleSoup big = octahedron_sphere(4), small = moved(octahedron_sphere(4), 0.5, {0, 0, 0});
     const ClayVolume right = clay_volume(build_mesh(joined(big, inside_out(small))), upright);
     for (const TriangleSoup& soup : {joined(big, small), joined(inside_out(big), small)}) {
         const ClayVolume wrong = clay_volume(build_mesh(soup), upright);
-        EXPECT_NEAR(wrong.most, right.most, 1e-12);
-        EXPECT_NEAR(wrong.least, right.least, 1e-12);
+        EXPECT_NEAR(wrong.maximum, right.maximum, 1e-12);
+        EXPECT_NEAR(wrong.minimum, right.minimum, 1e-12);
         EXPECT_NEAR(wrong.envelope, right.envelope, 1e-12);
         EXPECT_TRUE(wrong.reversed || wrong.turned > 0);
     }

@@ -7,8 +7,8 @@ namespace ostraka {
 namespace {
 
 /// The least squared distance of turned rows with the axis at an angle to a direction, by trying all turns.
-double least_by_trying(const Points& rows, const Vector3d& axis, const Vector3d& direction, double wanted) {
-    double least = std::numeric_limits<double>::infinity();
+double min_by_trying(const Points& rows, const Vector3d& axis, const Vector3d& direction, double wanted) {
+    double minimum = std::numeric_limits<double>::infinity();
     constexpr int steps = 120;
     const Vector3d e1 = direction.unitOrthogonal();
     const auto turn = [](int i, const Vector3d& about) {
@@ -18,9 +18,9 @@ double least_by_trying(const Points& rows, const Vector3d& axis, const Vector3d&
         for (int i = 0; i < steps; ++i) {
             const Vector3d to = std::cos(wanted) * side * direction + std::sin(wanted) * (turn(i, direction) * e1);
             const Matrix3d first = Eigen::Quaterniond::FromTwoVectors(axis, to).toRotationMatrix();
-            for (int j = 0; j < steps; ++j) least = std::min(least, (turn(j, to) * first * rows - rows).squaredNorm());
+            for (int j = 0; j < steps; ++j) minimum = std::min(minimum, (turn(j, to) * first * rows - rows).squaredNorm());
         }
-    return least;
+    return minimum;
 }
 
 TEST(Constraint, AxesTurnNoFartherThanTheyMust) {
@@ -51,9 +51,9 @@ TEST(Constraint, AxesTurnNoFartherThanTheyMust) {
                     ASSERT_LT((found * rows - o.projected).norm(), 1e-10) << what;
                     const double angle_there = angle(found * turn * own, d);
                     ASSERT_NEAR(std::min(angle_there, std::numbers::pi - angle_there), wanted, 2e-8) << what;
-                    const double least = least_by_trying(rows, turn * own, d, wanted),
+                    const double minimum = min_by_trying(rows, turn * own, d, wanted),
                                  reached = (o.rows - o.projected).squaredNorm();
-                    ASSERT_LE(reached, least + 1e-9 * rows.squaredNorm()) << what;
+                    ASSERT_LE(reached, minimum + 1e-9 * rows.squaredNorm()) << what;
                     ASSERT_LT((again(*c, o.projected) - o.projected).norm(), 1e-7) << what;
                 }
             }

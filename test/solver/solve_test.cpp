@@ -338,12 +338,12 @@ TEST(MeshSpace, StationsThatShareTheirPointsLeaveNoWaves) {
         MeshSpaceSolver solver(std::move(list), rest);
         Points x = rest;
         EXPECT_TRUE(solver.solve(x).usable);
-        double most = 0;
+        double maximum = 0;
         for (int k = 0; k < rings; ++k) {
             const Eigen::Vector3d mean = x.middleCols(k * sides, sides).rowwise().mean();
-            most = std::max(most, mean.cross(line.direction->normalized()).norm());
+            maximum = std::max(maximum, mean.cross(line.direction->normalized()).norm());
         }
-        return most;
+        return maximum;
     };
     EXPECT_GT(farthest(false), 0.02);
     EXPECT_LT(farthest(true), 1e-4);

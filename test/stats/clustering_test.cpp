@@ -113,17 +113,17 @@ std::vector<double> slow_heights(const Eigen::MatrixXd& distances) {
     for (int i = 0; i < distances.rows(); ++i) clusters.push_back({i});
     std::vector<double> heights;
     while (clusters.size() > 1) {
-        double least = std::numeric_limits<double>::infinity();
+        double minimum = std::numeric_limits<double>::infinity();
         std::size_t a = 0, b = 0;
         for (std::size_t i = 0; i < clusters.size(); ++i)
             for (std::size_t j = 0; j < i; ++j) {
                 double sum = 0;
                 for (const int x : clusters[i])
                     for (const int y : clusters[j]) sum += distances(x, y);
-                if (const double mean = sum / static_cast<double>(clusters[i].size() * clusters[j].size()); mean < least)
-                    least = mean, a = j, b = i;
+                if (const double mean = sum / static_cast<double>(clusters[i].size() * clusters[j].size()); mean < minimum)
+                    minimum = mean, a = j, b = i;
             }
-        heights.push_back(least);
+        heights.push_back(minimum);
         clusters[a].insert(clusters[a].end(), clusters[b].begin(), clusters[b].end());
         clusters.erase(clusters.begin() + static_cast<std::ptrdiff_t>(b));
     }

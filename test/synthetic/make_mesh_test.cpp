@@ -208,10 +208,10 @@ TEST(MakeMesh, NoiseStaysWithinItsShareOfTheEdge) {
     const SyntheticObject& object = synthetic_object("sphere");
     const SyntheticMesh m = made("sphere", 5000, 1, 0.2);
     const double edge = mean_edge_length(m.mesh);
-    double most = 0;
-    for (const Vertex v : m.mesh.vertices()) most = std::max(most, std::abs(object.value(m.mesh.point(v))));
-    EXPECT_LT(most, 0.21 * edge);
-    EXPECT_GT(most, 0.15 * edge);
+    double maximum = 0;
+    for (const Vertex v : m.mesh.vertices()) maximum = std::max(maximum, std::abs(object.value(m.mesh.point(v))));
+    EXPECT_LT(maximum, 0.21 * edge);
+    EXPECT_GT(maximum, 0.15 * edge);
 }
 
 TEST(MakeMesh, RefusesWhatCannotBe) {

@@ -15,7 +15,7 @@ std::string to_string(AxisMethod method);
 struct AxisOptions {
     AxisMethod method = AxisMethod::rotation;
     double tolerance = 0.02;
-    double least_quality = 0.7;
+    double min_quality = 0.7;
     int slices = 24;
     int trials = 300;
     int smoothing = 2;

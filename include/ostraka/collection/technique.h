@@ -16,8 +16,8 @@ namespace ostraka {
 struct TechniqueOptions {
     int slices = 100;
     double from = 0.02, to = 0.4;
-    double least_turn = 0.8;
-    int least_slices = 20;
+    double min_turn = 0.8;
+    int min_slices = 20;
 
     void describe(OptionList& visit);
 };
@@ -66,7 +66,7 @@ struct DescriptorMeaning {
 const std::vector<DescriptorMeaning>& technique_descriptors();
 
 /// Cuts the body across `up` at evenly spaced heights. Of each slice the longest contour that is not a hole is taken for the
-/// body's outline: an arm that hangs beside it is left out. A closed outline is used, an open one if it covers `least_turn`;
+/// body's outline: an arm that hangs beside it is left out. A closed outline is used, an open one if it covers `min_turn`;
 /// descriptors that need a closed outline or wall leave it out. Throws Error (input) for a mesh without faces or height, or with
 /// too few slices that can be used; the message says why.
 TechniqueMeasures measure_technique(const Mesh& mesh, const Vector& up, const TechniqueOptions& options = {});

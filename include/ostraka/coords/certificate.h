@@ -25,10 +25,10 @@ struct CoordinateCertificate {
 
     double negative = 0;       ///< share of the vertex weights that are below zero
     double negative_rows = 0;  ///< share of the points that have one
-    double least = 0, most = 0;
+    double minimum = 0, maximum = 0;
     double negative_sum = 0;   ///< largest sum of the absolute values of a point's negative weights
     double carriers_mean = 0;  ///< weights that carry 95 % of the absolute values at a point: mean
-    Index carriers_most = 0;   ///< and most
+    Index carriers_max = 0;    ///< and most
 
     /// Partition to 1e-10 and linear precision to 1e-9: fit for deformation.
     [[nodiscard]] bool holds() const { return partition <= 1e-10 && linear <= 1e-9; }

@@ -11,16 +11,16 @@
 namespace ostraka {
 
 struct PairOptions {
-    int frames = 160;               ///< places along the rim of each fragment's fracture
-    int samples = 2000;             ///< points on the fracture of the second fragment, and on the rest of its surface
-    int starts = 200;               ///< poses that are refined quickly, the best of all
-    int refined = 24;               ///< poses that are refined to the end
-    double reach = 0.05;            ///< farthest that faces of a break lie apart at first, share of the smaller fragment's size
-    double last_reach = 0.025;      ///< at the end
-    double edges = 1;               ///< weight of the rims against the fracture surfaces
-    double least_contact = 0.1;     ///< of the smaller fracture that must be in contact
-    double least_confidence = 0.5;  ///< below it cannot be told how the fragments go together
-    int candidates = 5;             ///< told
+    int frames = 160;             ///< places along the rim of each fragment's fracture
+    int samples = 2000;           ///< points on the fracture of the second fragment, and on the rest of its surface
+    int starts = 200;             ///< poses that are refined quickly, the best of all
+    int refined = 24;             ///< poses that are refined to the end
+    double reach = 0.05;          ///< farthest that faces of a break lie apart at first, share of the smaller fragment's size
+    double last_reach = 0.025;    ///< at the end
+    double edges = 1;             ///< weight of the rims against the fracture surfaces
+    double min_contact = 0.1;     ///< of the smaller fracture that must be in contact
+    double min_confidence = 0.5;  ///< below it cannot be told how the fragments go together
+    int candidates = 5;           ///< told
 
     void describe(OptionList& visit);
 };

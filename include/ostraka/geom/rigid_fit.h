@@ -20,8 +20,8 @@ struct Motion {
 };
 
 struct FitOptions {
-    bool scale = false;                        ///< a free scale as well
-    double least_scale = 0, most_scale = 1e9;  ///< a free scale is held within these
+    bool scale = false;                     ///< a free scale as well
+    double min_scale = 0, max_scale = 1e9;  ///< a free scale is held within these
 };
 
 /// The motion with the least sum of weights |T(from) - to|^2 (Umeyama 1991: singular values of the covariance, never a

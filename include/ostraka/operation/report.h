@@ -241,6 +241,6 @@ std::string plain_values(const std::vector<std::pair<std::string, std::string>>&
 /// A number for people: so many significant digits.
 std::string number(double value, int digits = 5);
 /// Text of files is data: no control character reaches a terminal, at most so many columns.
-std::string printable(const std::string& text, std::size_t most = 10000);
+std::string printable(const std::string& text, std::size_t maximum = 10000);
 
 }  // namespace ostraka

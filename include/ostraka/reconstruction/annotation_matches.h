@@ -12,7 +12,7 @@
 namespace ostraka {
 
 struct AnnotationMatchOptions {
-    double least_score = 0.4;
+    double min_score = 0.4;
 
     void describe(OptionList& visit);
 };

@@ -22,7 +22,7 @@ public:
     PoseSearches(PoseSearches&&) noexcept;
 
     /// Nothing where all of the fragment is of breaks. Throws Error as PoseSearch::find.
-    std::optional<PoseSearchResult> find(const Fragment& fragment, double least_scale, double most_scale);
+    std::optional<PoseSearchResult> find(const Fragment& fragment, double min_scale, double max_scale);
 
     [[nodiscard]] std::size_t made() const { return made_; }      ///< searches that `find` made
     [[nodiscard]] std::size_t reused() const { return reused_; }  ///< and those that it had already
@@ -40,7 +40,7 @@ private:
         PoseSearchResult result;
     };
     struct Whole;
-    [[nodiscard]] std::string key_of(const Fragment& fragment, double least_scale, double most_scale) const;
+    [[nodiscard]] std::string key_of(const Fragment& fragment, double min_scale, double max_scale) const;
 
     const Mesh& mesh_;
     PoseSearchOptions options_;

@@ -12,13 +12,13 @@
 namespace ostraka {
 
 struct PoseSearchOptions {
-    double least_scale = 1, most_scale = 1;  ///< of the whole; equal: known
-    double tolerance = 0.02;                 ///< what lies nearer is on the whole, as a share of the part's size
-    double least_confidence = 0.5;           ///< below: cannot decide
-    int points = 2000;                       ///< spread over the whole; as dense on the part
-    int references = 120;                    ///< points of the part for which places are sought
-    int partners = 300;                      ///< other points of the part that vote for each
-    int candidates = 10;                     ///< poses that are refined on the whole's own faces
+    double min_scale = 1, max_scale = 1;  ///< of the whole; equal: known
+    double tolerance = 0.02;              ///< what lies nearer is on the whole, as a share of the part's size
+    double min_confidence = 0.5;          ///< below: cannot decide
+    int points = 2000;                    ///< spread over the whole; as dense on the part
+    int references = 120;                 ///< points of the part for which places are sought
+    int partners = 300;                   ///< other points of the part that vote for each
+    int candidates = 10;                  ///< poses that are refined on the whole's own faces
     std::uint64_t seed = 1;
 
     void describe(OptionList& visit);
@@ -41,7 +41,7 @@ struct FreeWay {
     Eigen::Vector3d point = Eigen::Vector3d::Zero();       ///< of the line, on the scaled whole
     Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< of the line
     bool rotates = false;                                  ///< about the line; else along it
-    double least = 0, most = 0;  ///< how far either way it lies as well as in the pose: radians, or in the part's unit
+    double minimum = 0, maximum = 0;  ///< how far either way it lies as well as in the pose: radians, or in the part's unit
 };
 
 struct PoseSearchResult {
@@ -68,8 +68,8 @@ public:
     /// Error (input) for a part without area. Same result for any number of threads.
     [[nodiscard]] PoseSearchResult find(const Mesh& part, const std::vector<bool>& of_part = {}) const;
     /// The same for another range of scales.
-    [[nodiscard]] PoseSearchResult find(const Mesh& part, const std::vector<bool>& of_part, double least_scale,
-                                        double most_scale) const;
+    [[nodiscard]] PoseSearchResult find(const Mesh& part, const std::vector<bool>& of_part, double min_scale,
+                                        double max_scale) const;
 
 private:
     struct State;

@@ -12,7 +12,7 @@ namespace ostraka {
 struct SliceSegmentOptions {
     int slices = 100;
     int clusters = 0;  ///< 0: as many as the criterion proposes
-    int least_run = 3;
+    int min_run = 3;
     bool size = false;
     ClusterCountOptions count;
 
@@ -39,9 +39,9 @@ struct SliceSegments {
 
 /// Cuts the mesh across `up`, describes the slices (elongation, solidity, compactness, circular and rectangular variance, Euler
 /// number, hole-area ratio; those that are the same everywhere have no weight), standardises the descriptors and groups them by
-/// k-means. Then runs of fewer than `least_run` slices join the longer of their neighbours (the lower of equal ones), shortest
+/// k-means. Then runs of fewer than `min_run` slices join the longer of their neighbours (the lower of equal ones), shortest
 /// runs first: segments are bands, and a kind may come back in several. Slices without a closed outline take the kind of the
-/// nearest one that has one. The criterion's curve has costs and silhouettes of 1 to `most_clusters`. Throws Error (input) for a
+/// nearest one that has one. The criterion's curve has costs and silhouettes of 1 to `max_clusters`. Throws Error (input) for a
 /// mesh without height or with fewer than four slices that have a closed outline.
 SliceSegments segment_by_slices(const Mesh& mesh, const Vector& up, const SliceSegmentOptions& options = {});
 

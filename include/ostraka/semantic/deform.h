@@ -33,7 +33,7 @@ struct ConstraintReport {
     std::vector<Deviation> deviations;                              ///< each with its unit and tolerance
     std::vector<double> before_values;                              ///< of the same quantities on the edited shape
     /// Normalised residuals of its low-level constraints, in the mesh's unit (section 4.2.3 with its erratum).
-    double mean = 0, median = 0, least = 0, most = 0;
+    double mean = 0, median = 0, minimum = 0, maximum = 0;
     std::size_t low_level = 0;
     double distance = 0;  ///< greatest distance of one of their rows from what it admits, in the mesh's unit
 };

@@ -22,7 +22,7 @@ struct QuantityCheck {
     double off = 0;       ///< how far the value is out of what is accepted, in its unit; 0 inside
     double excess = 0;    ///< the same as a share of the accepted range's width (of a residual: of its threshold)
     bool decides = true;  ///< it may speak against the object
-    std::string most;     ///< of parts together: which part is farthest off, and by how much, in words
+    std::string worst;    ///< of parts together: which part is farthest off, and by how much, in words
 };
 
 enum class Membership { member, other, undecided };

@@ -18,7 +18,7 @@ struct MemberFitOptions {
     bool ignore_landmarks = false;
     int tries = 1;
     double observed = 0.02;
-    double most_off = 0.125;
+    double max_off = 0.125;
     MemberFitOptions() {
         alignment.shrinkage = 0.3;
         fit.reach = 0.2;
@@ -62,9 +62,9 @@ struct MemberFit {
     double share_placed = 0;                ///< of the surface's samples that found a partner in the rigid placement
 };
 
-/// In words with the numbers why the template does not lie on the object: `off()` is above `most`. Empty where it does, or where
-/// there are no residuals.
-std::string fit_is_off(const MemberFit& fit, double most);
+/// In words with the numbers why the template does not lie on the object: `off()` is above `maximum`. Empty where it does, or
+/// where there are no residuals.
+std::string fit_is_off(const MemberFit& fit, double maximum);
 
 /// Whether an object has the template's triangles: as many vertices, and the same faces in the same order.
 bool in_correspondence(const Mesh& mesh, const Mesh& member);

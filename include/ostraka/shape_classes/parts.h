@@ -25,7 +25,7 @@ std::optional<double> own_disagreement(const ClassTemplate& known, const std::ve
 /// Root mean square of ln(value / expected) over the pairs that both are there and positive, and which of them is farthest off.
 struct PartsOff {
     double off = 0;
-    std::size_t count = 0, most = 0;  ///< `most` is an index of the list
+    std::size_t count = 0, worst = 0;  ///< `worst` is an index of the list
 };
 PartsOff parts_off(std::span<const std::optional<double>> values, std::span<const std::optional<double>> expected);
 

@@ -23,7 +23,7 @@ struct Propagated {
     std::optional<AnnotationSet> on_member;  ///< on the member's own mesh, measures taken anew
     std::vector<std::string> notes;          ///< what was lost or changed on the way, and whether the template lies on the member
     std::size_t lost = 0;                    ///< annotations that are not on the member
-    bool lies_on = true;                     ///< no more is off than MemberFitOptions::most_off
+    bool lies_on = true;                     ///< no more is off than MemberFitOptions::max_off
     [[nodiscard]] bool complete() const { return fit.problem.empty() && lost == 0 && lies_on; }
 };
 

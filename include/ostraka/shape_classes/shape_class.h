@@ -53,8 +53,8 @@ struct ShapeClass {
     [[nodiscard]] const LearntRange* find(const std::string& key) const;
     /// Thresholds were learnt: there are three members or more. Of two the deviation is known to nobody (Student's distribution
     /// with one degree of freedom has no mean).
-    [[nodiscard]] bool has_thresholds() const { return members.size() >= least_members; }
-    static constexpr std::size_t least_members = 3;
+    [[nodiscard]] bool has_thresholds() const { return members.size() >= min_members; }
+    static constexpr std::size_t min_members = 3;
 };
 
 /// Whether the template is laid onto `member` as it is or by a fit.
@@ -91,10 +91,10 @@ void learn_thresholds(ShapeClass& learnt);
 void moderate_thresholds(std::vector<ShapeClass>& classes);
 
 /// What is measured of single parts put together, as residuals of kind `part`: "sizes of the parts", "places of the parts";
-/// `most` is the range that is farthest off.
+/// `worst` is the range that is farthest off.
 struct PartsTogether {
     ClassQuantity quantity;
-    std::size_t most = 0;
+    std::size_t worst = 0;
     double expected = 0;  ///< of that range
 };
 /// `values` and `expected` are one a range.

@@ -8,7 +8,7 @@ namespace ostraka {
 
 struct ModeOptions {
     bool sizes = false;     ///< sizes count: they are part of the shape
-    int most = 1000;        ///< modes kept
+    int maximum = 1000;     ///< modes kept
     double variance = 1.0;  ///< modes are kept until they have this share of the variance
 
     void describe(OptionList& visit);

@@ -12,7 +12,7 @@ struct WholeShape {
     std::optional<double> compactness;
     /// Of the lengths of shortest curves between the points of the surface, as shares of the square root of the area: mean,
     /// greatest, and standard deviation over the mean. Bending does not change them.
-    std::optional<double> geodesic_mean, geodesic_most, geodesic_variation;
+    std::optional<double> geodesic_mean, geodesic_max, geodesic_variation;
 };
 
 /// Geodesics run from 8 sources, each the farthest from those before it, over a copy simplified to 1500 vertices; pairs in

@@ -46,7 +46,7 @@ struct Contour {
 };
 
 /// Contours that cross by more than this share of the area have no area: a fold of a scan has less.
-inline constexpr double most_doubtful = 1e-3;
+inline constexpr double max_doubtful = 1e-3;
 
 /// How much of its outline a slice has, and how sound that is.
 struct Completeness {
@@ -60,7 +60,7 @@ struct Completeness {
 
     [[nodiscard]] bool complete() const { return closed_share == 1; }
     /// Whether areas mean what they say.
-    [[nodiscard]] bool has_areas() const { return doubtful <= most_doubtful; }
+    [[nodiscard]] bool has_areas() const { return doubtful <= max_doubtful; }
 };
 
 /// The contours at one height: closed ones first, larger areas first, then open ones, longer ones first.

@@ -27,9 +27,9 @@ SliceLine regression_line(const SliceFrame& frame, const std::vector<Point>& bar
 
 /// Distances of the barycentres from an axis.
 struct Straightness {
-    double mean = 0, deviation = 0, most = 0;  ///< unit; `deviation` with n - 1 (0 for one)
-    double length = 0;                         ///< of the stretch of the axis that the barycentres stand along; unit
-    double relative = 0;                       ///< mean / length; 0 where the length is
+    double mean = 0, deviation = 0, maximum = 0;  ///< unit; `deviation` with n - 1 (0 for one)
+    double length = 0;                            ///< of the stretch of the axis that the barycentres stand along; unit
+    double relative = 0;                          ///< mean / length; 0 where the length is
 };
 Straightness straightness(const std::vector<Point>& barycentres, const SliceLine& axis);
 /// From a bent axis; the length is that of the poly-line. Throws Error (usage) for a poly-line without points.
@@ -50,8 +50,8 @@ struct ThicknessHomogeneity {
 ThicknessHomogeneity thickness_homogeneity(const std::vector<Slice>& slices);
 
 struct TubeOptions {
-    double least_eccentricity = 0.7;
-    double most_roundness = 0.1;
+    double min_eccentricity = 0.7;
+    double max_roundness = 0.1;
     double similarity = 0.1;
     std::uint64_t seed = 1;
 

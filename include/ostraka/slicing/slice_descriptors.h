@@ -5,7 +5,7 @@
 // is missing. Only the fitted circle may be one of open contours. The shape is the material: outer contours without their holes.
 // Its outline are the outermost contours, with what is in them filled; circles are compared with the largest of these, the main
 // outline, so that handles and arms beside the body do not count. Where contours cross (a mesh that passes through itself) by
-// more than `most_doubtful`, only the hull and what is made of it, and the lengths of closed and open contours, are there.
+// more than `max_doubtful`, only the hull and what is made of it, and the lengths of closed and open contours, are there.
 // Integrals along contours go by length, so that cutting their pieces in two changes nothing.
 #pragma once
 
@@ -56,7 +56,7 @@ struct SliceDescriptors {
     /// contours' length. Absent without holes.
     double thickness_mean = absent;      ///< unit
     double thickness_variance = absent;  ///< unit squared
-    double thickness_least = absent, thickness_most = absent;
+    double thickness_min = absent, thickness_max = absent;
 
     double closed_length = 0, open_length = 0;  ///< of closed and of open contours; unit
 };

@@ -146,7 +146,7 @@ struct ConstraintParameters {
 /// One kind that make_constraint knows.
 struct ConstraintKind {
     std::string_view name;
-    int least_ids, most_ids;  ///< most_ids 0: any number
+    int min_ids, max_ids;     ///< max_ids 0: any number
     std::string_view admits;  ///< in a line
 };
 const std::vector<ConstraintKind>& constraint_kinds();

@@ -12,7 +12,7 @@ struct SurvivalOptions {
     TransferOptions transfer;
     double ratio = 0.7;
     double area_error = 0.25;
-    std::uint64_t least = 20;
+    std::uint64_t minimum = 20;
     void describe(OptionList& visit);
 };
 

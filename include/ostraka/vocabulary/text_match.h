@@ -11,9 +11,10 @@ namespace ostraka {
 /// Lower case (Latin, Greek and Cyrillic letters), runs of blanks as one, none at the ends. Accents stay. UTF-8 in and out.
 std::string folded(std::string_view text);
 
-/// Up to `most` of the candidates that differ from the text, both folded, by no more than one edit in three letters; closest
+/// Up to `maximum` of the candidates that differ from the text, both folded, by no more than one edit in three letters; closest
 /// first, then in the order given. Nothing for texts of more than 200 bytes.
-std::vector<std::string> near_misses(const std::string& text, const std::vector<std::string>& candidates, std::size_t most = 3);
+std::vector<std::string> near_misses(const std::string& text, const std::vector<std::string>& candidates,
+                                     std::size_t maximum = 3);
 
 /// ": did you mean 'a', 'b' or 'c'?" or nothing.
 std::string did_you_mean(const std::vector<std::string>& suggestions);
