@@ -157,7 +157,7 @@ public:
         for (std::size_t i = 0; i < objects.size(); ++i) objects_of_class_[objects[i].class_name].push_back(i);
         how_.correspondence = CorrespondenceChoice::fitted;
         how_.fit.tries = options.tries;
-        how_.fit.fit.reach = options.reach;
+        how_.fit.fit.search_radius = options.search_radius;
         how_.fit.fit.levels = 5;
         how_.fit.fit.steps = 2;
         how_.fit.alignment.samples = 400;

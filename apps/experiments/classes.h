@@ -13,7 +13,7 @@ struct ClassMembershipOptions {
     std::size_t members = 1000;  ///< of each class, at most
     std::uint64_t template_vertices = 1000, object_vertices = 3000;
     int tries = 1;
-    double reach = 0.1;
+    double search_radius = 0.1;
 };
 void class_membership(const ClassMembershipOptions& options);
 

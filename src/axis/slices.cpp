@@ -16,9 +16,10 @@ struct PatchSlice {
     double radius = 0;
 };
 
-/// The cut of the part by a plane, of which only what lies within `reach` of `point` counts. A vertex on the plane counts as
-/// above.
-PatchSlice cut(const Mesh& mesh, const std::vector<Index>& faces, const Vector3d& point, const Vector3d& normal, double reach) {
+/// The cut of the part by a plane, of which only what lies within `max_distance` of `point` counts. A vertex on the plane counts
+/// as above.
+PatchSlice cut(const Mesh& mesh, const std::vector<Index>& faces, const Vector3d& point, const Vector3d& normal,
+               double max_distance) {
     std::vector<Vector3d> middles;
     std::vector<double> lengths;
     for (const Index f : faces) {
@@ -42,7 +43,7 @@ PatchSlice cut(const Mesh& mesh, const std::vector<Index>& faces, const Vector3d
         }
         const Vector3d middle = (ends[0] + ends[1]) / 2;
         const double length = (ends[1] - ends[0]).norm();
-        if (!(length > 0) || middle.norm() > reach) continue;
+        if (!(length > 0) || middle.norm() > max_distance) continue;
         middles.push_back(middle);
         lengths.push_back(length);
     }
@@ -61,7 +62,7 @@ PatchSlice cut(const Mesh& mesh, const std::vector<Index>& faces, const Vector3d
     }
     if (covered_percent(angles) < 100.0 * 300 / 360) {
         const Circle circle = fit_circle(flat, lengths);
-        if (circle.radius < 0 || circle.radius > reach) return slice;
+        if (circle.radius < 0 || circle.radius > max_distance) return slice;
         centre = circle.centre.x() * u + circle.centre.y() * w;
     }
     for (std::size_t i = 0; i < middles.size(); ++i) slice.radius += lengths[i] / total * (middles[i] - centre).norm();

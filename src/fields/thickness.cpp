@@ -79,14 +79,15 @@ public:
     /// `expected` says how far is looked at first.
     [[nodiscard]] std::optional<double> way(const Point& origin, Index start, const Vector& direction, double expected) const {
         const double minimum = 1e-9 * diagonal_;
-        for (double reach = std::max(expected, diagonal_ / 64);; reach *= 4) {
-            reach = std::min(reach, 1.01 * diagonal_);
+        for (double max_distance = std::max(expected, diagonal_ / 64);; max_distance *= 4) {
+            max_distance = std::min(max_distance, 1.01 * diagonal_);
             // The segment of the query runs both ways: its middle stands half way along the ray.
-            for (const SurfaceHit& hit : search_.line_hits(origin + direction * (reach / 2), direction, reach / 2)) {
-                const double way = hit.distance + reach / 2;
+            for (const SurfaceHit& hit :
+                 search_.line_hits(origin + direction * (max_distance / 2), direction, max_distance / 2)) {
+                const double way = hit.distance + max_distance / 2;
                 if (hit.face != start && way > minimum && search_.normal(hit.face) * direction > 0) return way;
             }
-            if (reach > diagonal_) return {};
+            if (max_distance > diagonal_) return {};
         }
     }
 

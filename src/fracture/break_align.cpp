@@ -28,12 +28,12 @@ constexpr double min_facing = 0.5, continued = 0.7;
 
 }  // namespace
 
-BreakAligner::BreakAligner(const Mesh& a, const BreakSide& side_a, const BreakSide& side_b, double reach, double last_reach,
-                           double edges)
+BreakAligner::BreakAligner(const Mesh& a, const BreakSide& side_a, const BreakSide& side_b, double search_radius,
+                           double last_search_radius, double edges)
     : a_(side_a),
       b_(side_b),
-      reach_(reach),
-      last_reach_(last_reach),
+      search_radius_(search_radius),
+      last_search_radius_(last_search_radius),
       edges_(edges),
       fractures_(points_of(side_a.fracture.places)),
       frames_(places_of(side_a.frames)),
@@ -44,9 +44,9 @@ Motion BreakAligner::align(const Motion& start, std::size_t samples, int steps, 
     Motion pose = start;
     const std::size_t count = std::min(samples, b_.fracture.places.size());
     for (int step = 0; step < steps; ++step) {
-        // The last third at the last reach.
+        // The last third at the last search radius.
         const double share = std::min(1.0, 1.5 * step / std::max(1, steps - 1));
-        const double reach = reach_ * std::pow(last_reach_ / reach_, share);
+        const double search_radius = search_radius_ * std::pow(last_search_radius_ / search_radius_, share);
         Vector3d centre = Vector3d::Zero();
         struct Plane {
             Vector3d point, normal;
@@ -57,12 +57,13 @@ Motion BreakAligner::align(const Motion& start, std::size_t samples, int steps, 
         for (std::size_t i = 0; i < count; ++i) {
             const std::size_t k = (2 * i + 1) * b_.fracture.places.size() / (2 * count);
             const Vector3d p = pose(b_.fracture.places[k]), n = pose.rotation * b_.fracture.normals[k];
-            const PointTree::Near near = fractures_.nearest(point_of(p), reach);
+            const PointTree::Near near = fractures_.nearest(point_of(p), search_radius);
             if (near.index == no_index) continue;
             const Vector3d& normal = a_.fracture.normals[near.index];
             const double against = -normal.dot(n);
             if (against < min_facing) continue;
-            const double off = normal.dot(a_.fracture.places[near.index] - p), share_off = near.squared / (reach * reach);
+            const double off = normal.dot(a_.fracture.places[near.index] - p),
+                         share_off = near.squared / (search_radius * search_radius);
             planes.push_back({p, normal, off, (1 - share_off) * (1 - share_off)});
             all += planes.back().weight;
         }
@@ -70,13 +71,13 @@ Motion BreakAligner::align(const Motion& start, std::size_t samples, int steps, 
         double rim = 0;
         for (const RimFrame& frame : b_.frames) {
             const Vector3d p = pose(frame.place);
-            const PointTree::Near near = frames_.nearest(point_of(p), 1.5 * reach);
+            const PointTree::Near near = frames_.nearest(point_of(p), 1.5 * search_radius);
             if (near.index == no_index) continue;
             const RimFrame& other = a_.frames[near.index];
             if (other.facet != frame.facet || other.side.dot(pose.rotation * frame.side) < continued ||
                 other.fracture.dot(pose.rotation * frame.fracture) > -min_facing)
                 continue;
-            const double weight = std::pow(1 - near.squared / (2.25 * reach * reach), 2);
+            const double weight = std::pow(1 - near.squared / (2.25 * search_radius * search_radius), 2);
             rims.push_back({p, other.side, other.side.dot(other.place - p), weight});
             rims.push_back({p, other.fracture, other.fracture.dot(other.place - p), weight});
             rim += weight;
@@ -131,7 +132,7 @@ PairCandidate BreakAligner::judge(const Motion& pose, std::size_t samples, doubl
     const auto penetrates = [&](const Vector3d& p, double area) {
         if (!surface_) return;
         const SurfaceHit hit = surface_->closest(point_of(p));
-        if (hit.face == no_index || hit.distance < last_reach_) return;
+        if (hit.face == no_index || hit.distance < last_search_radius_) return;
         // Beyond an edge the nearest face may look either way: the place must be well below it.
         const double above = eigen(surface_->normal(hit.face)).dot(p - eigen(hit.point));
         if (above > -0.7 * hit.distance) return;
@@ -139,12 +140,12 @@ PairCandidate BreakAligner::judge(const Motion& pose, std::size_t samples, doubl
         result.depth = std::max(result.depth, hit.distance);
     };
     over(b_.fracture, [&](const Vector3d& p, const Vector3d& n, double area) {
-        const PointTree::Near near = fractures_.nearest(point_of(p), last_reach_);
+        const PointTree::Near near = fractures_.nearest(point_of(p), last_search_radius_);
         if (near.index != no_index) {
             const double against = -a_.fracture.normals[near.index].dot(n);
             if (against > min_facing) {
                 const double off = a_.fracture.normals[near.index].dot(p - a_.fracture.places[near.index]),
-                             share = off / (close * last_reach_);
+                             share = off / (close * last_search_radius_);
                 touching += area * std::exp(-share * share / 2);
                 square += area * off * off;
                 result.contact += area;
@@ -157,14 +158,14 @@ PairCandidate BreakAligner::judge(const Motion& pose, std::size_t samples, doubl
     double rim = 0;
     for (const RimFrame& frame : b_.frames) {
         const Vector3d p = pose(frame.place);
-        const PointTree::Near near = frames_.nearest(point_of(p), 1.5 * last_reach_);
+        const PointTree::Near near = frames_.nearest(point_of(p), 1.5 * last_search_radius_);
         if (near.index == no_index) continue;
         const RimFrame& other = a_.frames[near.index];
         if (other.facet != frame.facet || other.side.dot(pose.rotation * frame.side) < continued ||
             other.fracture.dot(pose.rotation * frame.fracture) > -min_facing)
             continue;
         // Across the side's plane counts, along the rim does not.
-        const double step = other.side.dot(p - other.place) / last_reach_;
+        const double step = other.side.dot(p - other.place) / last_search_radius_;
         rim += std::max(0.0, 1 - step * step);
     }
     result.rim = rim / static_cast<double>(b_.frames.size()) * b_.rim_length / shorter;

@@ -11,17 +11,19 @@ namespace ostraka {
 class BreakAligner {
 public:
     /// Without a mesh (empty) nothing penetrates.
-    BreakAligner(const Mesh& a, const BreakSide& side_a, const BreakSide& side_b, double reach, double last_reach, double edges);
+    BreakAligner(const Mesh& a, const BreakSide& side_a, const BreakSide& side_b, double search_radius, double last_search_radius,
+                 double edges);
 
-    /// Closest points, point to plane, with at most `samples` points of the fracture; the reach falls over `steps` steps. With
-    /// `hold`, the intact surface stays where `start` has it, but for sliding on itself, with that weight against the breaks.
+    /// Closest points, point to plane, with at most `samples` points of the fracture; the search radius falls over `steps` steps.
+    /// With `hold`, the intact surface stays where `start` has it, but for sliding on itself, with that weight against the
+    /// breaks.
     [[nodiscard]] Motion align(const Motion& start, std::size_t samples, int steps, double hold = 0) const;
-    /// In contact counts by how close it is: `close` times the last reach is a standard deviation.
+    /// In contact counts by how close it is: `close` times the last search radius is a standard deviation.
     [[nodiscard]] PairCandidate judge(const Motion& pose, std::size_t samples, double close) const;
 
 private:
     const BreakSide &a_, &b_;
-    double reach_, last_reach_, edges_;
+    double search_radius_, last_search_radius_, edges_;
     PointTree fractures_, frames_;
     Mesh whole_;
     std::unique_ptr<SurfaceSearch> surface_;  ///< none where there is no mesh

@@ -66,10 +66,10 @@ std::vector<Scored> distinct(std::vector<Scored> list, std::size_t count, const 
 /// Scores poses quickly, by a few places of the second side.
 class QuickScore {
 public:
-    QuickScore(const BreakSide& on, const BreakSide& of, double reach)
-        : target_(on, 2 * reach),
+    QuickScore(const BreakSide& on, const BreakSide& of, double search_radius)
+        : target_(on, 2 * search_radius),
           of_(of),
-          reach_(reach),
+          search_radius_(search_radius),
           fractures_(thinned(of.fracture.places.size(), 160)),
           others_(thinned(of.intact.places.size(), 120)),
           each_fracture_(fractures_.empty() ? 0 : of.fracture.area / static_cast<double>(fractures_.size())),
@@ -82,12 +82,12 @@ public:
             const Index i = target_.grid->near(p);
             if (i == no_index) return;
             const Vector3d off = p - target_.places[i];
-            const double above = target_.normals[i].dot(off), squared = off.squaredNorm() / (reach_ * reach_);
+            const double above = target_.normals[i].dot(off), squared = off.squaredNorm() / (search_radius_ * search_radius_);
             if (fracture && i < target_.fractures && squared < 1) {
                 const double against = -target_.normals[i].dot(pose.rotation * normal);
                 if (against > 0.3) score += area * (1 - squared) * against;
             }
-            if (above < -0.5 * reach_) score -= area * std::min(1.0, -above / reach_ - 0.5);
+            if (above < -0.5 * search_radius_) score -= area * std::min(1.0, -above / search_radius_ - 0.5);
         };
         for (const std::size_t i : fractures_) look(of_.fracture.places[i], of_.fracture.normals[i], each_fracture_, true);
         for (const std::size_t i : others_) look(of_.intact.places[i], of_.intact.normals[i], each_other_, false);
@@ -97,14 +97,15 @@ public:
 private:
     QuickTarget target_;
     const BreakSide& of_;
-    double reach_;
+    double search_radius_;
     std::vector<std::size_t> fractures_, others_;
     double each_fracture_, each_other_;
 };
 
 /// The best of all poses that lay a frame onto a frame; `tried` counts them.
-std::vector<Scored> best_of_frames(const BreakSide& a, const BreakSide& b, double reach, std::size_t count, std::size_t& tried) {
-    const QuickScore quick_score(a, b, reach);
+std::vector<Scored> best_of_frames(const BreakSide& a, const BreakSide& b, double search_radius, std::size_t count,
+                                   std::size_t& tried) {
+    const QuickScore quick_score(a, b, search_radius);
     const std::size_t columns = b.frames.size();
     std::vector<double> scores(a.frames.size() * columns);
     const double none = -std::numeric_limits<double>::infinity();
@@ -147,7 +148,7 @@ BreakPair pair_breaks(const Fragment& a, const Fragment& b, const PairOptions& o
     BreakPair result;
     result.size = std::min(fragment_size(a.mesh), fragment_size(b.mesh));
     if (!(result.size > 0)) fail_input("fragment", "has no area", "look at its faces");
-    const double reach = options.reach * result.size, radius = 0.75 * reach;
+    const double search_radius = options.search_radius * result.size, radius = 0.75 * search_radius;
     const BreakSide side_a(a, radius, options.frames, std::max(4 * options.samples, 4000)),
         side_b(b, radius, options.frames, options.samples);
     result.fracture_a = side_a.fracture.area;
@@ -155,11 +156,11 @@ BreakPair pair_breaks(const Fragment& a, const Fragment& b, const PairOptions& o
     Vector3d middle = Vector3d::Zero();
     for (const Vector3d& p : side_b.fracture.places) middle += p / static_cast<double>(side_b.fracture.places.size());
     const auto starts = static_cast<std::size_t>(options.starts), samples = static_cast<std::size_t>(options.samples);
-    std::vector<Scored> poses =
-        distinct(best_of_frames(side_a, side_b, reach, 40 * starts, result.tried), starts, middle, 0.5 * reach, 6 * pi / 180);
+    std::vector<Scored> poses = distinct(best_of_frames(side_a, side_b, search_radius, 40 * starts, result.tried), starts, middle,
+                                         0.5 * search_radius, 6 * pi / 180);
 
     // The best refined: quickly, then to the end.
-    const BreakAligner aligner(a.mesh, side_a, side_b, reach, options.last_reach * result.size, options.edges);
+    const BreakAligner aligner(a.mesh, side_a, side_b, search_radius, options.last_search_radius * result.size, options.edges);
     parallel_for(
         poses.size(),
         [&](std::size_t i) {
@@ -167,7 +168,7 @@ BreakPair pair_breaks(const Fragment& a, const Fragment& b, const PairOptions& o
             poses[i].score = aligner.judge(poses[i].pose, 300, 0.6).score;
         },
         1);
-    poses = distinct(poses, static_cast<std::size_t>(options.refined), middle, 0.5 * reach, 5 * pi / 180);
+    poses = distinct(poses, static_cast<std::size_t>(options.refined), middle, 0.5 * search_radius, 5 * pi / 180);
     std::vector<PairCandidate> candidates(poses.size());
     parallel_for(
         poses.size(),
@@ -177,7 +178,7 @@ BreakPair pair_breaks(const Fragment& a, const Fragment& b, const PairOptions& o
     for (const PairCandidate& one : candidates) {
         if (result.candidates.size() == static_cast<std::size_t>(options.candidates)) break;
         if (std::none_of(result.candidates.begin(), result.candidates.end(),
-                         [&](const PairCandidate& k) { return alike(k.pose, one.pose, middle, reach, 10 * pi / 180); }))
+                         [&](const PairCandidate& k) { return alike(k.pose, one.pose, middle, search_radius, 10 * pi / 180); }))
             result.candidates.push_back(one);
     }
     decide(result, options);
@@ -189,9 +190,9 @@ void PairOptions::describe(OptionList& visit) {
     visit("samples", samples, "points on the fracture, and as many on the rest of the surface", Range{50, 1e6});
     visit("starts", starts, "poses that are refined quickly: the best of all tried", Range{1, 10000});
     visit("refined", refined, "poses that are refined to the end", Range{1, 1000});
-    visit("reach", reach, "farthest that two fractures lie apart at first", Range{1e-4, 1},
+    visit("reach", search_radius, "farthest that two fractures lie apart at first", Range{1e-4, 1},
           "share of the root of the smaller fragment's area");
-    visit("last-reach", last_reach, "the same at the end; deeper in each other than this they do not go together",
+    visit("last-reach", last_search_radius, "the same at the end; deeper in each other than this they do not go together",
           Range{1e-4, 1});
     visit("edges", edges, "weight of the fractures' rims against their surfaces", Range{0, 1000});
     visit("least-contact", min_contact, "share of the smaller fracture that must be in contact", Range{0, 1});

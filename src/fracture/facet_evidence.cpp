@@ -81,18 +81,18 @@ Walls walls_under(const Mesh& mesh, const std::vector<Vector>& normals, std::siz
                              turn = i * pi * (3 - std::sqrt(5.0));
                 const Vector direction = r * std::cos(turn) * u + r * std::sin(turn) * w + z * axis;
                 bool met = false;
-                for (double reach = diagonal / 32; !met; reach *= 4) {
-                    reach = std::min(reach, 1.01 * diagonal);
+                for (double range = diagonal / 32; !met; range *= 4) {
+                    range = std::min(range, 1.01 * diagonal);
                     // The segment of the query runs both ways: its middle stands half way along the ray.
-                    for (const SurfaceHit& hit : search.line_hits(origin + direction * (reach / 2), direction, reach / 2)) {
-                        const double way = hit.distance + reach / 2;
+                    for (const SurfaceHit& hit : search.line_hits(origin + direction * (range / 2), direction, range / 2)) {
+                        const double way = hit.distance + range / 2;
                         if (hit.face == f || way <= 1e-9 * diagonal || search.normal(hit.face) * direction <= 0) continue;
                         ways.push_back(way);
                         opposite -= normals[hit.face] * normals[f];
                         met = true;
                         break;
                     }
-                    if (reach > diagonal) break;
+                    if (range > diagonal) break;
                 }
             }
             if (2 * ways.size() < count) return;

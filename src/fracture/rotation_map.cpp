@@ -10,8 +10,8 @@ namespace ostraka {
 
 using Eigen::Vector3d;
 
-int ProfileCells::row(const Vector3d& p, const Vector3d& normal, double reach) {
-    const auto hit = whole_.closest_compatible(point_of(p), vector_of(normal), 0.5, reach);
+int ProfileCells::row(const Vector3d& p, const Vector3d& normal, double search_radius) {
+    const auto hit = whole_.closest_compatible(point_of(p), vector_of(normal), 0.5, search_radius);
     if (!hit) return -1;
     const double radius = std::hypot(hit->point.x(), hit->point.y());
     const std::pair cell(std::lround(radius / width_), std::lround(hit->point.z() / width_));
@@ -19,7 +19,7 @@ int ProfileCells::row(const Vector3d& p, const Vector3d& normal, double reach) {
 }
 
 RotationMap::RotationMap(ProfileCells& cells, const SurfaceSamples& surface, const std::vector<Vector3d>& fracture, int steps,
-                         double margin, double reach)
+                         double margin, double search_radius)
     : steps_(steps), area_(surface.area) {
     if (surface.places.empty()) return;
     each_ = surface.area / static_cast<double>(surface.places.size());
@@ -29,7 +29,7 @@ RotationMap::RotationMap(ProfileCells& cells, const SurfaceSamples& surface, con
     const double step = 2 * pi / steps;
     for (std::size_t i = 0; i < surface.places.size(); ++i) {
         const Vector3d& p = surface.places[i];
-        const int row = cells.row(p, surface.normals[i], reach);
+        const int row = cells.row(p, surface.normals[i], search_radius);
         if (row < 0) continue;
         const int column = static_cast<int>(std::lround(std::atan2(p.y(), p.x()) / step) + steps) % steps;
         if (breaks.empty() || tree.nearest(point_of(p), margin).index == no_index) deep_.push_back({row, column});

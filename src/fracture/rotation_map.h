@@ -12,8 +12,8 @@ namespace ostraka {
 class ProfileCells {
 public:
     ProfileCells(const SurfaceSearch& whole, double width) : whole_(whole), width_(width) {}
-    /// The cell of the surface's place nearest to `p` that faces the same way; none farther off than `reach`: -1.
-    int row(const Eigen::Vector3d& p, const Eigen::Vector3d& normal, double reach);
+    /// The cell of the surface's place nearest to `p` that faces the same way; none farther off than `search_radius`: -1.
+    int row(const Eigen::Vector3d& p, const Eigen::Vector3d& normal, double search_radius);
     [[nodiscard]] double width() const { return width_; }
     [[nodiscard]] std::size_t rows() const { return known_.size(); }
 
@@ -28,7 +28,7 @@ class RotationMap {
 public:
     /// Places closer than `margin` to the sherd's own break are covered, but do not complain of being covered twice.
     RotationMap(ProfileCells& cells, const SurfaceSamples& surface, const std::vector<Eigen::Vector3d>& fracture, int steps,
-                double margin, double reach);
+                double margin, double search_radius);
     /// Area of this sherd on which `other` lies too when it is rotated by each of the steps against this one: one a step.
     [[nodiscard]] std::vector<double> shared(const RotationMap& other) const;
     [[nodiscard]] double area() const { return area_; }

@@ -72,19 +72,19 @@ RotationAssembly assemble_rotations(const RotationPairs& pairs, const std::vecto
 RotationLead lead_of(const RotationPairs& pairs, const std::vector<double>& rotations, const std::vector<bool>& counts,
                      const std::vector<bool>& side, int steps) {
     RotationLead lead;
-    double reach = 0;
+    double tolerance = 0;
     std::vector<std::pair<std::size_t, std::size_t>> across;
     for (std::size_t i = 0; i < rotations.size(); ++i)
         for (std::size_t j = 0; j < rotations.size(); ++j)
             if (counts[i] && counts[j] && !side[i] && side[j]) {
                 across.emplace_back(i, j);
-                reach = std::max(reach, pairs.of(i, j).reach);
+                tolerance = std::max(tolerance, pairs.of(i, j).tolerance);
             }
     for (const auto& [i, j] : across) lead.here += pairs.value(i, j, rotations[i], rotations[j]);
     // At other rotations what overlaps is not held against it: that there is no room elsewhere says nothing of the breaks.
     for (int k = 0; k < steps; ++k) {
         const double rotation = wrapped(2 * pi * k / steps);
-        if (std::abs(rotation) < 2 * reach) continue;
+        if (std::abs(rotation) < 2 * tolerance) continue;
         double sum = 0;
         for (const auto& [i, j] : across)
             sum += pairs.of(i, j).met(RotationPairs::between(i, j, rotations[i], rotations[j] + rotation));

@@ -19,9 +19,9 @@ std::size_t step_of(double rotation, std::size_t steps) {
 }
 
 /// Area of the second sherd's fracture that comes close to the first's, facing it, at each step.
-std::vector<double> contacts(const UprightSherd& a, const UprightSherd& b, int steps, double reach) {
+std::vector<double> contacts(const UprightSherd& a, const UprightSherd& b, int steps, double search_radius) {
     std::vector<double> area(static_cast<std::size_t>(steps), 0);
-    const SampleGrid grid(a.side.fracture.places, reach);
+    const SampleGrid grid(a.side.fracture.places, search_radius);
     const std::size_t size = b.side.fracture.places.size(), count = std::min<std::size_t>(size, 500);
     const double each = b.side.fracture.area / static_cast<double>(count);
     parallel_for(
@@ -33,7 +33,7 @@ std::vector<double> contacts(const UprightSherd& a, const UprightSherd& b, int s
                 const Vector3d p = motion(b.side.fracture.places[k]);
                 const Index near = grid.near(p);
                 if (near == no_index) continue;
-                const double share = (p - a.side.fracture.places[near]).squaredNorm() / (reach * reach),
+                const double share = (p - a.side.fracture.places[near]).squaredNorm() / (search_radius * search_radius),
                              facing = -a.side.fracture.normals[near].dot(motion.rotation * b.side.fracture.normals[k]);
                 if (share < 1 && facing > 0.3) area[t] += each * (1 - share) * facing;
             }
@@ -61,7 +61,7 @@ double RotationPair::shared_at(double rotation) const { return shared.empty() ? 
 double RotationPair::met(double rotation) const {
     double best = 0;
     for (const MeetingRotation& one : meetings) {
-        const double off = wrapped(rotation - one.rotation) / reach;
+        const double off = wrapped(rotation - one.rotation) / tolerance;
         if (off * off < 1) best = std::max(best, one.value * (1 - off * off));
     }
     return best;
@@ -71,7 +71,7 @@ const MeetingRotation* RotationPair::meeting(double rotation) const {
     const MeetingRotation* best = nullptr;
     double maximum = 0;
     for (const MeetingRotation& one : meetings) {
-        const double off = wrapped(rotation - one.rotation) / reach, value = one.value * (1 - off * off);
+        const double off = wrapped(rotation - one.rotation) / tolerance, value = one.value * (1 - off * off);
         if (value > maximum) best = &one, maximum = value;
     }
     return best;
@@ -84,13 +84,14 @@ RotationPair meet(const UprightSherd& a, const UprightSherd& b, int steps, doubl
     const auto ab = a.map->shared(*b.map), ba = b.map->shared(*a.map);
     for (std::size_t t = 0; t < n; ++t) pair.shared[t] = std::max(ab[t], ba[(n - t) % n]);
     // A joint is where it is to the width of the wall.
-    pair.reach = std::min(1.0, wall / std::max(std::min(a.radius, b.radius), wall));
+    pair.tolerance = std::min(1.0, wall / std::max(std::min(a.radius, b.radius), wall));
     if (a.side.frames.empty() || b.side.frames.empty()) return pair;
     const std::vector<double> close = contacts(a, b, steps, wall);
     std::vector<double> score(n);
     for (std::size_t t = 0; t < n; ++t) score[t] = close[t] - pair.shared[t];
     std::vector<std::size_t> tops;
-    const auto window = std::max<std::size_t>(1, static_cast<std::size_t>(0.5 * pair.reach / (2 * pi) * static_cast<double>(n)));
+    const auto window =
+        std::max<std::size_t>(1, static_cast<std::size_t>(0.5 * pair.tolerance / (2 * pi) * static_cast<double>(n)));
     for (std::size_t t = 0; t < n; ++t) {
         bool top = score[t] > 0;
         for (std::size_t k = 1; top && k <= window; ++k)
@@ -125,7 +126,7 @@ RotationPair meet(const UprightSherd& a, const UprightSherd& b, int steps, doubl
     for (MeetingRotation& one : found) {
         if (!(one.value > 0)) break;
         if (std::none_of(pair.meetings.begin(), pair.meetings.end(), [&](const MeetingRotation& k) {
-                return std::abs(wrapped(k.rotation - one.rotation)) < 0.5 * pair.reach;
+                return std::abs(wrapped(k.rotation - one.rotation)) < 0.5 * pair.tolerance;
             }))
             pair.meetings.push_back(std::move(one));
     }

@@ -28,7 +28,7 @@ struct MeetingRotation {
 struct RotationPair {
     std::vector<MeetingRotation> meetings;  ///< best first
     std::vector<double> shared;             ///< at each step: area on which both would lie
-    double reach = 0;                       ///< radians within which a rotation is that of a meeting
+    double tolerance = 0;                   ///< radians within which a rotation is that of a meeting
 
     /// What the pair says of a rotation of the second against the first: area that meets less area on which both lie.
     [[nodiscard]] double value(double rotation) const { return met(rotation) - shared_at(rotation); }

@@ -163,13 +163,14 @@ void FaceTree::join(std::uint32_t number) {
     node.sine = static_cast<float>(std::sin(opening));
 }
 
-std::optional<SurfaceHit> FaceTree::closest(const Point& query, const Vector& normal, double min_cosine, double reach) const {
-    if (nodes_.empty() || !(reach >= 0)) return std::nullopt;
+std::optional<SurfaceHit> FaceTree::closest(const Point& query, const Vector& normal, double min_cosine,
+                                            double search_radius) const {
+    if (nodes_.empty() || !(search_radius >= 0)) return std::nullopt;
     const Vector3d from = place(query), direction = eigen(normal);
     const bool any = min_cosine <= -1;
     const double cosine = std::clamp(min_cosine, -1.0, 1.0), sine = std::sqrt(1 - cosine * cosine), length = direction.norm();
     std::optional<SurfaceHit> best;
-    double bound = reach * reach;  // squared distance
+    double bound = search_radius * search_radius;  // squared distance
     const auto distance = [&](const Node& node) {
         // No normal is within what is asked for if the cone's axis is farther off than that and half of its opening together.
         if (!any && node.cosine > -cosine + rounding &&

@@ -19,10 +19,11 @@ public:
     /// Over these faces, which have an area. The mesh outlives it.
     FaceTree(const Mesh& mesh, const std::vector<Face>& faces);
 
-    /// The nearest place within `reach` on a face whose unit normal has a scalar product of at least `min_cosine` with `normal`
+    /// The nearest place within `search_radius` on a face whose unit normal has a scalar product of at least `min_cosine` with
+    /// `normal`
     /// (-1: on any face); of equally near ones the face of the lowest index.
     [[nodiscard]] std::optional<SurfaceHit> closest(const Point& query, const Vector& normal, double min_cosine,
-                                                    double reach) const;
+                                                    double search_radius) const;
 
 private:
     using Place = std::array<float, 3>;  ///< about the mesh's middle, in diagonals of its box

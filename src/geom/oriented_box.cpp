@@ -172,10 +172,10 @@ OrientedBox oriented_box(const std::vector<Array3>& points) {
     std::vector<Vector3d> extreme = extreme_points(points, directions(points.size() > 50000 ? 128 : 512));
     // Directions do not depend on place and scale; numbers near one keep products in range.
     const Vector3d origin = extreme.front();
-    double reach = 0;
-    for (const auto& p : extreme) reach = std::max(reach, (p - origin).cwiseAbs().maxCoeff());
+    double extent = 0;
+    for (const auto& p : extreme) extent = std::max(extent, (p - origin).cwiseAbs().maxCoeff());
     const auto near_one = [&](std::vector<Vector3d>& list) {
-        for (auto& p : list) p = reach > 0 ? Vector3d((p - origin) / reach) : Vector3d::Zero();
+        for (auto& p : list) p = extent > 0 ? Vector3d((p - origin) / extent) : Vector3d::Zero();
     };
     near_one(extreme);
 

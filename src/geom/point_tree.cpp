@@ -21,9 +21,9 @@ struct PointTree::Tree {
             return squared_length(gap);
         }
         [[nodiscard]] double farthest(const Place& place) const {
-            Place reach;
-            for (std::size_t k = 0; k < 3; ++k) reach[k] = std::max(high[k] - place[k], place[k] - low[k]);
-            return squared_length(reach);
+            Place search_radius;
+            for (std::size_t k = 0; k < 3; ++k) search_radius[k] = std::max(high[k] - place[k], place[k] - low[k]);
+            return squared_length(search_radius);
         }
     };
     std::vector<Place> places;  ///< in the order of the tree
@@ -109,9 +109,9 @@ PointTree& PointTree::operator=(PointTree&&) noexcept = default;
 
 std::size_t PointTree::size() const { return tree_->order.size(); }
 
-PointTree::Near PointTree::nearest(const Point& place, double reach) const {
+PointTree::Near PointTree::nearest(const Point& place, double search_radius) const {
     Near near;
-    tree_->walk(place, reach * reach, [&](Index i, double squared, double& limit) {
+    tree_->walk(place, search_radius * search_radius, [&](Index i, double squared, double& limit) {
         if (squared == near.squared && i > near.index) return;
         near = {i, squared};
         limit = squared;
@@ -138,9 +138,9 @@ std::vector<PointTree::Near> PointTree::neighbours(const Point& place, std::size
     return nearest;
 }
 
-void PointTree::within(const Point& place, double reach, std::vector<Index>& found) const {
+void PointTree::within(const Point& place, double search_radius, std::vector<Index>& found) const {
     found.clear();
-    tree_->walk(place, reach * reach, [&](Index i, double, double&) { found.push_back(i); });
+    tree_->walk(place, search_radius * search_radius, [&](Index i, double, double&) { found.push_back(i); });
     std::sort(found.begin(), found.end());
 }
 

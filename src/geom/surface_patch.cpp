@@ -47,12 +47,12 @@ SurfacePatch cut_out(const Mesh& mesh, std::vector<Index> faces, const Point& or
                  h = mesh.prev(mesh.opposite(h)))
                 corner[h] = fresh;
         }
-    double reach = 0;
+    double extent = 0;
     for (const Index v : patch.vertices) {
         const Vector d = mesh.point(Vertex(v)) - origin;
-        reach = std::max({reach, std::abs(d.x()), std::abs(d.y()), std::abs(d.z())});
+        extent = std::max({extent, std::abs(d.x()), std::abs(d.y()), std::abs(d.z())});
     }
-    if (reach > 0) patch.scale = std::exp2(std::ceil(std::log2(reach)));
+    if (extent > 0) patch.scale = std::exp2(std::ceil(std::log2(extent)));
     TriangleSoup soup;
     for (const Index v : patch.vertices) {
         const Vector d = mesh.point(Vertex(v)) - origin;

@@ -94,11 +94,11 @@ Vector SurfaceSearch::normal(Index face) const {
     return length > 0 ? a / length : Vector(0, 0, 0);
 }
 
-std::vector<SurfaceHit> SurfaceSearch::line_hits(const Point& origin, const Vector& direction, double reach) const {
+std::vector<SurfaceHit> SurfaceSearch::line_hits(const Point& origin, const Vector& direction, double max_distance) const {
     const Mesh& mesh = *tree_->mesh;
     std::vector<Face> faces;
-    tree_->lines().all_intersected_primitives(Kernel::Segment_3(origin - reach * direction, origin + reach * direction),
-                                              std::back_inserter(faces));
+    tree_->lines().all_intersected_primitives(
+        Kernel::Segment_3(origin - max_distance * direction, origin + max_distance * direction), std::back_inserter(faces));
     std::vector<SurfaceHit> hits;
     hits.reserve(faces.size());
     for (const Face f : faces) {
@@ -112,7 +112,7 @@ std::vector<SurfaceHit> SurfaceSearch::line_hits(const Point& origin, const Vect
         Point p = origin;
         if (along * along > 1e-24 * n.squared_length()) {
             const double t = (n * (pa - origin)) / along;
-            p = origin + std::clamp(t, -reach, reach) * direction;
+            p = origin + std::clamp(t, -max_distance, max_distance) * direction;
         }
         hit.barycentric = nearest_barycentric(pa, pb, pc, p);
         hit.point = point_at(mesh, hit.face, hit.barycentric);
@@ -136,8 +136,8 @@ SurfaceHit SurfaceSearch::closest(const Point& query) const {
 }
 
 std::optional<SurfaceHit> SurfaceSearch::closest_compatible(const Point& query, const Vector& normal, double min_cosine,
-                                                            double reach) const {
-    return tree_->nearest().closest(query, normal, min_cosine, reach);
+                                                            double search_radius) const {
+    return tree_->nearest().closest(query, normal, min_cosine, search_radius);
 }
 
 std::array<double, 3> nearest_barycentric(const Point& a, const Point& b, const Point& c, const Point& p) {

@@ -81,7 +81,7 @@ std::vector<std::uint8_t> enclosed_components(const TriangleSoup& soup, const st
         for (const Index v : soup.triangles[t]) boxes[c] += point(soup, v).bbox();
     }
     const TriangleTree tree(soup);
-    const double reach = 2 * diagonal(box_of_triangles(soup));
+    const double ray_length = 2 * diagonal(box_of_triangles(soup));
     parallel_for(
         inner.size(),
         [&](std::size_t i) {
@@ -93,7 +93,7 @@ std::vector<std::uint8_t> enclosed_components(const TriangleSoup& soup, const st
             for (int attempt = 0; attempt < 16; ++attempt) {
                 const double s = 0.7316 + attempt * 0.3947, z = std::cos(1.13 + attempt * 0.717);
                 const double r = std::sqrt(1 - z * z);
-                const Point end = start + reach * Vector(r * std::cos(s), r * std::sin(s), z);
+                const Point end = start + ray_length * Vector(r * std::cos(s), r * std::sin(s), z);
                 std::vector<std::pair<Index, bool>> parity;
                 if (!crossing_parity(soup, tree, component_of_triangle, own, start, end, parity) && attempt < 15) continue;
                 bool inside = false;

@@ -60,11 +60,12 @@ private:
     std::vector<std::optional<SurfaceHit>> places(int number, const std::vector<Vector>& normals) {
         const PlacedFragment& fragment = fragments_[static_cast<std::size_t>(number)];
         const SurfaceSearch search(object_.mesh);
-        const double minimum = std::cos(options_.angle * pi / 180), reach = options_.tolerance * diagonal_;
+        const double minimum = std::cos(options_.angle * pi / 180), search_radius = options_.tolerance * diagonal_;
         std::vector<std::optional<SurfaceHit>> hits(fragment.mesh.number_of_vertices());
         parallel_for(hits.size(), [&](std::size_t v) {
             if (!(normals[v].squared_length() > 0)) return;
-            auto hit = search.closest_compatible(fragment.mesh.point(Vertex(static_cast<Index>(v))), normals[v], minimum, reach);
+            auto hit =
+                search.closest_compatible(fragment.mesh.point(Vertex(static_cast<Index>(v))), normals[v], minimum, search_radius);
             if (hit) hits[v] = hit;
         });
         double whole = 0, lying = 0, shared = 0;

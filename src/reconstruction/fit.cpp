@@ -81,10 +81,11 @@ public:
             NonRigidFit::Level record;
             record.vertices = mesh_.number_of_vertices();
             record.smoothing = smoothing(options_, level, diagonal_);
-            const double reach =
-                between(options_, level, std::max(options_.reach, 1e-9), std::max(options_.last_reach, 1e-9)) * diagonal_;
+            const double search_radius =
+                between(options_, level, std::max(options_.search_radius, 1e-9), std::max(options_.last_search_radius, 1e-9)) *
+                diagonal_;
             for (; record.steps < options_.steps; ++record.steps) {
-                match(reach, fit);
+                match(search_radius, fit);
                 const Stopwatch watch(fit.seconds_solving);
                 const Points before = now_;
                 if (record.steps == 0) start_ = level == 0 ? rest_ : now_;
@@ -101,15 +102,15 @@ public:
         }
     }
 
-    const std::vector<VertexMatch>& match(double reach, NonRigidFit& fit) {
+    const std::vector<VertexMatch>& match(double search_radius, NonRigidFit& fit) {
         const Stopwatch watch(fit.seconds_matching);
-        matches_ = search_.matches(now_, mesh_, labels_, reach, std::cos(options_.angle * pi / 180));
+        matches_ = search_.matches(now_, mesh_, labels_, search_radius, std::cos(options_.angle * pi / 180));
         if (options_.counterparts == NonRigidOptions::Counterparts::surface) return matches_;
         VertexAssignmentOptions options = options_.vertices;
         options.counterpart = options_.counterparts == NonRigidOptions::Counterparts::best
                                   ? VertexAssignmentOptions::Counterpart::best
                                   : VertexAssignmentOptions::Counterpart::one_to_one;
-        options.reach = reach;
+        options.search_radius = search_radius;
         options.angle = options_.angle;
         search_.assign(now_, mesh_, labels_, options, matches_);
         return matches_;
@@ -119,12 +120,12 @@ public:
     /// matched: so the surface is met as nearly as the cage can, which levels with a smoothing do not. Vertices that are not
     /// matched are held where the levels left them.
     /// At most 4000 vertices are looked at, evenly over their list.
-    void polish(double reach, double smoothing, NonRigidFit& fit) {
+    void polish(double search_radius, double smoothing, NonRigidFit& fit) {
         constexpr int max_steps = 12;
         constexpr double settled = 1e-10;  // share of the diagonal
         const Points left = now_;
         for (int step = 0; step < max_steps; ++step) {
-            match(reach, fit);
+            match(search_radius, fit);
             const Stopwatch watch(fit.seconds_solving);
             const Points before = now_;
             if (!step_to_planes(left, smoothing)) return;
@@ -427,7 +428,7 @@ struct TemplateFitter::State {
         exact.start_at(points_of(cage->coordinates.vertex, through.cage()));
         if (level == options.levels) {
             exact.go_through(cage->coordinates.vertex, through.cage());
-            exact.polish(options.last_reach * diagonal, Fitter::smoothing(options, level - 1, diagonal), fit);
+            exact.polish(options.last_search_radius * diagonal, Fitter::smoothing(options, level - 1, diagonal), fit);
         }
         return level;
     }
@@ -488,7 +489,7 @@ NonRigidFit TemplateFitter::fit(double scale, const std::vector<PlacedFragment>&
     if (options.space != NonRigidOptions::Space::mesh) level = s.fit_cage(search, options, fine, fit);
     else if (s.coarse) level = s.fit_coarse(search, options, fine, fit);
     fine.run(level, options.levels, fit);
-    fit.matches = fine.match(options.last_reach * s.diagonal, fit);
+    fit.matches = fine.match(options.last_search_radius * s.diagonal, fit);
     // So far all was in the template's unit.
     for (VertexMatch& match : fit.matches) {
         match.place *= scale;
@@ -521,8 +522,8 @@ void NonRigidOptions::describe(OptionList& visit) {
     visit("transition", stay, "length over which the deformation of the first level fades where nothing is observed",
           Range{1e-3, 1e3}, "share of the diagonal");
     visit("fade", fade, "what a later level adds fades over so many of its smoothing lengths", Range{0.1, 1e3});
-    visit("reach", reach, "farthest match in the first level", Range{0, 10}, "share of the diagonal");
-    visit("last-reach", last_reach, "farthest match in the last level", Range{0, 10});
+    visit("reach", search_radius, "farthest match in the first level", Range{0, 10}, "share of the diagonal");
+    visit("last-reach", last_search_radius, "farthest match in the last level", Range{0, 10});
     visit("match-angle", angle, "normals of matches differ by at most this", Range{0, 180}, "degrees");
     visit("counterparts", counterparts,
           "of vertices in matched annotations: closest places of the surface (surface), or vertices by distance, outline and "

@@ -124,8 +124,8 @@ MatchSearch::Labels MatchSearch::labels(const Mesh& mesh, const std::vector<Inde
     return labels;
 }
 
-std::vector<VertexMatch> MatchSearch::matches(const Points& now, const Mesh& connectivity, const Labels& labels, double reach,
-                                              double min_cosine) const {
+std::vector<VertexMatch> MatchSearch::matches(const Points& now, const Mesh& connectivity, const Labels& labels,
+                                              double search_radius, double min_cosine) const {
     const std::size_t n = labels.of_vertex.size();
     // Normals of the shape as it is now.
     std::vector<Vector3d> normals(n, Vector3d::Zero());
@@ -141,7 +141,7 @@ std::vector<VertexMatch> MatchSearch::matches(const Points& now, const Mesh& con
         const double length = normals[i].norm();
         if (!(length > 0)) return;
         const Vector3d place = now.col(static_cast<Eigen::Index>(i));
-        double nearest = reach;
+        double nearest = search_radius;
         for (const int label : labels.of_vertex[i]) {
             const auto list = parts_.find(label);
             if (list == parts_.end()) continue;
@@ -206,7 +206,7 @@ void MatchSearch::assign(const Points& now, const Mesh& connectivity, const Labe
     Mesh mesh = connectivity;
     for (const Vertex v : mesh.vertices()) mesh.point(v) = point_of(scale_ * now.col(static_cast<Eigen::Index>(v)));
     VertexAssignmentOptions options = how;
-    options.reach *= scale_;
+    options.search_radius *= scale_;
     for (const Counterpart& other : counterparts_) {
         Annotation part;
         part.type = AnnotationType::region;

@@ -45,10 +45,10 @@ public:
     };
     /// Of a mesh of the template whose faces come from `face_origin` of the template's (empty: they are the template's).
     [[nodiscard]] Labels labels(const Mesh& mesh, const std::vector<Index>& face_origin) const;
-    /// The nearest of all fragments for each vertex at `now`; fragment -1 where there is none within `reach` whose normal agrees
-    /// and that is not at a border.
+    /// The nearest of all fragments for each vertex at `now`; fragment -1 where there is none within `search_radius` whose normal
+    /// agrees and that is not at a border.
     [[nodiscard]] std::vector<VertexMatch> matches(const Points& now, const Mesh& connectivity, const Labels& labels,
-                                                   double reach, double min_cosine) const;
+                                                   double search_radius, double min_cosine) const;
     /// Puts the counterparts of equation 5.1 in the place of those matches whose vertices are in a matched annotation, as the
     /// options say; none where the counterpart is where the fragment ends.
     void assign(const Points& now, const Mesh& connectivity, const Labels& labels, const VertexAssignmentOptions& options,

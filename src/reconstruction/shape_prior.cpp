@@ -140,7 +140,7 @@ private:
     /// Where the fragments' samples are on the class's shape, in its planes: that is smooth, and they are not.
     [[nodiscard]] std::vector<Residual> residuals(const Points& now) {
         std::vector<Residual> found;
-        const double cosine = std::cos(options_.angle * pi / 180), reach = options_.reach * diagonal_;
+        const double cosine = std::cos(options_.angle * pi / 180), search_radius = options_.search_radius * diagonal_;
         for (auto& [label, part] : parts_) {
             if (part.faces.empty()) continue;
             for (const Vertex v : part.mesh.vertices())
@@ -150,7 +150,8 @@ private:
             parallel_for(samples_.size(), [&, label = label, part = &part](std::size_t i) {
                 const FragmentSample& sample = samples_[i];
                 if (sample.label != label) return;
-                const auto hit = search.closest_compatible(point_of(sample.place), vector_of(sample.normal), cosine, reach);
+                const auto hit =
+                    search.closest_compatible(point_of(sample.place), vector_of(sample.normal), cosine, search_radius);
                 if (!hit) return;
                 Residual one;
                 one.place = eigen(hit->point);

@@ -164,7 +164,7 @@ private:
                options_.outline * outline_(ways(i, j));
     }
     [[nodiscard]] bool allowed(int i, int j) const {
-        if (options_.reach > 0 && distance(i, j) > options_.reach) return false;
+        if (options_.search_radius > 0 && distance(i, j) > options_.search_radius) return false;
         return options_.angle >= 180 ||
                ours_.normals[static_cast<std::size_t>(i)] * theirs_.normals[static_cast<std::size_t>(j)] >= min_cosine_;
     }
@@ -221,7 +221,8 @@ private:
                 const auto near = trees_[kind].neighbours(ours_.places[static_cast<std::size_t>(i)], count);
                 for (const PointTree::Near& one : near)
                     if (const int j = group[one.index]; allowed(i, j)) found.emplace_back(cost(i, j), j);
-                const bool beyond = options_.reach > 0 && near.back().squared > options_.reach * options_.reach;
+                const bool beyond =
+                    options_.search_radius > 0 && near.back().squared > options_.search_radius * options_.search_radius;
                 if (found.size() < wanted && count < group.size() && !beyond) continue;
                 list.insert(list.end(), found.begin(), found.end());
                 break;
@@ -261,7 +262,7 @@ void VertexAssignmentOptions::describe(OptionList& visit) {
     visit("boundary-weight", boundary, "of vertices on an outline against vertices inside", Range{0, 1e6});
     visit("distance-weight", distance, "of the distance of counterparts", Range{0, 1e6});
     visit("outline-weight", outline, "of the positions along the outline, from landmark to landmark", Range{0, 1e6});
-    visit("assignment-reach", reach, "farthest counterpart, in the meshes' unit; 0: any", Range{0, 1e60});
+    visit("assignment-reach", search_radius, "farthest counterpart, in the meshes' unit; 0: any", Range{0, 1e60});
     visit("assignment-angle", angle, "of the normals of counterparts", Range{0, 180}, "degrees");
     visit("candidates", candidates, "one-to-one: counterparts tried for each vertex", Range{1, 1000});
     visit("unassigned", unassigned, "one-to-one: cost of a vertex without counterpart", Range{0, 1e6},

@@ -129,7 +129,7 @@ public:
         u_ = other.cross(normal_).normalized();
         v_ = normal_.cross(u_);
         const Vector3d centre = eigen(level.mesh.point(Vertex(vertex)));
-        this_threads_neighbourhood().walk(level.mesh, Vertex(vertex), reach * level.sigma, [&](Vertex w, double squared) {
+        this_threads_neighbourhood().walk(level.mesh, Vertex(vertex), search_radius * level.sigma, [&](Vertex w, double squared) {
             if (level.normals[w].isZero()) return;
             const Vector3d offset = eigen(level.mesh.point(w)) - centre;
             Vector2d flat(u_.dot(offset), v_.dot(offset));
@@ -223,7 +223,7 @@ public:
     }
 
 private:
-    static constexpr double disc_radius = 3.75, ring_radius = 4.5, reach = 9;  ///< in sigma
+    static constexpr double disc_radius = 3.75, ring_radius = 4.5, search_radius = 9;  ///< in sigma
     static Vector2d centre(int disc) {
         if (disc == 0) return Vector2d::Zero();
         const double angle = (disc - 1) * pi / 4;

@@ -7,11 +7,11 @@
 
 namespace ostraka::detail {
 
-/// Each cell within `reach` of a point knows the nearest point of its middle, and the nearest one that faces another way: on a
-/// thin wall the other side.
+/// Each cell within `search_radius` of a point knows the nearest point of its middle, and the nearest one that faces another way:
+/// on a thin wall the other side.
 class NearestGrid {
 public:
-    NearestGrid(const SurfacePoints& points, double reach);
+    NearestGrid(const SurfacePoints& points, double search_radius);
 
     /// The nearest point of the surface whose normal is less than a right angle from `normal`; -1 if none is near.
     [[nodiscard]] int find(const Eigen::Vector3d& place, const Eigen::Vector3d& normal) const {
@@ -23,7 +23,7 @@ public:
         return -1;
     }
     [[nodiscard]] const SurfacePoints& points() const { return points_; }
-    [[nodiscard]] double reach() const { return reach_; }
+    [[nodiscard]] double search_radius() const { return search_radius_; }
 
 private:
     [[nodiscard]] std::size_t index(int x, int y, int z) const {
@@ -35,7 +35,7 @@ private:
     void around(std::size_t point, Visit&& visit) const;
 
     const SurfacePoints& points_;
-    double reach_, side_ = 0;
+    double search_radius_, side_ = 0;
     Eigen::Vector3d low_;
     Eigen::Vector3i count_;
     std::vector<int> nearest_, other_;

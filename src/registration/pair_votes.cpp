@@ -54,16 +54,17 @@ const AngleBins angle_bin;
 long PairTable::key(const Vector3d& p, const Vector3d& n, const Vector3d& q, const Vector3d& m) const {
     const Vector3d d = q - p;
     const double length = d.norm();
-    if (!(length > 0.5 * step_ && length < reach_)) return -1;
+    if (!(length > 0.5 * step_ && length < max_distance_)) return -1;
     const int bin = std::min(distances_ - 1, static_cast<int>(length / step_));
     return ((static_cast<long>(bin) * angles + angle_bin(n.dot(d) / length)) * angles + angle_bin(m.dot(d) / length)) * angles +
            angle_bin(n.dot(m));
 }
 
-PairTable::PairTable(SurfacePoints points, double reach, double step) : points_(std::move(points)), reach_(reach), step_(step) {
+PairTable::PairTable(SurfacePoints points, double max_distance, double step)
+    : points_(std::move(points)), max_distance_(max_distance), step_(step) {
     if (points_.size() > 4096) fail_usage("pairs of " + std::to_string(points_.size()) + " points are too many", "4096 at most");
-    if (!(reach > 0 && step > 0)) fail_usage("pairs of points need lengths above 0");
-    distances_ = static_cast<int>(std::min(1000.0, std::ceil(reach / step)));
+    if (!(max_distance > 0 && step > 0)) fail_usage("pairs of points need lengths above 0");
+    distances_ = static_cast<int>(std::min(1000.0, std::ceil(max_distance / step)));
     const std::size_t n = points_.size();
     std::vector<std::int32_t> keys(n * n, -1);
     parallel_for(

@@ -56,10 +56,10 @@ private:
     /// Pairs under a pose, trimmed; what is minimised, anchors and samples without a partner included.
     detail::PoseFit measure(const Motion& pose) {
         std::vector<std::optional<detail::PlanePair>> found(samples_.size());
-        const double reach = options_.reach * whole_.diagonal(), cosine = std::cos(options_.angle * pi / 180);
+        const double search_radius = options_.search_radius * whole_.diagonal(), cosine = std::cos(options_.angle * pi / 180);
         parallel_for(samples_.size(), [&](std::size_t i) {
             const Vector3d p = pose(samples_[i].place), n = pose.rotation * samples_[i].normal;
-            const auto hit = whole_.closest_compatible(point_of(p), vector_of(n), cosine, reach);
+            const auto hit = whole_.closest_compatible(point_of(p), vector_of(n), cosine, search_radius);
             if (hit)
                 found[i] =
                     detail::PlanePair{p, eigen(hit->point), eigen(whole_.normal(hit->face)), hit->distance * hit->distance};
@@ -71,9 +71,9 @@ private:
         fit.overlap = static_cast<double>(pairs_.list.size()) / static_cast<double>(samples_.size());
         const std::size_t wanted = pairs_.trim(options_.trim, samples_.size()), met = pairs_.list.size();
         double sum = pairs_.squares();
-        fit.residual = met == 0 ? reach : std::sqrt(sum / static_cast<double>(met));
+        fit.residual = met == 0 ? search_radius : std::sqrt(sum / static_cast<double>(met));
         // Who has no partner is as far off as can be: a pose in which few find one is no better for it.
-        sum += static_cast<double>(wanted - met) * reach * reach;
+        sum += static_cast<double>(wanted - met) * search_radius * search_radius;
         weight_ = anchors_.empty() ? 0 : options_.anchors * static_cast<double>(wanted) / static_cast<double>(anchors_.size());
         for (const Anchor& anchor : anchors_) sum += weight_ * (pose(anchor.of_part) - anchor.of_whole).squaredNorm();
         fit.minimised = sum;
@@ -111,7 +111,7 @@ PartAlignment align_part(const Mesh& part, const std::vector<bool>& of_part, con
 
 void PartAlignmentOptions::describe(OptionList& visit) {
     visit("icp-trim", trim, "share of the pairs of points that count, the nearest ones", Range{0.1, 1});
-    visit("icp-reach", reach, "farthest pair", Range{0, 10}, "share of the whole's diagonal");
+    visit("icp-reach", search_radius, "farthest pair", Range{0, 10}, "share of the whole's diagonal");
     visit("icp-angle", angle, "pairs whose normals differ by more are left out", Range{1, 180}, "degrees");
     visit("icp-landmarks", anchors, "weight of all landmarks together against that of the surface", Range{0, 1e9});
     visit("icp-samples", samples, "points of a fragment that are laid onto the template", Range{10, 1e7});

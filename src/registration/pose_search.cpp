@@ -91,16 +91,17 @@ Motion refined_on(const detail::NearestGrid& grid, const SurfacePoints& part, Mo
                   bool scale) {
     for (int round = 0; round < rounds; ++round) {
         const double t = static_cast<double>(round) / std::max(1, rounds - 1);
-        const double reach = std::pow(grid.reach(), 1 - t) * std::pow(std::min(grid.reach(), 1.5 * tolerance), t);
+        const double search_radius =
+            std::pow(grid.search_radius(), 1 - t) * std::pow(std::min(grid.search_radius(), 1.5 * tolerance), t);
         const Vector3d centre = pose(Vector3d::Zero());
-        PlaneMotion planes(centre, grid.reach());
+        PlaneMotion planes(centre, grid.search_radius());
         for (std::size_t i = 0; i < part.size(); ++i) {
             const Vector3d p = pose(part.places[i]), normal = pose.rotation * part.normals[i];
             const int j = grid.find(p, normal);
             if (j < 0) continue;
             const auto k = static_cast<std::size_t>(j);
             const Vector3d& to = grid.points().normals[k];
-            const double off = to.dot(grid.points().places[k] - p), ratio = (grid.points().places[k] - p).norm() / reach;
+            const double off = to.dot(grid.points().places[k] - p), ratio = (grid.points().places[k] - p).norm() / search_radius;
             if (ratio >= 1 || normal.dot(to) < 0.5) continue;
             planes.add(p, to, off, (1 - ratio * ratio) * (1 - ratio * ratio));
         }
@@ -233,7 +234,7 @@ struct PoseSearch::State {
         how.samples = 500;
         how.iterations = 12;
         how.angle = 95;  // faces of a rough scan lean any way; only the other side of a wall must stay out
-        how.reach = std::min(10.0, 2.5 * tolerance / one.scale / whole.diagonal());
+        how.search_radius = std::min(10.0, 2.5 * tolerance / one.scale / whole.diagonal());
         Motion start = one.pose;
         start.scale /= one.scale;
         start.translation /= one.scale;
@@ -262,7 +263,7 @@ struct PoseSearch::State {
         for (std::size_t i = 0; i < some.size(); ++i) {
             const Vector3d p = onto(some.places[i]);
             const int j = grid->find(p, onto.rotation * some.normals[i]);
-            if (j < 0 || (grid->points().places[static_cast<std::size_t>(j)] - p).norm() > 0.5 * grid->reach()) continue;
+            if (j < 0 || (grid->points().places[static_cast<std::size_t>(j)] - p).norm() > 0.5 * grid->search_radius()) continue;
             places.push_back(back(grid->points().places[static_cast<std::size_t>(j)]));
             normals.push_back(back.rotation * grid->points().normals[static_cast<std::size_t>(j)]);
         }

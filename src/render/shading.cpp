@@ -122,13 +122,13 @@ private:
 
     /// Share of the sky above the surface from which light comes, weighted by the cosine.
     [[nodiscard]] double openness(const Eigen::Vector3d& point, const Eigen::Vector3d& normal) const {
-        constexpr double reach = 0.6;
+        constexpr double max_distance = 0.6;
         double open = 0, total = 0;
         for (const auto& direction : sky_) {
             const double cosine = direction.dot(normal);
             if (cosine <= 0.05) continue;
             total += cosine;
-            if (!surface_.blocked(point + 1e-3 * normal, direction, 0, reach)) open += cosine;
+            if (!surface_.blocked(point + 1e-3 * normal, direction, 0, max_distance)) open += cosine;
         }
         return total > 0 ? open / total : 1;
     }

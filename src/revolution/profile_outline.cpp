@@ -71,10 +71,10 @@ void ProfileImage::bridge(std::vector<std::string>* notes) {
 
 void ProfileImage::smooth(double deviation) {
     if (!(deviation > 0)) return;
-    const long reach = std::lround(std::ceil(3 * deviation));
+    const long half_width = std::lround(std::ceil(3 * deviation));
     std::vector<double> kernel;
     double sum = 0;
-    for (long k = -reach; k <= reach; ++k) {
+    for (long k = -half_width; k <= half_width; ++k) {
         kernel.push_back(std::exp(-0.5 * static_cast<double>(k * k) / (deviation * deviation)));
         sum += kernel.back();
     }
@@ -82,9 +82,9 @@ void ProfileImage::smooth(double deviation) {
         std::vector<double> result(wall_share.size(), 0);
         for (std::size_t row = 0; row < rows; ++row)
             for (std::size_t c = 0; c < columns; ++c)
-                for (long k = -reach; k <= reach; ++k)
+                for (long k = -half_width; k <= half_width; ++k)
                     result[row * columns + c] +=
-                        kernel[static_cast<std::size_t>(k + reach)] / sum *
+                        kernel[static_cast<std::size_t>(k + half_width)] / sum *
                         at(static_cast<long>(row) + (along_rows ? 0 : k), static_cast<long>(c) + (along_rows ? k : 0));
         wall_share = std::move(result);
     }

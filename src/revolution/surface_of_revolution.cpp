@@ -54,13 +54,13 @@ private:
 
     void mend_heights(const JoinedSherds& all) {
         const SurfaceSearch surface(result_.mesh);
-        const double reach = 0.05 * surface.diagonal();
+        const double search_radius = 0.05 * surface.diagonal();
         for (std::size_t k = 0; k < sherds_.size(); ++k) {
             double a = 0, b = 0;
             for (const Index f : all.of_fragment[k]) {
                 const Vector3d n = eigen(area_vector(all.mesh, Face(f))), p = eigen(centroid(all.mesh, Face(f)));
                 if (!(n.norm() > 0)) continue;
-                const auto hit = surface.closest_compatible(point_of(p), vector_of(n.normalized()), 0.8, reach);
+                const auto hit = surface.closest_compatible(point_of(p), vector_of(n.normalized()), 0.8, search_radius);
                 if (!hit) continue;
                 const Vector3d m = eigen(surface.normal(hit->face));
                 const double up = m.dot(frame_.up);
@@ -68,7 +68,7 @@ private:
                 b += n.norm() * up * m.dot(eigen(hit->point) - p);
             }
             // More than the step: part of the template there is the sherd itself.
-            if (a > 0) motions_[k].translation += std::clamp(1.3 * b / a, -reach, reach) * frame_.up;
+            if (a > 0) motions_[k].translation += std::clamp(1.3 * b / a, -search_radius, search_radius) * frame_.up;
         }
     }
 

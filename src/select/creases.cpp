@@ -239,13 +239,14 @@ private:
 };
 
 /// The largest response of the other sign among the vertices connected with `top` within a distance.
-double rival(const Mesh& mesh, const std::vector<double>& strength, Index top, double reach) {
+double rival(const Mesh& mesh, const std::vector<double>& strength, Index top, double search_radius) {
     std::set<Index> met{top};
     std::vector<Index> queue{top};
     double maximum = 0;
     for (std::size_t k = 0; k < queue.size(); ++k)
         for (const Vertex n : mesh.vertices_around_target(mesh.halfedge(Vertex(queue[k])))) {
-            if (CGAL::squared_distance(mesh.point(n), mesh.point(Vertex(top))) > reach * reach || !met.insert(n.idx()).second)
+            if (CGAL::squared_distance(mesh.point(n), mesh.point(Vertex(top))) > search_radius * search_radius ||
+                !met.insert(n.idx()).second)
                 continue;
             maximum = std::max(maximum, -strength[n]);
             queue.push_back(n.idx());

@@ -133,10 +133,10 @@ std::optional<SurfaceHit> seen_at(const SurfaceSearch& search, const PictureCame
     const auto ray = camera.ray(pixel[0], pixel[1]);
     const Mesh& mesh = search.mesh();
     const Point& somewhere = mesh.point(mesh.target(mesh.halfedge(*mesh.faces().begin())));
-    const double reach = std::sqrt(CGAL::squared_distance(ray.origin, somewhere)) + search.diagonal();
+    const double max_distance = std::sqrt(CGAL::squared_distance(ray.origin, somewhere)) + search.diagonal();
     // Parallel rays start in the plane through the centre: what lies before it counts as well.
-    const Point start = camera.distance == 0 ? ray.origin - reach * ray.direction : ray.origin;
-    for (const SurfaceHit& hit : search.line_hits(start, ray.direction, 2 * reach))
+    const Point start = camera.distance == 0 ? ray.origin - max_distance * ray.direction : ray.origin;
+    for (const SurfaceHit& hit : search.line_hits(start, ray.direction, 2 * max_distance))
         if (hit.distance >= 0) return hit;
     return std::nullopt;
 }

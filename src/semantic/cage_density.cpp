@@ -49,11 +49,11 @@ CageDensity annotation_density(const Mesh& mesh, const AnnotationSet& set, const
         marked.push_back(factor);
     }
     const auto tree = std::make_shared<PointTree>(places);
-    const double reach = box_diagonal(mesh) / 20;
-    return [tree, marked, reach](const Point& p) {
+    const double search_radius = box_diagonal(mesh) / 20;
+    return [tree, marked, search_radius](const Point& p) {
         double factor = 0;
         std::vector<Index> near;
-        tree->within(p, reach, near);
+        tree->within(p, search_radius, near);
         for (const Index i : near) factor = std::max(factor, marked[i]);
         return factor > 0 ? factor : 1.0;
     };

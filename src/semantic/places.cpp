@@ -53,20 +53,20 @@ struct Partners {
     std::vector<Vector3d> gaps;  ///< image less partner, at rest
 };
 
-Partners partners_of(const Reader& read, const Vector3d& point, const Vector3d& normal, double reach) {
+Partners partners_of(const Reader& read, const Vector3d& point, const Vector3d& normal, double search_radius) {
     const std::size_t last = read.members() - 1;
     const Piece piece(read.shape().mesh, read.faces(last));
     const SurfaceSearch search(piece.mesh);
     Partners partners;
     Eigen::AlignedBox3d near;
     for (const Vertex v : piece.mesh.vertices()) near.extend(eigen(piece.mesh.point(v)));
-    near.extend(near.min() - Vector3d::Constant(reach));
-    near.extend(near.max() + Vector3d::Constant(reach));
+    near.extend(near.min() - Vector3d::Constant(search_radius));
+    near.extend(near.max() + Vector3d::Constant(search_radius));
     for (const Index v : read.vertices(0)) {
         const Vector3d p = read.shape().rest.col(v), image = p - 2 * normal.dot(p - point) * normal;
         if (!near.contains(image)) continue;
         const SurfaceHit hit = search.closest(point_of(image));
-        if (hit.distance > reach) continue;
+        if (hit.distance > search_radius) continue;
         const auto corner = corners(piece.mesh, Face(hit.face));
         partners.ids.push_back(static_cast<int>(v));
         for (std::size_t k = 0; k < 3; ++k) {
@@ -79,7 +79,7 @@ Partners partners_of(const Reader& read, const Vector3d& point, const Vector3d& 
 }
 
 /// Pairs, lower index first, of each vertex with the nearest one within reach that is not at the same place.
-void add_nearest(const Points& points, const std::vector<Index>& from, const std::vector<Index>& to, double reach,
+void add_nearest(const Points& points, const std::vector<Index>& from, const std::vector<Index>& to, double search_radius,
                  std::vector<std::array<int, 2>>& pairs) {
     std::vector<Point> places;
     for (const Index v : to) places.push_back(point_of(points.col(v)));
@@ -88,7 +88,7 @@ void add_nearest(const Points& points, const std::vector<Index>& from, const std
     for (const Index v : from) {
         double best = std::numeric_limits<double>::infinity();
         Index partner = no_index;
-        tree.within(point_of(points.col(v)), reach, near);
+        tree.within(point_of(points.col(v)), search_radius, near);
         for (const Index i : near) {
             const double d = (points.col(to[i]) - points.col(v)).norm();
             if (d > 0 && d < best) best = d, partner = to[i];
@@ -121,8 +121,8 @@ Statement mirror_symmetry(const ReaderPtr& read, const RelationOptions& toleranc
         parameters.point = Vector3d(plane.point[0], plane.point[1], plane.point[2]);
         parameters.direction = Vector3d(plane.direction[0], plane.direction[1], plane.direction[2]);
     }
-    const double tolerance = length_tolerance(*read, tolerances), reach = 3 * tolerance;
-    const Partners partners = partners_of(*read, *parameters.point, *parameters.direction, reach);
+    const double tolerance = length_tolerance(*read, tolerances), search_radius = 3 * tolerance;
+    const Partners partners = partners_of(*read, *parameters.point, *parameters.direction, search_radius);
     if (2 * partners.gaps.size() < read->vertices(0).size())
         read->fail("has a mirror image for less than half of annotation " + std::to_string(read->member(0).id),
                    "give the plane, or a greater --distance");
@@ -155,20 +155,21 @@ Statement mirror_symmetry(const ReaderPtr& read, const RelationOptions& toleranc
 
 Statement adjacency(const ReaderPtr& read, const RelationOptions& tolerances) {
     read->need(2, 2);
-    const double reach = length_tolerance(*read, tolerances);
+    const double search_radius = length_tolerance(*read, tolerances);
     const auto first = read->vertices(0), second = read->vertices(1);
     std::vector<Index> shared;
     std::set_intersection(first.begin(), first.end(), second.begin(), second.end(), std::back_inserter(shared));
     // Parts with common vertices cannot come apart; others keep the gap that they have where they are near each other.
     std::vector<std::array<int, 2>> pairs;
     if (shared.empty()) {
-        if (!(reach > 0)) read->fail("needs a tolerance of distances", "give --distance");
-        add_nearest(read->shape().rest, first, second, reach, pairs);
-        add_nearest(read->shape().rest, second, first, reach, pairs);
+        if (!(search_radius > 0)) read->fail("needs a tolerance of distances", "give --distance");
+        add_nearest(read->shape().rest, first, second, search_radius, pairs);
+        add_nearest(read->shape().rest, second, first, search_radius, pairs);
         std::sort(pairs.begin(), pairs.end());
         pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
         if (pairs.empty())
-            read->fail("has parts that are nowhere within " + std::to_string(reach) + " of each other", "raise --distance");
+            read->fail("has parts that are nowhere within " + std::to_string(search_radius) + " of each other",
+                       "raise --distance");
     }
     Statement statement;
     statement.lower = [=](const State&, const State&) {
@@ -180,7 +181,7 @@ Statement adjacency(const ReaderPtr& read, const RelationOptions& tolerances) {
         }
         return list;
     };
-    const Deviation opened{"change of the gap", 0.0, reach, read->shape().set.unit};
+    const Deviation opened{"change of the gap", 0.0, search_radius, read->shape().set.unit};
     const Points rest = read->shape().rest;
     statement.measure = [=](const State& deformed) {
         Deviation worst = opened;

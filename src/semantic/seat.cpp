@@ -152,10 +152,10 @@ public:
         for (const Group& group : groups_) place(group, search);
         SeatReport report;
         constexpr double widest = 3;
-        for (const double reach : {2.0, widest}) {
-            const Points tried = surroundings(search, reach);
+        for (const double radii_around : {2.0, widest}) {
+            const Points tried = surroundings(search, radii_around);
             report.folded = folded(tried);
-            if (report.folded == 0 || reach == widest) points_ = tried;
+            if (report.folded == 0 || radii_around == widest) points_ = tried;
             if (report.folded == 0) break;
         }
         return report;
@@ -236,7 +236,7 @@ private:
     }
 
     /// All points with the features in place and what is around them drawn along on the base.
-    Points surroundings(const SurfaceSearch& search, double reach) const {
+    Points surroundings(const SurfaceSearch& search, double radii_around) const {
         // Displacements along the base, and what outlines stand off it, both carried smoothly to nothing.
         Points moved = Points::Zero(3, points_.cols()), off = moved, result = points_;
         for (const Feature& feature : features_)
@@ -248,7 +248,7 @@ private:
         for (const Feature& feature : features_) {
             for (const Index v : feature.outline)
                 off.col(v) = result.col(v) - eigen(search.closest(point_of(result.col(v))).point);
-            grow(feature, reach * feature.radius, ring);
+            grow(feature, radii_around * feature.radius, ring);
         }
         std::vector<Index> free;
         for (Index v = 0; v < ring.size(); ++v)

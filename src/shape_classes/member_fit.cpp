@@ -96,7 +96,7 @@ constexpr double like_normals = 0.5;  ///< cosine: 60 degrees
 FitResiduals residuals_of(const Mesh& rest, const Mesh& fitted, const Mesh& object, double scale, double observed) {
     FitResiduals residuals;
     const double diagonal = scale * box_diagonal(rest);
-    const double reach = observed * diagonal;
+    const double search_radius = observed * diagonal;
     const SurfaceSearch on_object(object), on_fitted(fitted);
     const auto one_way = [&](const Spread& spread, const SurfaceSearch& goal, double& far) {
         std::vector<double> squares(spread.points.size());
@@ -104,7 +104,8 @@ FitResiduals residuals_of(const Mesh& rest, const Mesh& fitted, const Mesh& obje
         parallel_for(spread.points.size(), [&](std::size_t i) {
             const double distance = goal.closest(spread.points[i]).distance;
             squares[i] = distance * distance;
-            off[i] = distance > reach || !goal.closest_compatible(spread.points[i], spread.normals[i], like_normals, reach);
+            off[i] = distance > search_radius ||
+                     !goal.closest_compatible(spread.points[i], spread.normals[i], like_normals, search_radius);
         });
         double sum = 0, count = 0;
         for (std::size_t i = 0; i < squares.size(); ++i) sum += squares[i], count += off[i];

@@ -24,8 +24,8 @@ using Pairs = std::vector<std::pair<Index, Index>>;
 
 Pairs crossings(const Mesh& mesh) { return self_intersections(to_soup(mesh)).pairs; }
 
-/// 1 on the vertices given, falling smoothly to 0 within `reach` along edges.
-std::vector<double> fading(const Mesh& mesh, const std::vector<Index>& from, double reach) {
+/// 1 on the vertices given, falling smoothly to 0 within `fading_length` along edges.
+std::vector<double> fading(const Mesh& mesh, const std::vector<Index>& from, double fading_length) {
     std::vector<double> distance(mesh.number_of_vertices(), std::numeric_limits<double>::infinity());
     using Entry = std::pair<double, Index>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
@@ -33,7 +33,7 @@ std::vector<double> fading(const Mesh& mesh, const std::vector<Index>& from, dou
     while (!queue.empty()) {
         const auto [d, v] = queue.top();
         queue.pop();
-        if (d > distance[v] || d > reach || mesh.is_isolated(Vertex(v))) continue;
+        if (d > distance[v] || d > fading_length || mesh.is_isolated(Vertex(v))) continue;
         for (const Halfedge h : mesh.halfedges_around_target(mesh.halfedge(Vertex(v)))) {
             const Index n = mesh.source(h).idx();
             const double next = d + (eigen(mesh.point(Vertex(n))) - eigen(mesh.point(Vertex(v)))).norm();
@@ -41,7 +41,7 @@ std::vector<double> fading(const Mesh& mesh, const std::vector<Index>& from, dou
         }
     }
     for (double& d : distance) {
-        const double t = std::clamp(1 - d / reach, 0.0, 1.0);
+        const double t = std::clamp(1 - d / fading_length, 0.0, 1.0);
         d = t * t * (3 - 2 * t);
     }
     return distance;

@@ -60,12 +60,12 @@ PlaneSearch::PlaneSearch(const Mesh& mesh, const std::vector<Index>& faces) : me
     for (std::size_t n = leaves_ - 1; n > 0; --n) boxes_[n] = boxes_[2 * n].merged(boxes_[2 * n + 1]);
 }
 
-std::vector<Index> PlaneSearch::near(const SliceFrame& frame, double reach) const {
+std::vector<Index> PlaneSearch::near(const SliceFrame& frame, double search_radius) const {
     std::vector<Index> found;
     const auto meets = [&](const Box& box) {
         if (box.isEmpty()) return false;
         const auto [low, high] = heights(box, frame);
-        return low <= reach && high >= -reach;
+        return low <= search_radius && high >= -search_radius;
     };
     std::vector<std::size_t> stack{1};
     while (!stack.empty()) {

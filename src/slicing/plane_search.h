@@ -13,8 +13,8 @@ public:
     /// Over the given faces, or all. O(n log n).
     PlaneSearch(const Mesh& mesh, const std::vector<Index>& faces);
 
-    /// Faces, ascending, whose boxes have heights within `reach` of the frame's origin.
-    [[nodiscard]] std::vector<Index> near(const SliceFrame& frame, double reach) const;
+    /// Faces, ascending, whose boxes have heights within `search_radius` of the frame's origin.
+    [[nodiscard]] std::vector<Index> near(const SliceFrame& frame, double search_radius) const;
     /// The lowest height of all faces.
     [[nodiscard]] double lowest(const SliceFrame& frame) const;
 

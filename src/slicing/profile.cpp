@@ -49,7 +49,7 @@ Half half_of(const Slice& section, double angle) {
 }
 
 /// How far the section reaches from the axis at a height, to the left; 0 where it does not.
-double reach(const Slice& section, double height) {
+double extent(const Slice& section, double height) {
     double maximum = 0;
     for (const auto& contour : section.contours)
         for (std::size_t i = 0; i < contour.faces.size(); ++i) {
@@ -68,7 +68,7 @@ std::vector<Profile::Edge> breaks(const Profile& profile) {
     constexpr int window = 5;
     std::vector<Vector2d> line;
     for (std::size_t i = 0; i < steps; ++i)
-        line.emplace_back(profile.reach[i], profile.low + (profile.high - profile.low) * (double(i) + 0.5) / steps);
+        line.emplace_back(profile.extent[i], profile.low + (profile.high - profile.low) * (double(i) + 0.5) / steps);
     std::vector<double> turn(steps, 0);
     for (std::size_t i = window; i + window < steps; ++i) {
         const Vector2d a = line[i] - line[i - window], b = line[i + window] - line[i];
@@ -115,12 +115,12 @@ bool hides(const Mesh& mesh, const SliceFrame& axis, const Profile& profile) {
 }  // namespace
 
 double Profile::reach_at(double height) const {
-    if (reach.empty() || !(height >= low && height <= high)) return 0;
-    const auto n = static_cast<long>(reach.size());
+    if (extent.empty() || !(height >= low && height <= high)) return 0;
+    const auto n = static_cast<long>(extent.size());
     const long place = std::clamp(static_cast<long>((height - low) / (high - low) * double(n)), 0L, n - 1);
     double maximum = 0;
     for (long k = std::max(0L, place - 1); k <= std::min(n - 1, place + 1); ++k)
-        maximum = std::max(maximum, reach[static_cast<std::size_t>(k)]);
+        maximum = std::max(maximum, extent[static_cast<std::size_t>(k)]);
     return maximum;
 }
 
@@ -148,7 +148,7 @@ Profile find_profile(const Mesh& mesh, const SliceFrame& axis, double angle) {
     profile.frame = section_frame(axis, angle);
     profile.section = slice_mesh(mesh, profile.frame, {0}).slices[0];
     const double size = profile.high - profile.low;
-    for (int i = 0; i < steps; ++i) profile.reach.push_back(reach(profile.section, profile.low + size * (i + 0.5) / steps));
+    for (int i = 0; i < steps; ++i) profile.extent.push_back(extent(profile.section, profile.low + size * (i + 0.5) / steps));
     auto heights = slice_heights(profile.low, profile.high, 24);
     for (const double share : {0.002, 0.005, 0.01, 0.015, 0.02, 0.03}) heights.push_back(profile.high - share * size);
     const auto stack = slice_mesh(mesh, axis, heights);

@@ -14,7 +14,7 @@ namespace ostraka {
 
 namespace {
 
-void check_reach(double epsilon, int minimum) {
+void check_neighbourhood(double epsilon, int minimum) {
     if (!(epsilon >= 0)) fail_usage("the reach of DBSCAN is " + std::to_string(epsilon), "use a distance, 0 or more");
     if (minimum < 1) fail_usage("the least number of neighbours is " + std::to_string(minimum), "use 1 or more");
 }
@@ -78,7 +78,7 @@ std::vector<int> numbered(const Linkage& tree, std::size_t merges) {
 }  // namespace
 
 std::vector<int> dbscan(const Eigen::MatrixXd& samples, double epsilon, int minimum) {
-    check_reach(epsilon, minimum);
+    check_neighbourhood(epsilon, minimum);
     require_samples(samples, "DBSCAN");
     const Eigen::MatrixXd columns = samples.transpose();
     return dbscan_by(static_cast<std::size_t>(samples.rows()), epsilon, minimum, [&](std::size_t i, std::size_t j) {
@@ -87,7 +87,7 @@ std::vector<int> dbscan(const Eigen::MatrixXd& samples, double epsilon, int mini
 }
 
 std::vector<int> dbscan_of_distances(const Eigen::MatrixXd& distances, double epsilon, int minimum) {
-    check_reach(epsilon, minimum);
+    check_neighbourhood(epsilon, minimum);
     require_symmetric(distances, true, "DBSCAN");
     return dbscan_by(static_cast<std::size_t>(distances.rows()), epsilon, minimum, [&](std::size_t i, std::size_t j) {
         const auto a = static_cast<Eigen::Index>(std::min(i, j)), b = static_cast<Eigen::Index>(std::max(i, j));
@@ -121,7 +121,7 @@ double neighbour_epsilon(const Eigen::MatrixXd& samples, int neighbours) {
 }
 
 double volume_epsilon(const Eigen::MatrixXd& samples, int minimum) {
-    check_reach(0, minimum);
+    check_neighbourhood(0, minimum);
     require_samples(samples, "DBSCAN");
     // The ball of radius r in d dimensions holds pi^(d/2) r^d / Gamma(d/2 + 1); in logarithms, so that nothing overflows.
     double log_volume = 0;

@@ -54,10 +54,10 @@ bool near_relief(const Relief& relief, const Vector3d& offset) {
 
 void SyntheticObject::finish() {
     boxes_.clear();
-    reach_ = 0;
+    margin_ = 0;
     for (const Member& member : members) {
         boxes_.push_back(member.solid->box());
-        reach_ = std::max(reach_, member.blend);
+        margin_ = std::max(margin_, member.blend);
     }
     box_ = Eigen::AlignedBox3d();
     // A smooth union swells by at most a sixth of its width where two solids meet, a little more where several do.
@@ -67,14 +67,14 @@ void SyntheticObject::finish() {
         swell += members[i].blend / 6;
     }
     box_ = {box_.min() - Vector3d::Constant(swell), box_.max() + Vector3d::Constant(swell)};
-    reach_ += 4 * slack() + 1e-3 * box_.diagonal().norm();
+    margin_ += 4 * slack() + 1e-3 * box_.diagonal().norm();
 }
 
 Sample SyntheticObject::member_sample(std::size_t member, const Vector3d& p) const {
     // Far from a solid only a lower bound of its value is needed: what is farther than every blend changes nothing.
     const auto& solid = *members[member].solid;
     const double distance = boxes_[member].exteriorDistance(p) * solid.flatness();
-    if (distance > reach_) {
+    if (distance > margin_) {
         const Vector3d nearest = p.cwiseMax(boxes_[member].min()).cwiseMin(boxes_[member].max());
         return {distance, (p - nearest).normalized()};
     }

@@ -168,8 +168,8 @@ TracedChain ChainTracer::trace_edges(const Chain& chain, TransferScore& score) {
         const auto on_border = [&](Vertex v) { return target_.is_border(v); };
         for (const bool at_end : {true, false}) {
             const Index tip = at_end ? traced.walk.back() : traced.walk.front();
-            const double reach = 4 * longest_edge(places[at_end ? at.back() : at.front()].place.face);
-            std::vector<Index> found = paths_.find_nearest(Vertex(tip), on_border, reach);
+            const double search_radius = 4 * longest_edge(places[at_end ? at.back() : at.front()].place.face);
+            std::vector<Index> found = paths_.find_nearest(Vertex(tip), on_border, search_radius);
             if (found.size() < 2) continue;
             if (at_end) {
                 traced.walk.insert(traced.walk.end(), found.begin() + 1, found.end());

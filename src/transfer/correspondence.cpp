@@ -31,29 +31,29 @@ Correspondence at(CorrespondenceKind kind, const SurfaceHit& hit, const Point& f
     return result;
 }
 
-struct Reach {
+struct SearchRadii {
     double near, far, min_cosine;
 };
 
-Reach reach_of(const SurfaceSearch& target, const CorrespondenceOptions& options) {
+SearchRadii radii_of(const SurfaceSearch& target, const CorrespondenceOptions& options) {
     const double far = options.max_distance * target.diagonal();
     return {std::min(far, 2 * target.typical_edge()), far, std::cos(options.max_angle * CGAL_PI / 180)};
 }
 
 Correspondence find_one(const Mesh& source, Index vertex, const SurfaceSearch& target, const CorrespondenceOptions& options,
-                        const Reach& reach) {
+                        const SearchRadii& radii) {
     const Point& p = source.point(Vertex(vertex));
     const Vector normal = vertex_normal(source, Vertex(vertex));
     // A short line first: most places lie within an edge length, and short lines meet few boxes.
     if (normal.squared_length() > 0) {
-        for (const double length : {reach.near, reach.far}) {
+        for (const double length : {radii.near, radii.far}) {
             for (const SurfaceHit& hit : target.line_hits(p, normal, length))
-                if (target.normal(hit.face) * normal >= reach.min_cosine)
+                if (target.normal(hit.face) * normal >= radii.min_cosine)
                     return at(CorrespondenceKind::ray, hit, p, target.mesh(), options);
-            if (reach.near == reach.far) break;
+            if (radii.near == radii.far) break;
         }
     }
-    if (const auto hit = target.closest_compatible(p, normal, normal.squared_length() > 0 ? reach.min_cosine : -1, reach.far))
+    if (const auto hit = target.closest_compatible(p, normal, normal.squared_length() > 0 ? radii.min_cosine : -1, radii.far))
         return at(CorrespondenceKind::closest, *hit, p, target.mesh(), options);
     return {};
 }
@@ -63,24 +63,24 @@ Correspondence find_one(const Mesh& source, Index vertex, const SurfaceSearch& t
 std::vector<Correspondence> find_correspondences(const Mesh& source, const std::vector<Index>& vertices,
                                                  const SurfaceSearch& target, const CorrespondenceOptions& options) {
     check_options(options, "correspondence");
-    const Reach reach = reach_of(target, options);
+    const SearchRadii radii = radii_of(target, options);
     std::vector<Correspondence> result(vertices.size());
     parallel_for(
-        vertices.size(), [&](std::size_t i) { result[i] = find_one(source, vertices[i], target, options, reach); }, 64);
+        vertices.size(), [&](std::size_t i) { result[i] = find_one(source, vertices[i], target, options, radii); }, 64);
     return result;
 }
 
 std::vector<Correspondence> candidate_correspondences(const Mesh& source, Index vertex, const SurfaceSearch& target,
                                                       const CorrespondenceOptions& options) {
-    const Reach reach = reach_of(target, options);
+    const SearchRadii radii = radii_of(target, options);
     const Point& p = source.point(Vertex(vertex));
     const Vector normal = vertex_normal(source, Vertex(vertex));
     std::vector<Correspondence> result;
     if (normal.squared_length() > 0)
-        for (const SurfaceHit& hit : target.line_hits(p, normal, reach.far))
-            if (target.normal(hit.face) * normal >= reach.min_cosine)
+        for (const SurfaceHit& hit : target.line_hits(p, normal, radii.far))
+            if (target.normal(hit.face) * normal >= radii.min_cosine)
                 result.push_back(at(CorrespondenceKind::ray, hit, p, target.mesh(), options));
-    if (const auto hit = target.closest_compatible(p, normal, normal.squared_length() > 0 ? reach.min_cosine : -1, reach.far))
+    if (const auto hit = target.closest_compatible(p, normal, normal.squared_length() > 0 ? radii.min_cosine : -1, radii.far))
         result.push_back(at(CorrespondenceKind::closest, *hit, p, target.mesh(), options));
     return result;
 }

@@ -34,7 +34,7 @@ double overlapping_area(const Mesh& mesh, const std::vector<Index>& region, cons
         for (const Halfedge h : CGAL::halfedges_around_source(Vertex(v), mesh)) near[mesh.target(h)] = true;
     }
     const double fine = 0.3 * other.typical_edge();
-    const double reach = options.max_distance * other.diagonal();
+    const double search_radius = options.max_distance * other.diagonal();
     const double min_cosine = std::cos(options.max_angle * CGAL_PI / 180);
     const std::size_t stride = std::max<std::size_t>(1, (region.size() + max_inner - 1) / std::max<std::size_t>(1, max_inner));
     std::vector<double> inside(region.size(), -1), area_of(region.size(), 0);
@@ -65,7 +65,7 @@ double overlapping_area(const Mesh& mesh, const std::vector<Index>& region, cons
                             const double s = (u + (half == 0 ? 1.0 : 2.0) / 3) / n, t = (v + (half == 0 ? 1.0 : 2.0) / 3) / n;
                             const Point p =
                                 mesh.point(a) + s * (mesh.point(b) - mesh.point(a)) + t * (mesh.point(c) - mesh.point(a));
-                            const auto hit = other.closest_compatible(p, normal, min_cosine, reach);
+                            const auto hit = other.closest_compatible(p, normal, min_cosine, search_radius);
                             if (hit && contains(*hit)) ++hits;
                         }
                 return static_cast<double>(hits) / (n * n);
@@ -114,7 +114,7 @@ std::vector<bool> region_by_vote(const Mesh& source, const SurfaceSearch& source
         in_region[f] = true;
         for (const Vertex v : corners(source, Face(f))) box += source.point(v).bbox();
     }
-    const double reach = options.max_distance * box_diagonal(target);
+    const double search_radius = options.max_distance * box_diagonal(target);
     const double min_cosine = std::cos(options.max_angle * CGAL_PI / 180);
     std::vector<std::uint8_t> vote(target.number_of_faces(), 0);
     parallel_for(
@@ -122,13 +122,13 @@ std::vector<bool> region_by_vote(const Mesh& source, const SurfaceSearch& source
         [&](std::size_t i) {
             const Face f(static_cast<Index>(i));
             const Point p = centroid(target, f);
-            if (p.x() < box.xmin() - reach || p.x() > box.xmax() + reach || p.y() < box.ymin() - reach ||
-                p.y() > box.ymax() + reach || p.z() < box.zmin() - reach || p.z() > box.zmax() + reach)
+            if (p.x() < box.xmin() - search_radius || p.x() > box.xmax() + search_radius || p.y() < box.ymin() - search_radius ||
+                p.y() > box.ymax() + search_radius || p.z() < box.zmin() - search_radius || p.z() > box.zmax() + search_radius)
                 return;
             const Vector area = area_vector(target, f);
             const double length = std::sqrt(area.squared_length());
-            const auto hit =
-                source_search.closest_compatible(p, length > 0 ? area / length : area, length > 0 ? min_cosine : -1, reach);
+            const auto hit = source_search.closest_compatible(p, length > 0 ? area / length : area, length > 0 ? min_cosine : -1,
+                                                              search_radius);
             vote[i] = hit && in_region[hit->face] ? 1 : 0;
         },
         1024);

@@ -13,7 +13,7 @@ std::vector<Survival> smallest_resolutions(const Mesh& mesh, const AnnotationSet
     transferring.overlap = false;
     transferring.refine = false;
     transferring.force = true;  // the same object, however coarse
-    // Coarse surfaces lie farther away than the usual reach.
+    // Coarse surfaces lie farther away than the usual search radius.
     transferring.correspondence.max_distance = std::max(transferring.correspondence.max_distance, 0.1);
     std::vector<Survival> survivals;
     for (const Annotation& annotation : annotations.annotations)

@@ -127,7 +127,7 @@ TEST(BreakPair, WhatCannotBeLaidTogetherIsSaid) {
     EXPECT_THROW(pair_breaks(a, whole, quick()), Error) << "no rim";
     EXPECT_THROW(pair_breaks(a, Fragment(), quick()), Error);
     PairOptions options;
-    options.reach = 2;
+    options.search_radius = 2;
     EXPECT_THROW(pair_breaks(a, a, options), Error);
     // Far too small to touch a share of the other's break: cannot be told.
     options = quick();

@@ -37,11 +37,11 @@ void compare(const std::vector<Point>& points, const std::vector<Point>& places)
             ASSERT_EQ(near.size(), std::min(count, points.size()));
             for (std::size_t k = 0; k < near.size(); ++k) EXPECT_EQ(std::pair(near[k].squared, near[k].index), all[k]) << k;
         }
-        const double reach = std::sqrt(all[all.size() / 3].first);
+        const double search_radius = std::sqrt(all[all.size() / 3].first);
         std::vector<Index> expected, found{5, 5, 5};
         for (Index i = 0; i < points.size(); ++i)
-            if (squared(points[i], place) <= reach * reach) expected.push_back(i);
-        tree.within(place, reach, found);
+            if (squared(points[i], place) <= search_radius * search_radius) expected.push_back(i);
+        tree.within(place, search_radius, found);
         EXPECT_EQ(found, expected);
         if (all.front().first == 0) continue;
         EXPECT_EQ(tree.nearest(place, 0.999 * std::sqrt(all.front().first)).index, no_index);

@@ -76,7 +76,8 @@ TEST(SurfaceSearch, NearestFacesAreThoseOfAllFacesOneByOne) {
             const Point query = middle + 0.7 * diagonal * Vector(uniform(random), uniform(random), uniform(random));
             Vector normal(uniform(random), uniform(random), uniform(random));
             normal = normal / std::sqrt(normal.squared_length());
-            const double min_cosine = i % 5 == 0 ? -1 : uniform(random), reach = i % 3 == 0 ? 0.2 * diagonal : 2 * diagonal;
+            const double min_cosine = i % 5 == 0 ? -1 : uniform(random),
+                         search_radius = i % 3 == 0 ? 0.2 * diagonal : 2 * diagonal;
             double nearest = std::numeric_limits<double>::infinity();
             for (const Face f : mesh.faces()) {
                 if (!(area_vector(mesh, f).squared_length() > 0) || search.normal(f) * normal < min_cosine) continue;
@@ -84,8 +85,8 @@ TEST(SurfaceSearch, NearestFacesAreThoseOfAllFacesOneByOne) {
                 const auto place = nearest_barycentric(mesh.point(a), mesh.point(b), mesh.point(c), query);
                 nearest = std::min(nearest, distance(point_at(mesh, f, place), query));
             }
-            const auto hit = search.closest_compatible(query, normal, min_cosine, reach);
-            ASSERT_EQ(hit.has_value(), nearest <= reach) << name;
+            const auto hit = search.closest_compatible(query, normal, min_cosine, search_radius);
+            ASSERT_EQ(hit.has_value(), nearest <= search_radius) << name;
             if (!hit) continue;
             EXPECT_NEAR(hit->distance, nearest, 1e-12 * diagonal) << name;
             EXPECT_GE(search.normal(hit->face) * normal, min_cosine - 1e-12) << name;

@@ -207,7 +207,7 @@ TEST(VertexAssignment, RejectsWhatIsFarOrTurnedAwayAndKnowsPointsAndLines) {
     for (const Index v : assign_vertices(a, ours, build_mesh(flipped), theirs, {}, options).counterpart) EXPECT_EQ(v, no_index);
     Mesh far_away = b;
     for (const Vertex v : far_away.vertices()) far_away.point(v) = far_away.point(v) + Vector(0, 0, 5);
-    options.reach = 4;
+    options.search_radius = 4;
     for (const Index v : assign_vertices(a, ours, far_away, theirs, {}, options).counterpart) EXPECT_EQ(v, no_index);
     Annotation point, line;
     point.type = AnnotationType::point;

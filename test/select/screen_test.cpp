@@ -24,7 +24,7 @@ PictureCamera camera_of(const Mesh& mesh, const std::string& view, bool perspect
 
 /// Every triangle tried in turn (Moeller and Trumbore 1997), with a doubtful answer where a hit is close to an edge.
 enum class Sight { free, hidden, doubtful };
-Sight brute_force(const Mesh& mesh, Vertex vertex, const Vector& ray, double reach) {
+Sight brute_force(const Mesh& mesh, Vertex vertex, const Vector& ray, double max_distance) {
     const Point& p = mesh.point(vertex);
     bool doubtful = false;
     constexpr double margin = 1e-9;
@@ -38,7 +38,7 @@ Sight brute_force(const Mesh& mesh, Vertex vertex, const Vector& ray, double rea
         const double u = (s * n) / determinant;
         if (u < -margin || u > 1 + margin) continue;
         const Vector q = CGAL::cross_product(s, ab);
-        const double v = (ray * q) / determinant, t = (ac * q) / determinant / reach;
+        const double v = (ray * q) / determinant, t = (ac * q) / determinant / max_distance;
         if (v < -margin || u + v > 1 + margin || t < -margin || t > 1) continue;
         if (u > margin && v > margin && u + v < 1 - margin && t > margin) return Sight::hidden;
         doubtful = true;
@@ -64,9 +64,9 @@ void compare_with_brute_force(const Mesh& mesh) {
             const Vertex v(static_cast<Index>(random() % mesh.number_of_vertices()));
             if (mesh.is_isolated(v)) continue;
             Vector ray = perspective ? *camera.eye() - mesh.point(v) : camera.toward;
-            const double reach = perspective ? std::sqrt(ray.squared_length()) : 10 * diagonal;
-            if (perspective) ray = ray / reach;
-            const Sight sight = brute_force(mesh, v, ray, reach);
+            const double max_distance = perspective ? std::sqrt(ray.squared_length()) : 10 * diagonal;
+            if (perspective) ray = ray / max_distance;
+            const Sight sight = brute_force(mesh, v, ray, max_distance);
             ++compared;
             doubtful += sight == Sight::doubtful;
             hidden += sight == Sight::hidden;

@@ -69,7 +69,7 @@ TEST(Dbscan, OfIdenticalSamplesAndBadInput) {
     EXPECT_THROW(dbscan_of_distances(Eigen::MatrixXd::Zero(2, 3), 1, 1), Error);
 }
 
-TEST(DbscanReach, ByHand) {
+TEST(DbscanNeighbourhood, ByHand) {
     // Nearest others: 1, 1, 2; two nearest: (1 + 3) / 2, (1 + 2) / 2, (2 + 3) / 2.
     EXPECT_DOUBLE_EQ(neighbour_epsilon(column({0, 1, 3}), 1), 4.0 / 3);
     EXPECT_DOUBLE_EQ(neighbour_epsilon(column({0, 1, 3}), 2), 2);

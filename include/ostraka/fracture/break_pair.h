@@ -15,12 +15,12 @@ struct PairOptions {
     int samples = 2000;           ///< points on the fracture of the second fragment, and on the rest of its surface
     int starts = 200;             ///< poses that are refined quickly, the best of all
     int refined = 24;             ///< poses that are refined to the end
-    double reach = 0.05;          ///< farthest that faces of a break lie apart at first, share of the smaller fragment's size
-    double last_reach = 0.025;    ///< at the end
-    double edges = 1;             ///< weight of the rims against the fracture surfaces
-    double min_contact = 0.1;     ///< of the smaller fracture that must be in contact
-    double min_confidence = 0.5;  ///< below it cannot be told how the fragments go together
-    int candidates = 5;           ///< told
+    double search_radius = 0.05;  ///< farthest that faces of a break lie apart at first, share of the smaller fragment's size
+    double last_search_radius = 0.025;  ///< at the end
+    double edges = 1;                   ///< weight of the rims against the fracture surfaces
+    double min_contact = 0.1;           ///< of the smaller fracture that must be in contact
+    double min_confidence = 0.5;        ///< below it cannot be told how the fragments go together
+    int candidates = 5;                 ///< told
 
     void describe(OptionList& visit);
 };
@@ -29,11 +29,11 @@ struct PairOptions {
 struct PairCandidate {
     Motion pose;          ///< rigid: the second fragment onto the first
     double score = 0;     ///< contact + rim - penetration, as shares of the smaller fracture and its rim
-    double contact = 0;   ///< share of the smaller fracture's area within the last reach of the other, facing it
-    double rim = 0;       ///< share of the shorter rim within the last reach of the other, sides continued
+    double contact = 0;   ///< share of the smaller fracture's area within the last search radius of the other, facing it
+    double rim = 0;       ///< share of the shorter rim within the last search radius of the other, sides continued
     double residual = 0;  ///< root mean square distance of what is in contact, in the unit of the fragments
     double penetration =
-        0;             ///< area of the second fragment deeper in the first than the last reach, share of the smaller fracture
+        0;  ///< area of the second fragment deeper in the first than the last search radius, share of the smaller fracture
     double depth = 0;  ///< of the deepest point, in the unit of the fragments
 };
 
@@ -51,8 +51,8 @@ struct BreakPair {
 /// Each frame of the second fragment laid onto each of the first with the same side, fractures facing each other, is a pose; all
 /// are scored by the fracture that comes into contact and by what would lie inside the other fragment. The best are refined by
 /// closest points, point to plane, between fractures that face each other, and between rims, whose sides continue each other;
-/// the reach falls to its last value. Facets must be known (facets.h, or annotations). No chance is involved, and places and
-/// poses of the fragments do not matter. Throws Error (input) for a fragment without fracture, or without a rim.
+/// the search radius falls to its last value. Facets must be known (facets.h, or annotations). No chance is involved, and places
+/// and poses of the fragments do not matter. Throws Error (input) for a fragment without fracture, or without a rim.
 BreakPair pair_breaks(const Fragment& a, const Fragment& b, const PairOptions& options = {});
 
 /// The report of a pair (doc/schema/pair.schema.json): verdict, confidence, candidates with their poses (4 x 4).

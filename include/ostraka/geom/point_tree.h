@@ -23,12 +23,12 @@ public:
         Index index = no_index;
         double squared = std::numeric_limits<double>::infinity();  ///< distance, squared
     };
-    /// The nearest point no farther away than `reach`; none: no_index.
-    [[nodiscard]] Near nearest(const Point& place, double reach = std::numeric_limits<double>::infinity()) const;
+    /// The nearest point no farther away than `search_radius`; none: no_index.
+    [[nodiscard]] Near nearest(const Point& place, double search_radius = std::numeric_limits<double>::infinity()) const;
     /// The `count` nearest points, or all where there are fewer, nearest first.
     [[nodiscard]] std::vector<Near> neighbours(const Point& place, std::size_t count) const;
-    /// All points no farther away than `reach`, by index.
-    void within(const Point& place, double reach, std::vector<Index>& found) const;
+    /// All points no farther away than `search_radius`, by index.
+    void within(const Point& place, double search_radius, std::vector<Index>& found) const;
     /// Squared distance of the farthest point; 0 where there is none.
     [[nodiscard]] double farthest_squared(const Point& place) const;
 

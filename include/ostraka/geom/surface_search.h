@@ -35,9 +35,9 @@ public:
     /// Unit normal of a face.
     [[nodiscard]] Vector normal(Index face) const;
 
-    /// All faces met by the segment from origin - reach * direction to origin + reach * direction, nearest first
+    /// All faces met by the segment from origin - max_distance * direction to origin + max_distance * direction, nearest first
     /// (ties by face index). `direction` is a unit vector.
-    [[nodiscard]] std::vector<SurfaceHit> line_hits(const Point& origin, const Vector& direction, double reach) const;
+    [[nodiscard]] std::vector<SurfaceHit> line_hits(const Point& origin, const Vector& direction, double max_distance) const;
 
     /// True if the segment meets a face other than those that `ignored` accepts. Exact for the coordinates as given.
     [[nodiscard]] bool blocked(const Point& from, const Point& to, const std::function<bool(Index)>& ignored) const;
@@ -45,10 +45,10 @@ public:
     /// The nearest point of the surface; needs at least one face.
     [[nodiscard]] SurfaceHit closest(const Point& query) const;
 
-    /// The nearest point within `reach` on a face whose unit normal has a scalar product of at least `min_cosine` with
+    /// The nearest point within `search_radius` on a face whose unit normal has a scalar product of at least `min_cosine` with
     /// `normal`.
     [[nodiscard]] std::optional<SurfaceHit> closest_compatible(const Point& query, const Vector& normal, double min_cosine,
-                                                               double reach) const;
+                                                               double search_radius) const;
 
 private:
     struct Tree;

@@ -20,16 +20,16 @@ struct NonRigidOptions {
     double start = 0.3;         ///< smoothing length of the first level, as a share of the template's diagonal
     double end = 0.01;          ///< of the last
     int levels = 6;
-    int steps = 3;       ///< matches and solutions in each level, at most
-    double stay = 0.5;   ///< length over which the deformation of the first level fades where nothing is observed
-    double fade = 3;     ///< what a later level adds fades over so many of its smoothing lengths
-    double reach = 0.1;  ///< farthest match in the first level, as a share of the diagonal
-    double last_reach = 0.02;
+    int steps = 3;               ///< matches and solutions in each level, at most
+    double stay = 0.5;           ///< length over which the deformation of the first level fades where nothing is observed
+    double fade = 3;             ///< what a later level adds fades over so many of its smoothing lengths
+    double search_radius = 0.1;  ///< farthest match in the first level, as a share of the diagonal
+    double last_search_radius = 0.02;
     double angle = 60;  ///< of normals of matches, degrees
     enum class Counterparts { surface, best, one_to_one };
     Counterparts counterparts =
         Counterparts::surface;         ///< in matched annotations: closest places, or the vertices of equation 5.1
-    VertexAssignmentOptions vertices;  ///< its weights; reach and angle are those of the level
+    VertexAssignmentOptions vertices;  ///< its weights; search radius and angle are those of the level
     double correspondences = 1;        ///< weight of outlines and landmarks of matched annotations
     bool outlines = true;              ///< outlines and lines correspond by the position along them, not only landmarks
 

@@ -23,10 +23,10 @@ struct ShapePrior {
 
 struct PriorOptions {
     int iterations = 40;
-    double maximum = 3;   ///< standard deviations that a coefficient may go
-    double samples = 20;  ///< least number of independent places that the observed surface counts as, against the prior
-    double reach = 0.1;   ///< farthest match, as a share of the diagonal
-    double angle = 60;    ///< of the normals of matches, degrees
+    double maximum = 3;          ///< standard deviations that a coefficient may go
+    double samples = 20;         ///< least number of independent places that the observed surface counts as, against the prior
+    double search_radius = 0.1;  ///< farthest match, as a share of the diagonal
+    double angle = 60;           ///< of the normals of matches, degrees
 
     void describe(OptionList& visit);
 };

@@ -15,13 +15,13 @@ struct VotedMotion {
 };
 
 /// All pairs of points of a whole by what they are like whatever their place: the distance of the two points, the angles of
-/// their normals with the line between them, and that of the normals with each other. Pairs farther apart than `reach` are left
-/// out. Built once, asked for many parts.
+/// their normals with the line between them, and that of the normals with each other. Pairs farther apart than `max_distance` are
+/// left out. Built once, asked for many parts.
 class PairTable {
 public:
     /// `step`: distances that differ by less are alike; angles that differ by less than 15 degrees are. Memory: four bytes a
     /// pair. Throws Error (usage) for more than 4096 points, or lengths that are not positive.
-    PairTable(SurfacePoints points, double reach, double step);
+    PairTable(SurfacePoints points, double max_distance, double step);
 
     /// For `references` points of the part (evenly chosen), each with at most `partners` others (drawn with `seed`): all pairs
     /// of the whole that are like it vote for a point of the whole and a turn about its normal, a rare kind of pair weighing more
@@ -40,7 +40,7 @@ private:
                            const Eigen::Vector3d& m) const;
 
     SurfacePoints points_;
-    double reach_, step_;
+    double max_distance_, step_;
     int distances_ = 0;
     std::vector<std::size_t> starts_;
     std::vector<Entry> entries_;

@@ -10,11 +10,11 @@
 namespace ostraka {
 
 struct PartAlignmentOptions {
-    double trim = 0.8;   ///< share of the pairs that count, the nearest ones: what is not on the whole stays out
-    double reach = 0.1;  ///< farthest pair, as a share of the whole's diagonal
-    double angle = 60;   ///< pairs whose normals differ by more are none, degrees
-    double anchors = 1;  ///< weight of all anchors together against that of all pairs
-    int samples = 3000;  ///< points of the part that are laid onto the whole, evenly spread
+    double trim = 0.8;           ///< share of the pairs that count, the nearest ones: what is not on the whole stays out
+    double search_radius = 0.1;  ///< farthest pair, as a share of the whole's diagonal
+    double angle = 60;           ///< pairs whose normals differ by more are none, degrees
+    double anchors = 1;          ///< weight of all anchors together against that of all pairs
+    int samples = 3000;          ///< points of the part that are laid onto the whole, evenly spread
     int iterations = 60;
 
     void describe(OptionList& visit);

@@ -21,8 +21,8 @@ struct MemberFitOptions {
     double max_off = 0.125;
     MemberFitOptions() {
         alignment.shrinkage = 0.3;
-        fit.reach = 0.2;
-        fit.last_reach = 0.05;
+        fit.search_radius = 0.2;
+        fit.last_search_radius = 0.05;
     }
 
     void describe(OptionList& visit);

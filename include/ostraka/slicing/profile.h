@@ -25,10 +25,10 @@ struct Profile {
                               ///< mesh); 0 if there is none
     double rim_share = 1;     ///< of that circle's turn that is there
     /// Points of the section's outer side, half a per cent of the height apart: how far it reaches from the axis, from `low` on.
-    std::vector<double> reach;
+    std::vector<double> extent;
     bool hides = false;  ///< something of a turned object stands out by more than 5 % of its height and is not seen to
 
-    /// The reach at a height, the largest of its neighbourhood; 0 outside.
+    /// The extent at a height, the largest of its neighbourhood; 0 outside.
     [[nodiscard]] double reach_at(double height) const;
 };
 

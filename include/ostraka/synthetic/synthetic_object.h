@@ -81,7 +81,7 @@ private:
     [[nodiscard]] Sample member_sample(std::size_t member, const Eigen::Vector3d& p) const;
     std::vector<Eigen::AlignedBox3d> boxes_;
     Eigen::AlignedBox3d box_;
-    double reach_ = 0;
+    double margin_ = 0;
 };
 
 /// Names in alphabetical order.
