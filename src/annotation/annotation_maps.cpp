@@ -1,6 +1,6 @@
 #include "ostraka/annotation/annotation_maps.h"
 
-#include "edge_chains.h"
+#include "vertex_paths.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/geom/shortest_path.h"
@@ -97,7 +97,7 @@ private:
 
     void line(Annotation& annotation) {
         if (vertex_map_.empty()) {
-            annotation.polylines = chains(edges_.at(annotation.id));
+            annotation.polylines = vertex_paths(edges_.at(annotation.id));
         } else {
             std::vector<std::vector<Index>> polylines;
             for (const auto& polyline : annotation.polylines) follow(polyline, annotation, polylines);
@@ -126,13 +126,13 @@ private:
         degrade(annotation, walks);
     }
 
-    std::vector<std::vector<Index>> chains(const std::vector<Index>& edges) const {
+    std::vector<std::vector<Index>> vertex_paths(const std::vector<Index>& edges) const {
         std::vector<std::pair<Index, Index>> pairs;
         for (const Index edge : edges) {
             const Halfedge h = mesh_.halfedge(Edge(edge));
             pairs.emplace_back(mesh_.source(h), mesh_.target(h));
         }
-        return chain_edges(pairs);
+        return join_into_paths(pairs);
     }
 
     /// What remains of walks over the mesh before: a line along their edges, or one point.
@@ -154,7 +154,7 @@ private:
         annotation.polylines.clear();
         if (!edges.empty()) {
             annotation.type = AnnotationType::line;
-            annotation.polylines = chain_edges({edges.begin(), edges.end()});
+            annotation.polylines = join_into_paths({edges.begin(), edges.end()});
         } else {
             annotation.type = AnnotationType::point;
             annotation.points.assign(vertices.begin(), vertices.end());

@@ -16,7 +16,7 @@ namespace {
 using places::fail;
 using std::to_string;
 
-using Chains = std::vector<std::vector<Index>>;
+using VertexPaths = std::vector<std::vector<Index>>;
 
 std::string text_of(const JsonValue& object, const char* name) {
     const JsonValue* value = find_member(object, name);
@@ -40,11 +40,11 @@ std::vector<Index> indices_of(const JsonValue& object, const char* name) {
     return value == nullptr ? std::vector<Index>() : indices_of(*value);
 }
 
-Chains chains_of(const JsonValue& object, const char* name) {
-    Chains chains;
+VertexPaths vertex_paths_of(const JsonValue& object, const char* name) {
+    VertexPaths vertex_paths;
     if (const JsonValue* value = find_member(object, name))
-        for (const auto& chain : value->GetArray()) chains.push_back(indices_of(chain));
-    return chains;
+        for (const auto& vertex_path : value->GetArray()) vertex_paths.push_back(indices_of(vertex_path));
+    return vertex_paths;
 }
 
 std::array<double, 3> vector_of(const JsonValue& list) { return {list[0].GetDouble(), list[1].GetDouble(), list[2].GetDouble()}; }
@@ -67,7 +67,7 @@ Measure measure_of(const JsonValue& object) {
             measure.locations.push_back({location["face"].GetUint(), vector_of(location["barycentric"])});
     if (const JsonValue* direction = find_member(object, "direction")) measure.direction = vector_of(*direction);
     measure.exact = text_of(object, "geodesic") == "exact";
-    measure.repeats = chains_of(object, "repeats");
+    measure.repeats = vertex_paths_of(object, "repeats");
     if (const JsonValue* value = find_member(object, "value")) measure.value = value->GetDouble();
     if (const JsonValue* value = find_member(object, "uncertainty")) measure.uncertainty = value->GetDouble();
     measure.unit = text_of(object, "unit");
@@ -117,7 +117,7 @@ Attribute attribute_of(const JsonValue& object, const std::string& where, const 
 
 /// Outlines as they stand, checked vertex by vertex and edge by edge. The prototype repeats the first vertex at the end.
 std::vector<Outline> outlines_of(const JsonValue& object, const Mesh& mesh, const std::string& where, const std::string& at) {
-    std::vector<Outline> outlines = chains_of(object, "boundaries");
+    std::vector<Outline> outlines = vertex_paths_of(object, "boundaries");
     for (std::size_t i = 0; i < outlines.size(); ++i) {
         Outline& outline = outlines[i];
         const std::string here = at + "/boundaries/" + to_string(i);
@@ -236,7 +236,7 @@ Annotation annotation_of(const JsonValue& object, const Mesh& mesh, const std::s
         annotation.type = AnnotationType::line;
         refuse({"points", "boundaries", "faces", "seeds", "all"});
         require("polylines");
-        annotation.polylines = chains_of(object, "polylines");
+        annotation.polylines = vertex_paths_of(object, "polylines");
     } else {
         refuse({"points", "polylines"});
         annotation.all = flag_of(object, "all");

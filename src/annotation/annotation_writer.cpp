@@ -19,9 +19,9 @@ JsonValue list_of(const std::vector<Index>& indices, JsonAllocator& allocator) {
     return list;
 }
 
-JsonValue list_of(const std::vector<std::vector<Index>>& chains, JsonAllocator& allocator) {
+JsonValue list_of(const std::vector<std::vector<Index>>& vertex_paths, JsonAllocator& allocator) {
     JsonValue list(rapidjson::kArrayType);
-    for (const auto& chain : chains) list.PushBack(list_of(chain, allocator), allocator);
+    for (const auto& vertex_path : vertex_paths) list.PushBack(list_of(vertex_path, allocator), allocator);
     return list;
 }
 

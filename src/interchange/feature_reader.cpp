@@ -174,7 +174,7 @@ private:
                 }
                 if (!same_mesh_ && !vertices.empty()) {
                     const bool closed = vertices.size() > 3 && vertices.front() == vertices.back();
-                    vertices = placer().chain(vertices, closed, where_ + ", '" + one_line(placement.tag) + "'");
+                    vertices = placer().vertex_path(vertices, closed, where_ + ", '" + one_line(placement.tag) + "'");
                 }
                 if (vertices.size() > 1) list.PushBack(json_of(vertices), a());
             }

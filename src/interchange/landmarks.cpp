@@ -150,9 +150,9 @@ private:
     void add_curve(const LandmarkCurve& curve, const std::vector<Placed>& places) {
         std::vector<Index> picks;
         for (const Placed& placed : places) picks.push_back(placed.vertex);
-        std::vector<Index> chain =
-            placer_.chain(picks, curve.closed && picks.size() > 2, where_ + ", curve '" + curve.name + "'");
-        if (chain.size() < 2) {
+        std::vector<Index> vertex_path =
+            placer_.vertex_path(picks, curve.closed && picks.size() > 2, where_ + ", curve '" + curve.name + "'");
+        if (vertex_path.size() < 2) {
             result_.set.notes.push_back("curve '" + interchange::one_line(curve.name).substr(0, 40) +
                                         "' shrank to a point on this mesh and was left out");
             return;
@@ -161,7 +161,7 @@ private:
         const bool joined = known != made_.end() && result_.set.annotations[known->second].type == AnnotationType::line;
         const std::size_t at = joined ? known->second : result_.set.annotations.size();
         if (!joined) begin(curve.group, curve.name, AnnotationType::line);
-        result_.set.annotations[at].polylines.push_back(std::move(chain));
+        result_.set.annotations[at].polylines.push_back(std::move(vertex_path));
         for (const Placed& placed : places) count(at, placed);
     }
 

@@ -17,12 +17,12 @@ std::vector<Index> region_of(Placer& placer, const std::vector<RegionPart>& part
         if (part.outlines.empty()) {
             flags = placer.component(placer.nearest(part.inside).face);
         } else {
-            std::vector<std::vector<Index>> chains;
+            std::vector<std::vector<Index>> vertex_paths;
             for (const auto& outline : part.outlines) {
-                std::vector<Index> chain = placer.chain(outline, true, where);
-                if (chain.size() > 3) chains.push_back(std::move(chain));
+                std::vector<Index> vertex_path = placer.vertex_path(outline, true, where);
+                if (vertex_path.size() > 3) vertex_paths.push_back(std::move(vertex_path));
             }
-            flags = placer.fill(chains, part.area);
+            flags = placer.fill(vertex_paths, part.area);
         }
         double area = 0;
         for (std::size_t f = 0; f < flags.size(); ++f)

@@ -75,7 +75,7 @@ Placed Placer::place(const Point& point) const {
     return placed;
 }
 
-std::vector<Index> Placer::chain(const std::vector<Index>& picks, bool closed, const std::string& where) {
+std::vector<Index> Placer::vertex_path(const std::vector<Index>& picks, bool closed, const std::string& where) {
     std::vector<Index> stops;
     for (const Index pick : picks)
         if (stops.empty() || stops.back() != pick) stops.push_back(pick);
@@ -109,11 +109,11 @@ std::vector<Index> Placer::chain(const std::vector<Index>& picks, bool closed, c
     return clean;
 }
 
-std::vector<bool> Placer::fill(const std::vector<std::vector<Index>>& chains, double area) const {
+std::vector<bool> Placer::fill(const std::vector<std::vector<Index>>& vertex_paths, double area) const {
     std::vector<Halfedge> edges;
-    for (const auto& chain : chains)
-        for (std::size_t i = 0; i + 1 < chain.size(); ++i)
-            edges.push_back(find_halfedge(mesh_, Vertex(chain[i]), Vertex(chain[i + 1])));
+    for (const auto& vertex_path : vertex_paths)
+        for (std::size_t i = 0; i + 1 < vertex_path.size(); ++i)
+            edges.push_back(find_halfedge(mesh_, Vertex(vertex_path[i]), Vertex(vertex_path[i + 1])));
     if (edges.empty()) return {};
     if (auto filled = fill_by_winding(mesh_, edges, area)) return std::move(*filled);
     return fill_edges(mesh_, edges).selected;

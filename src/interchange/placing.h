@@ -43,11 +43,11 @@ public:
     /// The vertices along the mesh from pick to pick, successive ones joined by edges; repeated picks count once and steps back
     /// and forth are dropped. Closed: the first stands at the end again. One vertex if all picks are the same. Throws Error
     /// (input), starting with `where`, if two picks are not connected.
-    std::vector<Index> chain(const std::vector<Index>& picks, bool closed, const std::string& where);
+    std::vector<Index> vertex_path(const std::vector<Index>& picks, bool closed, const std::string& where);
 
-    /// The faces to the left of closed chains, by winding number; of several answers the one nearest to `area`. Empty flags where
-    /// the chains bound nothing.
-    [[nodiscard]] std::vector<bool> fill(const std::vector<std::vector<Index>>& chains, double area) const;
+    /// The faces to the left of closed paths, by winding number; of several answers the one nearest to `area`. Empty flags where
+    /// the paths bound nothing.
+    [[nodiscard]] std::vector<bool> fill(const std::vector<std::vector<Index>>& vertex_paths, double area) const;
     [[nodiscard]] std::vector<bool> component(Index face) const;
 
 private:

@@ -257,9 +257,9 @@ private:
             for (const auto& polyline : polylines->GetArray()) {
                 const auto found = placed(polyline["points"], placement, pointer);
                 if (!found) return false;
-                const std::vector<Index> chain =
-                    placer().chain(vertices(*found), polyline["closed"].GetBool(), where_ + ", in " + pointer);
-                if (chain.size() > 1) list.PushBack(json_of(chain), a());
+                const std::vector<Index> vertex_path =
+                    placer().vertex_path(vertices(*found), polyline["closed"].GetBool(), where_ + ", in " + pointer);
+                if (vertex_path.size() > 1) list.PushBack(json_of(vertex_path), a());
                 else note(pointer, "a poly-line shrank to a point on this mesh and was left out");
             }
             if (list.Empty()) return false;

@@ -139,7 +139,7 @@ private:
     JsonValue place(const Point& p) { return triple_json({p.x(), p.y(), p.z()}, a()); }
     JsonValue place(Index vertex) { return place(mesh_.point(Vertex(vertex))); }
 
-    JsonValue chain(const std::vector<Index>& vertices) {
+    JsonValue vertex_list(const std::vector<Index>& vertices) {
         JsonValue list(rapidjson::kArrayType);
         for (const Index vertex : vertices) list.PushBack(place(vertex), a());
         return list;
@@ -193,7 +193,7 @@ private:
         JsonValue list(rapidjson::kArrayType);
         for (const auto& [component, part] : found) {
             JsonValue entry(rapidjson::kObjectType), outlines(rapidjson::kArrayType);
-            for (const Outline& outline : part.outlines) outlines.PushBack(chain(outline), a());
+            for (const Outline& outline : part.outlines) outlines.PushBack(vertex_list(outline), a());
             add_members(entry, a(), "area", part.area, "inside", place(centroid(mesh_, Face(part.largest))), "outlines",
                         std::move(outlines));
             list.PushBack(entry, a());
@@ -205,14 +205,14 @@ private:
         JsonValue result(rapidjson::kObjectType);
         switch (annotation.type) {
             case AnnotationType::point:
-                add_member(result, "points", chain(annotation.points), a());
+                add_member(result, "points", vertex_list(annotation.points), a());
                 break;
             case AnnotationType::line: {
                 JsonValue list(rapidjson::kArrayType);
                 for (std::vector<Index> polyline : annotation.polylines) {
                     const bool closed = polyline.size() > 3 && polyline.front() == polyline.back();
                     if (closed) polyline.pop_back();
-                    JsonValue entry = json_object(a(), "closed", closed, "points", chain(polyline));
+                    JsonValue entry = json_object(a(), "closed", closed, "points", vertex_list(polyline));
                     list.PushBack(entry, a());
                 }
                 add_member(result, "polylines", std::move(list), a());

@@ -12,13 +12,13 @@ namespace ostraka {
 
 using Eigen::Vector3d;
 
-std::vector<VertexChain> chains_of(const Mesh& mesh, const Annotation& part, const std::vector<bool>& broken) {
-    std::vector<VertexChain> chains;
+std::vector<VertexPath> vertex_paths_of(const Mesh& mesh, const Annotation& part, const std::vector<bool>& broken) {
+    std::vector<VertexPath> vertex_paths;
     for (const auto& line : part.polylines) {
         const bool closed = line.size() > 2 && line.front() == line.back();
-        chains.push_back({std::vector<Index>(line.begin(), line.end() - (closed ? 1 : 0)), closed});
+        vertex_paths.push_back({std::vector<Index>(line.begin(), line.end() - (closed ? 1 : 0)), closed});
     }
-    if (part.type != AnnotationType::region) return chains;
+    if (part.type != AnnotationType::region) return vertex_paths;
     const auto ends_object = [&](Halfedge h) { return mesh.is_border(h) || (!broken.empty() && broken[mesh.face(h)]); };
     for (const Outline& loop : extract_outlines(mesh, part.faces)) {
         const std::size_t n = loop.size();
@@ -29,63 +29,63 @@ std::vector<VertexChain> chains_of(const Mesh& mesh, const Annotation& part, con
         }
         const auto first = std::find(ends.begin(), ends.end(), true);
         if (first == ends.end()) {
-            chains.push_back({loop, true});
+            vertex_paths.push_back({loop, true});
             continue;
         }
         const auto begin = static_cast<std::size_t>(first - ends.begin());
-        VertexChain chain;
+        VertexPath vertex_path;
         for (std::size_t k = 1; k <= n; ++k) {
             const std::size_t i = (begin + k) % n;
-            chain.vertices.push_back(loop[i]);
+            vertex_path.vertices.push_back(loop[i]);
             if (!ends[i]) continue;
-            if (chain.vertices.size() > 1) chains.push_back(chain);
-            chain.vertices.clear();
+            if (vertex_path.vertices.size() > 1) vertex_paths.push_back(vertex_path);
+            vertex_path.vertices.clear();
         }
     }
-    return chains;
+    return vertex_paths;
 }
 
 namespace {
 
-/// A chain with the way to each of its vertices from the first.
+/// A path with the way to each of its vertices from the first.
 struct Way {
-    explicit Way(const Mesh& mesh, VertexChain of) : chain(std::move(of)) {
-        for (const Index v : chain.vertices) places.push_back(eigen(mesh.point(Vertex(v))));
+    explicit Way(const Mesh& mesh, VertexPath of) : vertex_path(std::move(of)) {
+        for (const Index v : vertex_path.vertices) places.push_back(eigen(mesh.point(Vertex(v))));
         for (std::size_t i = 0; i < places.size(); ++i) {
             at.push_back(length);
-            if (i + 1 < places.size() || chain.closed) length += (places[(i + 1) % places.size()] - places[i]).norm();
+            if (i + 1 < places.size() || vertex_path.closed) length += (places[(i + 1) % places.size()] - places[i]).norm();
         }
     }
-    /// The place so far along; of a closed chain going on at the start.
+    /// The place so far along; of a closed path going on at the start.
     [[nodiscard]] Vector3d place(double way) const {
-        if (chain.closed) way -= length * std::floor(way / length);
+        if (vertex_path.closed) way -= length * std::floor(way / length);
         const auto after = std::upper_bound(at.begin(), at.end(), way);
         const auto i = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, after - at.begin() - 1));
         const std::size_t next = (i + 1) % places.size();
-        if (next == 0 && !chain.closed) return places.back();
+        if (next == 0 && !vertex_path.closed) return places.back();
         const double edge = (places[next] - places[i]).norm();
         const double share = edge > 0 ? std::clamp((way - at[i]) / edge, 0.0, 1.0) : 0;
         return (1 - share) * places[i] + share * places[next];
     }
 
-    VertexChain chain;
+    VertexPath vertex_path;
     std::vector<Vector3d> places;
     std::vector<double> at;
     double length = 0;
 };
 
-std::vector<Way> ways_of(const Mesh& mesh, std::vector<VertexChain> chains) {
+std::vector<Way> ways_of(const Mesh& mesh, std::vector<VertexPath> vertex_paths) {
     std::vector<Way> ways;
-    for (VertexChain& chain : chains) {
-        if (chain.vertices.size() < 2) continue;
-        Way way(mesh, std::move(chain));
+    for (VertexPath& vertex_path : vertex_paths) {
+        if (vertex_path.vertices.size() < 2) continue;
+        Way way(mesh, std::move(vertex_path));
         if (way.length > 0) ways.push_back(std::move(way));
     }
     return ways;
 }
 
-/// Where a vertex is on one of the chains: which, and how far along; -1 where it is on none.
-std::pair<int, double> on_chain(const std::vector<Way>& ways, const Vector3d& place) {
+/// Where a vertex is on one of the paths: which, and how far along; -1 where it is on none.
+std::pair<int, double> on_vertex_path(const std::vector<Way>& ways, const Vector3d& place) {
     std::pair<int, double> found{-1, 0};
     double minimum = std::numeric_limits<double>::infinity();
     for (std::size_t c = 0; c < ways.size(); ++c)
@@ -103,7 +103,7 @@ struct Along {
     std::size_t pieces = 0;  ///< between landmarks that follow each other on both
 };
 
-/// Correspondences of one chain by the landmarks on it (way along ours, along theirs). A way of ours is `scale` of theirs.
+/// Correspondences of one path by the landmarks on it (way along ours, along theirs). A way of ours is `scale` of theirs.
 Along along(const Way& ours, const Way& theirs, std::vector<std::pair<double, double>> marks, double scale) {
     constexpr double share_beyond = 0.25;
     std::sort(marks.begin(), marks.end());
@@ -117,11 +117,11 @@ Along along(const Way& ours, const Way& theirs, std::vector<std::pair<double, do
     double known = 0, known_there = 0;
     for (std::size_t k = 0; k < n; ++k) {
         const bool last = k + 1 == n;
-        if (last && !ours.chain.closed) break;
+        if (last && !ours.vertex_path.closed) break;
         const auto& [a, b] = marks[k];
         auto [c, d] = marks[(k + 1) % n];
         if (last) c += ours.length;
-        if (theirs.chain.closed && (d < b || (n == 1 && d <= b))) d += theirs.length;
+        if (theirs.vertex_path.closed && (d < b || (n == 1 && d <= b))) d += theirs.length;
         if (!(d > b)) continue;  // cut on their side
         if ((d - b) > 2 * scale * (c - a) || scale * (c - a) > 2 * (d - b)) continue;
         pieces.push_back({a, c, b, d});
@@ -134,12 +134,12 @@ Along along(const Way& ours, const Way& theirs, std::vector<std::pair<double, do
     for (std::size_t i = 0; i < ours.places.size(); ++i) {
         const std::size_t count = ours.places.size();
         double length = 0;
-        if (i > 0 || ours.chain.closed) length += 0.5 * (ours.places[i] - ours.places[(i + count - 1) % count]).norm();
-        if (i + 1 < count || ours.chain.closed) length += 0.5 * (ours.places[(i + 1) % count] - ours.places[i]).norm();
-        OutlineCorrespondence correspondence{ours.chain.vertices[i], Vector3d::Zero(), length};
+        if (i > 0 || ours.vertex_path.closed) length += 0.5 * (ours.places[i] - ours.places[(i + count - 1) % count]).norm();
+        if (i + 1 < count || ours.vertex_path.closed) length += 0.5 * (ours.places[(i + 1) % count] - ours.places[i]).norm();
+        OutlineCorrespondence correspondence{ours.vertex_path.vertices[i], Vector3d::Zero(), length};
         bool found = false;
         for (const double way : {ours.at[i], ours.at[i] + ours.length}) {
-            if (way > ours.length && !ours.chain.closed) break;
+            if (way > ours.length && !ours.vertex_path.closed) break;
             for (const Piece& piece : pieces) {
                 if (found || way < piece.from || way > piece.to) continue;
                 const double share = piece.to > piece.from ? (way - piece.from) / (piece.to - piece.from) : 0;
@@ -152,15 +152,15 @@ Along along(const Way& ours, const Way& theirs, std::vector<std::pair<double, do
             double nearest = std::numeric_limits<double>::infinity(), there = 0;
             for (const auto& [a, b] : marks)
                 for (const double turn : {-1.0, 0.0, 1.0}) {
-                    if (turn != 0 && !ours.chain.closed) continue;
+                    if (turn != 0 && !ours.vertex_path.closed) continue;
                     const double off = ours.at[i] + turn * ours.length - a;
                     if (std::abs(off) >= nearest) continue;
                     nearest = std::abs(off);
                     there = b + ratio * off;
                 }
-            if (!std::isfinite(nearest) || (!theirs.chain.closed && (there < 0 || there > theirs.length))) continue;
+            if (!std::isfinite(nearest) || (!theirs.vertex_path.closed && (there < 0 || there > theirs.length))) continue;
             // Half a turn away nothing is known.
-            if (ours.chain.closed && nearest > 0.4 * ours.length) continue;
+            if (ours.vertex_path.closed && nearest > 0.4 * ours.length) continue;
             correspondence.place = theirs.place(there);
             if (nearest > 0) correspondence.length *= share_beyond;
         }
@@ -181,31 +181,31 @@ double mean_square(const Mesh& mesh, const std::vector<OutlineCorrespondence>& c
 std::vector<OutlineCorrespondence> outline_correspondences(const Mesh& mesh, const Annotation& part, const Mesh& fragment,
                                                            const Annotation& of_fragment, const std::vector<bool>& broken,
                                                            const std::vector<std::pair<Index, Index>>& landmarks, double scale) {
-    const std::vector<Way> ours = ways_of(mesh, chains_of(mesh, part));
+    const std::vector<Way> ours = ways_of(mesh, vertex_paths_of(mesh, part));
     const auto theirs_turned = [&](bool turned) {
-        std::vector<VertexChain> chains = chains_of(fragment, of_fragment, broken);
+        std::vector<VertexPath> vertex_paths = vertex_paths_of(fragment, of_fragment, broken);
         if (turned)
-            for (VertexChain& chain : chains) std::reverse(chain.vertices.begin(), chain.vertices.end());
-        return ways_of(fragment, std::move(chains));
+            for (VertexPath& vertex_path : vertex_paths) std::reverse(vertex_path.vertices.begin(), vertex_path.vertices.end());
+        return ways_of(fragment, std::move(vertex_paths));
     };
     const std::vector<Way> forward = theirs_turned(false);
     const bool line = part.type == AnnotationType::line;
     const std::vector<Way> backward = line ? theirs_turned(true) : std::vector<Way>();
     using Marks = std::vector<std::pair<double, double>>;
-    std::map<std::pair<int, int>, std::pair<Marks, Marks>> marks;  // by chains, forward and backward
+    std::map<std::pair<int, int>, std::pair<Marks, Marks>> marks;  // by paths, forward and backward
     for (const auto& [vertex, there] : landmarks) {
         const Vector3d place = eigen(fragment.point(Vertex(there)));
-        const auto [a, way] = on_chain(ours, eigen(mesh.point(Vertex(vertex))));
-        const auto [b, way_there] = on_chain(forward, place);
+        const auto [a, way] = on_vertex_path(ours, eigen(mesh.point(Vertex(vertex))));
+        const auto [b, way_there] = on_vertex_path(forward, place);
         if (a < 0 || b < 0) continue;
         auto& both = marks[{a, b}];
         both.first.emplace_back(way, way_there);
-        if (line) both.second.emplace_back(way, on_chain(backward, place).second);
+        if (line) both.second.emplace_back(way, on_vertex_path(backward, place).second);
     }
     std::vector<OutlineCorrespondence> correspondences;
-    for (const auto& [chains, both] : marks) {
-        const Way& way = ours[static_cast<std::size_t>(chains.first)];
-        const auto there = static_cast<std::size_t>(chains.second);
+    for (const auto& [vertex_paths, both] : marks) {
+        const Way& way = ours[static_cast<std::size_t>(vertex_paths.first)];
+        const auto there = static_cast<std::size_t>(vertex_paths.second);
         Along best = along(way, forward[there], both.first, scale);
         if (line) {
             Along other = along(way, backward[there], both.second, scale);

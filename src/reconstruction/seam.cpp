@@ -225,10 +225,11 @@ void cut_triangle(std::array<Index, 3> t, const Splits& splits, std::vector<std:
             t = {t[1], t[2], t[0]};
             continue;
         }
-        std::vector<Index> chain{t[0]};
-        chain.insert(chain.end(), found->second.begin(), found->second.end());
-        chain.push_back(t[1]);
-        for (std::size_t i = 0; i + 1 < chain.size(); ++i) cut_triangle({chain[i], chain[i + 1], t[2]}, splits, out);
+        std::vector<Index> vertex_path{t[0]};
+        vertex_path.insert(vertex_path.end(), found->second.begin(), found->second.end());
+        vertex_path.push_back(t[1]);
+        for (std::size_t i = 0; i + 1 < vertex_path.size(); ++i)
+            cut_triangle({vertex_path[i], vertex_path[i + 1], t[2]}, splits, out);
         return;
     }
     out.push_back(t);

@@ -29,18 +29,18 @@ struct Part {
     std::vector<std::vector<double>> ways;
 };
 
-/// Distances from each vertex of a chain onwards to one of them, going on at the start of a closed one; negative where there is
+/// Distances from each vertex of a path onwards to one of them, going on at the start of a closed one; negative where there is
 /// no way.
-std::vector<double> ways_to(const Mesh& mesh, const VertexChain& chain, std::size_t goal) {
-    const std::size_t n = chain.vertices.size();
+std::vector<double> ways_to(const Mesh& mesh, const VertexPath& vertex_path, std::size_t goal) {
+    const std::size_t n = vertex_path.vertices.size();
     std::vector<double> ways(n, -1);
     double length = 0;
     for (std::size_t k = 0; k < n; ++k) {
         if (k > 0) {
-            if (goal < k && !chain.closed) break;
+            if (goal < k && !vertex_path.closed) break;
             const std::size_t a = (goal + n - k) % n, b = (a + 1) % n;
-            length +=
-                std::sqrt(CGAL::squared_distance(mesh.point(Vertex(chain.vertices[a])), mesh.point(Vertex(chain.vertices[b]))));
+            length += std::sqrt(
+                CGAL::squared_distance(mesh.point(Vertex(vertex_path.vertices[a])), mesh.point(Vertex(vertex_path.vertices[b]))));
         }
         ways[(goal + n - k) % n] = length;
     }
@@ -58,21 +58,21 @@ Part part_of(const Mesh& mesh, const Annotation& annotation, const std::vector<I
         part.places.push_back(mesh.point(Vertex(part.vertices[i])));
         part.normals.push_back(vertex_normal(mesh, Vertex(part.vertices[i])));
     }
-    const std::vector<VertexChain> chains = chains_of(mesh, annotation);
+    const std::vector<VertexPath> vertex_paths = vertex_paths_of(mesh, annotation);
     part.boundary.assign(part.vertices.size(), annotation.type != AnnotationType::region);
-    for (const VertexChain& chain : chains)
-        for (const Index v : chain.vertices) part.boundary[static_cast<std::size_t>(position.at(v))] = true;
+    for (const VertexPath& vertex_path : vertex_paths)
+        for (const Index v : vertex_path.vertices) part.boundary[static_cast<std::size_t>(position.at(v))] = true;
     part.ways.assign(part.vertices.size(), std::vector<double>(landmarks.size(), -1));
     for (std::size_t l = 0; l < landmarks.size(); ++l) {
         const Point& place = mesh.point(Vertex(landmarks[l]));
-        const VertexChain* nearest = nullptr;
+        const VertexPath* nearest = nullptr;
         std::size_t goal = 0;
         double minimum = std::numeric_limits<double>::infinity();
-        for (const VertexChain& chain : chains)
-            for (std::size_t i = 0; i < chain.vertices.size(); ++i)
-                if (const double d = CGAL::squared_distance(mesh.point(Vertex(chain.vertices[i])), place); d < minimum) {
+        for (const VertexPath& vertex_path : vertex_paths)
+            for (std::size_t i = 0; i < vertex_path.vertices.size(); ++i)
+                if (const double d = CGAL::squared_distance(mesh.point(Vertex(vertex_path.vertices[i])), place); d < minimum) {
                     minimum = d;
-                    nearest = &chain;
+                    nearest = &vertex_path;
                     goal = i;
                 }
         if (nearest == nullptr) continue;

@@ -17,8 +17,8 @@ using EdgeSet = std::set<std::pair<Index, Index>>;
 
 EdgeSet edges_of(const Annotation& annotation) {
     EdgeSet edges;
-    for (const auto& chain : annotation.polylines)
-        for (std::size_t i = 1; i < chain.size(); ++i) edges.insert(std::minmax(chain[i - 1], chain[i]));
+    for (const auto& polyline : annotation.polylines)
+        for (std::size_t i = 1; i < polyline.size(); ++i) edges.insert(std::minmax(polyline[i - 1], polyline[i]));
     return edges;
 }
 

@@ -35,9 +35,9 @@ const Cloud& Part::cloud() {
         cloud.points.push_back(eigen(ostraka::centroid(mesh_, Face(f))));
         cloud.weights.push_back(face_area(mesh_, Face(f)));
     }
-    for (const auto& chain : annotation_.polylines)
-        for (std::size_t i = 1; i < chain.size(); ++i) {
-            const Vector3d p = eigen(mesh_.point(Vertex(chain[i - 1]))), q = eigen(mesh_.point(Vertex(chain[i])));
+    for (const auto& polyline : annotation_.polylines)
+        for (std::size_t i = 1; i < polyline.size(); ++i) {
+            const Vector3d p = eigen(mesh_.point(Vertex(polyline[i - 1]))), q = eigen(mesh_.point(Vertex(polyline[i])));
             cloud.points.emplace_back((p + q) / 2);
             cloud.weights.push_back((q - p).norm());
         }

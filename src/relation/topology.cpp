@@ -89,10 +89,10 @@ struct CurveIndex {
         for (std::size_t a = 0; a < set.annotations.size(); ++a) {
             const Annotation& annotation = set.annotations[a];
             for (const Index v : annotation.points) hold(at_vertex[v], a);
-            for (const auto& chain : annotation.polylines)
-                for (std::size_t i = 0; i < chain.size(); ++i) {
-                    hold(at_vertex[chain[i]], a);
-                    if (i > 0) edges[a].push_back(std::minmax(chain[i - 1], chain[i]));
+            for (const auto& polyline : annotation.polylines)
+                for (std::size_t i = 0; i < polyline.size(); ++i) {
+                    hold(at_vertex[polyline[i]], a);
+                    if (i > 0) edges[a].push_back(std::minmax(polyline[i - 1], polyline[i]));
                 }
             std::sort(edges[a].begin(), edges[a].end());
             edges[a].erase(std::unique(edges[a].begin(), edges[a].end()), edges[a].end());

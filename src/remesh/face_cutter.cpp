@@ -84,23 +84,23 @@ void FaceCutter::place_nodes(const std::vector<SurfaceCurve>& curves) {
 
 /// The border of a face with the vertices on its edges, counter-clockwise.
 std::vector<Index> FaceCutter::border(Index face) const {
-    std::vector<Index> chain;
+    std::vector<Index> vertex_path;
     Halfedge h = mesh_.next(mesh_.halfedge(Face(face)));
     for (int k = 0; k < 3; ++k, h = mesh_.next(h)) {
-        chain.push_back(mesh_.source(h));
+        vertex_path.push_back(mesh_.source(h));
         const auto found = on_edge_.find(mesh_.edge(h));
         if (found == on_edge_.end()) continue;
         const auto& list = found->second;
         if (mesh_.halfedge(mesh_.edge(h), 0) == h)
-            for (auto i = list.begin(); i != list.end(); ++i) chain.push_back(i->second);
+            for (auto i = list.begin(); i != list.end(); ++i) vertex_path.push_back(i->second);
         else
-            for (auto i = list.rbegin(); i != list.rend(); ++i) chain.push_back(i->second);
+            for (auto i = list.rbegin(); i != list.rend(); ++i) vertex_path.push_back(i->second);
     }
-    return chain;
+    return vertex_path;
 }
 
 std::vector<std::array<Index, 3>> FaceCutter::cut(Index face) {
-    const std::vector<Index> chain = border(face);
+    const std::vector<Index> vertex_path = border(face);
     const auto found = cuts_.find(face);
     const Cut cut = found == cuts_.end() ? Cut{} : found->second;
     std::vector<std::array<Index, 3>> triangles;
@@ -108,7 +108,7 @@ std::vector<std::array<Index, 3>> FaceCutter::cut(Index face) {
         const std::size_t points_before = points_.size();
         // With every curve first; where rounding spoils the border, with the border alone: the curves then follow edges nearby.
         for (const bool with_curves : {true, false}) {
-            if (triangulate(face, cut, chain, with_curves, triangles)) return triangles;
+            if (triangulate(face, cut, vertex_path, with_curves, triangles)) return triangles;
             points_.resize(points_before, Point(0, 0, 0));
             triangles.clear();
         }
@@ -117,11 +117,12 @@ std::vector<std::array<Index, 3>> FaceCutter::cut(Index face) {
     if (!cut.inner.empty())
         throw Error(ErrorKind::failure, "face " + std::to_string(face), "cannot be cut: it has no area to speak of",
                     "repair the mesh first");
-    for (std::size_t i = 1; i + 1 < chain.size(); ++i) triangles.push_back({chain[0], chain[i], chain[i + 1]});
+    for (std::size_t i = 1; i + 1 < vertex_path.size(); ++i)
+        triangles.push_back({vertex_path[0], vertex_path[i], vertex_path[i + 1]});
     return triangles;
 }
 
-bool FaceCutter::triangulate(Index face, const Cut& cut, const std::vector<Index>& chain, bool with_curves,
+bool FaceCutter::triangulate(Index face, const Cut& cut, const std::vector<Index>& vertex_path, bool with_curves,
                              std::vector<std::array<Index, 3>>& triangles) {
     const auto [a, b, c] = corners(mesh_, Face(face));
     const Point& origin = mesh_.point(a);
@@ -140,14 +141,14 @@ bool FaceCutter::triangulate(Index face, const Cut& cut, const std::vector<Index
         handle[v] = inserted;
         return true;
     };
-    for (const Index v : chain)
+    for (const Index v : vertex_path)
         if (!insert(v)) return false;
     for (const Index v : cut.inner)
         if (!insert(v)) return false;
     const std::size_t known = handle.size();
     std::set<std::pair<Index, Index>> rim;
-    for (std::size_t i = 0; i < chain.size(); ++i) {
-        const Index v = chain[i], w = chain[(i + 1) % chain.size()];
+    for (std::size_t i = 0; i < vertex_path.size(); ++i) {
+        const Index v = vertex_path[i], w = vertex_path[(i + 1) % vertex_path.size()];
         rim.emplace(std::min(v, w), std::max(v, w));
         triangulation.insert_constraint(handle[v], handle[w]);
     }

@@ -35,7 +35,7 @@ private:
     Index add_point(const Point& p);
     void place_nodes(const std::vector<SurfaceCurve>& curves);
     [[nodiscard]] std::vector<Index> border(Index face) const;
-    bool triangulate(Index face, const Cut& cut, const std::vector<Index>& chain, bool with_curves,
+    bool triangulate(Index face, const Cut& cut, const std::vector<Index>& vertex_path, bool with_curves,
                      std::vector<std::array<Index, 3>>& triangles);
 
     const Mesh& mesh_;

@@ -35,7 +35,7 @@ protected:
     Points rest_;
 };
 
-std::vector<std::pair<int, int>> chain(int begin, int end) {
+std::vector<std::pair<int, int>> path_edges(int begin, int end) {
     std::vector<std::pair<int, int>> pairs;
     for (int i = begin; i + 1 < end; ++i) pairs.emplace_back(i, i + 1);
     return pairs;
@@ -132,7 +132,7 @@ void shift_lengths(std::vector<double>& lengths, const std::vector<double>& sign
 /// The length of a poly-line within a range: all edges become longer or shorter by the same amount.
 class PolylineLength final : public Edges {
 public:
-    explicit PolylineLength(const Making& m) : Edges(m, chain(0, static_cast<int>(m.ids.size()))) {
+    explicit PolylineLength(const Making& m) : Edges(m, path_edges(0, static_cast<int>(m.ids.size()))) {
         range_ = m.range_of(rest_.colwise().norm().sum());
     }
     void project(const RowsIn& rows, RowsOut projected) const override {
@@ -202,7 +202,7 @@ std::unique_ptr<Constraint> make_equal_lengths(Making&& m) { return std::make_un
 std::unique_ptr<Constraint> make_equal_length(Making&& m) {
     const int count = static_cast<int>(m.ids.size()), split = m.parameters.split;
     if (split < 2 || split > count - 2) m.fail("split is " + std::to_string(split), "both poly-lines need two points at least");
-    return std::make_unique<EqualLength>(m, chain(0, split), chain(split, count));
+    return std::make_unique<EqualLength>(m, path_edges(0, split), path_edges(split, count));
 }
 
 }  // namespace ostraka::solver

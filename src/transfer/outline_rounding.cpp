@@ -8,29 +8,29 @@
 namespace ostraka {
 
 OutlineRounding::OutlineRounding(const Mesh& source, const AnnotationSet& set, const Mesh& target,
-                                 const std::vector<std::vector<Chain>>& chains, ChainTracer& tracer)
+                                 const std::vector<std::vector<SourcePath>>& vertex_paths, PathTracer& tracer)
     : source_(source),
       set_(set),
       target_(target),
       tracer_(tracer),
       source_edge_(mean_edge_length(source)),
-      steps_(chains.size()) {
-    for (std::size_t i = 0; i < chains.size(); ++i) {
+      steps_(vertex_paths.size()) {
+    for (std::size_t i = 0; i < vertex_paths.size(); ++i) {
         if (set.annotations[i].type != AnnotationType::region) continue;
         TransferScore ignored;  // the same places were settled, and counted, for the paths
-        for (const Chain& chain : chains[i])
-            for (const ChainTracer::Step& step : tracer.trace_curves(chain, ignored)) steps_[i].push_back(step);
+        for (const SourcePath& vertex_path : vertex_paths[i])
+            for (const PathTracer::Step& step : tracer.trace_curves(vertex_path, ignored)) steps_[i].push_back(step);
     }
     users_.assign(tracer.curves().size(), 0);
     for (const auto& steps : steps_)
-        for (const ChainTracer::Step& step : steps) ++users_[step.curve];
+        for (const PathTracer::Step& step : steps) ++users_[step.curve];
 }
 
 void OutlineRounding::round(std::size_t region, std::vector<bool>& selected, double edge, bool balance) {
     if (steps_[region].empty()) return;
     std::vector<SurfaceCurve> curves;
     std::set<Index> shared;  // vertices along outlines that other regions have in common with this one
-    for (const ChainTracer::Step& step : steps_[region]) {
+    for (const PathTracer::Step& step : steps_[region]) {
         const SurfaceCurve& curve = tracer_.curves()[step.curve];
         if (users_[step.curve] > 1)
             for (const Index f : curve.faces)

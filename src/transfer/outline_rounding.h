@@ -1,8 +1,8 @@
 // Transferred regions rounded to the outlines as they truly run.
 #pragma once
 
-#include "chain_tracer.h"
 #include "ostraka/annotation/annotation.h"
+#include "path_tracer.h"
 #include "rounding.h"
 
 #include <vector>
@@ -11,9 +11,9 @@ namespace ostraka {
 
 class OutlineRounding {
 public:
-    /// Draws the outlines of all regions of `set` across the target's faces; `chains` are theirs, by annotation.
+    /// Draws the outlines of all regions of `set` across the target's faces; `paths` are theirs, by annotation.
     OutlineRounding(const Mesh& source, const AnnotationSet& set, const Mesh& target,
-                    const std::vector<std::vector<Chain>>& chains, ChainTracer& tracer);
+                    const std::vector<std::vector<SourcePath>>& vertex_paths, PathTracer& tracer);
 
     /// Rounds what only this region borders on; faces along outlines that regions share are put aside. `edge` is the typical
     /// edge length of the target.
@@ -27,10 +27,10 @@ private:
     const Mesh& source_;
     const AnnotationSet& set_;
     const Mesh& target_;
-    const ChainTracer& tracer_;
+    const PathTracer& tracer_;
     double source_edge_;
-    std::vector<std::vector<ChainTracer::Step>> steps_;  ///< by annotation
-    std::vector<int> users_;                             ///< by curve: how many regions it bounds
+    std::vector<std::vector<PathTracer::Step>> steps_;  ///< by annotation
+    std::vector<int> users_;                            ///< by curve: how many regions it bounds
     std::vector<SharedFace> put_aside_;
 };
 

@@ -10,8 +10,8 @@
 
 namespace ostraka {
 
-std::vector<Chain> region_chains(const Mesh& mesh, const std::vector<Index>& faces) {
-    std::vector<Chain> chains;
+std::vector<SourcePath> region_paths(const Mesh& mesh, const std::vector<Index>& faces) {
+    std::vector<SourcePath> vertex_paths;
     std::vector<bool> selected(mesh.number_of_faces(), false);
     for (const Index f : faces) selected[f] = true;
     for (const Outline& outline : extract_outlines(mesh, faces)) {
@@ -25,19 +25,19 @@ std::vector<Chain> region_chains(const Mesh& mesh, const std::vector<Index>& fac
             any = any || border[i];
         }
         if (!any) {
-            chains.push_back({outline, true, false});
+            vertex_paths.push_back({outline, true, false});
             continue;
         }
         for (std::size_t i = 0; i < n; ++i) {
             if (border[i] || !border[(i + n - 1) % n]) continue;
-            Chain chain;
-            chain.ends_on_border = true;
-            chain.vertices.push_back(outline[i]);
-            for (std::size_t k = i; !border[k % n]; ++k) chain.vertices.push_back(outline[(k + 1) % n]);
-            chains.push_back(std::move(chain));
+            SourcePath vertex_path;
+            vertex_path.ends_on_border = true;
+            vertex_path.vertices.push_back(outline[i]);
+            for (std::size_t k = i; !border[k % n]; ++k) vertex_path.vertices.push_back(outline[(k + 1) % n]);
+            vertex_paths.push_back(std::move(vertex_path));
         }
     }
-    return chains;
+    return vertex_paths;
 }
 
 std::vector<Index> diameter_path(const std::vector<Index>& walk) {
@@ -140,19 +140,22 @@ void free_large_patches(const Mesh& mesh, const std::vector<Index>& region, std:
 
 }  // namespace
 
-std::vector<bool> RegionTransfer::fill(const std::vector<Index>& region, const std::vector<TracedChain>& traced,
-                                       const std::vector<Chain>& chains, const Mesh& mesh, const std::vector<Index>* origin,
-                                       TransferScore& score) {
+std::vector<bool> RegionTransfer::fill(const std::vector<Index>& region, const std::vector<TracedPath>& traced,
+                                       const std::vector<SourcePath>& vertex_paths, const Mesh& mesh,
+                                       const std::vector<Index>* origin, TransferScore& score) {
     double source_area = 0;
     for (const Index f : region) source_area += face_area(source_, Face(f));
     std::vector<Halfedge> edges;
     std::size_t vanished = 0;
     double length = 0;
-    for (const TracedChain& chain : traced) {
-        if (chain.path.size() < 2) ++vanished;
-        const std::size_t steps = chain.path.size() < 2 ? 0 : chain.closed ? chain.path.size() : chain.path.size() - 1;
+    for (const TracedPath& vertex_path : traced) {
+        if (vertex_path.path.size() < 2) ++vanished;
+        const std::size_t steps = vertex_path.path.size() < 2 ? 0
+                                  : vertex_path.closed        ? vertex_path.path.size()
+                                                              : vertex_path.path.size() - 1;
         for (std::size_t i = 0; i < steps; ++i) {
-            const Halfedge h = find_halfedge(mesh, Vertex(chain.path[i]), Vertex(chain.path[(i + 1) % chain.path.size()]));
+            const Halfedge h =
+                find_halfedge(mesh, Vertex(vertex_path.path[i]), Vertex(vertex_path.path[(i + 1) % vertex_path.path.size()]));
             if (h == Mesh::null_halfedge()) continue;  // a gap between two components
             edges.push_back(h);
             length += std::sqrt(CGAL::squared_distance(mesh.point(mesh.source(h)), mesh.point(mesh.target(h))));
@@ -205,18 +208,19 @@ std::vector<bool> RegionTransfer::fill(const std::vector<Index>& region, const s
             score.voted = true;
         }
     }
-    if (options_.cover != TransferOptions::Cover::overlapping) cover(selected, chains, score);
+    if (options_.cover != TransferOptions::Cover::overlapping) cover(selected, vertex_paths, score);
     return selected;
 }
 
-void RegionTransfer::cover(std::vector<bool>& selected, const std::vector<Chain>& chains, TransferScore& score) {
+void RegionTransfer::cover(std::vector<bool>& selected, const std::vector<SourcePath>& vertex_paths, TransferScore& score) {
     // The faces that the outline itself runs through, drawn exactly.
     TransferScore ignored;
-    ChainTracer tracer(source_, search_, options_);
+    PathTracer tracer(source_, search_, options_);
     std::vector<Index> vertices;
-    for (const Chain& chain : chains) vertices.insert(vertices.end(), chain.vertices.begin(), chain.vertices.end());
+    for (const SourcePath& vertex_path : vertex_paths)
+        vertices.insert(vertices.end(), vertex_path.vertices.begin(), vertex_path.vertices.end());
     tracer.match(std::move(vertices));
-    for (const Chain& chain : chains) tracer.trace_curves(chain, ignored);
+    for (const SourcePath& vertex_path : vertex_paths) tracer.trace_curves(vertex_path, ignored);
     score.detours += ignored.detours;
     const Mesh& mesh = search_.mesh();
     // The crossed faces and the edges the outline follows part the others into pieces, each on one side as a whole.

@@ -1,16 +1,16 @@
 // The interior of a transferred region.
 #pragma once
 
-#include "chain_tracer.h"
+#include "path_tracer.h"
 
 #include <functional>
 #include <memory>
 
 namespace ostraka {
 
-/// The outlines of a region as chains. Where an outline runs along the border of an open mesh it is cut: the border of the
+/// The outlines of a region as paths. Where an outline runs along the border of an open mesh it is cut: the border of the
 /// target bounds the region there.
-std::vector<Chain> region_chains(const Mesh& mesh, const std::vector<Index>& faces);
+std::vector<SourcePath> region_paths(const Mesh& mesh, const std::vector<Index>& faces);
 
 /// The longest of the shortest paths within the edges of a walk, approximately (two sweeps): what a region that shrank to a
 /// tree of edges leaves as a line.
@@ -22,8 +22,8 @@ public:
     ~RegionTransfer();
 
     /// Flags of the faces of `mesh` (the target, or the target refined with `origin` giving each face's old one).
-    std::vector<bool> fill(const std::vector<Index>& region, const std::vector<TracedChain>& traced,
-                           const std::vector<Chain>& chains, const Mesh& mesh, const std::vector<Index>* origin,
+    std::vector<bool> fill(const std::vector<Index>& region, const std::vector<TracedPath>& traced,
+                           const std::vector<SourcePath>& vertex_paths, const Mesh& mesh, const std::vector<Index>* origin,
                            TransferScore& score);
 
     /// Whether a place on the target lies in `faces` of `mesh`.
@@ -33,7 +33,7 @@ public:
     [[nodiscard]] double target_edge() const { return target_edge_; }
 
 private:
-    void cover(std::vector<bool>& selected, const std::vector<Chain>& chains, TransferScore& score);
+    void cover(std::vector<bool>& selected, const std::vector<SourcePath>& vertex_paths, TransferScore& score);
 
     const Mesh& source_;
     const SurfaceSearch& search_;

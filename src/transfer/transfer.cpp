@@ -1,12 +1,12 @@
 #include "ostraka/transfer/transfer.h"
 
 #include "attribute_carrier.h"
-#include "chain_tracer.h"
 #include "ostraka/annotation/outline.h"
 #include "ostraka/core/progress.h"
 #include "ostraka/geom/polyline_distance.h"
 #include "ostraka/measure/measure.h"
 #include "outline_rounding.h"
+#include "path_tracer.h"
 #include "region_transfer.h"
 #include "scores.h"
 
@@ -85,7 +85,7 @@ public:
         std::optional<OutlineRounding> rounding;
         if (!options_.refine && options_.cover == TransferOptions::Cover::overlapping &&
             options_.rounding != TransferOptions::Rounding::path)
-            rounding.emplace(source_, set_, target_, chains_, tracer_);
+            rounding.emplace(source_, set_, target_, vertex_paths_, tracer_);
         fill_all(transferred, rounding ? &*rounding : nullptr);
         result_.times.regions = clock.lap();
         AttributeCarrier attributes(tracer_, result_.refined.has_value());
@@ -112,19 +112,20 @@ private:
 
     void match() {
         std::vector<Index> vertices;
-        chains_.resize(set_.annotations.size());
+        vertex_paths_.resize(set_.annotations.size());
         for (std::size_t i = 0; i < set_.annotations.size(); ++i) {
             const Annotation& annotation = set_.annotations[i];
             for (const auto& line : annotation.polylines) {
-                Chain chain;
-                chain.vertices = line;
-                chain.closed = line.size() > 2 && line.front() == line.back();
-                if (chain.closed) chain.vertices.pop_back();
-                chains_[i].push_back(std::move(chain));
+                SourcePath vertex_path;
+                vertex_path.vertices = line;
+                vertex_path.closed = line.size() > 2 && line.front() == line.back();
+                if (vertex_path.closed) vertex_path.vertices.pop_back();
+                vertex_paths_[i].push_back(std::move(vertex_path));
             }
             if (annotation.type == AnnotationType::region && !annotation.all)
-                chains_[i] = region_chains(source_, annotation.faces);
-            for (const Chain& chain : chains_[i]) vertices.insert(vertices.end(), chain.vertices.begin(), chain.vertices.end());
+                vertex_paths_[i] = region_paths(source_, annotation.faces);
+            for (const SourcePath& vertex_path : vertex_paths_[i])
+                vertices.insert(vertices.end(), vertex_path.vertices.begin(), vertex_path.vertices.end());
             vertices.insert(vertices.end(), annotation.points.begin(), annotation.points.end());
             for (const Attribute& attribute : annotation.attributes) {
                 const std::vector<Index> pins = pins_of(attribute.measure);
@@ -142,7 +143,8 @@ private:
         to.all = from.all;
         to.note = from.note;
         std::set<Index> vertices(from.points.begin(), from.points.end());
-        for (const Chain& chain : chains_[index_of(score)]) vertices.insert(chain.vertices.begin(), chain.vertices.end());
+        for (const SourcePath& vertex_path : vertex_paths_[index_of(score)])
+            vertices.insert(vertex_path.vertices.begin(), vertex_path.vertices.end());
         score.vertices = vertices.size();
         for (const Index v : vertices) {
             const Correspondence& place = tracer_.place(v);
@@ -161,25 +163,26 @@ private:
                 if (const Index w = tracer_.place(v).vertex; w != no_index) to.points.push_back(w);
             return;
         }
-        traced_.resize(chains_.size());
-        for (const Chain& chain : chains_[i]) {
-            traced_[i].push_back(tracer_.trace_edges(chain, result_.scores[i]));
+        traced_.resize(vertex_paths_.size());
+        for (const SourcePath& vertex_path : vertex_paths_[i]) {
+            traced_[i].push_back(tracer_.trace_edges(vertex_path, result_.scores[i]));
             if (from.type == AnnotationType::line) add_line(traced_[i].back(), to);
         }
     }
 
-    static void add_line(const TracedChain& chain, Annotation& to) {
-        std::vector<Index> line = chain.path;
-        if (line.empty()) line = diameter_path(chain.walk);
-        else if (chain.closed) line.push_back(line.front());
+    static void add_line(const TracedPath& vertex_path, Annotation& to) {
+        std::vector<Index> line = vertex_path.path;
+        if (line.empty()) line = diameter_path(vertex_path.walk);
+        else if (vertex_path.closed) line.push_back(line.front());
         if (line.size() >= 2) to.polylines.push_back(std::move(line));
     }
 
-    /// Curves of all annotations become edges at once; then each chain is read off the refined mesh.
+    /// Curves of all annotations become edges at once; then each path is read off the refined mesh.
     void insert(std::vector<Annotation>& transferred) {
-        std::vector<std::vector<std::vector<ChainTracer::Step>>> steps(chains_.size());
-        for (std::size_t i = 0; i < chains_.size(); ++i)
-            for (const Chain& chain : chains_[i]) steps[i].push_back(tracer_.trace_curves(chain, result_.scores[i]));
+        std::vector<std::vector<std::vector<PathTracer::Step>>> steps(vertex_paths_.size());
+        for (std::size_t i = 0; i < vertex_paths_.size(); ++i)
+            for (const SourcePath& vertex_path : vertex_paths_[i])
+                steps[i].push_back(tracer_.trace_curves(vertex_path, result_.scores[i]));
         std::vector<SurfaceCurve> curves = tracer_.curves();
         // Points become vertices too: curves of a single node.
         std::map<Index, std::size_t> point_curve;
@@ -195,44 +198,45 @@ private:
         result_.refined = insert_curves(target_, curves);
         const InsertedCurves& refined = *result_.refined;
         PathSearch paths(refined.mesh);
-        traced_.resize(chains_.size());
-        for (std::size_t i = 0; i < chains_.size(); ++i) {
+        traced_.resize(vertex_paths_.size());
+        for (std::size_t i = 0; i < vertex_paths_.size(); ++i) {
             const Annotation& from = set_.annotations[i];
             for (const Index v : from.points)
                 if (const auto found = point_curve.find(v); found != point_curve.end())
                     transferred[i].points.push_back(refined.node_vertex[found->second].front());
-            for (std::size_t c = 0; c < chains_[i].size(); ++c) {
-                TracedChain chain;
-                chain.closed = chains_[i][c].closed;
+            for (std::size_t c = 0; c < vertex_paths_[i].size(); ++c) {
+                TracedPath vertex_path;
+                vertex_path.closed = vertex_paths_[i][c].closed;
                 const auto to_vertex = [&](Index v) {
-                    if (chain.walk.empty()) {
-                        chain.walk.push_back(v);
+                    if (vertex_path.walk.empty()) {
+                        vertex_path.walk.push_back(v);
                         return;
                     }
-                    const Index last = chain.walk.back();
+                    const Index last = vertex_path.walk.back();
                     if (last == v) return;
                     if (find_halfedge(refined.mesh, Vertex(last), Vertex(v)) != Mesh::null_halfedge()) {
-                        chain.walk.push_back(v);
+                        vertex_path.walk.push_back(v);
                         return;
                     }
                     const std::vector<Index> way = paths.find(Vertex(last), Vertex(v), {});
-                    if (!way.empty()) chain.walk.insert(chain.walk.end(), way.begin() + 1, way.end());
+                    if (!way.empty()) vertex_path.walk.insert(vertex_path.walk.end(), way.begin() + 1, way.end());
                 };
-                for (const ChainTracer::Step& step : steps[i][c]) {
+                for (const PathTracer::Step& step : steps[i][c]) {
                     const auto& nodes = refined.node_vertex[step.curve];
                     if (step.backwards)
                         for (auto v = nodes.rbegin(); v != nodes.rend(); ++v) to_vertex(*v);
                     else
                         for (const Index v : nodes) to_vertex(v);
                 }
-                if (chain.walk.empty() && !chains_[i][c].vertices.empty()) {
-                    const Correspondence& place = tracer_.place(chains_[i][c].vertices.front());
-                    if (place.vertex != no_index) chain.walk.push_back(place.vertex);
+                if (vertex_path.walk.empty() && !vertex_paths_[i][c].vertices.empty()) {
+                    const Correspondence& place = tracer_.place(vertex_paths_[i][c].vertices.front());
+                    if (place.vertex != no_index) vertex_path.walk.push_back(place.vertex);
                 }
-                if (chain.closed && chain.walk.size() > 1 && chain.walk.front() == chain.walk.back()) chain.walk.pop_back();
-                chain.path = prune_spikes(chain.walk, chain.closed);
-                traced_[i].push_back(chain);
-                if (from.type == AnnotationType::line) add_line(chain, transferred[i]);
+                if (vertex_path.closed && vertex_path.walk.size() > 1 && vertex_path.walk.front() == vertex_path.walk.back())
+                    vertex_path.walk.pop_back();
+                vertex_path.path = prune_spikes(vertex_path.walk, vertex_path.closed);
+                traced_[i].push_back(vertex_path);
+                if (from.type == AnnotationType::line) add_line(vertex_path, transferred[i]);
             }
         }
     }
@@ -243,7 +247,7 @@ private:
             const Annotation& from = set_.annotations[i];
             if (from.type != AnnotationType::region || from.all) continue;
             TransferScore& score = result_.scores[i];
-            selected[i] = regions_.fill(from.faces, traced_[i], chains_[i], on(),
+            selected[i] = regions_.fill(from.faces, traced_[i], vertex_paths_[i], on(),
                                         result_.refined ? &result_.refined->face_origin : nullptr, score);
             const bool any = std::find(selected[i].begin(), selected[i].end(), true) != selected[i].end();
             if (any && !score.voted && rounding != nullptr)
@@ -259,8 +263,8 @@ private:
     /// A line that is shorter than the target's edges becomes a point.
     void finish_line(std::size_t i, Annotation& to) {
         if (!to.polylines.empty()) return;
-        for (const TracedChain& chain : traced_[i])
-            if (!chain.walk.empty()) to.points.push_back(chain.walk.front());
+        for (const TracedPath& vertex_path : traced_[i])
+            if (!vertex_path.walk.empty()) to.points.push_back(vertex_path.walk.front());
         if (to.points.empty()) return;
         to.type = AnnotationType::point;
         result_.scores[i].outcome = TransferOutcome::became_point;
@@ -278,8 +282,8 @@ private:
         if (!to.faces.empty()) return;
         // Nothing but a trace is left: the longest one stands for the region.
         std::vector<Index> line;
-        for (const TracedChain& chain : traced_[i])
-            if (std::vector<Index> path = diameter_path(chain.walk); path.size() > line.size()) line = std::move(path);
+        for (const TracedPath& vertex_path : traced_[i])
+            if (std::vector<Index> path = diameter_path(vertex_path.walk); path.size() > line.size()) line = std::move(path);
         if (line.size() >= 2) {
             to.type = AnnotationType::line;
             to.polylines = {line};
@@ -301,10 +305,10 @@ private:
     const SurfaceSearch& search_;
     const Mesh& target_;
     const TransferOptions& options_;
-    ChainTracer tracer_;
+    PathTracer tracer_;
     RegionTransfer regions_;
-    std::vector<std::vector<Chain>> chains_;
-    std::vector<std::vector<TracedChain>> traced_;
+    std::vector<std::vector<SourcePath>> vertex_paths_;
+    std::vector<std::vector<TracedPath>> traced_;
     std::unique_ptr<SurfaceSearch> source_search_;  ///< built when a score needs it
     TransferResult result_;
 };

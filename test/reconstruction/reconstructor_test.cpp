@@ -106,7 +106,7 @@ TEST(Reconstructor, AddingAndRemovingIsTheSameAsFromScratch) {
         check("two");
         remove(0);
         check("the second");
-        if (levels > 4) continue;  // longer chains on the small one only
+        if (levels > 4) continue;  // longer paths on the small one only
         add(2);
         check("and the third");
         add(0);

@@ -22,9 +22,9 @@ Annotation region(int id, std::vector<Index> faces) {
     a.faces.erase(std::unique(a.faces.begin(), a.faces.end()), a.faces.end());
     return a;
 }
-Annotation line(int id, std::vector<std::vector<Index>> chains) {
+Annotation line(int id, std::vector<std::vector<Index>> polylines) {
     Annotation a;
-    a.id = id, a.tag = "l", a.type = AnnotationType::line, a.polylines = std::move(chains);
+    a.id = id, a.tag = "l", a.type = AnnotationType::line, a.polylines = std::move(polylines);
     return a;
 }
 Annotation points(int id, std::vector<Index> list) {
@@ -37,15 +37,15 @@ Annotation points(int id, std::vector<Index> list) {
 bool contained(const Mesh& mesh, const Annotation& inner, const Annotation& outer) {
     const auto vertices = [&](const Annotation& a) {
         std::set<Index> result(a.points.begin(), a.points.end());
-        for (const auto& chain : a.polylines) result.insert(chain.begin(), chain.end());
+        for (const auto& polyline : a.polylines) result.insert(polyline.begin(), polyline.end());
         for (const Index f : a.faces)
             for (const Vertex v : corners(mesh, Face(f))) result.insert(v.idx());
         return result;
     };
     const auto edges = [](const Annotation& a) {
         std::set<std::pair<Index, Index>> result;
-        for (const auto& chain : a.polylines)
-            for (std::size_t i = 1; i < chain.size(); ++i) result.insert(std::minmax(chain[i - 1], chain[i]));
+        for (const auto& polyline : a.polylines)
+            for (std::size_t i = 1; i < polyline.size(); ++i) result.insert(std::minmax(polyline[i - 1], polyline[i]));
         return result;
     };
     const auto within = [](const auto& a, const auto& b) { return std::includes(b.begin(), b.end(), a.begin(), a.end()); };
@@ -73,13 +73,13 @@ std::vector<Index> patch_around(const Mesh& mesh, Index seed, std::size_t count)
 }
 
 std::vector<Index> walk(const Mesh& mesh, Index start, std::size_t steps, std::mt19937& random) {
-    std::vector<Index> chain{start};
-    while (chain.size() <= steps) {
+    std::vector<Index> polyline{start};
+    while (polyline.size() <= steps) {
         std::vector<Index> ring;
-        for (const Vertex v : mesh.vertices_around_target(mesh.halfedge(Vertex(chain.back())))) ring.push_back(v.idx());
-        chain.push_back(ring[random() % ring.size()]);
+        for (const Vertex v : mesh.vertices_around_target(mesh.halfedge(Vertex(polyline.back())))) ring.push_back(v.idx());
+        polyline.push_back(ring[random() % ring.size()]);
     }
-    return chain;
+    return polyline;
 }
 
 /// Random selections with copies, parts and overlaps among them.
@@ -102,8 +102,8 @@ AnnotationSet random_set(const Mesh& mesh, std::uint32_t seed, std::size_t count
             for (std::size_t k = 0; k < 1 + random() % 3; ++k) list.push_back(inside[random() % inside.size()]);
             a = points(id, list);
         } else if (old != nullptr && kind == 4 && old->type == AnnotationType::line) {
-            const auto& chain = old->polylines.front();  // a stretch of another, backwards
-            std::vector<Index> part(chain.begin(), chain.begin() + static_cast<long>(2 + random() % (chain.size() - 1)));
+            const auto& polyline = old->polylines.front();  // a stretch of another, backwards
+            std::vector<Index> part(polyline.begin(), polyline.begin() + static_cast<long>(2 + random() % (polyline.size() - 1)));
             std::reverse(part.begin(), part.end());
             a = line(id, {part});
         } else if (kind <= 5) {

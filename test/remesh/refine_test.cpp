@@ -71,18 +71,18 @@ TEST_P(EveryScheme, PropertiesAndPolylinesAreCarried) {
         for (const Edge e : mesh.edges())
             ASSERT_EQ(mark[e], result.edge_origin[e] == no_index ? -1 : int(result.edge_origin[e] % 7));
         for (const Vertex v : mesh.vertices()) ASSERT_EQ(point[v], Index(v) < result.old_vertices ? Index(v) : 5);
-        const std::vector<Index> chain = refine_polyline(mesh, result, line);
+        const std::vector<Index> vertex_path = refine_polyline(mesh, result, line);
         std::size_t next = 0;
-        for (std::size_t i = 0; i < chain.size(); ++i) {
+        for (std::size_t i = 0; i < vertex_path.size(); ++i) {
             if (i > 0) {
-                ASSERT_NE(find_halfedge(mesh, Vertex(chain[i - 1]), Vertex(chain[i])), Mesh::null_halfedge());
+                ASSERT_NE(find_halfedge(mesh, Vertex(vertex_path[i - 1]), Vertex(vertex_path[i])), Mesh::null_halfedge());
             }
-            if (chain[i] < result.old_vertices) {
-                ASSERT_EQ(chain[i], line.at(next++));
+            if (vertex_path[i] < result.old_vertices) {
+                ASSERT_EQ(vertex_path[i], line.at(next++));
             }
         }
         EXPECT_EQ(next, line.size());
-        EXPECT_GT(chain.size(), line.size());
+        EXPECT_GT(vertex_path.size(), line.size());
     }
 }
 

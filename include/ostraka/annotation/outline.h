@@ -8,7 +8,7 @@
 
 namespace ostraka {
 
-/// A closed chain of vertices, the first not repeated; the interior lies to the left of each edge.
+/// A closed path of vertices, the first not repeated; the interior lies to the left of each edge.
 using Outline = std::vector<Index>;
 
 /// The outlines of a set of faces, given as one flag per face. Where an outline touches itself at a vertex it turns so

@@ -11,7 +11,7 @@ namespace ostraka {
 /// Walks balls on one mesh without allocating anew; one for each thread.
 class Neighbourhood {
 public:
-    /// Calls visit(vertex, squared distance) for `centre` and every vertex nearer than `radius` that a chain of edges inside the
+    /// Calls visit(vertex, squared distance) for `centre` and every vertex nearer than `radius` that a path of edges inside the
     /// ball joins to it; the order depends on the mesh alone.
     template <class Visit>
     void walk(const Mesh& mesh, Vertex centre, double radius, Visit&& visit) {

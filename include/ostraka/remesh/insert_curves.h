@@ -16,7 +16,7 @@ struct InsertedCurves {
     std::size_t new_vertices = 0;
 };
 
-/// Adds a vertex at each node of the curves and cuts the faces so that each piece of a curve is an edge, or a chain of edges
+/// Adds a vertex at each node of the curves and cuts the faces so that each piece of a curve is an edge, or a path of edges
 /// where curves cross inside a face (constrained Delaunay triangulation of each face that is crossed, in its plane).
 /// Nodes with the same element and the same place become one vertex. New faces stand where their old face stood.
 /// Linear in the mesh plus O(k log k) per face with k nodes. Throws Error (input) for a node out of range.

@@ -10,7 +10,7 @@
 
 namespace ostraka {
 
-/// A chain of points on or near the surface.
+/// A poly-line of points on or near the surface.
 struct SceneLine {
     std::vector<std::array<double, 3>> points;
     Rgb colour;

@@ -1,11 +1,11 @@
-#include "edge_chains.h"
+#include "vertex_paths.h"
 
 #include <algorithm>
 #include <tuple>
 
 namespace ostraka {
 
-std::vector<std::vector<Index>> chain_edges(const std::vector<std::pair<Index, Index>>& edges) {
+std::vector<std::vector<Index>> join_into_paths(const std::vector<std::pair<Index, Index>>& edges) {
     struct Link {
         Index from, to;
         std::size_t edge;
@@ -30,23 +30,23 @@ std::vector<std::vector<Index>> chain_edges(const std::vector<std::pair<Index, I
         const auto [first, last] = around(vertex);
         return last - first;
     };
-    std::vector<std::vector<Index>> chains;
+    std::vector<std::vector<Index>> vertex_paths;
     const auto walk = [&](const Link& start) {
-        std::vector<Index> chain{start.from, start.to};
+        std::vector<Index> vertex_path{start.from, start.to};
         used[start.edge] = true;
-        while (chain.back() != chain.front() && degree(chain.back()) == 2 && unused(chain.back())) {
-            const auto [first, last] = around(chain.back());
+        while (vertex_path.back() != vertex_path.front() && degree(vertex_path.back()) == 2 && unused(vertex_path.back())) {
+            const auto [first, last] = around(vertex_path.back());
             const auto next = std::find_if(first, last, [&](const Link& link) { return !used[link.edge]; });
             used[next->edge] = true;
-            chain.push_back(next->to);
+            vertex_path.push_back(next->to);
         }
-        chains.push_back(std::move(chain));
+        vertex_paths.push_back(std::move(vertex_path));
     };
     for (const Link& link : links)
         if (!used[link.edge] && degree(link.from) != 2) walk(link);
     for (const Link& link : links)
         if (!used[link.edge]) walk(link);
-    return chains;
+    return vertex_paths;
 }
 
 }  // namespace ostraka

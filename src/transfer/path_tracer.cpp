@@ -1,11 +1,11 @@
-#include "chain_tracer.h"
+#include "path_tracer.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace ostraka {
 
-ChainTracer::ChainTracer(const Mesh& source, const SurfaceSearch& target, const TransferOptions& options)
+PathTracer::PathTracer(const Mesh& source, const SurfaceSearch& target, const TransferOptions& options)
     : source_(source),
       search_(target),
       target_(target.mesh()),
@@ -13,26 +13,26 @@ ChainTracer::ChainTracer(const Mesh& source, const SurfaceSearch& target, const 
       metric_(options.metric),
       paths_(target.mesh()) {}
 
-void ChainTracer::match(std::vector<Index> vertices) {
+void PathTracer::match(std::vector<Index> vertices) {
     std::sort(vertices.begin(), vertices.end());
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
     const auto found = find_correspondences(source_, vertices, search_, options_.correspondence);
     for (std::size_t i = 0; i < vertices.size(); ++i) places_[vertices[i]] = found[i];
 }
 
-double ChainTracer::longest_edge(Index face) const {
+double PathTracer::longest_edge(Index face) const {
     double longest = 0;
     for (const Halfedge h : CGAL::halfedges_around_face(target_.halfedge(Face(face)), target_))
         longest = std::max(longest, CGAL::squared_distance(target_.point(target_.source(h)), target_.point(target_.target(h))));
     return std::sqrt(longest);
 }
 
-double ChainTracer::limit(const Correspondence& a, const Correspondence& b, double source_length) const {
+double PathTracer::limit(const Correspondence& a, const Correspondence& b, double source_length) const {
     // Snapping to vertices adds up to an edge at both ends, and edge paths are at most about twice as long as straight ones.
     return 3 * source_length + 3 * (longest_edge(a.place.face) + longest_edge(b.place.face));
 }
 
-const std::vector<Index>& ChainTracer::path(Index a, Index b, double limit) {
+const std::vector<Index>& PathTracer::path(Index a, Index b, double limit) {
     const auto key = std::minmax(a, b);
     const auto [entry, fresh] = path_cache_.try_emplace(key);
     if (fresh) {
@@ -44,20 +44,20 @@ const std::vector<Index>& ChainTracer::path(Index a, Index b, double limit) {
     return entry->second;
 }
 
-std::vector<Correspondence> ChainTracer::settle(const Chain& chain, TransferScore& score) {
-    const std::size_t n = chain.vertices.size();
+std::vector<Correspondence> PathTracer::settle(const SourcePath& vertex_path, TransferScore& score) {
+    const std::size_t n = vertex_path.vertices.size();
     std::vector<Correspondence> result(n);
-    for (std::size_t i = 0; i < n; ++i) result[i] = places_.at(chain.vertices[i]);
+    for (std::size_t i = 0; i < n; ++i) result[i] = places_.at(vertex_path.vertices[i]);
     const auto source_length = [&](std::size_t i, std::size_t j) {
-        return std::sqrt(
-            CGAL::squared_distance(source_.point(Vertex(chain.vertices[i])), source_.point(Vertex(chain.vertices[j]))));
+        return std::sqrt(CGAL::squared_distance(source_.point(Vertex(vertex_path.vertices[i])),
+                                                source_.point(Vertex(vertex_path.vertices[j]))));
     };
     const auto joined = [&](const Correspondence& a, const Correspondence& b, double length) {
         return a.vertex == b.vertex || !path(a.vertex, b.vertex, limit(a, b, length)).empty();
     };
     // Runs of vertices whose places follow each other; a vertex without a place is a run of its own.
     std::vector<std::size_t> breaks;  // a break lies before vertex i
-    for (std::size_t i = chain.closed ? 0 : 1; i < n; ++i) {
+    for (std::size_t i = vertex_path.closed ? 0 : 1; i < n; ++i) {
         const std::size_t before = i == 0 ? n - 1 : i - 1;
         if (result[i].vertex == no_index || result[before].vertex == no_index ||
             !joined(result[before], result[i], source_length(before, i)))
@@ -67,7 +67,7 @@ std::vector<Correspondence> ChainTracer::settle(const Chain& chain, TransferScor
     std::size_t start = 0, longest = 0;
     for (std::size_t b = 0; b <= breaks.size(); ++b) {
         std::size_t first, last;
-        if (chain.closed) {
+        if (vertex_path.closed) {
             if (b == breaks.size()) break;
             first = breaks[b];
             last = breaks[(b + 1) % breaks.size()] + (b + 1 == breaks.size() ? n : 0);
@@ -94,7 +94,7 @@ std::vector<Correspondence> ChainTracer::settle(const Chain& chain, TransferScor
             if (!joined(result[last], result[i], length)) {
                 Correspondence chosen;
                 for (Correspondence& candidate :
-                     candidate_correspondences(source_, chain.vertices[i], search_, options_.correspondence))
+                     candidate_correspondences(source_, vertex_path.vertices[i], search_, options_.correspondence))
                     if (joined(result[last], candidate, length)) {
                         chosen = candidate;
                         chosen.relocated = true;
@@ -108,7 +108,7 @@ std::vector<Correspondence> ChainTracer::settle(const Chain& chain, TransferScor
             length = 0;
         }
     };
-    if (chain.closed) {
+    if (vertex_path.closed) {
         spread(+1, n - 1, start);
     } else {
         spread(+1, n - 1 - start, start);
@@ -117,7 +117,7 @@ std::vector<Correspondence> ChainTracer::settle(const Chain& chain, TransferScor
     return result;
 }
 
-std::vector<Index> ChainTracer::connect(Index a, Index b, double longest, TransferScore& score, const std::vector<bool>* used) {
+std::vector<Index> PathTracer::connect(Index a, Index b, double longest, TransferScore& score, const std::vector<bool>* used) {
     if (used != nullptr) {
         PathSearch::Query query;
         query.metric = metric_;
@@ -137,25 +137,25 @@ std::vector<Index> ChainTracer::connect(Index a, Index b, double longest, Transf
     return found;
 }
 
-TracedChain ChainTracer::trace_edges(const Chain& chain, TransferScore& score) {
-    std::vector<Correspondence> places = settle(chain, score);
-    std::vector<std::size_t> at;  // chain positions with a place
+TracedPath PathTracer::trace_edges(const SourcePath& vertex_path, TransferScore& score) {
+    std::vector<Correspondence> places = settle(vertex_path, score);
+    std::vector<std::size_t> at;  // path positions with a place
     for (std::size_t i = 0; i < places.size(); ++i)
         if (places[i].vertex != no_index) at.push_back(i);
-    TracedChain traced;
-    traced.closed = chain.closed;
+    TracedPath traced;
+    traced.closed = vertex_path.closed;
     if (at.empty()) return traced;
     traced.walk.push_back(places[at.front()].vertex);
     std::vector<bool> used;
     if (options_.spikes == TransferOptions::Spikes::avoid) used.assign(target_.number_of_vertices(), false);
-    const std::size_t steps = chain.closed ? at.size() : at.size() - 1;
+    const std::size_t steps = vertex_path.closed ? at.size() : at.size() - 1;
     for (std::size_t k = 0; k < steps; ++k) {
         const std::size_t i = at[k], j = at[(k + 1) % at.size()];
         if (places[i].vertex == places[j].vertex) continue;
         double length = 0;
         for (std::size_t m = i; m != j; m = (m + 1) % places.size())
-            length += std::sqrt(CGAL::squared_distance(source_.point(Vertex(chain.vertices[m])),
-                                                       source_.point(Vertex(chain.vertices[(m + 1) % places.size()]))));
+            length += std::sqrt(CGAL::squared_distance(source_.point(Vertex(vertex_path.vertices[m])),
+                                                       source_.point(Vertex(vertex_path.vertices[(m + 1) % places.size()]))));
         const std::vector<Index> found = connect(places[i].vertex, places[j].vertex, limit(places[i], places[j], length), score,
                                                  used.empty() ? nullptr : &used);
         if (found.empty()) continue;  // two components: the gap stays
@@ -163,7 +163,7 @@ TracedChain ChainTracer::trace_edges(const Chain& chain, TransferScore& score) {
         if (!used.empty())
             for (const Index v : found) used[v] = true;
     }
-    if (chain.ends_on_border) {
+    if (vertex_path.ends_on_border) {
         // The outline ran along the border here; on the target it is led to the border again.
         const auto on_border = [&](Vertex v) { return target_.is_border(v); };
         for (const bool at_end : {true, false}) {
@@ -179,24 +179,24 @@ TracedChain ChainTracer::trace_edges(const Chain& chain, TransferScore& score) {
             }
         }
     }
-    if (chain.closed && traced.walk.size() > 1 && traced.walk.front() == traced.walk.back()) traced.walk.pop_back();
-    traced.path = options_.spikes == TransferOptions::Spikes::keep ? traced.walk : prune_spikes(traced.walk, chain.closed);
+    if (vertex_path.closed && traced.walk.size() > 1 && traced.walk.front() == traced.walk.back()) traced.walk.pop_back();
+    traced.path = options_.spikes == TransferOptions::Spikes::keep ? traced.walk : prune_spikes(traced.walk, vertex_path.closed);
     return traced;
 }
 
-std::vector<ChainTracer::Step> ChainTracer::trace_curves(const Chain& chain, TransferScore& score) {
-    const std::vector<Correspondence> places = settle(chain, score);
+std::vector<PathTracer::Step> PathTracer::trace_curves(const SourcePath& vertex_path, TransferScore& score) {
+    const std::vector<Correspondence> places = settle(vertex_path, score);
     std::vector<std::size_t> at;
     for (std::size_t i = 0; i < places.size(); ++i)
         if (places[i].vertex != no_index) at.push_back(i);
     std::vector<Step> steps;
-    const std::size_t count = at.empty() ? 0 : chain.closed ? at.size() : at.size() - 1;
+    const std::size_t count = at.empty() ? 0 : vertex_path.closed ? at.size() : at.size() - 1;
     for (std::size_t k = 0; k < count; ++k) {
         std::size_t i = at[k], j = at[(k + 1) % at.size()];
-        const auto key = std::minmax(chain.vertices[i], chain.vertices[j]);
-        const bool backwards = key.first != chain.vertices[i];
+        const auto key = std::minmax(vertex_path.vertices[i], vertex_path.vertices[j]);
+        const bool backwards = key.first != vertex_path.vertices[i];
         const auto known = curve_cache_.find(key);
-        // A relocated place is the chain's own: its curves are not shared.
+        // A relocated place is the path's own: its curves are not shared.
         if (known != curve_cache_.end() && !places[i].relocated && !places[j].relocated) {
             steps.push_back({known->second, backwards});
             continue;

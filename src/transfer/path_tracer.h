@@ -1,4 +1,4 @@
-// Chains of source vertices drawn on the target: edge paths, or curves across faces.
+// Paths of source vertices drawn on the target: edge paths, or curves across faces.
 #pragma once
 
 #include "ostraka/geom/shortest_path.h"
@@ -12,42 +12,42 @@
 namespace ostraka {
 
 /// Successive vertices of an outline or a poly-line on the source.
-struct Chain {
-    std::vector<Index> vertices;  ///< a closed chain does not repeat its first vertex
+struct SourcePath {
+    std::vector<Index> vertices;  ///< a closed path does not repeat its first vertex
     bool closed = false;
-    bool ends_on_border = false;  ///< an open chain cut from an outline where it met the border
+    bool ends_on_border = false;  ///< an open path cut from an outline where it met the border
 };
 
-/// A chain on the target.
-struct TracedChain {
+/// A path on the target.
+struct TracedPath {
     std::vector<Index> walk;  ///< all vertices passed, before pruning
-    std::vector<Index> path;  ///< what is left after spikes were dealt with; empty if the chain shrank to nothing
+    std::vector<Index> path;  ///< what is left after spikes were dealt with; empty if the path shrank to nothing
     bool closed = false;
 };
 
-class ChainTracer {
+class PathTracer {
 public:
-    ChainTracer(const Mesh& source, const SurfaceSearch& target, const TransferOptions& options);
+    PathTracer(const Mesh& source, const SurfaceSearch& target, const TransferOptions& options);
 
     /// Finds the places of many vertices at once (all threads).
     void match(std::vector<Index> vertices);
     [[nodiscard]] const Correspondence& place(Index vertex) const { return places_.at(vertex); }
 
-    /// The places of a chain's vertices after the check for layers: neighbours must be joined by a path not much longer than
-    /// the chain between them. The longest run of vertices that agree is trusted; others are placed again among their
+    /// The places of a path's vertices after the check for layers: neighbours must be joined by a path not much longer than
+    /// the path between them. The longest run of vertices that agree is trusted; others are placed again among their
     /// candidates, or left out.
-    std::vector<Correspondence> settle(const Chain& chain, TransferScore& score);
+    std::vector<Correspondence> settle(const SourcePath& vertex_path, TransferScore& score);
 
     /// Thesis, Algorithm 1.
-    TracedChain trace_edges(const Chain& chain, TransferScore& score);
+    TracedPath trace_edges(const SourcePath& vertex_path, TransferScore& score);
 
-    /// The chain as lines from face to face; each source edge gives one or more curves, cached so that outlines that share
+    /// The path as lines from face to face; each source edge gives one or more curves, cached so that outlines that share
     /// an edge share the curve. Returns, per step, the index into `curves()` and whether it is run backwards.
     struct Step {
         std::size_t curve;
         bool backwards;
     };
-    std::vector<Step> trace_curves(const Chain& chain, TransferScore& score);
+    std::vector<Step> trace_curves(const SourcePath& vertex_path, TransferScore& score);
     [[nodiscard]] const std::vector<SurfaceCurve>& curves() const { return curves_; }
 
 private:
