@@ -14,7 +14,7 @@ namespace ostraka::bench {
 
 namespace {
 
-struct Run {
+struct CommandResult {
     int exit_code = -1;
     double seconds = 0, processor_seconds = 0, peak_bytes = 0;
 };
@@ -22,7 +22,7 @@ struct Run {
 double seconds(const timeval& time) { return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec); }
 
 /// A child's peak counts from the moment it splits from this process, so this process must be smaller than what is measured.
-Run run_command(std::vector<std::string> arguments) {
+CommandResult run_command(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), OSTRAKA_COMMAND);
     std::vector<char*> pointers;
     for (std::string& argument : arguments) pointers.push_back(argument.data());
@@ -35,7 +35,7 @@ Run run_command(std::vector<std::string> arguments) {
         ::execv(pointers.front(), pointers.data());
         ::_exit(127);
     }
-    Run run;
+    CommandResult run;
     int status = 0;
     rusage usage{};
     if (child < 0 || ::wait4(child, &status, 0, &usage) != child || !WIFEXITED(status)) return run;
@@ -65,7 +65,7 @@ bool make_teapot(const std::string& name, std::size_t vertices, int seed) {
     return known->second;
 }
 
-void report(benchmark::State& state, const Run& run, std::size_t vertices) {
+void report(benchmark::State& state, const CommandResult& run, std::size_t vertices) {
     state.SetIterationTime(run.seconds);
     state.counters["cpu_s"] = run.processor_seconds;
     state.counters["peak_MB"] = run.peak_bytes / 1e6;
@@ -76,7 +76,7 @@ void measure_command(benchmark::State& state, const std::vector<std::string>& ar
     for ([[maybe_unused]] const auto lap : state) {
         rusage own{};
         ::getrusage(RUSAGE_SELF, &own);
-        const Run run = run_command(arguments);
+        const CommandResult run = run_command(arguments);
         if (run.exit_code != 0) state.SkipWithError(("exit code " + std::to_string(run.exit_code)).c_str());
         else if (run.peak_bytes < 2048.0 * static_cast<double>(own.ru_maxrss))
             state.SkipWithError("this process is too large for a measurement: run the command benchmarks alone");

@@ -67,10 +67,10 @@ void report_fit(const std::string& name, const Mesh& from, const AnnotationSet& 
                     goal = landmarks_of({to.mesh.points().begin(), to.mesh.points().end()});
     ProcrustesOptions scaled;
     scaled.scaling = true;
-    const Landmarks laid = procrustes(start, goal, scaled).apply(start);
+    const Landmarks aligned = procrustes(start, goal, scaled).apply(start);
     for (const Vertex v : to.mesh.vertices()) {
         off.push_back((eigen(fit.points[v]) - eigen(to.mesh.point(v))).norm() / diagonal);
-        rigid.push_back((laid.row(static_cast<Eigen::Index>(v.idx())) - goal.row(static_cast<Eigen::Index>(v.idx()))).norm() /
+        rigid.push_back((aligned.row(static_cast<Eigen::Index>(v.idx())) - goal.row(static_cast<Eigen::Index>(v.idx()))).norm() /
                         diagonal);
     }
     const auto row = [](std::vector<double> list) {

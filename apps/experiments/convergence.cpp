@@ -13,10 +13,10 @@ namespace {
 constexpr double rounding = 1e-12;
 
 /// Where what is left is a share of what it was at `from`, or no more than rounding.
-std::optional<Reached> reached(const SolveSummary& summary, std::size_t from, double best, double share) {
+std::optional<IterationReached> reached(const SolveSummary& summary, std::size_t from, double best, double share) {
     const double enough = std::max(share * (summary.objective[from] - best), rounding * (summary.objective.front() - best));
     for (std::size_t i = from; i < summary.objective.size(); ++i)
-        if (summary.objective[i] - best <= enough) return Reached{static_cast<int>(i), summary.seconds[i]};
+        if (summary.objective[i] - best <= enough) return IterationReached{static_cast<int>(i), summary.seconds[i]};
     return {};
 }
 
@@ -25,7 +25,7 @@ double left_of(const SolveSummary& summary, std::size_t i, double best) {
     return whole > 0 ? (summary.objective[i] - best) / whole : 0;
 }
 
-std::string text_of(const std::optional<Reached>& place, int iterations) {
+std::string text_of(const std::optional<IterationReached>& place, int iterations) {
     char text[64];
     if (place) std::snprintf(text, sizeof text, "%d (%.3g s)", place->iterations, place->seconds);
     else std::snprintf(text, sizeof text, "not in %d", iterations);

@@ -21,7 +21,7 @@ struct SolveRun {
 double best_objective(const std::vector<SolveRun>& runs, double known = std::numeric_limits<double>::infinity());
 
 /// Where the objective, less the best, has fallen to a share of what it was.
-struct Reached {
+struct IterationReached {
     int iterations = 0;
     double seconds = 0;  ///< of iterations; the set-up is apart
 };
@@ -29,10 +29,11 @@ struct Reached {
 struct Convergence {
     std::string name;
     int iterations = 0;
-    double setup = 0, seconds = 0;                   ///< of the set-up, of all iterations
-    double left = 0;                                 ///< (last - best) / (start - best)
-    double first_step = 0;                           ///< (after the first step - best) / (start - best)
-    std::optional<Reached> of_start, of_first_step;  ///< a thousandth of what was left at the start, and after the first step
+    double setup = 0, seconds = 0;  ///< of the set-up, of all iterations
+    double left = 0;                ///< (last - best) / (start - best)
+    double first_step = 0;          ///< (after the first step - best) / (start - best)
+    std::optional<IterationReached> of_start,
+        of_first_step;  ///< a thousandth of what was left at the start, and after the first step
     int refused = 0;
 };
 

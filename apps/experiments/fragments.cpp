@@ -182,13 +182,13 @@ Row run(const Canon& canon, const ShapePrior* prior, const TemplateCage* cage, c
     row.crossings = result.crossings;
     // The truth where the fragment was laid.
     const Motion frame = result.placement.fragments[0].pose.after(piece.pose.inverse());
-    std::vector<Vector3d> truth, laid;
+    std::vector<Vector3d> truth, aligned;
     for (const Vertex v : mesh.vertices()) {
         truth.push_back(frame(eigen(whole.point(v))));
-        laid.push_back(result.placement.scale * eigen(mesh.point(v)));
+        aligned.push_back(result.placement.scale * eigen(mesh.point(v)));
     }
     // Where it would lie best as a whole.
-    const Motion best = fit_motion(truth, laid);
+    const Motion best = fit_motion(truth, aligned);
     row.angle = Eigen::AngleAxisd(best.rotation).angle() * 180 / std::numbers::pi;
     Vector3d mean = Vector3d::Zero();
     for (const Vector3d& p : truth) mean += p / static_cast<double>(truth.size());
@@ -202,7 +202,7 @@ Row run(const Canon& canon, const ShapePrior* prior, const TemplateCage* cage, c
             ++count_seen;
         } else {
             missing += (eigen(result.points[v]) - truth[v]).squaredNorm();
-            rigid += (laid[v] - truth[v]).squaredNorm();
+            rigid += (aligned[v] - truth[v]).squaredNorm();
             ++count_missing;
         }
     }

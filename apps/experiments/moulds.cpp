@@ -251,12 +251,12 @@ void run_experiment(const MouldExperimentOptions& options) {
     const Heads heads = synthetic_heads(population, cast);
     const auto moulded = [&](std::size_t i) { return !heads.hand_made[i]; };
     const auto short_hair = [&](std::size_t i) { return moulded(i) && !heads.long_hair[i]; };
-    struct Run {
+    struct StudyVariant {
         const char* name;
         std::function<bool(std::size_t)> chosen;
         std::vector<HeadPart> without;
     };
-    const std::vector<Run> runs{
+    const std::vector<StudyVariant> runs{
         {"moulded, faces only", moulded, {HeadPart::back}},
         {"short hair, heads without beards", [&](std::size_t i) { return short_hair(i) && !heads.beard[i]; }, {HeadPart::back}},
         {"short hair, with beards", short_hair, {HeadPart::back}},
@@ -266,7 +266,7 @@ void run_experiment(const MouldExperimentOptions& options) {
         {"all together, whole heads (truth: moulds, hats)", everyone, {}}};
     TextTable table({"run", "heads", "kinds", "groups", "adjusted Rand index", "silhouette", "thesis's choice: groups",
                      "its index", "moulded against hand-made"});
-    for (const Run& run : runs) {
+    for (const StudyVariant& run : runs) {
         const Compared compared = compare(heads, run.chosen, [&](std::size_t) { return run.without; });
         const MouldGroups groups = grouped(compared, by_default, 0), theirs = grouped(compared, thesis, 0);
         // In how many groups both kinds meet.

@@ -128,19 +128,19 @@ MeasureTable measure_table(const Collection& collection, const std::vector<Objec
                            const MeasureDefinitions& definitions, std::vector<std::string>& notes, const std::string& where) {
     std::vector<std::string> names, order;
     std::vector<std::optional<ObjectMeasures>> objects;
-    std::map<std::string, std::vector<std::string>> told;  // by note: the objects
+    std::map<std::string, std::vector<std::string>> reported;  // by note: the objects
     for (std::size_t i = 0; i < taken.size(); ++i) {
         names.push_back(collection.objects[i].name);
         objects.emplace_back();
         if (!taken[i].problem.empty()) continue;
         objects.back() = object_measures_from_json(taken[i].result);
         for (const auto& note : objects.back()->notes) {
-            if (told[note].empty()) order.push_back(note);
-            told[note].push_back(names.back());
+            if (reported[note].empty()) order.push_back(note);
+            reported[note].push_back(names.back());
         }
     }
     for (const auto& note : order) {
-        const auto& of = told[note];
+        const auto& of = reported[note];
         notes.push_back(of.front() + (of.size() == 1 ? "" : " and " + std::to_string(of.size() - 1) + " more") + ": " + note);
     }
     if (std::none_of(taken.begin(), taken.end(), [](const ObjectResult& each) { return each.problem.empty(); }))

@@ -24,14 +24,14 @@ double from_scale(const DescriptorMeaning& descriptor, double value) {
 }
 
 /// Values of one descriptor of the labelled objects, by kind.
-struct Known {
+struct LabelledValues {
     std::vector<double> values[2];
     [[nodiscard]] bool enough() const { return std::min(values[0].size(), values[1].size()) >= min_compared; }
 };
 
 /// Distance of `x` from the nearer median, outwards, in robust standard deviations about the medians (Rousseeuw and Croux 1993),
 /// widened by 5 / n for the uncertainty of few values.
-double distance_outside(const Known& known, double x) {
+double distance_outside(const LabelledValues& known, double x) {
     const double medians[2]{sample_quantile(known.values[0], 0.5), sample_quantile(known.values[1], 0.5)};
     std::vector<double> away;
     for (int kind = 0; kind < 2; ++kind)
@@ -56,7 +56,7 @@ std::vector<std::optional<TechniqueOutlier>> unlike_the_labelled(const std::vect
                 const auto value = [&](std::size_t of) {
                     return on_scale(descriptor, table.values(static_cast<Eigen::Index>(of), 0));
                 };
-                Known others;
+                LabelledValues others;
                 for (const std::size_t other : known.rows)
                     if (other != row) others.values[known.truth[other] ? 1 : 0].push_back(value(other));
                 if (!others.enough()) return;

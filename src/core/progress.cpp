@@ -27,7 +27,7 @@ Watch* current_watch() { return watch_of_thread; }
 void check_cancelled() { stop_if_cancelled(watch_of_thread); }
 
 Progress::Progress(std::string phase, std::size_t total)
-    : phase_(std::move(phase)), total_(total), watch_(watch_of_thread), last_told_(milliseconds()) {}
+    : phase_(std::move(phase)), total_(total), watch_(watch_of_thread), last_reported_(milliseconds()) {}
 
 Progress::~Progress() {
     if (watch_ != nullptr && watch_->on_progress && done_ > 0) watch_->on_progress(phase_, 1);
@@ -38,9 +38,9 @@ void Progress::advance(std::size_t steps) {
     stop_if_cancelled(watch_);
     const std::size_t done = done_ += steps;
     if (!watch_->on_progress || total_ == 0) return;
-    long long last = last_told_;
+    long long last = last_reported_;
     const long long now = milliseconds();
-    if (now - last < 100 || !last_told_.compare_exchange_strong(last, now)) return;
+    if (now - last < 100 || !last_reported_.compare_exchange_strong(last, now)) return;
     watch_->on_progress(phase_, std::min(1.0, static_cast<double>(done) / static_cast<double>(total_)));
 }
 

@@ -1,4 +1,4 @@
-#include "run.h"
+#include "call_state.h"
 
 #include <algorithm>
 #include <atomic>
@@ -6,7 +6,7 @@
 
 namespace ostraka {
 
-const std::string& Context::Run::know(const Slot& slot, std::size_t i) {
+const std::string& Context::CallState::know(const Slot& slot, std::size_t i) {
     const Object& object = slot.sources[i].object;
     std::string& sum = checksums[{&slot, i}];
     if (!sum.empty()) return sum;
@@ -29,13 +29,13 @@ const std::string& Context::Run::know(const Slot& slot, std::size_t i) {
     return sum;
 }
 
-void Context::Run::add(const std::vector<ReadRecord::Entry>& files) {
+void Context::CallState::add(const std::vector<ReadRecord::Entry>& files) {
     for (const auto& entry : files)
         if (std::none_of(read.begin(), read.end(), [&](const auto& known) { return known.file == entry.file; }))
             read.push_back(entry);
 }
 
-std::vector<Path> Context::Run::inputs() const {
+std::vector<Path> Context::CallState::inputs() const {
     std::vector<Path> files;
     for (const auto& entry : read) files.push_back(entry.file);
     for (const Slot* slot : parameters->slots())

@@ -1,4 +1,4 @@
-#include "run.h"
+#include "call_state.h"
 
 #include "ostraka/core/nearest_name.h"
 #include "ostraka/core/transaction.h"
@@ -249,10 +249,10 @@ Report Call::run(Context& context, const std::function<void(const Report&)>& bef
     check_given();
     Report report({entry_->name, {}, {}}, parameters_.report);
     report.on_note = context.on_note;
-    Context::Run run{entry_->name, &parameters_, &report};
+    Context::CallState run{entry_->name, &parameters_, &report};
     struct Under {
         Context& context;
-        Context::Run* outer;
+        Context::CallState* outer;
         ~Under() { context.run_ = outer; }
     } under{context, context.run_};
     context.run_ = &run;

@@ -45,7 +45,7 @@ void declare_annotations(ReportLayout& layout) {
 }
 
 /// What the set holds.
-void tell_annotations(Context& context, Report& report, const Mesh& mesh, const AnnotationSet& set) {
+void report_annotations(Context& context, Report& report, const Mesh& mesh, const AnnotationSet& set) {
     context.notes("", set.notes);
     report.set_unit(set.unit);
     report("class", set.object_class)("unit", set.unit);
@@ -117,7 +117,7 @@ struct AnnotationApply final : Operation {
         if (known != nullptr) require_vocabulary(set, *known, recipe ? recipe.file() : mesh.file(), words);
         output.write(set, file.mesh, mesh.file());
         pictures.write(file.mesh, set);
-        tell_annotations(context, report, file.mesh, set);
+        report_annotations(context, report, file.mesh, set);
     }
 
     static std::vector<std::int32_t> labels_in(const MeshFile& file) {
@@ -163,7 +163,7 @@ struct AnnotationList final : Operation {
     }
 
     void run(Context& context, Report& report) override {
-        tell_annotations(context, report, mesh->mesh, annotations.on(mesh->mesh));
+        report_annotations(context, report, mesh->mesh, annotations.on(mesh->mesh));
     }
 
     MeshInput mesh;
@@ -210,7 +210,7 @@ struct AnnotationRemap final : Operation {
         for (const auto& note : refresh_measures(target, moved).notes) moved.notes.push_back(note);
         write_annotations(output.path(), moved, target, after.file(), context.provenance());
         pictures.write(target, moved);
-        tell_annotations(context, report, target, moved);
+        report_annotations(context, report, target, moved);
     }
 
     /// The old mesh may be broken here: labels ask for the count of its faces only.

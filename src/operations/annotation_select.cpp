@@ -73,7 +73,7 @@ struct AnnotationSelect final : Operation {
         const Path folder = start.folder;
         AnnotationSet set;
         context.record([&] { set = follow_recipe(now, file.mesh, std::move(start), "selection"); });
-        tell(report, file.mesh, set, made["id"].GetInt());
+        report_result(report, file.mesh, set, made["id"].GetInt());
 
         const std::string text = to_text(steps);
         std::optional<Provenance> replay;
@@ -120,7 +120,7 @@ struct AnnotationSelect final : Operation {
         return hash != nullptr && hash->IsString() && sha256(bytes) == hash->GetString();
     }
 
-    void tell(Report& report, const Mesh& on, const AnnotationSet& set, int id) const {
+    void report_result(Report& report, const Mesh& on, const AnnotationSet& set, int id) const {
         report.set_unit(set.unit);
         report("id", id)("action", step.action);
         const Annotation* chosen = set.find(id);

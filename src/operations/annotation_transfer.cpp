@@ -91,17 +91,17 @@ struct AnnotationTransfer final : Operation {
         report.run("regions", there.times.regions);
         report.run("scores", there.times.scores);
         report.line(source.file_name() + " -> " + target.file_name());
-        tell(report, "annotations", there.scores);
+        report_result(report, "annotations", there.scores);
         if (again) {
             report.line("and back");
-            tell(report, "back", again->scores);
+            report_result(report, "back", again->scores);
             back.write(std::move(again->annotations), from, source.file());
         }
         output.write(std::move(there.annotations), on, there.refined ? refined.file() : target.file());
         if (refined) refined.write(std::move(there.refined->mesh));
     }
 
-    static void tell(Report& report, const std::string& table, const std::vector<TransferScore>& scores) {
+    static void report_result(Report& report, const std::string& table, const std::vector<TransferScore>& scores) {
         report.empty_table(table);
         for (const TransferScore& score : scores) {
             Report::Row row = report.row(table);

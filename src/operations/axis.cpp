@@ -35,7 +35,7 @@ struct FindAxis final : Operation {
     void run(Context& context, Report& report) override {
         std::string unit;
         const Axis axis = find(mesh->mesh, unit);
-        tell(report, axis, unit);
+        report_result(report, axis, unit);
         if (!output) return;
         if (extension(output.file()) == ".obj") return output.write(to_obj(axis));
         Json document = json_document("axis");
@@ -69,7 +69,7 @@ struct FindAxis final : Operation {
         return in_file(annotations.file(), [&] { return find_axis(whole, faces, options); });
     }
 
-    static void tell(Report& report, const Axis& axis, const std::string& unit) {
+    static void report_result(Report& report, const Axis& axis, const std::string& unit) {
         auto& allocator = report.allocator();
         const auto three = [](const auto& p) { return std::vector<double>{p.x(), p.y(), p.z()}; };
         report("found", axis.found, axis.found ? "found" : "none");

@@ -40,11 +40,11 @@ struct CageCoordinates final : Operation {
             report.note(kind +
                         " coordinates serve deformation without constraints only: the constrained solve through the cage "
                         "leaves out their normal term");
-        tell(report, certificate);
+        report_result(report, certificate);
         output.write(std::move(coordinates), subject, around, certificate);
     }
 
-    static void tell(Report& report, const CoordinateCertificate& c) {
+    static void report_result(Report& report, const CoordinateCertificate& c) {
         report("kind", c.kind)("points", c.points)("cageVertices", c.vertices)("cageFaces", c.faces)(
             "certificate", to_json(c, report.allocator()));
         const auto row = [&](const char* property, const std::string& value, const char* meaning) {

@@ -96,7 +96,7 @@ struct Deform final : Operation {
         for (std::size_t i = 0; i < result.selected.size(); ++i)
             report.note("step " + std::to_string(i + 1) + ": " + std::to_string(result.selected[i]) + " of " + handles);
         report("selfIntersections", crossing);
-        tell(report, result);
+        report_result(report, result);
         if (!result.acceptable) report.answer_no();
     }
 
@@ -155,12 +155,12 @@ struct Deform final : Operation {
         return deviation;
     }
 
-    static void tell(Report& report, const DeformResult& result) {
+    static void report_result(Report& report, const DeformResult& result) {
         report("acceptable", result.acceptable)("iterations", result.summary.iterations)("rounds", result.rounds);
         const std::string stopped = result.passes > 0 ? std::string(ostraka::describe(result.summary.stop)) : "nothing to solve";
         report("stopped", stopped)("passes", result.passes);
         report.empty_table("constraints", false);
-        for (const ConstraintReport& constraint : result.constraints) tell(report, constraint);
+        for (const ConstraintReport& constraint : result.constraints) report_result(report, constraint);
         if (result.passes > 0)
             report.line(
                 (result.rounds > 0
@@ -169,7 +169,7 @@ struct Deform final : Operation {
                 std::to_string(result.summary.iterations) + (result.summary.iterations == 1 ? " iteration: " : " iterations: ") +
                 stopped + (result.passes > 1 ? "; " + std::to_string(result.passes) + " passes" : ""));
         report.empty_table("conflicts");
-        for (const ConstraintConflict& conflict : result.conflicts) tell(report, result, conflict);
+        for (const ConstraintConflict& conflict : result.conflicts) report_result(report, result, conflict);
         if (result.untried > 0)
             report.line(std::to_string(result.untried) + " constraints were not left out to see: raise --conflicts to try them");
         report.line(result.constraints.empty() ? "no constraints"
@@ -177,7 +177,7 @@ struct Deform final : Operation {
                                                : "not acceptable: a constraint does not hold");
     }
 
-    static void tell(Report& report, const ConstraintReport& constraint) {
+    static void report_result(Report& report, const ConstraintReport& constraint) {
         JsonValue deviations(rapidjson::kArrayType);
         for (std::size_t i = 0; i < constraint.deviations.size(); ++i)
             deviations.PushBack(
@@ -198,7 +198,7 @@ struct Deform final : Operation {
     }
 
     /// What fights with what.
-    static void tell(Report& report, const DeformResult& result, const ConstraintConflict& conflict) {
+    static void report_result(Report& report, const DeformResult& result, const ConstraintConflict& conflict) {
         const auto name = [&](int id) {
             for (const ConstraintReport& one : result.constraints)
                 if (one.id == id) return std::to_string(id) + " (" + one.type + ")";

@@ -95,7 +95,7 @@ struct Fit final : Operation {
             result.placement.any() && (scale > options.placement.unit_ratio || scale * options.placement.unit_ratio < 1))
             report.note("the template is scaled by " + number(scale, 4) + ": are all files in one unit?");
         write(context, report, result, searches);
-        tell(report, result);
+        report_result(report, result);
         for (const auto& [phase, time] : result.seconds) report.run("seconds." + phase, time);
         if (result.verdict != Compatibility::compatible) report.answer_no();
     }
@@ -188,8 +188,8 @@ struct Fit final : Operation {
         output.write("completed.ply", object.mesh, extras, how);
     }
 
-    void tell(Report& report, const Reconstruction& result) const {
-        for (std::size_t k = 0; k < names.fragments.size(); ++k) tell_fragment(report, result, k);
+    void report_result(Report& report, const Reconstruction& result) const {
+        for (std::size_t k = 0; k < names.fragments.size(); ++k) report_fragment(report, result, k);
         if (result.rotations) report_rotations(report, *result.rotations);
         report.line("scale of the template " + number(result.placement.scale, 4) + "; observed " +
                     number(100 * result.observed_share, 3) + " % of the surface");
@@ -197,7 +197,7 @@ struct Fit final : Operation {
             report.line(std::to_string(result.crossings) +
                         " pairs of faces cross each other that did not in the template: look at the picture; a larger --detail "
                         "may help");
-        for (const ConstraintReport& constraint : result.constraints) tell_constraint(report, result, constraint);
+        for (const ConstraintReport& constraint : result.constraints) report_constraint(report, result, constraint);
         for (const UsedThreshold& one : used)
             if (one.from == "class")
                 report.line("--" + one.option + " " + number(one.value, 3) + " as " + std::to_string(one.members) +
@@ -210,7 +210,7 @@ struct Fit final : Operation {
         report.line(to_string(result.verdict) + (result.undecided.empty() ? "" : ": cannot decide, because " + result.undecided));
     }
 
-    void tell_fragment(Report& report, const Reconstruction& result, std::size_t k) const {
+    void report_fragment(Report& report, const Reconstruction& result, std::size_t k) const {
         const FragmentPlacement& one = result.placement.fragments[k];
         const PoseSearchResult* search =
             k < result.searched.size() && result.searched[k].has_value() ? &*result.searched[k] : nullptr;
@@ -246,7 +246,7 @@ struct Fit final : Operation {
             if (!rotations.notes[k].empty()) report.line(printable(names.fragments[k]) + ": " + printable(rotations.notes[k]));
     }
 
-    static void tell_constraint(Report& report, const Reconstruction& result, const ConstraintReport& constraint) {
+    static void report_constraint(Report& report, const Reconstruction& result, const ConstraintReport& constraint) {
         std::vector<std::string> words = deviation_texts(constraint);
         if (!constraint.text.empty()) words.insert(words.begin(), constraint.text);
         const bool objected = std::any_of(result.objections.begin(), result.objections.end(), [&](const Objection& one) {

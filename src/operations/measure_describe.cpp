@@ -31,7 +31,7 @@ struct MeasureDescribe final : Operation {
         for (Annotation* annotation : selected(set)) {
             const std::vector<Quantity> quantities = quantities_of(*annotation, search, named);
             store(*annotation, quantities, set.unit);
-            tell(report, *annotation, quantities, set.unit);
+            report_result(report, *annotation, quantities, set.unit);
         }
         object.write(std::move(set));
     }
@@ -73,8 +73,8 @@ struct MeasureDescribe final : Operation {
         }
     }
 
-    static void tell(Report& report, const Annotation& annotation, const std::vector<Quantity>& quantities,
-                     const std::string& unit) {
+    static void report_result(Report& report, const Annotation& annotation, const std::vector<Quantity>& quantities,
+                              const std::string& unit) {
         auto& allocator = report.allocator();
         JsonValue list(rapidjson::kArrayType);
         for (const Quantity& quantity : quantities) {

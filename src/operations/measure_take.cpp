@@ -62,7 +62,7 @@ struct MeasureTake final : Operation {
         measure.value = taken.value;
         measure.uncertainty = taken.uncertainty;
         keep(holder, measure, report);
-        tell(report, holder, measure, taken);
+        report_result(report, holder, measure, taken);
         object.write(std::move(set));
     }
 
@@ -133,7 +133,7 @@ struct MeasureTake final : Operation {
         holder.attributes.push_back(std::move(attribute));
     }
 
-    void tell(Report& report, const Annotation& holder, const Measure& measure, const Evaluated& taken) const {
+    void report_result(Report& report, const Annotation& holder, const Measure& measure, const Evaluated& taken) const {
         report("name", called())("annotation", holder.id)("tool", tool)("points", measure.points)("value", taken.value)(
             "unit", measure.unit)("uncertainty", taken.uncertainty)("resolution", taken.resolution)("spread", taken.spread)(
             "pickings", taken.pickings);

@@ -45,7 +45,7 @@ struct MeshMake final : Operation {
         const Stopwatch stopwatch;
         SyntheticMesh made = make_mesh(object, options);
         report.run("seconds", stopwatch.seconds());
-        tell(report, object, made);
+        report_result(report, object, made);
 
         if (labels) write_labels(labels.path(), made.face_labels);
         MeshExtras extras;
@@ -73,7 +73,7 @@ struct MeshMake final : Operation {
         }
     }
 
-    static void tell(Report& report, const SyntheticObject& object, const SyntheticMesh& made) {
+    static void report_result(Report& report, const SyntheticObject& object, const SyntheticMesh& made) {
         struct Part {
             std::size_t faces = 0, vertices = 0;
             double area = 0;

@@ -33,7 +33,7 @@ struct MeshRepair final : Operation {
         report("sound", sound)("maps", repaired.maps_by_distance ? "nearest" : "exact")(
             "after", to_json(repaired.after, report.allocator()));
         report.empty_table("steps");
-        for (const RepairStep& step : repaired.steps) tell(report, step);
+        for (const RepairStep& step : repaired.steps) report_result(report, step);
         report.line("after");
         for (const auto& [what, value] : rows_of(repaired.after))
             for (const char* shown : {"vertices", "triangles", "components", "border loops", "area", "volume", "verdict"})
@@ -50,7 +50,7 @@ struct MeshRepair final : Operation {
         written.write(report.to_json());
     }
 
-    static void tell(Report& report, const RepairStep& step) {
+    static void report_result(Report& report, const RepairStep& step) {
         JsonValue counts(rapidjson::kObjectType);
         std::string name = step.name;  // once, beside its first count
         for (const auto& [what, count] : step.counts) {

@@ -18,7 +18,7 @@ struct MeshResize : Operation {
             p.report.values(integer(mesh + ".vertices"), integer(mesh + ".faces"), number(mesh + ".area", "", "length^2"));
         p.report.people_table("", {"mesh", "vertices", "faces", "area"});
     }
-    static void tell_totals(Report& report, const BoundMesh::Totals& before, const BoundMesh::Totals& after) {
+    static void report_totals(Report& report, const BoundMesh::Totals& before, const BoundMesh::Totals& after) {
         for (const auto& [mesh, when, totals] : {std::tuple{"input.", "before", before}, {"output.", "after", after}}) {
             report(std::string(mesh) + "vertices", totals.vertices)(std::string(mesh) + "faces", totals.faces)(
                 std::string(mesh) + "area", totals.area);
@@ -67,10 +67,10 @@ struct MeshResizeBound : MeshResize {
         const auto result = in_file(input.file(), [&] { return work(bound); });
         report.run("seconds", stopwatch.seconds());
         report.notes(bound.notes);
-        tell_totals(report, bound.before, bound.after);
+        report_totals(report, bound.before, bound.after);
         if (labels_out) write_labels(labels_out.path(), bound.extras.face_labels);
         if (set != nullptr) {
-            tell_changes(report, bound.changes);
+            report_changes(report, bound.changes);
             context.notes("", bound.annotations->notes);
             annotations_out.write(std::move(*bound.annotations), bound.mesh, output.file_name());
         }
@@ -78,7 +78,7 @@ struct MeshResizeBound : MeshResize {
         return result;
     }
 
-    static void tell_changes(Report& report, const std::vector<BoundMesh::Change>& changes) {
+    static void report_changes(Report& report, const std::vector<BoundMesh::Change>& changes) {
         const auto percent = [](double before, double after) {
             return before > 0 ? number(100 * (after / before - 1), 3) + " %" : std::string();
         };
@@ -179,8 +179,8 @@ struct MeshRemesh final : MeshResize {
         const Stopwatch stopwatch;
         RemeshResult result = in_file(input.file(), [&] { return remesh(mesh, options); });
         report.run("seconds", stopwatch.seconds());
-        tell_totals(report, {mesh.number_of_vertices(), mesh.number_of_faces(), surface_area(mesh)},
-                    {result.mesh.number_of_vertices(), result.mesh.number_of_faces(), surface_area(result.mesh)});
+        report_totals(report, {mesh.number_of_vertices(), mesh.number_of_faces(), surface_area(mesh)},
+                      {result.mesh.number_of_vertices(), result.mesh.number_of_faces(), surface_area(result.mesh)});
         report("reached", result.reached)("target_edge_length", result.target_edge_length)(
             "vertices_before_adjustment", result.remeshed)("deviation", result.deviation);
         if (!result.reached) {

@@ -39,7 +39,7 @@ struct RelationOperation : Operation {
     }
 
     /// All that a file holds of the relationship, and how people read it.
-    Report::Row tell(Report& report, const Relationship& relationship) const {
+    Report::Row report_result(Report& report, const Relationship& relationship) const {
         Report::Row row = report.row("relationships");
         JsonValue entry = relationship_to_json(relationship, report.allocator());
         for (auto& member : entry.GetObject()) row(member.name.GetString(), std::move(member.value));
@@ -47,9 +47,10 @@ struct RelationOperation : Operation {
         row.shown("annotations", members_of(relationship)).shown("parameters", measured(relationship.parameters));
         return row;
     }
-    void tell(Report& report, const std::vector<Relationship>& relationships) const {
+    void report_result(Report& report, const std::vector<Relationship>& relationships) const {
         report.empty_table("relationships");
-        for (const Relationship& relationship : relationships) tell(report, relationship).shown("origin", relationship.origin);
+        for (const Relationship& relationship : relationships)
+            report_result(report, relationship).shown("origin", relationship.origin);
     }
 
     MeshInput mesh;
@@ -123,7 +124,7 @@ struct RelationExtract final : RelationOperation {
                     to_string(annotation.type) + ")\n";
         }
         report.line(text);
-        tell(report, found.graph.relationships);
+        report_result(report, found.graph.relationships);
         output.write(std::move(found.graph), set());
     }
 
@@ -203,7 +204,7 @@ struct RelationAdd final : RelationOperation {
                 report.note(std::string("'deform' will refuse this as it is: ") + error.what());
             }
         }
-        tell(report, std::vector{relationship});
+        report_result(report, std::vector{relationship});
     }
 
     struct Tolerance {
@@ -266,7 +267,7 @@ struct RelationRemove final : RelationOperation {
             }
         }
         output.write(std::move(relations), set());
-        tell(report, removed);
+        report_result(report, removed);
     }
 
     std::vector<int> ids;
@@ -278,7 +279,7 @@ struct RelationList final : RelationOperation {
         describe_graph(p);
         describe_relationships(p.report);
     }
-    void run(Context&, Report& report) override { tell(report, read_relations().relationships); }
+    void run(Context&, Report& report) override { report_result(report, read_relations().relationships); }
 };
 
 struct RelationCheckAll final : RelationOperation {
@@ -300,7 +301,7 @@ struct RelationCheckAll final : RelationOperation {
             Relationship relationship = relations.relationships[i];
             relationship.parameters = checks[i].parameters;
             ++counts.at(static_cast<std::size_t>(checks[i].verdict));
-            tell(report, relationship)("verdict", to_string(checks[i].verdict))("text", checks[i].text);
+            report_result(report, relationship)("verdict", to_string(checks[i].verdict))("text", checks[i].text);
         }
         for (const Verdict verdict : {Verdict::holds, Verdict::fails, Verdict::unknown})
             report(to_string(verdict), counts.at(static_cast<std::size_t>(verdict)));

@@ -62,7 +62,7 @@ KnownAnswers::KnownAnswers(const std::vector<std::string>& labels) : objects(lab
     kinds = different.size();
 }
 
-void KnownAnswers::tell(Report& report) const {
+void KnownAnswers::report_result(Report& report) const {
     if (labelled == 0) return;
     std::string text = "answers are known of " + std::to_string(labelled) + " of " + std::to_string(objects) + " objects";
     if (!scorable()) text += labelled < 2 ? ": too few to score by" : ", all of one kind: nothing to score by";

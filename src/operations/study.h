@@ -46,7 +46,7 @@ struct KnownAnswers {
     /// Scores against the truth mean nothing for fewer than two objects, or objects of one kind.
     [[nodiscard]] bool scorable() const { return labelled >= 2 && kinds >= 2; }
     /// A line, "answers are known of 4 of 9 objects"; none where no answer is known.
-    void tell(Report& report) const;
+    void report_result(Report& report) const;
     /// The member "truth" of a report; none where no answer is known.
     void add_to(Report& report) const;
 };

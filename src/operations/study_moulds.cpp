@@ -58,12 +58,13 @@ struct StudyMoulds final : Operation {
         if (choices)
             choice_table(study, answers, known).write(files.output.path(), "choices", "Groups by every similarity and epsilon");
 
-        report("similarity", similarity)("method", option_text(group, "method"))("epsilonRule", group.epsilon)("epsilon", study.groups.epsilon)(
-            "featureSize", prepared.options.features.size)("silhouette", study.groups.silhouette)("clear", study.groups.clear);
+        report("similarity", similarity)("method", option_text(group, "method"))("epsilonRule", group.epsilon)(
+            "epsilon", study.groups.epsilon)("featureSize", prepared.options.features.size)(
+            "silhouette", study.groups.silhouette)("clear", study.groups.clear);
         known.add_to(report);
         const double agreement = known.scorable() ? agreement_with_answers(study.groups.labels, answers) : 0;
         if (known.scorable()) report("adjustedRandIndex", agreement);
-        const std::string single = tell_groups(report, study, answers);
+        const std::string single = report_groups(report, study, answers);
         write_report(report, context.provenance());
 
         report.table(groups);
@@ -72,7 +73,7 @@ struct StudyMoulds final : Operation {
                     " heads at epsilon " + number(study.groups.epsilon, 3) + ", mean silhouette " +
                     number(study.groups.silhouette, 3) +
                     (known.scorable() ? ", adjusted Rand index " + number(agreement, 4) : ""));
-        known.tell(report);
+        known.report_result(report);
         if (!single.empty()) report.line("belongs to no group: " + single);
         if (!study.groups.clear) {
             const Eigen::MatrixXd distances = mould_distances(study.matrices, "consistent");
@@ -86,8 +87,8 @@ struct StudyMoulds final : Operation {
     }
 
     /// Returns the heads that are alone in their group.
-    [[nodiscard]] std::string tell_groups(Report& report, const MouldStudy& study,
-                                          const std::vector<std::string>& answers) const {
+    [[nodiscard]] std::string report_groups(Report& report, const MouldStudy& study,
+                                            const std::vector<std::string>& answers) const {
         std::string single;
         std::size_t at = 0;
         for (const MouldGroupSummary& each : summarise_groups(study)) {

@@ -178,7 +178,7 @@ struct StudyProportions final : Operation {
         if (study.size_deviation) report.line("common size varies by " + percent(*study.size_deviation));
         if (count == 0) report.answer_no();
         report("objects", table.objects.size());
-        tell(report, study);
+        report_result(report, study);
         if (graph) propose(report, study, notes);
         write_report(report, notes, context.provenance());
     }
@@ -188,7 +188,7 @@ struct StudyProportions final : Operation {
         return measures.load<MeasureDefinitions>([](const Path& file) { return read_measure_definitions(file); });
     }
 
-    static void tell(Report& report, const ProportionStudy& study) {
+    static void report_result(Report& report, const ProportionStudy& study) {
         const auto optional = [&](const auto& value) { return json_value(value, report.allocator()); };
         const auto interval = [&](const std::optional<Interval>& of) {
             return optional(of ? std::optional(std::array{of->low, of->high}) : std::nullopt);

@@ -63,7 +63,7 @@ struct StudySegments final : Operation {
             report.row("segments")("tag", "segment " + std::to_string(i + 1))("cluster", each.cluster)("low", each.low)(
                 "high", each.high)("slices", each.slices)("faces", summary.elements)("area", summary.area);
         }
-        tell_clusters(report, segments);
+        report_clusters(report, segments);
         if (agreement) {
             report("adjustedRandIndex", *agreement);
             report.line("adjusted Rand index against the known parts, over the faces: " + number(*agreement, 3));
@@ -74,7 +74,7 @@ struct StudySegments final : Operation {
     }
 
     /// Clusters without a segment, and those with several.
-    void tell_clusters(Report& report, const SliceSegments& segments) const {
+    void report_clusters(Report& report, const SliceSegments& segments) const {
         std::string gone, again;
         std::size_t count = 0;
         for (int cluster = 0; cluster < segments.clusters; ++cluster) {

@@ -55,10 +55,10 @@ struct StudyOfTechnique final : Operation {
         draw_technique(files, study, objects);
 
         report.line(std::to_string(objects.size()) + " objects studied, " + std::to_string(left_out) + " left out");
-        known.tell(report);
-        if (study.learned) tell_learned(report, study);
-        else tell_divided(report, study, known);
-        tell_answers(report, study);
+        known.report_result(report);
+        if (study.learned) report_learned(report, study);
+        else report_divided(report, study, known);
+        report_answers(report, study);
         // Whether they can be told apart is the question, and without known answers whether there are two groups at all.
         if (!study.separated) report.answer_no();
     }
@@ -111,7 +111,7 @@ struct StudyOfTechnique final : Operation {
     }
 
     /// What was learned from the labels: the scores, and whether the answering classifier tells them apart.
-    static void tell_learned(Report& report, const TechniqueStudy& study) {
+    static void report_learned(Report& report, const TechniqueStudy& study) {
         report.line("F1 of " + printable(study.positive) +
                     " when left out: means over the repeats of the cross-validation; from, to: 95 % over objects drawn anew");
         TextTable scores({"classifier", "objects", "F1", "from", "to", "all " + printable(study.positive, 20), "better",
@@ -148,7 +148,7 @@ struct StudyOfTechnique final : Operation {
         report.line("better here, by --answer-by:" + text);
     }
 
-    static void tell_divided(Report& report, const TechniqueStudy& study, const KnownAnswers& known) {
+    static void report_divided(Report& report, const TechniqueStudy& study, const KnownAnswers& known) {
         report.line((known.labelled == 0 ? "no answers are known: " : "") + std::string("divided into two groups"));
         TextTable divisions({"descriptor", "objects", "groups", "share between", "p"});
         for (const TechniqueSplit& each : study.splits)
@@ -159,7 +159,7 @@ struct StudyOfTechnique final : Operation {
         if (!study.separated) report.line("by " + study.answered_by + " there are no two groups");
     }
 
-    static void tell_answers(Report& report, const TechniqueStudy& study) {
+    static void report_answers(Report& report, const TechniqueStudy& study) {
         report.line("answers by " + printable(answering_words(study)));
         std::vector<std::string> columns{"object", "label", "answer"};
         if (study.learned) columns.insert(columns.end(), {"certainty", "agreement", ""});

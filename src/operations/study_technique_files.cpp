@@ -57,8 +57,8 @@ void write_technique_tables(const StudyFiles& files, const TechniqueStudy& study
 
     TextTable answers({"name", "label", "answer", "certainty", "against the label", "score", "agreement", "why"});
     for (const TechniqueAnswer& each : study.answers) {
-        const bool told = study.learned && !each.certainty.empty();
-        const auto value = [&](double x) { return fixed_cell(told ? std::optional(x) : std::nullopt, 2); };
+        const bool certain = study.learned && !each.certainty.empty();
+        const auto value = [&](double x) { return fixed_cell(certain ? std::optional(x) : std::nullopt, 2); };
         const char* against = each.label.empty() || each.answer.empty() ? "" : each.wrong() ? "WRONG" : "right";
         answers.add(
             {each.name, each.label, each.answer, each.certainty, against, value(each.score), value(each.agreement), each.words});

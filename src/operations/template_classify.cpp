@@ -35,7 +35,7 @@ struct TemplateClassify final : Operation {
             if (!is_class(i))
                 answers.push_back(decide(object_name(files.file(i)),
                                          known.front()->landmarks ? ask_landmarks(context, i) : ask_meshes(i), options));
-        tell(report, answers);
+        report_result(report, answers);
         if (!std::all_of(answers.begin(), answers.end(), [](const auto& a) { return a.verdict == Membership::member; }))
             report.answer_no();
     }
@@ -46,7 +46,7 @@ struct TemplateClassify final : Operation {
         std::vector<std::string> class_files;
         for (std::size_t i = 0; i < files.size(); ++i) {
             if (!is_class(i)) continue;
-            known.push_back(&files.load<KnownClass>(read_known_class, i));
+            known.push_back(&files.load<ClassWithTemplate>(read_class_with_template, i));
             classes.push_back(known.back()->learnt);
             class_files.push_back(files.file(i));
             if (known.front()->landmarks.has_value() != known.back()->landmarks.has_value())
@@ -86,7 +86,7 @@ struct TemplateClassify final : Operation {
         });
     }
 
-    void tell(Report& report, const std::vector<Classification>& answers) const {
+    void report_result(Report& report, const std::vector<Classification>& answers) const {
         Json document = json_document("classification");
         auto& allocator = document.GetAllocator();
         JsonValue objects(rapidjson::kArrayType);
@@ -114,7 +114,7 @@ struct TemplateClassify final : Operation {
     FileInput files;
     JsonOutput answer;
     ClassifyOptions options;
-    std::vector<const KnownClass*> known;
+    std::vector<const ClassWithTemplate*> known;
     std::vector<ShapeClass> classes;  ///< those known, with thresholds moderated by each other
 };
 

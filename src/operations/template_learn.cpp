@@ -44,7 +44,7 @@ struct TemplateLearn final : Operation {
         if (given) options.correspondence = CorrespondenceChoice::given;
         const ShapeClass learnt = of_landmarks() ? learn_landmarks(context) : learn_meshes(context);
         report.notes(learnt.notes);
-        tell(report, learnt);
+        report_result(report, learnt);
     }
 
     [[nodiscard]] bool of_landmarks() const { return is_landmark_file(known.file()); }
@@ -113,7 +113,7 @@ struct TemplateLearn final : Operation {
         if (!same_place(output.open() / name_there, part)) static_cast<void>(output.in(name_there.string()));
     }
 
-    static void tell(Report& report, const ShapeClass& learnt) {
+    static void report_result(Report& report, const ShapeClass& learnt) {
         const ShapeModes& modes = learnt.modes;
         std::vector<double> shares;
         for (const double variance : modes.variances) shares.push_back(modes.total > 0 ? variance / modes.total : 0);

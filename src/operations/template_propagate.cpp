@@ -55,7 +55,7 @@ struct TemplatePropagate final : Operation {
             const Propagated result =
                 in_file(members.file(i), [&] { return propagate(class_template(*known), *objects[i], options); });
             if (result.fit.problem.empty()) write(members.file_name(i), *objects[i], result);
-            tell(report, objects[i]->name, result);
+            report_result(report, objects[i]->name, result);
         }
     }
 
@@ -67,7 +67,7 @@ struct TemplatePropagate final : Operation {
         output.write(member.name + ".ant.json", *result.on_member, member.mesh, file);
     }
 
-    static void tell(Report& report, const std::string& name, const Propagated& result) {
+    static void report_result(Report& report, const std::string& name, const Propagated& result) {
         const bool fitted = result.fit.problem.empty();
         Report::Row row = report.row("members");
         row("name", name)("lost", result.lost)("notes", result.notes, std::to_string(result.notes.size()));

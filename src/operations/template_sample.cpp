@@ -20,7 +20,7 @@ struct TemplateSample final : Operation {
     }
 
     void run(Context&, Report& report) override {
-        const KnownClass& known = file.load<KnownClass>(read_known_class);
+        const ClassWithTemplate& known = file.load<ClassWithTemplate>(read_class_with_template);
         if (known.landmarks)
             fail_input(known.learnt.template_file, "is a file of landmarks, and a template with a mesh is needed",
                        "classes of landmarks can be learnt and asked, no more");
@@ -33,11 +33,12 @@ struct TemplateSample final : Operation {
             names.push_back(known.learnt.name + "-" + std::string(last.size() - here.size(), '0') + here);
         }
         write(known, result, names, report);
-        tell(report, known.learnt.name, result);
+        report_result(report, known.learnt.name, result);
         if (names.size() < static_cast<std::size_t>(options.count)) report.answer_no();
     }
 
-    void write(const KnownClass& known, const Sampling& result, const std::vector<std::string>& names, Report& report) const {
+    void write(const ClassWithTemplate& known, const Sampling& result, const std::vector<std::string>& names,
+               Report& report) const {
         const ClassTemplate of_class = known.known();
         for (std::size_t i = 0; i < names.size(); ++i) {
             const Mesh mesh = with_points(of_class.mesh, result.samples[i].points);
@@ -72,7 +73,7 @@ struct TemplateSample final : Operation {
         return document;
     }
 
-    static void tell(Report& report, const std::string& name, const Sampling& result) {
+    static void report_result(Report& report, const std::string& name, const Sampling& result) {
         report.line(std::to_string(result.samples.size()) + " of " + std::to_string(result.tried) + " draws of '" +
                     printable(name) + "' accepted (" + number(100 * result.acceptance(), 3) + " %); rejected by constraints " +
                     std::to_string(result.by_constraints) + ", by learnt ranges " + std::to_string(result.by_ranges) +

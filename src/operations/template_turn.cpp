@@ -31,7 +31,7 @@ struct TemplateTurn final : Operation {
         RevolutionTemplate turned = template_of_revolution(sherds, options);
         turned.annotations.unit = unit;
         write(context, turned);
-        tell(report, turned);
+        report_result(report, turned);
     }
 
     /// With the facets that the annotations beside it say.
@@ -78,7 +78,7 @@ struct TemplateTurn final : Operation {
         write_json(output.in("turned.template.json"), template_to_json(file, provenance));
     }
 
-    static void tell(Report& report, const RevolutionTemplate& turned) {
+    static void report_result(Report& report, const RevolutionTemplate& turned) {
         const auto triple = [](const auto& v) { return std::vector<double>{v.x(), v.y(), v.z()}; };
         double height = 0, widest = 0;
         for (const auto& p : turned.profile) height = std::max(height, p.y()), widest = std::max(widest, p.x());

@@ -73,7 +73,7 @@ struct VocabularyShow final : Operation {
             stack.pop_back();
             const bool again = seen[i];
             seen[i] = true;
-            tell(report, search, i, depth, again);
+            report_result(report, search, i, depth, again);
             if (!again)
                 for (auto next = narrower[i].rbegin(); next != narrower[i].rend(); ++next) stack.emplace_back(*next, depth + 1);
         }
@@ -98,7 +98,7 @@ struct VocabularyShow final : Operation {
                                   : "close to it: " + joined(near));
     }
 
-    void tell(Report& report, const VocabularySearch& search, std::size_t i, std::size_t depth, bool again) const {
+    void report_result(Report& report, const VocabularySearch& search, std::size_t i, std::size_t depth, bool again) const {
         const Concept& entry = search.vocabulary().concepts[i];
         const std::string label = search.label(i, language);
         std::string others;

@@ -36,14 +36,14 @@ std::optional<PoseSearchResult> PoseSearches::find(const Fragment& fragment, dou
     for (std::size_t f = 0; f < counts.size(); ++f) counts[f] = fragment.facets[f] != Facet::fracture;
     if (!counts.empty() && std::find(counts.begin(), counts.end(), true) == counts.end()) return {};
     const std::string key = key_of(fragment, min_scale, max_scale);
-    if (const auto found = known_.find(key); found != known_.end()) {
+    if (const auto found = stored_.find(key); found != stored_.end()) {
         ++reused_;
         return found->second.result;
     }
     if (!whole_) whole_ = std::make_unique<Whole>(mesh_, options_);
     PoseSearchResult result = whole_->search.find(fragment.mesh, counts, min_scale, max_scale);
     ++made_;
-    known_.emplace(key, Known{fragment.name, result});
+    stored_.emplace(key, StoredSearch{fragment.name, result});
     return result;
 }
 
@@ -126,7 +126,7 @@ PoseSearchResult result_from(const JsonValue& entry) {
 JsonValue PoseSearches::to_json(JsonAllocator& allocator) const {
     JsonValue document(rapidjson::kObjectType), list(rapidjson::kArrayType);
     add_members(document, allocator, "format", "ostraka-searches", "version", 1, "template", of_template_);
-    for (const auto& [key, known] : known_) {
+    for (const auto& [key, known] : stored_) {
         JsonValue entry(rapidjson::kObjectType), result = ostraka::to_json(known.result, allocator);
         add_members(entry, allocator, "fragment", known.fragment, "key", key, "checksum", sha256(to_text(result)), "result",
                     std::move(result));
@@ -147,7 +147,7 @@ std::size_t PoseSearches::add(const JsonValue& document, const std::string& file
         }
         PoseSearchResult result = result_from(entry["result"]);
         if (result.decided && result.candidates.empty()) ++damaged;
-        else known_.try_emplace(entry["key"].GetString(), Known{entry["fragment"].GetString(), std::move(result)});
+        else stored_.try_emplace(entry["key"].GetString(), StoredSearch{entry["fragment"].GetString(), std::move(result)});
     }
     return damaged;
 }

@@ -139,7 +139,7 @@ namespace {
 /// One reconstruction from the fragments there are, phase by phase.
 class ReconstructionRun {
 public:
-    explicit ReconstructionRun(KnownObject& known) : known_(known) {
+    explicit ReconstructionRun(KnownObject& known) : prepared_(known) {
         for (const KnownFragment& one : known.fragments) {
             fragments_.push_back(one.fragment);
             pairs_.push_back(one.pairs);
@@ -153,7 +153,7 @@ public:
             fit();
             timed("completion", [&] { finish(); });
         }
-        judge_reconstruction(result_, pairs_, number_, known_.options);
+        judge_reconstruction(result_, pairs_, number_, prepared_.options);
         return std::move(result_);
     }
 
@@ -166,13 +166,13 @@ private:
     }
 
     void place() {
-        for (const KnownFragment& one : known_.fragments) result_.notes.push_back(one.notes);
-        result_.placement = place_by_landmarks(pairs_, known_.options.placement);
+        for (const KnownFragment& one : prepared_.fragments) result_.notes.push_back(one.notes);
+        result_.placement = place_by_landmarks(pairs_, prepared_.options.placement);
         for (std::size_t k = 0; k < fragments_.size(); ++k)
             for (const auto& [one, other] : result_.placement.fragments[k].swapped)
                 result_.notes[k].push_back("landmarks '" + one + "' and '" + other +
                                            "' would fit each other's places: are their tags exchanged?");
-        result_.searched = place_by_search(known_.searches, fragments_, known_.options.search, result_.placement.scale,
+        result_.searched = place_by_search(prepared_.searches, fragments_, prepared_.options.search, result_.placement.scale,
                                            result_.placement.fragments);
         for (std::size_t k = 0; k < fragments_.size(); ++k)
             if (result_.searched[k] && result_.searched[k]->decided) ask_landmarks(k);
@@ -181,7 +181,7 @@ private:
     /// What the search of a pose left open is decided by the landmarks there are; those that contradict it are named.
     void ask_landmarks(std::size_t k) {
         constexpr double far_off = 0.1;  // of the template's diagonal
-        const double scale = result_.placement.scale, limit = far_off * scale * box_diagonal(known_.mesh);
+        const double scale = result_.placement.scale, limit = far_off * scale * box_diagonal(prepared_.mesh);
         FragmentPlacement& placed = result_.placement.fragments[k];
         if (close_by_landmarks(pairs_[k], scale, limit, *result_.searched[k], placed)) {
             result_.notes[k].push_back("what the search for its pose left open is decided by its landmarks");
@@ -197,23 +197,24 @@ private:
 
     /// The fragments where they are on the template, and what is matched there.
     void pose() {
-        scaled_ = scaled_by(known_.mesh, result_.placement.scale);
+        scaled_ = scaled_by(prepared_.mesh, result_.placement.scale);
         diagonal_ = box_diagonal(scaled_);
-        if (known_.options.refine) timed("refinement", [&] { refine(); });
+        if (prepared_.options.refine) timed("refinement", [&] { refine(); });
         timed("turns", [&] {
             result_.rotations = decide_open_rotations(scaled_, fragments_, result_.searched, result_.placement.fragments,
-                                                      known_.options.rotations);
+                                                      prepared_.options.rotations);
         });
         timed("annotations", [&] { match(); });
-        if (known_.prior != nullptr) timed("class", [&] { take_shape_of_class(); });
+        if (prepared_.prior != nullptr) timed("class", [&] { take_shape_of_class(); });
     }
 
     /// The template where the fragments and its constraints have it.
     void fit() {
         timed("fit", [&] {
             // The shape of the class is another one each time.
-            result_.fit = known_.prior != nullptr ? fit_template(scaled_, known_.set, placed_, known_.options.fit)
-                                                  : known_.fitter.fit(result_.placement.scale, placed_, known_.options.fit);
+            result_.fit = prepared_.prior != nullptr
+                              ? fit_template(scaled_, prepared_.set, placed_, prepared_.options.fit)
+                              : prepared_.fitter.fit(result_.placement.scale, placed_, prepared_.options.fit);
         });
         result_.points = result_.fit.points;
         timed("observed", [&] { see(); });
@@ -235,13 +236,13 @@ private:
             for (std::size_t i = 0; i < pairs.size(); ++i)
                 if (i < placement.landmarks.size() && placement.landmarks[i].used)
                     anchors.push_back({pairs[i].on_fragment, on_scaled(pairs[i])});
-            std::optional<KnownFragment::Refined>& known = known_.fragments[k].refined;
+            std::optional<KnownFragment::Refined>& known = prepared_.fragments[k].refined;
             const double scale = result_.placement.scale;
             if (!known || shaped_ || known->scale != scale || !same(known->start, placement.pose) ||
                 !same(known->anchors, anchors)) {
                 if (!whole) whole.emplace(scaled_);
                 result_.alignment[k] =
-                    align_part(fragment.mesh, counts, *whole, placement.pose, anchors, known_.options.alignment);
+                    align_part(fragment.mesh, counts, *whole, placement.pose, anchors, prepared_.options.alignment);
                 if (!shaped_) known = {scale, placement.pose, anchors, result_.alignment[k]};
             } else {
                 result_.alignment[k] = known->alignment;
@@ -265,10 +266,10 @@ private:
     void take_shape_of_class() {
         constexpr int rounds = 2;
         for (int round = 0; round < rounds; ++round) {
-            result_.prior = fit_prior(scaled_, known_.set, placed_, *known_.prior, known_.options.prior);
+            result_.prior = fit_prior(scaled_, prepared_.set, placed_, *prepared_.prior, prepared_.options.prior);
             scaled_ = result_.prior->mesh;
             shaped_ = true;
-            if (!known_.options.refine || round + 1 == rounds) continue;
+            if (!prepared_.options.refine || round + 1 == rounds) continue;
             refine();
             match();
         }
@@ -282,11 +283,11 @@ private:
             const FragmentPlacement& placement = result_.placement.fragments[k];
             if (!placement.problem.empty()) continue;
             const Fragment& fragment = *fragments_[k];
-            std::optional<KnownFragment::Matched>& known = known_.fragments[k].matched;
+            std::optional<KnownFragment::Matched>& known = prepared_.fragments[k].matched;
             if (!known || shaped_ || known->scale != result_.placement.scale || !same(known->pose, placement.pose)) {
                 result_.annotations[k] =
-                    match_annotations(scaled_, known_.set, fragment.mesh, fragment.annotations, placement.pose,
-                                      known_.fragments[k].stated, known_.options.annotations);
+                    match_annotations(scaled_, prepared_.set, fragment.mesh, fragment.annotations, placement.pose,
+                                      prepared_.fragments[k].stated, prepared_.options.annotations);
                 if (!shaped_) known = {result_.placement.scale, placement.pose, result_.annotations[k]};
             } else {
                 result_.annotations[k] = known->matches;
@@ -296,10 +297,10 @@ private:
                                   fragment.facets,
                                   result_.annotations[k],
                                   placement.pose,
-                                  known_.fragments[k].trees};
+                                  prepared_.fragments[k].trees};
             // A landmark that was found to be a wrong one constrains nothing.
             std::erase_if(placed.matches, [&](const AnnotationMatch& one) {
-                const Annotation* a = known_.set.find(one.of_template);
+                const Annotation* a = prepared_.set.find(one.of_template);
                 return a != nullptr && a->type == AnnotationType::point &&
                        std::any_of(placement.landmarks.begin(), placement.landmarks.end(),
                                    [&](const auto& landmark) { return landmark.name == a->tag && !landmark.used; });
@@ -311,14 +312,14 @@ private:
 
     /// Which vertices were observed: matched within the tolerance.
     void see() {
-        const std::size_t n = known_.mesh.number_of_vertices();
+        const std::size_t n = prepared_.mesh.number_of_vertices();
         std::vector<bool> near(n, false);
         result_.distance.assign(n, -1);
         for (std::size_t i = 0; i < n; ++i) {
             VertexMatch& match = result_.fit.matches[i];
             if (match.fragment < 0) continue;
             match.fragment = number_[static_cast<std::size_t>(match.fragment)];
-            near[i] = match.distance <= known_.options.observed * diagonal_;
+            near[i] = match.distance <= prepared_.options.observed * diagonal_;
             if (near[i]) result_.distance[i] = match.distance;
         }
         held_ = std::move(near);
@@ -327,8 +328,8 @@ private:
     void finish() {
         Mesh fitted = scaled_;
         for (const Vertex v : fitted.vertices()) fitted.point(v) = result_.points[v];
-        CompleteOptions options = known_.options.completion;
-        options.tolerance = known_.options.observed;
+        CompleteOptions options = prepared_.options.completion;
+        options.tolerance = prepared_.options.observed;
         result_.object = complete(fitted, placed_, options);
         CompletedObject& object = result_.object;
         result_.joined.assign(fragments_.size(), 0);
@@ -342,8 +343,8 @@ private:
         }
         result_.observed_share = area > 0 ? seen / area : 0;
         for (CompletionNote& note : object.notes) note.fragment = number_[static_cast<std::size_t>(note.fragment)];
-        if (!known_.crossings) known_.crossings = self_intersections(to_soup(known_.mesh)).pairs;
-        const auto before = shaped_ ? self_intersections(to_soup(scaled_)).pairs : *known_.crossings,
+        if (!prepared_.crossings) prepared_.crossings = self_intersections(to_soup(prepared_.mesh)).pairs;
+        const auto before = shaped_ ? self_intersections(to_soup(scaled_)).pairs : *prepared_.crossings,
                    after = self_intersections(to_soup(object.mesh)).pairs;
         result_.crossings = static_cast<std::size_t>(std::count_if(after.begin(), after.end(), [&](const auto& pair) {
             const auto [a, b] = pair;
@@ -355,20 +356,20 @@ private:
     }
 
     void restore() {
-        const bool any = std::any_of(known_.graph.relationships.begin(), known_.graph.relationships.end(),
+        const bool any = std::any_of(prepared_.graph.relationships.begin(), prepared_.graph.relationships.end(),
                                      [](const Relationship& one) { return one.is_constraint; });
-        if (!any || !known_.options.restore) return;
+        if (!any || !prepared_.options.restore) return;
         DeformOptions options;
         options.handles = 1e5;  // what was observed is not given up for a constraint
-        DeformResult restored =
-            restore_constraints(scaled_, known_.set, with_observed_as_reference(known_.mesh, known_.set, known_.graph, held_),
-                                result_.points, held_, options, {}, "the template's graph");
+        DeformResult restored = restore_constraints(
+            scaled_, prepared_.set, with_observed_as_reference(prepared_.mesh, prepared_.set, prepared_.graph, held_),
+            result_.points, held_, options, {}, "the template's graph");
         result_.points = std::move(restored.points);
         result_.constraints = std::move(restored.constraints);
         result_.conflicts = std::move(restored.conflicts);
     }
 
-    KnownObject& known_;
+    KnownObject& prepared_;
     std::vector<const Fragment*> fragments_;
     std::vector<std::vector<LandmarkPair>> pairs_;  ///< of each fragment
     Mesh scaled_;
@@ -392,7 +393,7 @@ Reconstructor::Reconstructor(const Mesh& mesh, const AnnotationSet& set, const R
                    "fit in mesh space, or without the class");
     if (prior != nullptr) prior->check(mesh.number_of_vertices());
     if (inside_out(mesh)) fail_input("template", "is inside out", "run: ostraka mesh repair");
-    known_ = std::make_unique<KnownObject>(mesh, set, graph, options, prior, cage);
+    prepared_ = std::make_unique<KnownObject>(mesh, set, graph, options, prior, cage);
 }
 Reconstructor::~Reconstructor() = default;
 Reconstructor::Reconstructor(Reconstructor&&) noexcept = default;
@@ -402,25 +403,25 @@ void Reconstructor::add(const Fragment& fragment, std::vector<StatedMatch> state
     KnownFragment known;
     known.fragment = &fragment;
     known.stated = std::move(stated);
-    known.pairs = common_landmarks(known_->mesh, known_->set, fragment.mesh, fragment.annotations, &known.notes);
+    known.pairs = common_landmarks(prepared_->mesh, prepared_->set, fragment.mesh, fragment.annotations, &known.notes);
     known.trees = std::make_shared<FragmentTrees>(fragment.mesh, fragment.facets);
-    known_->fragments.push_back(std::move(known));
+    prepared_->fragments.push_back(std::move(known));
 }
 
 void Reconstructor::remove(std::size_t position) {
     if (position >= size())
         fail_usage("there is no fragment at position " + std::to_string(position),
                    "give a position below " + std::to_string(size()));
-    known_->fragments.erase(known_->fragments.begin() + static_cast<std::ptrdiff_t>(position));
+    prepared_->fragments.erase(prepared_->fragments.begin() + static_cast<std::ptrdiff_t>(position));
 }
 
-std::size_t Reconstructor::size() const { return known_->fragments.size(); }
+std::size_t Reconstructor::size() const { return prepared_->fragments.size(); }
 
-PoseSearches& Reconstructor::searches() { return known_->searches; }
+PoseSearches& Reconstructor::searches() { return prepared_->searches; }
 
 Reconstruction Reconstructor::run() {
     if (size() == 0) fail_usage("there is no fragment", "give one or more");
-    return ReconstructionRun(*known_).run();
+    return ReconstructionRun(*prepared_).run();
 }
 
 Reconstruction reconstruct(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,

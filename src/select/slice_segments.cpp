@@ -14,14 +14,14 @@ namespace ostraka {
 
 namespace {
 
-struct Run {
+struct LabelRun {
     std::size_t begin = 0, end = 0;
     int cluster = 0;
     [[nodiscard]] std::size_t size() const { return end - begin; }
 };
 
-std::vector<Run> runs_of(const std::vector<int>& labels) {
-    std::vector<Run> runs;
+std::vector<LabelRun> runs_of(const std::vector<int>& labels) {
+    std::vector<LabelRun> runs;
     for (std::size_t i = 0; i < labels.size(); ++i) {
         if (runs.empty() || runs.back().cluster != labels[i]) runs.push_back({i, i, labels[i]});
         runs.back().end = i + 1;
@@ -42,10 +42,10 @@ void fill_gaps(std::vector<int>& labels) {
 
 void join_short_runs(std::vector<int>& labels, std::size_t minimum) {
     for (;;) {
-        const std::vector<Run> runs = runs_of(labels);
+        const std::vector<LabelRun> runs = runs_of(labels);
         if (runs.size() < 2) return;
         const auto shortest =
-            std::min_element(runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.size() < b.size(); });
+            std::min_element(runs.begin(), runs.end(), [](const LabelRun& a, const LabelRun& b) { return a.size() < b.size(); });
         if (shortest->size() >= minimum) return;
         const bool has_below = shortest != runs.begin(), has_above = shortest + 1 != runs.end();
         const bool below = has_below && (!has_above || (shortest - 1)->size() >= (shortest + 1)->size());
@@ -108,7 +108,7 @@ SliceSegments segment_by_slices(const Mesh& mesh, const Vector& up, const SliceS
 
     const double layer = height / static_cast<double>(heights.size());
     std::vector<std::int32_t> segment_of(heights.size());
-    for (const Run& run : runs_of(result.labels)) {
+    for (const LabelRun& run : runs_of(result.labels)) {
         for (std::size_t i = run.begin; i < run.end; ++i) segment_of[i] = static_cast<std::int32_t>(result.segments.size());
         result.segments.push_back(
             {run.cluster, layer * static_cast<double>(run.begin), layer * static_cast<double>(run.end), run.size()});

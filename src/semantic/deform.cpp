@@ -93,7 +93,7 @@ private:
 
     void understand(DeformResult& result) {
         const semantic::Shape shape{space_.mesh, space_.set, rest_};
-        std::map<Index, int> seated;  // by which feature
+        std::map<Index, int> reattached;  // by which feature
         for (const Relationship& relationship : graph_.relationships) {
             if (!relationship.is_constraint) continue;
             ConstraintReport report;
@@ -102,10 +102,10 @@ private:
             report.weight = relationship.weight;
             statements_.push_back(semantic::understand(shape, relationship, tolerances_, graph_where_));
             const semantic::Statement& statement = statements_.back();
-            if (statement.seat && relationship.weight > 0)
-                for (const Annotation* feature : statement.seat->features)
+            if (statement.reattachment && relationship.weight > 0)
+                for (const Annotation* feature : statement.reattachment->features)
                     for (const Index v : vertices_of(space_.mesh, *feature)) {
-                        const auto [other, fresh] = seated.try_emplace(v, feature->id);
+                        const auto [other, fresh] = reattached.try_emplace(v, feature->id);
                         if (!fresh)
                             throw Error(ErrorKind::input, graph_where_ + ", constraint " + std::to_string(relationship.id),
                                         "seats annotation " + std::to_string(feature->id) + ", which touches annotation " +
@@ -142,15 +142,15 @@ private:
             ++outcome.passes;
             if (outcome.passes > 1 && (outcome.points - before).colwise().norm().maxCoeff() <= still) break;
         }
-        std::vector<semantic::Seating> seatings;
+        std::vector<semantic::Reattachment> reattachments;
         for (std::size_t i = 0; i < statements_.size(); ++i)
-            if (active[i] && statements_[i].seat) seatings.push_back(*statements_[i].seat);
-        if (!seatings.empty()) {
-            const auto seated = semantic::seat(space_.mesh, rest_, seatings, outcome.points);
+            if (active[i] && statements_[i].reattachment) reattachments.push_back(*statements_[i].reattachment);
+        if (!reattachments.empty()) {
+            const auto reattached = semantic::reattach(space_.mesh, rest_, reattachments, outcome.points);
             outcome.solved = true;
             for (std::size_t i = 0; i < statements_.size(); ++i)
-                if (active[i] && statements_[i].seat && seated.folded > 0)
-                    outcome.texts[i] = std::to_string(seated.folded) + " faces around the features fold over";
+                if (active[i] && statements_[i].reattachment && reattached.folded > 0)
+                    outcome.texts[i] = std::to_string(reattached.folded) + " faces around the features fold over";
         }
         const Mesh deformed = with_points(space_.mesh, list_of(outcome.points));
         const semantic::State state(deformed);

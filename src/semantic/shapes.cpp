@@ -31,8 +31,8 @@ Statement::Constraints kept(const Reader& read, const char* kind) {
     return list;
 }
 
-Seating seating_of(const Reader& read, std::optional<Vector3d> up) {
-    Seating seating;
+Reattachment reattachment_of(const Reader& read, std::optional<Vector3d> up) {
+    Reattachment reattachment;
     std::vector<bool> taken(read.shape().mesh.number_of_vertices(), false);
     for (std::size_t i = 0; i < read.members(); ++i) {
         const Annotation& feature = read.member(i);
@@ -46,11 +46,11 @@ Seating seating_of(const Reader& read, std::optional<Vector3d> up) {
                           "make one annotation of both, or keep their shapes without seating");
             taken[v] = true;
         }
-        seating.features.push_back(&feature);
+        reattachment.features.push_back(&feature);
     }
-    seating.up = up;
-    seating.bend = read.number("bend", 7.5e-4, 0, 1);
-    return seating;
+    reattachment.up = up;
+    reattachment.bend = read.number("bend", 7.5e-4, 0, 1);
+    return reattachment;
 }
 
 }  // namespace
@@ -60,10 +60,10 @@ Statement keep_shape(const ReaderPtr& read, const RelationOptions& tolerances) {
     const std::string mode = read->word("mode", "rigid", {"rigid", "similar", "seat"});
     const char* const kind = mode == "similar" ? "Similarity" : "Rigid";
     Statement statement;
-    if (mode == "seat") statement.seat = seating_of(*read, {});
+    if (mode == "seat") statement.reattachment = reattachment_of(*read, {});
     const auto parts = std::make_shared<const Statement::Constraints>(kept(*read, kind));
-    statement.lower = [read, kind, seated = mode == "seat"](const State&, const State&) {
-        return seated ? Statement::Constraints() : kept(*read, kind);
+    statement.lower = [read, kind, reattached = mode == "seat"](const State&, const State&) {
+        return reattached ? Statement::Constraints() : kept(*read, kind);
     };
     // A part is small against the object: its own size tells what matters.
     std::vector<double> tolerance;
@@ -106,7 +106,7 @@ Statement same_level(const ReaderPtr& read, const RelationOptions& tolerances) {
     }
     Statement statement;
     if (shapes == "seat") {
-        statement.seat = seating_of(*read, level.direction);
+        statement.reattachment = reattachment_of(*read, level.direction);
         statement.lower = [](const State&, const State&) { return Statement::Constraints(); };
     } else {
         statement.lower = [=](const State&, const State&) {

@@ -94,12 +94,12 @@ std::vector<FragmentThreshold> fragment_thresholds(const ShapeClass& learnt) {
 }
 
 std::vector<UsedThreshold> take_thresholds(ReconstructOptions& options, const ShapeClass* learnt,
-                                           const std::function<bool(const std::string&)>& told) {
+                                           const std::function<bool(const std::string&)>& specified) {
     std::vector<UsedThreshold> used;
     const std::vector<FragmentThreshold> of_class =
         learnt != nullptr ? fragment_thresholds(*learnt) : std::vector<FragmentThreshold>();
     const auto take = [&](const char* name, double& value, double maximum) {
-        UsedThreshold& one = used.emplace_back(UsedThreshold{{name, 0, 0}, told(name) ? "told" : "default"});
+        UsedThreshold& one = used.emplace_back(UsedThreshold{{name, 0, 0}, specified(name) ? "told" : "default"});
         const auto found = std::find_if(of_class.begin(), of_class.end(), [&](const auto& each) { return each.option == name; });
         const bool is_slack = one.option == "slack";
         if (found != of_class.end() && one.from != "told" && !(is_slack && found->value < value)) {

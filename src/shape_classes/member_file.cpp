@@ -37,8 +37,8 @@ ClassTemplate class_template(const Template& package) {
             package.graph ? *package.graph : no_relations};
 }
 
-KnownClass read_known_class(const Path& file) {
-    KnownClass result;
+ClassWithTemplate read_class_with_template(const Path& file) {
+    ClassWithTemplate result;
     result.learnt = read_class(file);
     const std::string& known = result.learnt.template_file;
     if (is_landmark_file(known)) {

@@ -23,7 +23,7 @@ AnnotationSet copy_of(const AnnotationSet& set) {
 
 Propagated propagate(const ClassTemplate& known, const WholeObject& member, const PropagateOptions& options) {
     Propagated result;
-    result.fit = fit_as_told(known, member, options.correspondence, options.fit);
+    result.fit = fit_by_method(known, member, options.correspondence, options.fit);
     if (!result.fit.problem.empty()) {
         result.lost = known.set.annotations.size();
         return result;

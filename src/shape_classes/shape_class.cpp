@@ -19,8 +19,8 @@ const LearntRange* ShapeClass::find(const std::string& key) const {
     return nullptr;
 }
 
-MemberFit fit_as_told(const ClassTemplate& known, const WholeObject& member, CorrespondenceChoice correspondence,
-                      const MemberFitOptions& options) {
+MemberFit fit_by_method(const ClassTemplate& known, const WholeObject& member, CorrespondenceChoice correspondence,
+                        const MemberFitOptions& options) {
     if (correspondence == CorrespondenceChoice::given ||
         (correspondence == CorrespondenceChoice::automatic && in_correspondence(known.mesh, member.mesh)))
         return member_in_correspondence(known.mesh, member);
@@ -30,7 +30,7 @@ MemberFit fit_as_told(const ClassTemplate& known, const WholeObject& member, Cor
 LearntMember learn_member(const ClassTemplate& known, const WholeObject& member, const LearnOptions& options,
                           const WholeShape* whole) {
     check_options(options, "learn");
-    return measure_member(known, member, fit_as_told(known, member, options.correspondence, options.fit), options, whole);
+    return measure_member(known, member, fit_by_method(known, member, options.correspondence, options.fit), options, whole);
 }
 
 LearntMember measure_member(const ClassTemplate& known, const WholeObject& member, MemberFit fit, const LearnOptions& options,
@@ -219,12 +219,12 @@ std::vector<PartsTogether> parts_together(const std::vector<LearntRange>& ranges
 
 double mean_distance(const ShapeModes& modes, const std::vector<Landmarks>& shapes) {
     if (shapes.size() < 2) return 0;
-    std::vector<Landmarks> laid;
-    for (const Landmarks& shape : shapes) laid.push_back(coordinates_in(modes, shape).map.apply(shape));
+    std::vector<Landmarks> aligned;
+    for (const Landmarks& shape : shapes) aligned.push_back(coordinates_in(modes, shape).map.apply(shape));
     double sum = 0;
-    for (std::size_t i = 0; i < laid.size(); ++i)
-        for (std::size_t j = i + 1; j < laid.size(); ++j) sum += (laid[i] - laid[j]).norm();
-    return sum / (0.5 * static_cast<double>(laid.size() * (laid.size() - 1))) / modes.mean_size;
+    for (std::size_t i = 0; i < aligned.size(); ++i)
+        for (std::size_t j = i + 1; j < aligned.size(); ++j) sum += (aligned[i] - aligned[j]).norm();
+    return sum / (0.5 * static_cast<double>(aligned.size() * (aligned.size() - 1))) / modes.mean_size;
 }
 
 namespace {

@@ -271,10 +271,10 @@ std::vector<Finding> examine(const Vocabulary& vocabulary) {
             if (!entry.labels.empty() && !entry.labels.contains(language)) missing += (missing.empty() ? "" : ", ") + language;
         if (!missing.empty()) findings.push_back({false, at, "the concept '" + entry.id + "' has no label in " + missing});
         // Of concepts that share a label, the last one names the others.
-        std::set<std::string> told;
+        std::set<std::string> reported;
         const auto look = [&](const std::string& label) {
             const auto concepts = label == entry.id ? std::vector<std::size_t>{i} : search.concepts_of(label);
-            if (concepts.size() < 2 || concepts.back() != i || !told.insert(folded(label)).second) return;
+            if (concepts.size() < 2 || concepts.back() != i || !reported.insert(folded(label)).second) return;
             std::vector<std::string> ids;
             for (const std::size_t k : concepts) ids.push_back(vocabulary.concepts[k].id);
             findings.push_back({false, at, "the label '" + label + "' means " + quoted(ids) + ": as a tag it is ambiguous"});

@@ -192,7 +192,7 @@ TEST(TechniqueStudy, ChanceIsNotTakenForKnowledge) {
 }
 
 TEST(TechniqueStudy, WhatTellsNothingApartGivesNoAnswers) {
-    int told = 0;
+    int reported = 0;
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
         const TechniqueStudy study = study_technique(drawn(24, 0, true, seed));
         for (const ClassifierResult& each : study.classifiers) {
@@ -200,14 +200,14 @@ TEST(TechniqueStudy, WhatTellsNothingApartGivesNoAnswers) {
             EXPECT_LE(each.f1_interval.low, each.validation.mean_f1);
             EXPECT_GE(each.f1_interval.high, each.validation.mean_f1);
         }
-        if (study.separated) ++told;
+        if (study.separated) ++reported;
         else
             for (const TechniqueAnswer& each : study.answers) {
                 EXPECT_TRUE(each.answer.empty());
                 EXPECT_TRUE(each.unlike || each.certainty == "not told apart") << each.certainty;
             }
     }
-    EXPECT_LE(told, 1);
+    EXPECT_LE(reported, 1);
 }
 
 TEST(TechniqueStudy, NoAnswerIsSurerThanTheClassifier) {

@@ -383,12 +383,12 @@ TEST(Calls, AreCancelledInTheMiddleAndLeaveNothing) {
     static_cast<void>(make.run(context));
 
     Context second;
-    int told = 0;
+    int reported = 0;
     second.watch.on_progress = [&](const std::string& phase, double share) {
         EXPECT_FALSE(phase.empty());
         EXPECT_GE(share, 0);
         EXPECT_LE(share, 1);
-        if (++told == 1) second.watch.cancel();
+        if (++reported == 1) second.watch.cancel();
     };
     Call refine(find_operation("mesh refine"));
     refine.set_object("input", make.object("output"));

@@ -174,12 +174,12 @@ TEST(Deform, SurroundingsAreDistortedLessThanInTheThesis) {
     const RingDistortion rest = distortion(hard, "rest", DeformOptions().closeness), crowded = distortion(hard, "rest", 0.05);
     EXPECT_LT(ours.stretch, rest.stretch);
     EXPECT_LT(rest.stretch, crowded.stretch);
-    const RingDistortion seated = distortion(R"({"shapes": "seat"})", "edited", DeformOptions().closeness);
-    EXPECT_LT(seated.angle, rest.angle / 2);
-    EXPECT_LT(seated.distance, rest.distance / 2);
+    const RingDistortion reattached = distortion(R"({"shapes": "seat"})", "edited", DeformOptions().closeness);
+    EXPECT_LT(reattached.angle, rest.angle / 2);
+    EXPECT_LT(reattached.distance, rest.distance / 2);
 }
 
-TEST(Deform, SeatedFeaturesAreRigidAndLevelThroughTheCageToo) {
+TEST(Deform, ReattachedFeaturesAreRigidAndLevelThroughTheCageToo) {
     const Caged& object = teapot();
     const std::vector<int> flowers{7, 8, 9, 10, 11};
     const std::string steps = R"({"select": {"all": true}, "stretch": {"direction": [0, 0, 1], "factor": 1.4}},

@@ -95,8 +95,8 @@ TEST_F(ClassCommand, AFitTakesShapeAndThresholdsOfItsOwnClassOnly) {
     }
     EXPECT_EQ(by_class, 2U) << "statuettes have landmarks enough";
     // What is told holds; without a class the defaults do.
-    const auto told = run_command(fit + " --residual 0.4 --class " + quoted(learnt));
-    ASSERT_TRUE(told.code == 0 || told.code == 3) << told.err;
+    const auto specified = run_command(fit + " --residual 0.4 --class " + quoted(learnt));
+    ASSERT_TRUE(specified.code == 0 || specified.code == 3) << specified.err;
     assembly = read_json(scratch / "fitted" / "fit.assembly.json");
     EXPECT_EQ(origin_of(assembly, "residual"), "told");
     EXPECT_EQ(assembly["thresholds"][0]["value"].GetDouble(), 0.4);

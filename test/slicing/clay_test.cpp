@@ -156,10 +156,10 @@ TEST(ClayCommand, SaysBoundsAndWhatTheyRestOn) {
     EXPECT_NE(open.out.find("the mesh is open"), std::string::npos) << open.out;
     // Unit and upward direction of the annotations.
     const std::string data = OSTRAKA_SOURCE_DIR "/data/";
-    const auto told = test::run_command("measure clay " + data + "vase.ply " + data + "vase.ant.json");
-    EXPECT_EQ(told.code, 0) << told.err;
-    EXPECT_EQ(told.out, test::run_command("measure clay --unit mm --up z " + data + "vase.ply").out);
-    EXPECT_NE(told.out.find("mm^3"), std::string::npos);
+    const auto specified = test::run_command("measure clay " + data + "vase.ply " + data + "vase.ant.json");
+    EXPECT_EQ(specified.code, 0) << specified.err;
+    EXPECT_EQ(specified.out, test::run_command("measure clay --unit mm --up z " + data + "vase.ply").out);
+    EXPECT_NE(specified.out.find("mm^3"), std::string::npos);
     EXPECT_EQ(test::run_command("measure clay --up 0,0,0 " + (scratch / "cup.ply").string()).code, 2);
     write_mesh(scratch / "ball.ply", build_mesh(test::octahedron_sphere(3)));
     const auto ball = test::run_command("measure clay " + (scratch / "ball.ply").string());

@@ -54,7 +54,7 @@ private:
     std::size_t total_;
     Watch* watch_;
     std::atomic<std::size_t> done_{0};
-    std::atomic<long long> last_told_{0};
+    std::atomic<long long> last_reported_{0};
 };
 
 }  // namespace ostraka

@@ -120,8 +120,8 @@ public:
 
 private:
     friend class Call;
-    struct Run;
-    Run* run_ = nullptr;
+    struct CallState;
+    CallState* run_ = nullptr;
     struct Kept;
     std::unique_ptr<Kept> kept_;
     std::vector<Path> memory_;

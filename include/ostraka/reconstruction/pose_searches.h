@@ -26,7 +26,7 @@ public:
 
     [[nodiscard]] std::size_t made() const { return made_; }      ///< searches that `find` made
     [[nodiscard]] std::size_t reused() const { return reused_; }  ///< and those that it had already
-    [[nodiscard]] bool empty() const { return known_.empty(); }
+    [[nodiscard]] bool empty() const { return stored_.empty(); }
 
     /// doc/schema/searches.schema.json. Numbers come back to the bit.
     [[nodiscard]] JsonValue to_json(JsonAllocator& allocator) const;
@@ -35,7 +35,7 @@ public:
     std::size_t add(const JsonValue& document, const std::string& file);
 
 private:
-    struct Known {
+    struct StoredSearch {
         std::string fragment;  ///< its name, for people
         PoseSearchResult result;
     };
@@ -46,7 +46,7 @@ private:
     PoseSearchOptions options_;
     std::string of_template_;  ///< checksum of what is common to all keys
     std::unique_ptr<Whole> whole_;
-    std::map<std::string, Known> known_;  ///< by key
+    std::map<std::string, StoredSearch> stored_;  ///< by key
     std::size_t made_ = 0, reused_ = 0;
 };
 

@@ -34,7 +34,7 @@ struct UsedThreshold : FragmentThreshold {
 /// options). What scans and measuring leave is not seen on members: a constraint may always be off by the default. Returns
 /// "residual", "scale-tolerance" and "slack" as they are then; without a class none of them changes.
 std::vector<UsedThreshold> take_thresholds(ReconstructOptions& options, const ShapeClass* learnt,
-                                           const std::function<bool(const std::string&)>& told);
+                                           const std::function<bool(const std::string&)>& specified);
 /// As an assembly has them.
 JsonValue thresholds_to_json(const std::vector<UsedThreshold>& thresholds, JsonAllocator& allocator);
 

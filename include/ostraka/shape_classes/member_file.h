@@ -18,13 +18,13 @@ WholeObject read_member(const Path& file);
 ClassTemplate class_template(const Template& package);
 
 /// A class with its template, or with its landmarks.
-struct KnownClass {
+struct ClassWithTemplate {
     ShapeClass learnt;
     Template package;
     std::optional<LandmarkTemplate> landmarks;
     [[nodiscard]] ClassTemplate known() const { return landmarks ? landmarks->known() : class_template(package); }
 };
 /// Throws Error (input) as read_class, check_usable and check_topology do.
-KnownClass read_known_class(const Path& file);
+ClassWithTemplate read_class_with_template(const Path& file);
 
 }  // namespace ostraka

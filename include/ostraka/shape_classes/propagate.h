@@ -27,7 +27,7 @@ struct Propagated {
     [[nodiscard]] bool complete() const { return fit.problem.empty() && lost == 0 && lies_on; }
 };
 
-/// Lays the template onto the member (fit_as_told) and transfers its annotations to the member's surface (`transfer`); in
+/// Lays the template onto the member (fit_by_method) and transfers its annotations to the member's surface (`transfer`); in
 /// correspondence they are the same ones. Measures are taken anew. A template that does not lie on the member (`fit_is_off`) is
 /// carried over all the same, and said.
 Propagated propagate(const ClassTemplate& known, const WholeObject& member, const PropagateOptions& options = {});

@@ -58,8 +58,8 @@ struct ShapeClass {
 };
 
 /// Whether the template is laid onto `member` as it is or by a fit.
-MemberFit fit_as_told(const ClassTemplate& known, const WholeObject& member, CorrespondenceChoice correspondence,
-                      const MemberFitOptions& options);
+MemberFit fit_by_method(const ClassTemplate& known, const WholeObject& member, CorrespondenceChoice correspondence,
+                        const MemberFitOptions& options);
 
 struct LearntMember {
     std::string name;

@@ -44,9 +44,9 @@ double minimise(State& state, const Normal& normal, const Step& step) {
 }
 
 /// Rows: the centred points.
-class Round : public Constraint {
+class RadialConstraint : public Constraint {
 protected:
-    explicit Round(Making&& m) : Constraint(m.kind, std::move(m.ids), m.weight) {
+    explicit RadialConstraint(Making&& m) : Constraint(m.kind, std::move(m.ids), m.weight) {
         map_.direct = map_.rows = static_cast<Index>(ids().size());
         map_.centred = true;
     }
@@ -69,9 +69,9 @@ protected:
 };
 
 /// On some sphere, or on a plane where that, its limit, is closer.
-class Sphere final : public Round {
+class Sphere final : public RadialConstraint {
 public:
-    explicit Sphere(Making&& m) : Round(std::move(m)) {}
+    explicit Sphere(Making&& m) : RadialConstraint(std::move(m)) {}
     void project(const RowsIn& rows, RowsOut projected) const override {
         projected = rows;
         const double size = size_of(rows);
@@ -115,9 +115,9 @@ public:
 };
 
 /// On some circle, or on a line where that, its limit, is closer.
-class Circle final : public Round {
+class Circle final : public RadialConstraint {
 public:
-    explicit Circle(Making&& m) : Round(std::move(m)) {}
+    explicit Circle(Making&& m) : RadialConstraint(std::move(m)) {}
     void project(const RowsIn& rows, RowsOut projected) const override {
         projected = rows;
         const double size = size_of(rows);

@@ -6,8 +6,8 @@
 
 namespace ostraka::semantic {
 
-/// Features that are seated together.
-struct Seating {
+/// Features that are re-attached together.
+struct Reattachment {
     std::vector<const Annotation*> features;  ///< regions
     std::optional<Eigen::Vector3d> up;        ///< their centroids come to one level along it
     double bend = 0;  ///< root mean square by which one may bend to lie on the base, as a share of the diagonal
@@ -16,10 +16,10 @@ struct Seating {
 /// A point a column.
 std::vector<Point> list_of(const Points& points);
 
-/// Whether other faces adjoin those of a region: the whole of a piece has no place to be seated at.
+/// Whether other faces adjoin those of a region: the whole of a piece has no place to be re-attached at.
 bool has_outline(const Mesh& mesh, const Annotation& region);
 
-struct SeatReport {
+struct ReattachmentReport {
     std::size_t folded = 0;  ///< faces around features that had to turn over
 };
 
@@ -28,6 +28,6 @@ struct SeatReport {
 /// is given it slides along the base until its centroid stands at the mean level of all. Around a feature, up to about twice its
 /// radius, vertices slide on the base to make room, so that the surface keeps its shape there (thesis, sections 5.4 and 6.1.2).
 /// Other points stay.
-SeatReport seat(const Mesh& mesh, const Points& rest, const std::vector<Seating>& seatings, Points& points);
+ReattachmentReport reattach(const Mesh& mesh, const Points& rest, const std::vector<Reattachment>& reattachments, Points& points);
 
 }  // namespace ostraka::semantic

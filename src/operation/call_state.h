@@ -7,7 +7,7 @@
 
 namespace ostraka {
 
-struct Context::Run {
+struct Context::CallState {
     std::string command;
     const Parameters* parameters = nullptr;
     Report* report = nullptr;

@@ -1,4 +1,4 @@
-#include "seat.h"
+#include "reattachment.h"
 
 #include "ostraka/core/dense.h"
 #include "ostraka/geom/eigen.h"
@@ -116,25 +116,26 @@ Feature feature_of(const Mesh& mesh, const Points& rest, const Annotation& annot
     return feature;
 }
 
-class Seater {
+class Reattacher {
 public:
-    Seater(const Mesh& mesh, const Points& rest, const std::vector<Seating>& seatings, Points& points)
+    Reattacher(const Mesh& mesh, const Points& rest, const std::vector<Reattachment>& reattachments, Points& points)
         : mesh_(mesh),
           rest_(rest),
           points_(points),
           owner_(mesh.number_of_vertices(), -1),
-          seated_(points),
+          reattached_(points),
           change_(Points::Zero(3, points.cols())) {
-        for (const Seating& seating : seatings) {
-            groups_.push_back({features_.size(), features_.size() + seating.features.size(), seating.up, seating.bend});
-            for (const Annotation* annotation : seating.features) {
+        for (const Reattachment& reattachment : reattachments) {
+            groups_.push_back(
+                {features_.size(), features_.size() + reattachment.features.size(), reattachment.up, reattachment.bend});
+            for (const Annotation* annotation : reattachment.features) {
                 for (const Index v : vertices_of(mesh, *annotation)) owner_[v] = static_cast<int>(features_.size());
                 features_.push_back(feature_of(mesh, rest, *annotation));
             }
         }
     }
 
-    SeatReport run() {
+    ReattachmentReport run() {
         Points base_points = points_;
         std::vector<Index> insides;
         for (const Feature& feature : features_) insides.insert(insides.end(), feature.inside.begin(), feature.inside.end());
@@ -150,7 +151,7 @@ public:
             settle(feature, search, {});
         }
         for (const Group& group : groups_) place(group, search);
-        SeatReport report;
+        ReattachmentReport report;
         constexpr double widest = 3;
         for (const double radii_around : {2.0, widest}) {
             const Points tried = surroundings(search, radii_around);
@@ -211,7 +212,7 @@ private:
         for (const Index v : feature.vertices) sum += change_.col(v).squaredNorm();
         const double rms = std::sqrt(sum / static_cast<double>(feature.vertices.size()));
         const double share = rms > maximum ? maximum / rms : 1;
-        for (const Index v : feature.vertices) seated_.col(v) = feature.placement(rest_.col(v)) + share * change_.col(v);
+        for (const Index v : feature.vertices) reattached_.col(v) = feature.placement(rest_.col(v)) + share * change_.col(v);
     }
 
     void place(const Group& group, const SurfaceSearch& search) {
@@ -219,7 +220,7 @@ private:
         for (std::size_t i = group.begin; i < group.end; ++i) bend(features_[i], search, maximum);
         if (!group.up) return;
         const Vector3d& up = *group.up;
-        const auto height = [&](const Feature& f) { return up.dot(centroid_of(mesh_, f.annotation->faces, seated_)); };
+        const auto height = [&](const Feature& f) { return up.dot(centroid_of(mesh_, f.annotation->faces, reattached_)); };
         double mean = 0;
         for (std::size_t i = group.begin; i < group.end; ++i)
             mean += height(features_[i]) / static_cast<double>(group.end - group.begin);
@@ -231,7 +232,7 @@ private:
                 bend(feature, search, maximum);
             }
             const Vector3d rest = (mean - height(feature)) * up;
-            for (const Index v : feature.vertices) seated_.col(v) += rest;
+            for (const Index v : feature.vertices) reattached_.col(v) += rest;
         }
     }
 
@@ -241,7 +242,7 @@ private:
         Points moved = Points::Zero(3, points_.cols()), off = moved, result = points_;
         for (const Feature& feature : features_)
             for (const Index v : feature.vertices) {
-                result.col(v) = seated_.col(v);
+                result.col(v) = reattached_.col(v);
                 moved.col(v) = result.col(v) - points_.col(v);
             }
         std::vector<bool> ring(points_.cols(), false);
@@ -304,7 +305,7 @@ private:
     Points& points_;
     std::vector<int> owner_;  ///< feature of each vertex, or -1
     std::vector<Feature> features_;
-    Points seated_, change_;  ///< of the features' vertices
+    Points reattached_, change_;  ///< of the features' vertices
     std::vector<Group> groups_;
 };
 
@@ -327,9 +328,10 @@ bool has_outline(const Mesh& mesh, const Annotation& region) {
     });
 }
 
-SeatReport seat(const Mesh& mesh, const Points& rest, const std::vector<Seating>& seatings, Points& points) {
-    if (seatings.empty()) return {};
-    return Seater(mesh, rest, seatings, points).run();
+ReattachmentReport reattach(const Mesh& mesh, const Points& rest, const std::vector<Reattachment>& reattachments,
+                            Points& points) {
+    if (reattachments.empty()) return {};
+    return Reattacher(mesh, rest, reattachments, points).run();
 }
 
 }  // namespace ostraka::semantic
