@@ -2,7 +2,7 @@
 #include "ostraka/axis/axis.h"
 #include "ostraka/core/dense.h"
 
-#include "axis_parts.h"
+#include "axis_methods.h"
 
 #include "ostraka/core/error.h"
 

@@ -1,5 +1,5 @@
 // Axis of a surface of revolution from normals, refined on positions.
-#include "axis_parts.h"
+#include "axis_methods.h"
 
 #include "ostraka/core/angles.h"
 #include "ostraka/core/dense.h"

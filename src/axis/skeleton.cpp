@@ -1,5 +1,5 @@
 // Mean curvature skeleton of a part, capped where it is open.
-#include "axis_parts.h"
+#include "axis_methods.h"
 
 #include "ostraka/core/error.h"
 

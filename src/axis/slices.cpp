@@ -1,5 +1,5 @@
 // Axis of a tubular part from the centres of its slices.
-#include "axis_parts.h"
+#include "axis_methods.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"

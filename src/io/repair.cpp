@@ -3,7 +3,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/io/wrap.h"
-#include "repair_parts.h"
+#include "repair_steps.h"
 #include "soup_geometry.h"
 #include "triangle_tree.h"
 

@@ -1,6 +1,6 @@
 // Holes closed by triangles over their border vertices.
 #include "ostraka/core/parallel.h"
-#include "repair_parts.h"
+#include "repair_steps.h"
 #include "soup_geometry.h"
 
 #include <cmath>

@@ -1,5 +1,5 @@
 // Self-intersections removed by cutting out and closing again.
-#include "repair_parts.h"
+#include "repair_steps.h"
 #include "soup_geometry.h"
 
 namespace ostraka::detail {

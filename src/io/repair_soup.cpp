@@ -1,7 +1,7 @@
 // The soup under repair: bookkeeping, merging of points, triangles that cannot stay, components.
 #include "ostraka/core/error.h"
 #include "ostraka/geom/point_tree.h"
-#include "repair_parts.h"
+#include "repair_steps.h"
 #include "soup_geometry.h"
 
 #include <cmath>

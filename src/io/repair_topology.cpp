@@ -1,5 +1,5 @@
 // Orientation, and the taking apart of what is not a manifold.
-#include "repair_parts.h"
+#include "repair_steps.h"
 #include "soup_geometry.h"
 
 #include <cmath>

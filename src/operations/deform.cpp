@@ -131,7 +131,7 @@ struct Deform final : Operation {
         // The first cage that has coordinates.
         std::string why_not;
         for (std::size_t i = 0; i < loaded.cages.size() && !cage; ++i)
-            for (const TemplatePart* part : loaded.file.of("coordinates")) {
+            for (const PackagedFile* part : loaded.file.of("coordinates")) {
                 if (subject.coordinates != nullptr || !loaded.cages[i]) continue;
                 try {
                     context.record([&] { own_weights = read_coordinates(part->file, loaded.mesh->mesh, *loaded.cages[i]); });

@@ -72,7 +72,7 @@ struct TemplateLearn final : Operation {
         ShapeClass result = learn_class(class_template(package), fitted, options);
         const bool in_place = open_for(result);
         if (!in_place) {
-            for (const TemplatePart& part : package.file.parts) check_copy(part.file);
+            for (const PackagedFile& part : package.file.contents) check_copy(part.file);
             static_cast<void>(copy_template(package.file, output.open(), result.template_file, context.provenance()));
         }
         output.write(name + ".mean.ply", with_points(package.mesh->mesh, points_of(result.modes.mean)));

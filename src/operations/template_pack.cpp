@@ -72,7 +72,7 @@ struct TemplatePack final : Operation {
                 const Path here = copy ? folder / part.filename() : part;
                 if (!same_place(here, part) && copies.emplace(here, part).first->second != part)
                     fail_usage("two parts are called '" + part.filename().string() + "'", "rename one of the files");
-                file.parts.push_back({role, part_name(folder, here), part, sha256_of_file(part)});
+                file.contents.push_back({role, part_name(folder, here), part, sha256_of_file(part)});
             }
         for (const auto& [here, part] : copies) outputs.push_back(here);
         check_outputs(inputs, outputs);

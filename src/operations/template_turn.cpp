@@ -65,7 +65,7 @@ struct TemplateTurn final : Operation {
             const std::string bytes = read_file(draft);
             const Path place = output.in(name);
             write_file(place, bytes);
-            file.parts.push_back({role, name, place, sha256(bytes)});
+            file.contents.push_back({role, name, place, sha256(bytes)});
         };
         part("mesh", "turned.ply", [&](const Path& path) { write_mesh(path, turned.mesh, {}, how); });
         part("annotations", "turned.ant.json",

@@ -47,7 +47,7 @@ JsonValue search_of(const PoseSearchResult& one, JsonAllocator& allocator) {
         add_members(slippable, allocator, "text", one.slippable.text(), "point", triple(one.slippable.point), "direction",
                     triple(one.slippable.direction));
     }
-    for (const FreeWay& way : one.ways) {
+    for (const SlippableRange& way : one.ways) {
         JsonValue item = json_object(allocator, "turns", way.rotates, "least", way.minimum, "most", way.maximum);
         ways.PushBack(item, allocator);
     }

@@ -76,7 +76,7 @@ JsonValue to_json(const PoseSearchResult& result, JsonAllocator& allocator) {
                 to_json(result.slippable.point, allocator), "direction", to_json(result.slippable.direction, allocator), "pitch",
                 result.slippable.pitch);
     add_member(entry, "freedom", std::move(slippable), allocator);
-    for (const FreeWay& way : result.ways) {
+    for (const SlippableRange& way : result.ways) {
         JsonValue item =
             json_object(allocator, "point", to_json(way.point, allocator), "direction", to_json(way.direction, allocator),
                         "turns", way.rotates, "least", way.minimum, "most", way.maximum);

@@ -72,7 +72,7 @@ bool close_by_landmarks(const std::vector<LandmarkPair>& pairs, double scale, do
     using Eigen::Vector3d;
     if (pairs.empty() || search.ways.empty()) return false;
     Motion pose = placed.pose;
-    for (const FreeWay& way : search.ways) {
+    for (const SlippableRange& way : search.ways) {
         const Vector3d d = way.direction.normalized();
         double sine = 0, cosine = 0, along = 0;
         for (const LandmarkPair& pair : pairs) {

@@ -22,7 +22,7 @@ std::optional<TemplateCage> cage_of(const Template& known) {
     const Mesh& mesh = known.mesh->mesh;
     for (const std::optional<Mesh>& cage : known.cages) {
         if (!cage) continue;
-        for (const TemplatePart* part : known.file.of("coordinates")) {
+        for (const PackagedFile* part : known.file.of("coordinates")) {
             try {
                 Coordinates coordinates = read_coordinates(part->file, mesh, *cage);
                 if (!coordinates.has_normals()) return TemplateCage{*cage, std::move(coordinates)};

@@ -249,7 +249,7 @@ struct PoseSearch::State {
     /// What the shape of the part leaves open and the whole bears out from this place on: in the part's frame. `ways`, if asked
     /// for, are on the scaled whole.
     [[nodiscard]] SlippableMotions slippable_from(const SurfacePoints& points, const PoseCandidate& at, double tolerance,
-                                                  std::vector<FreeWay>* ways) const {
+                                                  std::vector<SlippableRange>* ways) const {
         constexpr double min_rotation = pi / 12;
         const SurfacePoints some = thinned(points, 300);
         const Extent extent = extent_of(points);
@@ -292,7 +292,7 @@ struct PoseSearch::State {
             if (number >= list.size() / 2) {
                 (*ways)[number - list.size() / 2].minimum = reached;
             } else {
-                FreeWay& one = ways->emplace_back();
+                SlippableRange& one = ways->emplace_back();
                 one.rotates = rotates;
                 one.maximum = reached;
                 one.point = at.pose(slippable.point);
@@ -304,7 +304,7 @@ struct PoseSearch::State {
             slippable.kind = any_rotation ? SlippableKind::rotation : SlippableKind::translation;
         if (!any_rotation && !any_translation) slippable.kind = SlippableKind::none;
         if (ways != nullptr)
-            std::erase_if(*ways, [&](const FreeWay& one) {
+            std::erase_if(*ways, [&](const SlippableRange& one) {
                 return one.maximum - one.minimum < (one.rotates ? min_rotation : length_apart * extent.size);
             });
         return slippable;

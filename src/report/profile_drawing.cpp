@@ -1,7 +1,7 @@
 // A profile as pottery is drawn.
 #include "ostraka/report/slice_drawing.h"
 
-#include "drawing_parts.h"
+#include "drawing_elements.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/report/table.h"

@@ -2,7 +2,7 @@
 #include "ostraka/report/slice_drawing.h"
 #include "ostraka/core/angles.h"
 
-#include "drawing_parts.h"
+#include "drawing_elements.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/report/table.h"

@@ -71,20 +71,20 @@ Vector3d centroid_of(const Mesh& mesh, const std::vector<Index>& faces, const Po
     return area > 0 ? Vector3d(sum / area) : Vector3d(points.col(corners(mesh, Face(faces.front()))[0]));
 }
 
-struct Placement {
+struct FeaturePose {
     Matrix3d rotation = Matrix3d::Identity();
     Vector3d translation = Vector3d::Zero();
     [[nodiscard]] Vector3d operator()(const Vector3d& p) const { return rotation * p + translation; }
 };
 
 /// The rigid motion that brings columns of `from` closest to those of `to`.
-Placement fit(const Points& from, const Points& to) {
+FeaturePose fit(const Points& from, const Points& to) {
     const Vector3d a = from.rowwise().mean(), b = to.rowwise().mean();
     const Matrix3d m = (to.colwise() - b) * (from.colwise() - a).transpose();
     const Svd3 svd(m);
     Matrix3d sign = Matrix3d::Identity();
     sign(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
-    Placement result;
+    FeaturePose result;
     result.rotation = svd.matrixU() * sign * svd.matrixV().transpose();
     result.translation = b - result.rotation * a;
     return result;
@@ -96,7 +96,7 @@ struct Feature {
     Vector3d centroid;  ///< at rest
     double radius = 0;  ///< greatest distance from it, at rest
     Points rest_outline;
-    Placement placement;
+    FeaturePose pose;
 };
 
 Feature feature_of(const Mesh& mesh, const Points& rest, const Annotation& annotation) {
@@ -147,7 +147,7 @@ public:
             Points to(3, feature.rest_outline.cols());
             for (std::size_t i = 0; i < feature.outline.size(); ++i)
                 to.col(static_cast<Eigen::Index>(i)) = points_.col(feature.outline[i]);
-            feature.placement = fit(feature.rest_outline, to);
+            feature.pose = fit(feature.rest_outline, to);
             settle(feature, search, {});
         }
         for (const Group& group : groups_) place(group, search);
@@ -173,7 +173,7 @@ private:
     void settle(Feature& feature, const SurfaceSearch& search, const std::optional<std::pair<Vector3d, double>>& height) const {
         const double enough = 1e-9 * search.diagonal();
         for (int round = 0; round < 50; ++round) {
-            const Placement before = feature.placement;
+            const FeaturePose before = feature.pose;
             Points to(3, feature.rest_outline.cols());
             Vector3d normal = Vector3d::Zero();
             for (Eigen::Index i = 0; i < to.cols(); ++i) {
@@ -181,30 +181,29 @@ private:
                 to.col(i) = eigen(hit.point);
                 normal += eigen(search.normal(hit.face));
             }
-            feature.placement = fit(feature.rest_outline, to);
+            feature.pose = fit(feature.rest_outline, to);
             if (height) {
                 // Along the base, in the steepest direction of the height; straight where the base is level itself.
                 const auto& [up, wanted] = *height;
                 normal = normal.norm() > 0 ? Vector3d(normal.normalized()) : up;
                 const Vector3d slope = up - normal * normal.dot(up);
-                const double off = wanted - up.dot(feature.placement(feature.centroid));
-                feature.placement.translation +=
-                    slope.norm() > 0.2 ? Vector3d(off / slope.squaredNorm() * slope) : Vector3d(off * up);
+                const double off = wanted - up.dot(feature.pose(feature.centroid));
+                feature.pose.translation += slope.norm() > 0.2 ? Vector3d(off / slope.squaredNorm() * slope) : Vector3d(off * up);
             }
-            const double moved = (feature.placement(feature.centroid) - before(feature.centroid)).norm() +
-                                 feature.radius * (feature.placement.rotation - before.rotation).norm();
+            const double moved = (feature.pose(feature.centroid) - before(feature.centroid)).norm() +
+                                 feature.radius * (feature.pose.rotation - before.rotation).norm();
             if (moved < enough) break;
         }
         if (height) {
             const auto& [up, wanted] = *height;
-            feature.placement.translation += (wanted - up.dot(feature.placement(feature.centroid))) * up;
+            feature.pose.translation += (wanted - up.dot(feature.pose(feature.centroid))) * up;
         }
     }
 
     /// The feature where it is placed, bent so that its outline lies on the base as far as it may.
     void bend(const Feature& feature, const SurfaceSearch& search, double maximum) {
         for (const Index v : feature.outline) {
-            const Vector3d p = feature.placement(rest_.col(v));
+            const Vector3d p = feature.pose(rest_.col(v));
             change_.col(v) = eigen(search.closest(point_of(p)).point) - p;
         }
         smooth(mesh_, feature.inside, false, change_);
@@ -212,7 +211,7 @@ private:
         for (const Index v : feature.vertices) sum += change_.col(v).squaredNorm();
         const double rms = std::sqrt(sum / static_cast<double>(feature.vertices.size()));
         const double share = rms > maximum ? maximum / rms : 1;
-        for (const Index v : feature.vertices) reattached_.col(v) = feature.placement(rest_.col(v)) + share * change_.col(v);
+        for (const Index v : feature.vertices) reattached_.col(v) = feature.pose(rest_.col(v)) + share * change_.col(v);
     }
 
     void place(const Group& group, const SurfaceSearch& search) {
@@ -227,7 +226,7 @@ private:
         for (std::size_t i = group.begin; i < group.end; ++i) {
             Feature& feature = features_[i];
             for (int round = 0; round < 5; ++round) {
-                const double wanted = mean - height(feature) + up.dot(feature.placement(feature.centroid));
+                const double wanted = mean - height(feature) + up.dot(feature.pose(feature.centroid));
                 settle(feature, search, std::pair{up, wanted});
                 bend(feature, search, maximum);
             }

@@ -1,7 +1,7 @@
 // The solver over the points themselves.
 #include "ostraka/solver/solve.h"
 
-#include "assembly.h"
+#include "constraint_rows.h"
 #include "ostraka/core/parallel.h"
 
 #include <algorithm>

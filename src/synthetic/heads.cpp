@@ -60,7 +60,7 @@ public:
     }
 
 private:
-    static Placement at(const Vector3d& centre, const Eigen::Matrix3d& turn = Eigen::Matrix3d::Identity()) {
+    static SolidPose at(const Vector3d& centre, const Eigen::Matrix3d& turn = Eigen::Matrix3d::Identity()) {
         return {centre, turn};
     }
     void add(SolidPointer solid, HeadPart part, double blend) { add_member(*object_, std::move(solid), label(part), blend); }

@@ -15,24 +15,24 @@ namespace {
 /// A solid in its own frame, placed in the world.
 class PlacedSolid : public Solid {
 public:
-    explicit PlacedSolid(const Placement& placement) : placement_(placement), back_(placement.rotation.transpose()) {}
+    explicit PlacedSolid(const SolidPose& pose) : pose_(pose), back_(pose.rotation.transpose()) {}
     [[nodiscard]] Sample sample(const Vector3d& p) const final {
         Sample s = local(to_local(p));
-        s.gradient = placement_.rotation * s.gradient;
+        s.gradient = pose_.rotation * s.gradient;
         return s;
     }
     [[nodiscard]] AlignedBox3d box() const final {
-        const Vector3d half = placement_.rotation.cwiseAbs() * half_extents();
-        return {placement_.centre - half, placement_.centre + half};
+        const Vector3d half = pose_.rotation.cwiseAbs() * half_extents();
+        return {pose_.centre - half, pose_.centre + half};
     }
 
 protected:
     [[nodiscard]] virtual Sample local(const Vector3d& p) const = 0;
     [[nodiscard]] virtual Vector3d half_extents() const = 0;
-    [[nodiscard]] Vector3d to_local(const Vector3d& p) const { return back_ * (p - placement_.centre); }
+    [[nodiscard]] Vector3d to_local(const Vector3d& p) const { return back_ * (p - pose_.centre); }
 
 private:
-    Placement placement_;
+    SolidPose pose_;
     Eigen::Matrix3d back_;
 };
 
@@ -44,8 +44,7 @@ Sample revolve(const Vector3d& p, double distance, double value, const Vector2d&
 
 class Ellipsoid final : public PlacedSolid {
 public:
-    Ellipsoid(const Placement& placement, const Vector3d& radii)
-        : PlacedSolid(placement), radii_(radii), smallest_(radii.minCoeff()) {}
+    Ellipsoid(const SolidPose& pose, const Vector3d& radii) : PlacedSolid(pose), radii_(radii), smallest_(radii.minCoeff()) {}
     [[nodiscard]] double flatness() const override { return smallest_ / radii_.maxCoeff(); }
 
 protected:
@@ -64,8 +63,8 @@ private:
 
 class RoundedBox final : public PlacedSolid {
 public:
-    RoundedBox(const Placement& placement, const Vector3d& half, double rounding)
-        : PlacedSolid(placement), half_(half), core_(half - Vector3d::Constant(rounding)), rounding_(rounding) {}
+    RoundedBox(const SolidPose& pose, const Vector3d& half, double rounding)
+        : PlacedSolid(pose), half_(half), core_(half - Vector3d::Constant(rounding)), rounding_(rounding) {}
 
 protected:
     [[nodiscard]] Sample local(const Vector3d& p) const override {
@@ -86,8 +85,8 @@ private:
 
 class RoundedCylinder final : public PlacedSolid {
 public:
-    RoundedCylinder(const Placement& placement, double radius, double half_height, double rounding)
-        : PlacedSolid(placement), half_(radius, half_height), core_(half_ - Vector2d::Constant(rounding)), rounding_(rounding) {}
+    RoundedCylinder(const SolidPose& pose, double radius, double half_height, double rounding)
+        : PlacedSolid(pose), half_(radius, half_height), core_(half_ - Vector2d::Constant(rounding)), rounding_(rounding) {}
 
 protected:
     [[nodiscard]] Sample local(const Vector3d& p) const override {
@@ -111,7 +110,7 @@ private:
 
 class Torus final : public PlacedSolid {
 public:
-    Torus(const Placement& placement, double ring, double tube) : PlacedSolid(placement), ring_(ring), tube_(tube) {}
+    Torus(const SolidPose& pose, double ring, double tube) : PlacedSolid(pose), ring_(ring), tube_(tube) {}
 
 protected:
     [[nodiscard]] Sample local(const Vector3d& p) const override {
@@ -198,8 +197,8 @@ private:
 
 class RevolvedSolid final : public PlacedSolid {
 public:
-    RevolvedSolid(const Placement& placement, const std::vector<Vector2d>& profile)
-        : PlacedSolid(placement), curve_(chord_lengths(profile), profile, Vector2d(1, 0), Vector2d(-1, 0)) {
+    RevolvedSolid(const SolidPose& pose, const std::vector<Vector2d>& profile)
+        : PlacedSolid(pose), curve_(chord_lengths(profile), profile, Vector2d(1, 0), Vector2d(-1, 0)) {
         for (const double t : curve_.samples(samples_per_piece)) {
             samples_.emplace_back(t, curve_.at(t).value);
             extents_ = extents_.cwiseMax(samples_.back().second.cwiseAbs() * 1.01 + Vector2d::Constant(curve_.length() * 1e-3));
@@ -285,31 +284,31 @@ void check_sizes(const char* what, std::initializer_list<double> sizes, double r
 
 }  // namespace
 
-SolidPointer make_ellipsoid(const Placement& placement, const Vector3d& radii) {
+SolidPointer make_ellipsoid(const SolidPose& pose, const Vector3d& radii) {
     check_sizes("an ellipsoid", {radii.x(), radii.y(), radii.z()});
-    return std::make_unique<Ellipsoid>(placement, radii);
+    return std::make_unique<Ellipsoid>(pose, radii);
 }
-SolidPointer make_box(const Placement& placement, const Vector3d& half, double rounding) {
+SolidPointer make_box(const SolidPose& pose, const Vector3d& half, double rounding) {
     check_sizes("a box", {half.x(), half.y(), half.z()}, rounding, half.minCoeff());
-    return std::make_unique<RoundedBox>(placement, half, rounding);
+    return std::make_unique<RoundedBox>(pose, half, rounding);
 }
-SolidPointer make_cylinder(const Placement& placement, double radius, double half_height, double rounding) {
+SolidPointer make_cylinder(const SolidPose& pose, double radius, double half_height, double rounding) {
     check_sizes("a cylinder", {radius, half_height}, rounding, std::min(radius, half_height));
-    return std::make_unique<RoundedCylinder>(placement, radius, half_height, rounding);
+    return std::make_unique<RoundedCylinder>(pose, radius, half_height, rounding);
 }
-SolidPointer make_torus(const Placement& placement, double ring_radius, double tube_radius) {
+SolidPointer make_torus(const SolidPose& pose, double ring_radius, double tube_radius) {
     check_sizes("a torus", {ring_radius, tube_radius, ring_radius - tube_radius});
-    return std::make_unique<Torus>(placement, ring_radius, tube_radius);
+    return std::make_unique<Torus>(pose, ring_radius, tube_radius);
 }
 SolidPointer make_tube(const std::vector<Bead>& beads) {
     check_path(beads, "a tube");
     for (const auto& bead : beads) check_sizes("a tube", {bead.radius});
     return std::make_unique<Tube>(beads);
 }
-SolidPointer make_revolved(const Placement& placement, const std::vector<Vector2d>& profile) {
+SolidPointer make_revolved(const SolidPose& pose, const std::vector<Vector2d>& profile) {
     check_path(profile, "a lathe's profile");
     if (profile.front().x() != 0 || profile.back().x() != 0) fail_usage("a lathe's profile must start and end on the axis");
-    return std::make_unique<RevolvedSolid>(placement, profile);
+    return std::make_unique<RevolvedSolid>(pose, profile);
 }
 std::vector<double> chord_lengths(const std::vector<Bead>& beads) {
     return cumulative(beads, [](const Bead& bead) { return bead.centre; });

@@ -28,7 +28,7 @@ public:
     Template run() {
         // In this order: later parts are held against earlier ones.
         for (const std::string& role : template_roles())
-            for (const TemplatePart* part : result_.file.of(role)) attempt(*part);
+            for (const PackagedFile* part : result_.file.of(role)) attempt(*part);
         if (result_.annotations) contradictions();
         if (result_.annotations && result_.vocabulary) words();
         if (result_.annotations && result_.rules) class_rules();
@@ -39,7 +39,7 @@ private:
     void defect(const std::string& part, const std::string& text) { result_.findings.push_back({true, part, text}); }
     void remark(const std::string& part, const std::string& text) { result_.findings.push_back({false, part, text}); }
 
-    void attempt(const TemplatePart& part) {
+    void attempt(const PackagedFile& part) {
         TemplateEntry entry{part.role, part.name, 0, {}};
         if (part.role == "cage") result_.cages.emplace_back();
         try {
@@ -62,7 +62,7 @@ private:
         result_.entries.push_back(std::move(entry));
     }
 
-    std::string read(const TemplatePart& part) {
+    std::string read(const PackagedFile& part) {
         if (part.role == "mesh") return read_mesh_part(part);
         if (part.role == "annotations") return read_annotation_part(part);
         if (part.role == "graph") return read_graph_part(part);
@@ -81,7 +81,7 @@ private:
         return "JSON";
     }
 
-    std::string read_mesh_part(const TemplatePart& part) {
+    std::string read_mesh_part(const PackagedFile& part) {
         result_.mesh = read_mesh(part.file);
         for (const auto& note : result_.mesh->notes) remark(part.name, note);
         return size_of(result_.mesh->mesh);
@@ -90,7 +90,7 @@ private:
         return to_string(mesh.number_of_vertices()) + " vertices, " + to_string(mesh.number_of_faces()) + " faces";
     }
 
-    std::string read_annotation_part(const TemplatePart& part) {
+    std::string read_annotation_part(const PackagedFile& part) {
         if (!result_.mesh) return "not looked at: there is no mesh to hold them against";
         ReadAnnotationsOptions reading;
         reading.force_mesh = options_.force_mesh;
@@ -114,7 +114,7 @@ private:
         return counted(result_.annotations->annotations.size(), "annotation", "annotations");
     }
 
-    std::string read_graph_part(const TemplatePart& part) {
+    std::string read_graph_part(const PackagedFile& part) {
         if (!result_.annotations) return "not looked at: there are no annotations to hold it against";
         result_.graph = read_graph(part.file, *result_.annotations);
         const auto constraints = std::count_if(result_.graph->relationships.begin(), result_.graph->relationships.end(),
@@ -123,7 +123,7 @@ private:
                counted(static_cast<std::size_t>(constraints), "constraint", "constraints");
     }
 
-    std::string read_cage(const TemplatePart& part) {
+    std::string read_cage(const PackagedFile& part) {
         MeshFile file = read_mesh(part.file);
         std::string text = size_of(file.mesh);
         if (result_.mesh) {
@@ -149,7 +149,7 @@ private:
         return text;
     }
 
-    std::string read_coordinates(const TemplatePart& part) {
+    std::string read_coordinates(const PackagedFile& part) {
         const std::vector<std::size_t> shape = shape_of_matrix(part.file);
         if (result_.mesh && shape[0] != result_.mesh->mesh.number_of_vertices())
             defect(part.name, "the coordinates have " + to_string(shape[0]) + " rows, the mesh " +
@@ -166,7 +166,7 @@ private:
     }
 
     /// Where the weights have their header beside them, it says which mesh and cage they are of.
-    void check_header(const TemplatePart& part) {
+    void check_header(const PackagedFile& part) {
         if (!file_exists(coordinate_header_file(part.file))) {
             // The second array of Green coordinates belongs to the header of the first.
             if (!part.name.ends_with(".normal.npy"))
@@ -199,7 +199,7 @@ private:
         return view.shape;
     }
 
-    std::string read_landmarks(const TemplatePart& part) {
+    std::string read_landmarks(const PackagedFile& part) {
         const std::string ending = extension(part.file);
         if (ending != ".json" && ending != ".ant") {
             (void)read_file(part.file);
@@ -259,7 +259,7 @@ private:
     }
 
     void class_rules() {
-        const TemplatePart& part = *result_.file.of("rules").front();
+        const PackagedFile& part = *result_.file.of("rules").front();
         const Vocabulary* words = result_.vocabulary ? &*result_.vocabulary : nullptr;
         const RelationGraph* graph = result_.graph ? &*result_.graph : nullptr;
         try {

@@ -33,9 +33,9 @@ const std::vector<std::string>& template_roles() {
     return roles;
 }
 
-std::vector<const TemplatePart*> TemplateFile::of(const std::string& role) const {
-    std::vector<const TemplatePart*> list;
-    for (const TemplatePart& part : parts)
+std::vector<const PackagedFile*> TemplateFile::of(const std::string& role) const {
+    std::vector<const PackagedFile*> list;
+    for (const PackagedFile& part : contents)
         if (part.role == role) list.push_back(&part);
     return list;
 }
@@ -58,7 +58,7 @@ TemplateFile template_from_json(const JsonValue& document, const Path& folder, c
         const JsonValue* value = find_member(document, role);
         if (value == nullptr) continue;
         const auto add = [&](const JsonValue& name, const std::string& at) {
-            result.parts.push_back({role, text_of(name), locate(text_of(name), folder, options.allow_outside, where, at), {}});
+            result.contents.push_back({role, text_of(name), locate(text_of(name), folder, options.allow_outside, where, at), {}});
         };
         if (value->IsString()) add(*value, "/" + role);
         else
@@ -67,7 +67,7 @@ TemplateFile template_from_json(const JsonValue& document, const Path& folder, c
     if (const JsonValue* checksums = find_member(document, "checksums"))
         for (const auto& member : checksums->GetObject()) {
             bool known = false;
-            for (TemplatePart& part : result.parts)
+            for (PackagedFile& part : result.contents)
                 if (part.name == text_of(member.name)) part.sha256 = text_of(member.value), known = true;
             if (!known)
                 fail_input(where, "at /checksums: '" + text_of(member.name) + "' is no part of the template",
@@ -101,10 +101,10 @@ Json template_to_json(const TemplateFile& file, const Provenance& provenance) {
             add_member(document, role, parts.front()->name, allocator);
         } else {
             JsonValue list(rapidjson::kArrayType);
-            for (const TemplatePart* part : parts) list.PushBack(json_string(part->name, allocator), allocator);
+            for (const PackagedFile* part : parts) list.PushBack(json_string(part->name, allocator), allocator);
             add_member(document, role, std::move(list), allocator);
         }
-        for (const TemplatePart* part : parts)
+        for (const PackagedFile* part : parts)
             if (!part->sha256.empty() && sums.emplace(part->name, part->sha256).second)
                 add_member(checksums, part->name, part->sha256, allocator);
     }
@@ -123,9 +123,9 @@ std::string part_name(const Path& folder, const Path& part) {
 
 TemplateFile copy_template(const TemplateFile& file, const Path& folder, const std::string& name, const Provenance& provenance) {
     TemplateFile copy = file;
-    for (TemplatePart& part : copy.parts) {
+    for (PackagedFile& part : copy.contents) {
         part.name = part.file.filename().string();
-        if (std::any_of(copy.parts.begin(), copy.parts.end(), [&](const TemplatePart& other) {
+        if (std::any_of(copy.contents.begin(), copy.contents.end(), [&](const PackagedFile& other) {
                 return &other < &part && other.name == part.name && other.file != part.file;
             }))
             fail_input("template", "two of its parts are called '" + part.name + "', from different folders",

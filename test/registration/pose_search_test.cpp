@@ -136,7 +136,7 @@ TEST(PoseSearch, NamesWhatABallLeavesOpen) {
     EXPECT_EQ(found.slippable.kind, SlippableKind::sphere);
     EXPECT_LT((found.slippable.point - Vector3d(1, 2, 3)).norm(), 0.05);
     EXPECT_EQ(found.ways.size(), 3u);
-    for (const FreeWay& way : found.ways) {
+    for (const SlippableRange& way : found.ways) {
         EXPECT_TRUE(way.rotates);
         EXPECT_GT(way.maximum - way.minimum, 6);  // all around
     }

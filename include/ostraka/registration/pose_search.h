@@ -37,7 +37,7 @@ struct PoseCandidate {
 };
 
 /// How far the part can be moved from its pose along a slippable motion.
-struct FreeWay {
+struct SlippableRange {
     Eigen::Vector3d point = Eigen::Vector3d::Zero();       ///< of the line, on the scaled whole
     Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< of the line
     bool rotates = false;                                  ///< about the line; else along it
@@ -51,7 +51,7 @@ struct PoseSearchResult {
     bool decided = false;
     std::string reason;          ///< why not decided, in words; empty if it is
     SlippableMotions slippable;  ///< of the first candidate, on the scaled whole
-    std::vector<FreeWay> ways;
+    std::vector<SlippableRange> ways;
 };
 
 /// What is kept of a whole to search poses on it.

@@ -27,7 +27,7 @@ enum class GeometricRelation {
 /// What the toolkit knows of a type of relationship by its name.
 struct RelationType {
     std::string name;
-    std::size_t minimum, maximum;                ///< members; most = 0: any number
+    std::size_t minimum, maximum;                ///< members; maximum = 0: any number
     std::optional<GeometricRelation> geometric;  ///< told by the mesh; none: a constraint of the thesis, stated only
     bool directed = false;                       ///< of a geometric type: the first annotation is the subject
     std::vector<std::string> quantities = {};    ///< that RelationMeter measures

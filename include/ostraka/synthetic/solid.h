@@ -34,22 +34,22 @@ public:
 using SolidPointer = std::unique_ptr<const Solid>;
 
 /// Where a solid stands: its own frame is turned, then moved.
-struct Placement {
+struct SolidPose {
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();
     Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
 };
 
 /// Value: (|p / radii| - 1) times the smallest radius.
-SolidPointer make_ellipsoid(const Placement& placement, const Eigen::Vector3d& radii);
+SolidPointer make_ellipsoid(const SolidPose& pose, const Eigen::Vector3d& radii);
 
 /// Box with edges and corners rounded by balls of radius `rounding` (at most the smallest half extent).
-SolidPointer make_box(const Placement& placement, const Eigen::Vector3d& half_extents, double rounding);
+SolidPointer make_box(const SolidPose& pose, const Eigen::Vector3d& half_extents, double rounding);
 
 /// Upright cylinder whose two rims are rounded.
-SolidPointer make_cylinder(const Placement& placement, double radius, double half_height, double rounding);
+SolidPointer make_cylinder(const SolidPose& pose, double radius, double half_height, double rounding);
 
 /// Ring around the vertical axis.
-SolidPointer make_torus(const Placement& placement, double ring_radius, double tube_radius);
+SolidPointer make_torus(const SolidPose& pose, double ring_radius, double tube_radius);
 
 /// A ball on a path.
 struct Bead {
@@ -64,7 +64,7 @@ std::vector<double> chord_lengths(const std::vector<Bead>& beads);
 
 /// Solid of revolution around the vertical axis; the profile is the cubic spline through points (distance from the axis,
 /// height), from the axis at the bottom, outside upward, to the axis again, which it meets at right angles. True signed distance.
-SolidPointer make_revolved(const Placement& placement, const std::vector<Eigen::Vector2d>& profile);
+SolidPointer make_revolved(const SolidPose& pose, const std::vector<Eigen::Vector2d>& profile);
 std::vector<double> chord_lengths(const std::vector<Eigen::Vector2d>& profile);
 
 }  // namespace ostraka

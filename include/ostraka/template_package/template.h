@@ -12,7 +12,7 @@
 namespace ostraka {
 
 /// A file of a template.
-struct TemplatePart {
+struct PackagedFile {
     std::string role;    ///< one of template_roles()
     std::string name;    ///< as it stands in the template's file: relative to its folder, with '/'
     Path file;           ///< where it is
@@ -26,9 +26,9 @@ const std::vector<std::string>& template_roles();
 struct TemplateFile {
     std::string object_class, unit;
     std::optional<std::array<double, 3>> up;
-    std::vector<TemplatePart> parts;
+    std::vector<PackagedFile> contents;
 
-    [[nodiscard]] std::vector<const TemplatePart*> of(const std::string& role) const;
+    [[nodiscard]] std::vector<const PackagedFile*> of(const std::string& role) const;
 };
 
 struct TemplateOptions {

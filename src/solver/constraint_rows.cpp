@@ -1,4 +1,4 @@
-#include "assembly.h"
+#include "constraint_rows.h"
 
 #include "ostraka/core/disjoint_sets.h"
 #include "ostraka/core/parallel.h"

@@ -1,4 +1,4 @@
-#include "drawing_parts.h"
+#include "drawing_elements.h"
 
 #include "ostraka/render/colour_scale.h"
 #include "ostraka/report/table.h"

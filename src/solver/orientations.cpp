@@ -1,4 +1,4 @@
-// Groups that turn as they are: towards a normal, onto an axis, to an angle with an axis.
+// Groups that rotate rigidly: towards a normal, onto an axis, to an angle with an axis.
 #include "kinds.h"
 #include "ostraka/core/angles.h"
 #include "ostraka/core/dense.h"
