@@ -89,12 +89,12 @@ void stretch_arm(Chair& chair) {
     const Vector3d foot = mean_of(rest, joint_of(subject.mesh, support, &subject.part("seat")));
     const Vector3d head = mean_of(rest, joint_of(subject.mesh, support, &arm)), head_now = head + moved(point_of(head));
     const Vector3d was = head - foot, is = head_now - foot;
-    const Eigen::Matrix3d turn = rotation_between(was, is).toRotationMatrix();
+    const Eigen::Matrix3d rotation = rotation_between(was, is).toRotationMatrix();
     for (const Index v : vertices_of(subject.mesh, support)) {
         const Vector3d p = eigen(rest[v]), from_foot = p - foot;
         const double along = from_foot.dot(was.normalized()), share = along / was.norm();
         const Vector3d longer_too = (is.norm() / was.norm() - 1) * along * is.normalized();
-        const Vector3d turned = foot + turn * from_foot + longer_too - p;
+        const Vector3d turned = foot + rotation * from_foot + longer_too - p;
         // At its ends it goes over into what it stands on.
         const double at_head = smooth_step(0.85, 1, share), at_foot = smooth_step(0, 0.05, share);
         chair.edited[v] = point_of(p + at_foot * ((1 - at_head) * turned + at_head * moved(rest[v])));

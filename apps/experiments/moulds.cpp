@@ -332,9 +332,9 @@ Heads scanned_heads(const MouldExperimentOptions& options, double difference, do
             std::vector<Vector> normals;
             for (const Vertex v : mesh.vertices()) normals.push_back(vertex_normal(mesh, v));
             for (const Vertex v : mesh.vertices()) mesh.point(v) += 0.001 * size * own.normal() * normals[v];
-            const Eigen::Matrix3d turn =
+            const Eigen::Matrix3d rotation =
                 Eigen::Quaterniond(own.normal(), own.normal(), own.normal(), own.normal()).normalized().toRotationMatrix();
-            for (const Vertex v : mesh.vertices()) mesh.point(v) = point_of(turn * eigen(mesh.point(v)));
+            for (const Vertex v : mesh.vertices()) mesh.point(v) = point_of(rotation * eigen(mesh.point(v)));
             heads.meshes[i] = std::move(mesh);
         },
         1);

@@ -52,8 +52,8 @@ struct Work {
 
 /// The part of an edge in the solid angle of a face at the given height: the difference of atan(delta s / (|q|^2 + height r))
 /// over its ends, from `start` to `end` along its line, at the distances r.
-OSTRAKA_INLINE double turn(double delta, double square, double height, double size, double start, double end, double r_start,
-                           double r_end) {
+OSTRAKA_INLINE double solid_angle_of_edge(double delta, double square, double height, double size, double start, double end,
+                                          double r_start, double r_end) {
     const double A = square + height * r_start, B = square + height * r_end;
     const double y = delta * (square * size + height * (end * r_start - start * r_end)), x = A * B + delta * delta * start * end;
     const double value = angle(std::fabs(y), x);
@@ -141,9 +141,9 @@ void integrate(const CageArrays& cage, const std::vector<FacePlane>& planes, dou
             const double d0 = out0[0] * e0.q[0][l] + out0[1] * e0.q[1][l] + out0[2] * e0.q[2][l];
             const double d1 = out1[0] * e1.q[0][l] + out1[1] * e1.q[1][l] + out1[2] * e1.q[2][l];
             const double d2 = out2[0] * e2.q[0][l] + out2[1] * e2.q[1][l] + out2[2] * e2.q[2][l];
-            const double omega = turn(d0, q0, height, size0, s0 * start0[l], s0 * end0[l], v1.r[l], v2.r[l]) +
-                                 turn(d1, q1, height, size1, s1 * start1[l], s1 * end1[l], v2.r[l], v0.r[l]) +
-                                 turn(d2, q2, height, size2, s2 * start2[l], s2 * end2[l], v0.r[l], v1.r[l]);
+            const double omega = solid_angle_of_edge(d0, q0, height, size0, s0 * start0[l], s0 * end0[l], v1.r[l], v2.r[l]) +
+                                 solid_angle_of_edge(d1, q1, height, size1, s1 * start1[l], s1 * end1[l], v2.r[l], v0.r[l]) +
+                                 solid_angle_of_edge(d2, q2, height, size2, s2 * start2[l], s2 * end2[l], v0.r[l], v1.r[l]);
             near[l] = height <= close && d0 >= -snap && d1 >= -snap && d2 >= -snap ? 1 : near[l];
             const double solid = h < 0 ? -omega : omega;
             const double L0 = e0.log[l], L1 = e1.log[l], L2 = e2.log[l];
@@ -195,7 +195,7 @@ Coordinates green(const Mesh& mesh, const std::vector<Point>& points, const Coor
     const auto rows = static_cast<Eigen::Index>(points.size());
     result.vertex.resize(rows, static_cast<Eigen::Index>(cage.points.size()));
     result.normal.resize(rows, static_cast<Eigen::Index>(cage.faces.size()));
-    std::vector<double> turns(points.size());  // how often the cage goes around the point; NaN on it
+    std::vector<double> winding_numbers(points.size());  // how often the cage goes around the point; NaN on it
     parallel_blocks(points.size(), 64, [&](std::size_t begin, std::size_t end) {
         Work work(cage);
         for (std::size_t first = begin; first < end; first += lanes) {
@@ -210,14 +210,14 @@ Coordinates green(const Mesh& mesh, const std::vector<Point>& points, const Coor
                 double *phi = result.vertex.row(row).data(), *psi = result.normal.row(row).data(), sum = 0;
                 for (std::size_t i = 0; i < work.vertex.size(); ++i) sum += phi[i] = work.vertex[i].phi[l] / (4 * pi);
                 for (std::size_t i = 0; i < work.psi.size(); ++i) psi[i] = work.psi[i].psi[l] / (4 * pi * cage.scale);
-                turns[first + l] = work.near[l] != 0 ? std::numeric_limits<double>::quiet_NaN() : sum;
+                winding_numbers[first + l] = work.near[l] != 0 ? std::numeric_limits<double>::quiet_NaN() : sum;
             }
         }
     });
     std::string list;
     std::size_t outside = 0;
     for (std::size_t i = 0; i < points.size(); ++i)
-        if (!(std::fabs(turns[i] - 1) <= 1e-6))
+        if (!(std::fabs(winding_numbers[i] - 1) <= 1e-6))
             if (++outside <= 10) list += (list.empty() ? "" : ", ") + std::to_string(i);
     if (outside > 0)
         fail_input("cage",

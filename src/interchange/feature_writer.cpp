@@ -181,9 +181,9 @@ private:
         const auto metres = converted(1, set_.unit, "m");
         Vector3d up = Vector3d::UnitY();
         if (set_.up) up = eigen(unit_vector({(*set_.up)[0], (*set_.up)[1], (*set_.up)[2]}));
-        const Eigen::Quaterniond turn = rotation_between(up, Vector3d::UnitY());
-        const bool turns = (up - Vector3d::UnitY()).norm() > 1e-12, scales = metres && *metres != 1;
-        if (!turns && !scales) return false;
+        const Eigen::Quaterniond rotation = rotation_between(up, Vector3d::UnitY());
+        const bool rotates = (up - Vector3d::UnitY()).norm() > 1e-12, scales = metres && *metres != 1;
+        if (!rotates && !scales) return false;
         JsonValue shown(rapidjson::kObjectType), extras(rapidjson::kObjectType);
         add_member(shown, "name", "as glTF wants it: y up, in metres", a());
         add_member(shown, "children", in_list(JsonValue(0)), a());
@@ -192,7 +192,7 @@ private:
             for (const double value : values) list.PushBack(value, a());
             return list;
         };
-        if (turns) add_member(shown, "rotation", numbers({turn.x(), turn.y(), turn.z(), turn.w()}), a());
+        if (rotates) add_member(shown, "rotation", numbers({rotation.x(), rotation.y(), rotation.z(), rotation.w()}), a());
         if (scales) add_member(shown, "scale", numbers({*metres, *metres, *metres}), a());
         add_member(extras, glb::display_only, JsonValue(true), a());
         add_member(shown, "extras", std::move(extras), a());

@@ -12,8 +12,8 @@ namespace {
 using Point2 = std::array<double, 2>;
 using Point3 = std::array<double, 3>;
 
-/// Sign of the turn from a over b to c, exact: 1 is to the left.
-int turn(const Point2& a, const Point2& b, const Point2& c) {
+/// Orientation of a, b, c, exact: 1 is to the left.
+int orientation(const Point2& a, const Point2& b, const Point2& c) {
     using Flat = Kernel::Point_2;
     return CGAL::orientation(Flat(a[0], a[1]), Flat(b[0], b[1]), Flat(c[0], c[1]));
 }
@@ -129,7 +129,7 @@ bool PolygonCutter::is_strictly_convex() const {
     std::size_t reversals = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const Point2 &a = flat_[i], &b = flat_[(i + 1) % count], &c = flat_[(i + 2) % count];
-        if (turn(a, b, c) <= 0) return false;
+        if (orientation(a, b, c) <= 0) return false;
         reversals += (a < b) != (b < c);
     }
     return reversals == 2;
@@ -156,7 +156,7 @@ void PolygonCutter::build_grid(std::uint32_t start) {
             grid_low_[k] = std::min(grid_low_[k], flat_[i][k]);
             high[k] = std::max(high[k], flat_[i][k]);
         }
-        if (turn(flat_[previous_[i]], flat_[i], flat_[next_[i]]) <= 0) reflex_.push_back(i);
+        if (orientation(flat_[previous_[i]], flat_[i], flat_[next_[i]]) <= 0) reflex_.push_back(i);
         ++count;
         i = next_[i];
     } while (i != start);
@@ -177,7 +177,7 @@ void PolygonCutter::build_grid(std::uint32_t start) {
 /// A strictly convex tip whose closed triangle holds no other corner (corners at the same place as one of the three aside).
 bool PolygonCutter::is_ear(std::uint32_t previous, std::uint32_t tip, std::uint32_t next) {
     const Point2 &a = flat_[previous], &b = flat_[tip], &c = flat_[next];
-    if (turn(a, b, c) <= 0) return false;
+    if (orientation(a, b, c) <= 0) return false;
     const auto [left, bottom] = cell_of({std::min({a[0], b[0], c[0]}), std::min({a[1], b[1], c[1]})});
     const auto [right, top] = cell_of({std::max({a[0], b[0], c[0]}), std::max({a[1], b[1], c[1]})});
     for (std::size_t y = bottom; y <= top; ++y) {
@@ -188,7 +188,7 @@ bool PolygonCutter::is_ear(std::uint32_t previous, std::uint32_t tip, std::uint3
             const std::uint32_t i = cell_items_[k];
             const Point2& p = flat_[i];
             if (alive_[i] == 0 || p == a || p == b || p == c) continue;
-            if (turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0) return false;
+            if (orientation(a, b, p) >= 0 && orientation(b, c, p) >= 0 && orientation(c, a, p) >= 0) return false;
         }
         if (budget_ == 0) return false;
     }

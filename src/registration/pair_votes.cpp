@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr int angles = 12;                    ///< bins from 0 to pi
-constexpr int turns = 36;                     ///< bins of the turn about a normal
+constexpr int rotation_bins = 36;             ///< bins of the rotation about a normal
 constexpr std::size_t max_entries = 1000000;  ///< that one reference point of the part looks at
 
 /// A frame whose third axis is the normal.
@@ -113,7 +113,7 @@ std::vector<VotedMotion> PairTable::vote(const SurfacePoints& part, int referenc
                 others.resize(static_cast<std::size_t>(partners));
             }
             const Matrix3d axes = frame(part.normals[i]);
-            std::vector<float> votes(whole * turns, 0.0F);
+            std::vector<float> votes(whole * rotation_bins, 0.0F);
             // Rare kinds of pairs first, as many as there is time for: on a ball or a plane all pairs are of few kinds.
             struct Kind {
                 std::size_t begin, end, partner;
@@ -132,14 +132,15 @@ std::vector<VotedMotion> PairTable::vote(const SurfacePoints& part, int referenc
                 if (seen > max_entries) break;
                 seen += end - begin;
                 const Vector3d d = part.places[j] - part.places[i];
-                const double mine = std::atan2(axes.col(1).dot(d), axes.col(0).dot(d)) / (2 * pi) * turns;
+                const double mine = std::atan2(axes.col(1).dot(d), axes.col(0).dot(d)) / (2 * pi) * rotation_bins;
                 const auto weight = static_cast<float>(1 / std::sqrt(static_cast<double>(end - begin)));
                 for (std::size_t e = begin; e < end; ++e) {
-                    const double turn = entries_[e].angle * (turns / 65536.0) - mine + turns;
+                    const double turn = entries_[e].angle * (rotation_bins / 65536.0) - mine + rotation_bins;
                     int bin = static_cast<int>(turn + 0.5);
-                    if (bin >= turns) bin -= turns;
-                    if (bin >= turns) bin -= turns;
-                    votes[entries_[e].reference * static_cast<std::size_t>(turns) + static_cast<std::size_t>(bin)] += weight;
+                    if (bin >= rotation_bins) bin -= rotation_bins;
+                    if (bin >= rotation_bins) bin -= rotation_bins;
+                    votes[entries_[e].reference * static_cast<std::size_t>(rotation_bins) + static_cast<std::size_t>(bin)] +=
+                        weight;
                 }
             }
             // The best turn of each point of the whole (with its neighbours' votes), then the best points.
@@ -151,14 +152,14 @@ std::vector<VotedMotion> PairTable::vote(const SurfacePoints& part, int referenc
             std::vector<Best> best;
             best.reserve(whole);
             for (std::size_t p = 0; p < whole; ++p) {
-                const float* v = &votes[p * turns];
+                const float* v = &votes[p * rotation_bins];
                 float maximum = 0;
                 int at = 0;
-                for (int b = 0; b < turns; ++b) {
-                    const float sum = v[b] + 0.5F * (v[(b + 1) % turns] + v[(b + turns - 1) % turns]);
+                for (int b = 0; b < rotation_bins; ++b) {
+                    const float sum = v[b] + 0.5F * (v[(b + 1) % rotation_bins] + v[(b + rotation_bins - 1) % rotation_bins]);
                     if (sum > maximum) maximum = sum, at = b;
                 }
-                const float before = v[(at + turns - 1) % turns], after = v[(at + 1) % turns];
+                const float before = v[(at + rotation_bins - 1) % rotation_bins], after = v[(at + 1) % rotation_bins];
                 const double shift = v[at] + before + after > 0 ? double(after - before) / double(v[at] + before + after) : 0;
                 if (maximum > 0) best.push_back({maximum, static_cast<std::uint32_t>(p), at + shift});
             }
@@ -168,7 +169,7 @@ std::vector<VotedMotion> PairTable::vote(const SurfacePoints& part, int referenc
             const std::size_t take = std::min(best.size(), static_cast<std::size_t>(kept));
             std::partial_sort(best.begin(), best.begin() + static_cast<long>(take), best.end(), better);
             for (std::size_t k = 0; k < take; ++k) {
-                const double angle = 2 * pi * best[k].turn / turns;
+                const double angle = 2 * pi * best[k].turn / rotation_bins;
                 Motion motion;
                 motion.rotation = frame(points_.normals[best[k].reference]) *
                                   Eigen::AngleAxisd(angle, Vector3d::UnitZ()).toRotationMatrix() * axes.transpose();

@@ -32,11 +32,11 @@ void check(const Landmarks& landmarks, Eigen::Index count, const std::string& wh
 }
 
 /// The rotation R that makes trace(R A) largest for A = from^T to of centred configurations (rows), and the trace.
-struct Turn {
+struct BestRotation {
     Eigen::Matrix3d rotation;
     double trace = 0;
 };
-Turn best_turn(const Landmarks& from, const Landmarks& to, bool reflection) {
+BestRotation best_rotation(const Landmarks& from, const Landmarks& to, bool reflection) {
     const Svd3 svd(from.transpose() * to);
     Eigen::Vector3d signs = Eigen::Vector3d::Ones();
     if (!reflection && (svd.matrixU().determinant() < 0) != (svd.matrixV().determinant() < 0)) signs[2] = -1;
@@ -61,10 +61,10 @@ SimilarityMap procrustes(const Landmarks& from, const Landmarks& to, const Procr
     // Of size 1 each, so that products neither overflow nor vanish.
     const double from_size = centroid_size(from), to_size = centroid_size(to);
     const Landmarks x = (from.rowwise() - a) / from_size, y = (to.rowwise() - b) / to_size;
-    const Turn turn = best_turn(x, y, options.reflection);
+    const BestRotation best = best_rotation(x, y, options.reflection);
     SimilarityMap map;
-    map.rotation = turn.rotation;
-    map.scale = options.scaling ? turn.trace * to_size / from_size : 1;
+    map.rotation = best.rotation;
+    map.scale = options.scaling ? best.trace * to_size / from_size : 1;
     map.translation = (b - map.scale * (a * map.rotation.transpose())).transpose();
     map.sum_of_squares = ((map.scale * from_size) * x * map.rotation.transpose() - to_size * y).squaredNorm();
     return map;
@@ -89,15 +89,15 @@ GeneralisedProcrustes generalised_procrustes(const std::vector<Landmarks>& confi
     }
     const double back = options.scaling ? 1 : unit;
     result.aligned = centred;
-    std::vector<Eigen::Matrix3d> turns(n, Eigen::Matrix3d::Identity());
+    std::vector<Eigen::Matrix3d> rotations(n, Eigen::Matrix3d::Identity());
     result.mean = centred.front();
     double before = std::numeric_limits<double>::infinity(), all = 0;
     for (const Landmarks& x : centred) all += x.squaredNorm();
     while (result.iterations < max_iterations && !result.converged) {
         ++result.iterations;
         parallel_for(n, [&](std::size_t i) {
-            turns[i] = best_turn(centred[i], result.mean, options.reflection).rotation;
-            result.aligned[i] = centred[i] * turns[i].transpose();
+            rotations[i] = best_rotation(centred[i], result.mean, options.reflection).rotation;
+            result.aligned[i] = centred[i] * rotations[i].transpose();
         });
         Landmarks mean = Landmarks::Zero(result.mean.rows(), 3);
         for (const Landmarks& x : result.aligned) mean += x / static_cast<double>(n);
@@ -111,15 +111,15 @@ GeneralisedProcrustes generalised_procrustes(const std::vector<Landmarks>& confi
     }
     if (options.scaling && result.mean.norm() > 0) result.mean /= result.mean.norm();
     // In the orientation of the first configuration.
-    const Eigen::Matrix3d turn_back = turns.front().transpose();
-    result.mean = back * (result.mean * turn_back.transpose());
+    const Eigen::Matrix3d back_rotation = rotations.front().transpose();
+    result.mean = back * (result.mean * back_rotation.transpose());
     for (std::size_t i = 0; i < n; ++i) {
-        const Eigen::Matrix3d turn = turn_back * turns[i];
-        result.aligned[i] = back * (centred[i] * turn.transpose());
+        const Eigen::Matrix3d rotation = back_rotation * rotations[i];
+        result.aligned[i] = back * (centred[i] * rotation.transpose());
         SimilarityMap map;
         map.scale = options.scaling ? 1 / result.centroid_sizes[i] : 1;
-        map.rotation = turn;
-        map.translation = -map.scale * (turn * centres[i].transpose());
+        map.rotation = rotation;
+        map.translation = -map.scale * (rotation * centres[i].transpose());
         map.sum_of_squares = (result.aligned[i] - result.mean).squaredNorm();
         result.sum_of_squares += map.sum_of_squares;
         result.maps.push_back(map);

@@ -154,11 +154,11 @@ SlippableMotions slippable_motions_of(const std::vector<Vector3d>& places, const
     if (open == 0) return slippable;
     const auto motions = solver.eigenvectors().leftCols(open).eval();
     // Which of the open motions are translations: those whose rotation vanishes.
-    const SvdX turns(motions.topRows(3), true);
-    const auto& singular = turns.singularValues();
+    const SvdX rotational(motions.topRows(3), true);
+    const auto& singular = rotational.singularValues();
     const double part = 0.15 * motions.colwise().norm().maxCoeff();
     const int rotations = static_cast<int>((singular.array() > part).count()), translations = open - rotations;
-    const auto motion_of = [&](int k) -> Eigen::Matrix<double, 6, 1> { return motions * turns.matrixV().col(k); };
+    const auto motion_of = [&](int k) -> Eigen::Matrix<double, 6, 1> { return motions * rotational.matrixV().col(k); };
     // The line of a motion: w about it, v at the middle.
     const auto line_of = [&](const Eigen::Matrix<double, 6, 1>& motion) {
         const Vector3d w = motion.head<3>(), v = motion.tail<3>();

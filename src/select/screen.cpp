@@ -12,7 +12,7 @@ namespace ostraka {
 
 namespace {
 
-double turn(const Pixel& a, const Pixel& b, const Pixel& c) {
+double orientation(const Pixel& a, const Pixel& b, const Pixel& c) {
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
@@ -23,15 +23,15 @@ bool between(const Pixel& a, const Pixel& b, const Pixel& c) {
 }
 
 bool meet(const Pixel& a, const Pixel& b, const Pixel& c, const Pixel& d) {
-    const double abc = turn(a, b, c), abd = turn(a, b, d), cda = turn(c, d, a), cdb = turn(c, d, b);
+    const double abc = orientation(a, b, c), abd = orientation(a, b, d), cda = orientation(c, d, a), cdb = orientation(c, d, b);
     if (((abc > 0 && abd < 0) || (abc < 0 && abd > 0)) && ((cda > 0 && cdb < 0) || (cda < 0 && cdb > 0))) return true;
     return (abc == 0 && between(a, b, c)) || (abd == 0 && between(a, b, d)) || (cda == 0 && between(c, d, a)) ||
            (cdb == 0 && between(c, d, b));
 }
 
 Pixel meeting_place(const Pixel& a, const Pixel& b, const Pixel& c, const Pixel& d) {
-    const double along = turn(c, d, a) - turn(c, d, b);
-    const double t = along == 0 ? 0 : turn(c, d, a) / along;
+    const double along = orientation(c, d, a) - orientation(c, d, b);
+    const double t = along == 0 ? 0 : orientation(c, d, a) / along;
     return {a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])};
 }
 
@@ -40,7 +40,7 @@ bool inside(const std::vector<Pixel>& points, const Pixel& p) {
     for (std::size_t i = 0, j = points.size() - 1; i < points.size(); j = i++) {
         const Pixel &a = points[j], &b = points[i];
         if ((a[1] > p[1]) == (b[1] > p[1])) continue;
-        if ((turn(a, b, p) > 0) == (b[1] > a[1])) odd = !odd;
+        if ((orientation(a, b, p) > 0) == (b[1] > a[1])) odd = !odd;
     }
     return odd;
 }
@@ -80,7 +80,7 @@ ScreenArea screen_polygon(const std::vector<Pixel>& drawn, const std::string& wh
     if (n < 3) fail_input(where, "the polygon has " + std::to_string(n) + " different points", "draw three points or more");
     const auto next = [&](std::size_t i) -> const Pixel& { return points[(i + 1) % n]; };
     double area = 0;
-    for (std::size_t i = 0; i < n; ++i) area += turn(points[0], points[i], next(i));
+    for (std::size_t i = 0; i < n; ++i) area += orientation(points[0], points[i], next(i));
     for (std::size_t i = 0; i < n; ++i)
         for (std::size_t j = i + 1; j < n; ++j) {
             const bool neighbours = j == i + 1 || (i == 0 && j == n - 1);
@@ -90,7 +90,7 @@ ScreenArea screen_polygon(const std::vector<Pixel>& drawn, const std::string& wh
             const bool crossing =
                 !neighbours
                     ? meet(a, b, c, d)
-                    : n > 3 && turn(before, shared, after) == 0 &&
+                    : n > 3 && orientation(before, shared, after) == 0 &&
                           (before[0] - shared[0]) * (after[0] - shared[0]) + (before[1] - shared[1]) * (after[1] - shared[1]) > 0;
             if (!crossing) continue;
             const Pixel at = neighbours ? shared : meeting_place(a, b, c, d);

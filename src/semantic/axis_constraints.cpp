@@ -115,15 +115,15 @@ Statement structural_continuity(const ReaderPtr& read, const RelationOptions& to
         return list;
     };
     // The axis is constrained, and the surface follows: it may turn, which displacements from neighbours could not.
-    statement.turning = read->vertices(0);
-    statement.support = [read, turning = statement.turning](const State& edited, const State&) {
+    statement.rotating = read->vertices(0);
+    statement.support = [read, rotating = statement.rotating](const State& edited, const State&) {
         const Mesh& mesh = read->shape().mesh;
         // As it is at rest, but where the edit makes all of the object larger or smaller.
         const double ratio = volume(mesh, edited.points) / volume(mesh, read->shape().rest);
         const double grown = ratio > 0.01 && ratio < 100 ? std::cbrt(ratio) : 1;
         constexpr double stiffness = 10;
         Statement::Constraints list;
-        for (const Index v : turning) {
+        for (const Index v : rotating) {
             std::vector<int> star{static_cast<int>(v)};
             for (const Vertex n : mesh.vertices_around_target(mesh.halfedge(Vertex(v))))
                 star.push_back(static_cast<int>(n.idx()));
@@ -135,7 +135,7 @@ Statement structural_continuity(const ReaderPtr& read, const RelationOptions& to
         }
         return list;
     };
-    statement.prepare = [read, rest, segment, part = statement.turning](const State& now, Points& start) {
+    statement.prepare = [read, rest, segment, part = statement.rotating](const State& now, Points& start) {
         const Axis reference = reference_now(*read, rest, now, steadiest);
         const Vector3d point = eigen(reference.point), direction = eigen(reference.direction);
         const Points& shape = read->shape().rest;
@@ -144,7 +144,7 @@ Statement structural_continuity(const ReaderPtr& read, const RelationOptions& to
         for (Vector3d& station : there) station = point + direction * direction.dot(station - point);
         const Vector3d was = then.back() - then.front(), is = there.back() - there.front();
         if (!(was.norm() > 0 && is.norm() > 0)) return;
-        const Eigen::Quaterniond turn = rotation_between(was, is);
+        const Eigen::Quaterniond rotation = rotation_between(was, is);
         // Beyond the segment the part goes along with its end.
         std::vector<int> station(static_cast<std::size_t>(shape.cols()), segment->count - 1);
         std::vector<double> share(station.size(), 0);
@@ -156,7 +156,7 @@ Statement structural_continuity(const ReaderPtr& read, const RelationOptions& to
             const auto s = static_cast<std::size_t>(station[v]), next = std::min(s + 1, then.size() - 1);
             const Vector3d from = (1 - share[v]) * then[s] + share[v] * then[next],
                            to = (1 - share[v]) * there[s] + share[v] * there[next];
-            start.col(v) = to + turn * (shape.col(v) - from);
+            start.col(v) = to + rotation * (shape.col(v) - from);
         }
     };
     const Deviation angle{"angle", 0.0, tolerances.angle, "degree"};

@@ -165,13 +165,13 @@ private:
         support_.clear();
         owner_.clear();
         anchors_.clear();
-        turning_.clear();
+        rotating_.clear();
         const Mesh mesh = with_points(space_.mesh, list_of(outcome.points));
         const semantic::State now(mesh), edited(edited_mesh_);
         for (std::size_t i = 0; i < statements_.size(); ++i) {
             if (!active[i]) continue;
             anchors_.insert(statements_[i].anchors.begin(), statements_[i].anchors.end());
-            turning_.insert(statements_[i].turning.begin(), statements_[i].turning.end());
+            rotating_.insert(statements_[i].rotating.begin(), statements_[i].rotating.end());
             for (auto& constraint : statements_[i].lower(edited, now)) {
                 lowered_.push_back(std::move(constraint));
                 owner_.push_back(i);
@@ -225,7 +225,7 @@ private:
         add_closeness(moved, options_.handles, edited_, 0, rest_, list);
         if (options_.laplacian > 0)
             for (const Vertex v : space_.mesh.vertices()) {
-                if (space_.mesh.is_isolated(v) || turning_.count(v.idx()) > 0) continue;
+                if (space_.mesh.is_isolated(v) || rotating_.count(v.idx()) > 0) continue;
                 std::vector<int> ids{static_cast<int>(v.idx())};
                 for (const Vertex n : space_.mesh.vertices_around_target(space_.mesh.halfedge(v)))
                     ids.push_back(static_cast<int>(n.idx()));
@@ -376,7 +376,7 @@ private:
     std::vector<std::unique_ptr<Constraint>> support_;
     std::vector<std::size_t> owner_;  ///< of each lowered constraint, in the report
     std::size_t first_ = 0;           ///< its place in the solver's list
-    std::set<Index> anchors_, turning_;
+    std::set<Index> anchors_, rotating_;
 };
 
 }  // namespace

@@ -164,10 +164,10 @@ private:
         } else if (name == "rotate") {
             const double angle = value["angle"].GetDouble();
             if (!std::isfinite(angle)) fail("the angle is not finite", "give degrees");
-            const Eigen::Matrix3d turn =
+            const Eigen::Matrix3d rotation =
                 Eigen::AngleAxisd(angle * pi / 180, vector(value["axis"], "axis", true)).toRotationMatrix();
             const Vector3d c = centre();
-            each([&](const Vector3d& p) -> Vector3d { return c + turn * (p - c); });
+            each([&](const Vector3d& p) -> Vector3d { return c + rotation * (p - c); });
         } else if (name == "scale") {
             const double f = factor(value);
             const Vector3d c = centre();

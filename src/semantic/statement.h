@@ -41,7 +41,7 @@ struct Statement {
     std::function<Measured(const State& deformed)> measure;
     /// Where to start from: the part where it is to be, so that it need not be pulled there through itself. May be empty.
     std::function<void(const State& now, Points& start)> prepare;
-    std::vector<Index> turning;                ///< vertices whose surface is kept by `support` alone, since it has to turn
+    std::vector<Index> rotating;               ///< vertices whose surface is kept by `support` alone, since it has to turn
     std::vector<Index> anchors;                ///< vertices that are to stay where the edit leaves them
     std::optional<Reattachment> reattachment;  ///< features that are put back on the deformed base
     bool follows = false;                      ///< lower gives others when the shape has moved

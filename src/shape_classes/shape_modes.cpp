@@ -73,10 +73,10 @@ ShapeModes learn_modes(const std::vector<Landmarks>& members, const Landmarks& f
     const double unit = options.sizes ? 1 : result.mean_size;
     MatrixXd rows = unit * shape_rows(aligned.aligned);
     RowVectorXd mean = rows.colwise().mean();
-    const Eigen::Matrix3d turn = procrustes(shape_from(mean), frame).rotation;
-    const auto turned = [&](const RowVectorXd& row) { return row_of(shape_from(row) * turn.transpose()); };
-    for (Eigen::Index i = 0; i < n; ++i) rows.row(i) = turned(rows.row(i));
-    mean = turned(mean);
+    const Eigen::Matrix3d rotation = procrustes(shape_from(mean), frame).rotation;
+    const auto rotated = [&](const RowVectorXd& row) { return row_of(shape_from(row) * rotation.transpose()); };
+    for (Eigen::Index i = 0; i < n; ++i) rows.row(i) = rotated(rows.row(i));
+    mean = rotated(mean);
     result.mean = shape_from(mean);
     const MatrixXd centred = rows.rowwise() - mean;
     const MatrixXd inner = centred * centred.transpose();

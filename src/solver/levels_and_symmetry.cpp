@@ -241,20 +241,20 @@ private:
         const Matrix3d along = whole_ ? Matrix3d(Matrix3d::Identity()) : Matrix3d(axis_ * axis_.transpose());
         const Matrix3d rest = Matrix3d::Identity() - along;
         const Matrix3d moment = outer_sum(part, reference_), own = outer_sum(reference_, reference_);
-        Matrix3d turn = Matrix3d::Identity();
+        Matrix3d rotation = Matrix3d::Identity();
         double s = 1;
         for (int round = 0; round < 30; ++round) {
             // |R (rest + s along) q - r|^2 is least at s where its derivative vanishes; rest and along are at right angles.
             const double size = (along * own).trace();
-            if (size > 0) s = ((turn.transpose() * moment * along).trace()) / size;
-            s = within(s, unit, turn * (rest * edge), turn * (along * edge));
+            if (size > 0) s = ((rotation.transpose() * moment * along).trace()) / size;
+            s = within(s, unit, rotation * (rest * edge), rotation * (along * edge));
             const Matrix3d next = best_rotation(moment * (rest + s * along));
-            const double change = (next - turn).norm();
-            turn = next;
+            const double change = (next - rotation).norm();
+            rotation = next;
             if (change < 1e-14) break;
         }
-        s = within(s, unit, turn * (rest * edge), turn * (along * edge));
-        projected.leftCols(map_.direct) = turn * (rest + s * along) * reference_;
+        s = within(s, unit, rotation * (rest * edge), rotation * (along * edge));
+        projected.leftCols(map_.direct) = rotation * (rest + s * along) * reference_;
     }
 
     /// The factor nearest to s whose measure is in range: of constant + s growing, along the direction or in length.

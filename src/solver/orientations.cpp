@@ -21,19 +21,19 @@ Matrix3d cross_matrix(const Vector3d& n) {
     return m;
 }
 
-/// The rotation R with R a = d or R a = -d that maximises tr(R m): the turn from a to +-d, then a spin about d, whose angle has a
-/// closed form.
-Matrix3d turn_to(const Vector3d& a, const Vector3d& d, const Matrix3d& m) {
+/// The rotation R with R a = d or R a = -d that maximises tr(R m): the rotation from a to +-d, then a spin about d, whose angle
+/// has a closed form.
+Matrix3d rotation_to(const Vector3d& a, const Vector3d& d, const Matrix3d& m) {
     Matrix3d best = Matrix3d::Identity();
     double maximum = -std::numeric_limits<double>::infinity();
     for (const double side : {1.0, -1.0}) {
-        const Matrix3d turn = rotation_between(a, side * d).toRotationMatrix();
-        const Matrix3d turned = turn * m;
-        const double along = d.dot(turned * d), c = turned.trace() - along, s = (cross_matrix(d) * turned).trace();
+        const Matrix3d rotation = rotation_between(a, side * d).toRotationMatrix();
+        const Matrix3d rotated = rotation * m;
+        const double along = d.dot(rotated * d), c = rotated.trace() - along, s = (cross_matrix(d) * rotated).trace();
         const double value = along + std::hypot(c, s);
         if (value > maximum) {
             maximum = value;
-            best = Eigen::AngleAxisd(c == 0 && s == 0 ? 0.0 : std::atan2(s, c), d).toRotationMatrix() * turn;
+            best = Eigen::AngleAxisd(c == 0 && s == 0 ? 0.0 : std::atan2(s, c), d).toRotationMatrix() * rotation;
         }
     }
     return best;
@@ -42,7 +42,7 @@ Matrix3d turn_to(const Vector3d& a, const Vector3d& d, const Matrix3d& m) {
 /// The rotation R with d . R a = cos(angle), 0 < angle < pi, that maximises tr(R m) for a symmetric m. In unit quaternions q
 /// these are q^T C q = cos(angle) and q^T N q. What the pair of forms takes on the sphere is convex (Brickman 1961), so the best
 /// q is a top eigenvector of N + l C for some l: found by halves, since q^T C q grows with l.
-Matrix3d turn_to_angle(const Vector3d& a, const Vector3d& d, double angle, const Matrix3d& m) {
+Matrix3d rotation_to_angle(const Vector3d& a, const Vector3d& d, double angle, const Matrix3d& m) {
     const double size = m.norm();
     if (!(size > 0)) return Matrix3d::Identity();  // all points are at one place
     Matrix4d n = Matrix4d::Zero(), c;
@@ -102,7 +102,7 @@ public:
     }
     [[nodiscard]] LinearProjection project_moments(const Moments& moments) const override {
         const Vector3d fitted = principal(moments.rows).eigenvectors().col(0);
-        return {turn_to(fitted, normal_, moments.rows), Matrix3d::Zero()};
+        return {rotation_to(fitted, normal_, moments.rows), Matrix3d::Zero()};
     }
 
 private:
@@ -135,9 +135,9 @@ public:
         const Matrix3d across = Matrix3d::Identity() - direction_ * direction_.transpose();
         const Vector3d gap = across * (point_ - mean);
         const auto count = static_cast<double>(rows.cols());
-        const Matrix3d turn = turn_to(axis, direction_, outer_sum(z, z) - count * b * gap.transpose());
-        const Vector3d to = mean + across * (turn * b) + gap;
-        for (Index i = 0; i < rows.cols(); ++i) projected.col(i) = turn * z.col(i) + to;
+        const Matrix3d rotation = rotation_to(axis, direction_, outer_sum(z, z) - count * b * gap.transpose());
+        const Vector3d to = mean + across * (rotation * b) + gap;
+        for (Index i = 0; i < rows.cols(); ++i) projected.col(i) = rotation * z.col(i) + to;
     }
 
 private:
@@ -162,10 +162,10 @@ public:
         const Vector3d axis = best_rotation(moments.reference) * rest_axis_;
         const double now = std::atan2(axis.cross(direction_).norm(), std::abs(axis.dot(direction_))), wanted = range_.clamp(now);
         if (wanted == now) return {Matrix3d::Identity(), Matrix3d::Zero()};
-        if (!(wanted > 0)) return {turn_to(axis, direction_, moments.rows), Matrix3d::Zero()};
-        const Matrix3d one = turn_to_angle(axis, direction_, wanted, moments.rows);
-        const Matrix3d other = turn_to_angle(axis, -direction_, wanted, moments.rows);
-        const auto value = [&](const Matrix3d& turn) { return turn.cwiseProduct(moments.rows).sum(); };
+        if (!(wanted > 0)) return {rotation_to(axis, direction_, moments.rows), Matrix3d::Zero()};
+        const Matrix3d one = rotation_to_angle(axis, direction_, wanted, moments.rows);
+        const Matrix3d other = rotation_to_angle(axis, -direction_, wanted, moments.rows);
+        const auto value = [&](const Matrix3d& rotation) { return rotation.cwiseProduct(moments.rows).sum(); };
         return {value(one) >= value(other) ? one : other, Matrix3d::Zero()};
     }
 

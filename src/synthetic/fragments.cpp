@@ -75,8 +75,8 @@ BrokenPiece break_off(const Mesh& whole, const Point& centre, const BreakOptions
             result.mesh.point(v) = result.mesh.point(v) + options.noise * diagonal * random.normal() * normals[v];
     if (options.moved) {
         Motion there;
-        Eigen::Quaterniond turn(random.normal(), random.normal(), random.normal(), random.normal());
-        there.rotation = turn.normalized().toRotationMatrix();
+        Eigen::Quaterniond rotation(random.normal(), random.normal(), random.normal(), random.normal());
+        there.rotation = rotation.normalized().toRotationMatrix();
         there.translation = diagonal * Vector3d(random.normal(), random.normal(), random.normal());
         for (const Vertex v : result.mesh.vertices()) result.mesh.point(v) = point_of(there(eigen(result.mesh.point(v))));
         result.pose = there.inverse();

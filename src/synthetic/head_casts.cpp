@@ -136,15 +136,15 @@ HeadCast cast_head(const HeadShape& shape, const CastOptions& options) {
     cast.mesh = std::move(rest.mesh);
     for (const Index face : rest.faces) cast.face_labels.push_back(made.face_labels[face]);
 
-    Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-    Vector3d shift = Vector3d::Zero();
+    Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+    Vector3d translation = Vector3d::Zero();
     if (!options.keep_pose) {
         Random pose(options.seed, pose_stream);
-        turn = Eigen::Quaterniond(pose.normal(), pose.normal(), pose.normal(), pose.normal()).normalized().toRotationMatrix();
-        shift = 3 * head_height * Vector3d(pose.uniform(), pose.uniform(), pose.uniform());
+        rotation = Eigen::Quaterniond(pose.normal(), pose.normal(), pose.normal(), pose.normal()).normalized().toRotationMatrix();
+        translation = 3 * head_height * Vector3d(pose.uniform(), pose.uniform(), pose.uniform());
     }
     for (const Vertex v : cast.mesh.vertices())
-        cast.mesh.point(v) = point_of((1 - cast.shrinkage) * (turn * eigen(cast.mesh.point(v))) + shift);
+        cast.mesh.point(v) = point_of((1 - cast.shrinkage) * (rotation * eigen(cast.mesh.point(v))) + translation);
     return cast;
 }
 

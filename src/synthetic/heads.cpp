@@ -60,8 +60,8 @@ public:
     }
 
 private:
-    static SolidPose at(const Vector3d& centre, const Eigen::Matrix3d& turn = Eigen::Matrix3d::Identity()) {
-        return {centre, turn};
+    static SolidPose at(const Vector3d& centre, const Eigen::Matrix3d& rotation = Eigen::Matrix3d::Identity()) {
+        return {centre, rotation};
     }
     void add(SolidPointer solid, HeadPart part, double blend) { add_member(*object_, std::move(solid), label(part), blend); }
 
@@ -103,12 +103,14 @@ private:
         for (const double side : {1.0, -1.0}) {
             const double y = side * s_.eye_apart, z = s_.eye_height + side * s_.eye_skew;
             const double x = front(y, z);
-            const Eigen::Matrix3d turn = turned(-side * s_.eye_tilt, Vector3d::UnitX()) * turned(side * 18, Vector3d::UnitZ());
+            const Eigen::Matrix3d rotation =
+                turned(-side * s_.eye_tilt, Vector3d::UnitX()) * turned(side * 18, Vector3d::UnitZ());
             // The socket, then the ball in it, then the lids around.
             shapes::carve(*object_,
-                          make_ellipsoid(at({x + 1.1, y, z + 0.4}, turn), {2.4, s_.eye_width + 1.3, s_.eye_opening + 2}), -1,
+                          make_ellipsoid(at({x + 1.1, y, z + 0.4}, rotation), {2.4, s_.eye_width + 1.3, s_.eye_opening + 2}), -1,
                           2.5);
-            add(make_ellipsoid(at({x - 1.9, y, z}, turn), {2.3, s_.eye_width * 0.92, s_.eye_opening * 1.1}), HeadPart::eyes, 0.6);
+            add(make_ellipsoid(at({x - 1.9, y, z}, rotation), {2.3, s_.eye_width * 0.92, s_.eye_opening * 1.1}), HeadPart::eyes,
+                0.6);
             for (const double way : {1.0, -1.0}) {
                 std::vector<Bead> beads;
                 for (int k = 0; k <= 8; ++k) {
@@ -228,14 +230,14 @@ private:
         for (const double side : {1.0, -1.0}) {
             const double out = s_.long_hair ? 1.6 : 0.3;
             const Vector3d centre(1.2, side * (s_.skull_width + out), height);
-            const Eigen::Matrix3d turn = turned(side * 22, Vector3d::UnitZ()) * turned(-8, Vector3d::UnitY());
-            add(make_ellipsoid(at(centre, turn), {0.62 * s_.ear_size, 2.1, s_.ear_size}), HeadPart::ears, 1.4);
+            const Eigen::Matrix3d rotation = turned(side * 22, Vector3d::UnitZ()) * turned(-8, Vector3d::UnitY());
+            add(make_ellipsoid(at(centre, rotation), {0.62 * s_.ear_size, 2.1, s_.ear_size}), HeadPart::ears, 1.4);
             if (hat) continue;
             // A shallow dish, never through the ear.
-            shapes::carve(
-                *object_,
-                make_ellipsoid(at(centre + Vector3d(0.6, side * 2.1, 0.5), turn), {0.36 * s_.ear_size, 1.0, 0.5 * s_.ear_size}),
-                -1, 0.7);
+            shapes::carve(*object_,
+                          make_ellipsoid(at(centre + Vector3d(0.6, side * 2.1, 0.5), rotation),
+                                         {0.36 * s_.ear_size, 1.0, 0.5 * s_.ear_size}),
+                          -1, 0.7);
         }
     }
 

@@ -205,9 +205,9 @@ Vector3d crossing(const SyntheticObject& object, const Vector3d& a, const Vector
 Lattice seeded_lattice(const SyntheticObject& object, double cube, std::uint64_t seed) {
     const auto share = [&](std::uint64_t counter) { return random_share(seed, counter); };
     // A quaternion from four numbers: no need for uniform rotations, any general position will do.
-    const Eigen::Quaterniond turn =
+    const Eigen::Quaterniond rotation =
         Eigen::Quaterniond(0.3 + share(0), share(1) - 0.5, share(2) - 0.5, share(3) - 0.5).normalized();
-    Lattice lattice{turn.toRotationMatrix(), Vector3d::Zero(), cube};
+    Lattice lattice{rotation.toRotationMatrix(), Vector3d::Zero(), cube};
     const auto box = object.box();
     const double radius = 0.5 * box.diagonal().norm() + 2 * cube;
     const Vector3d shift(share(4), share(5), share(6));

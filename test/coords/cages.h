@@ -92,7 +92,7 @@ inline std::vector<Point> places(const Mesh& cage) {
 }
 
 /// How often the cage goes around p: the sum of the solid angles (van Oosterom and Strackee 1983) over the full one.
-inline double turns(const Mesh& cage, const Point& p) {
+inline double winding_number(const Mesh& cage, const Point& p) {
     long double sum = 0;
     for (const Face f : cage.faces()) {
         std::array<std::array<long double, 3>, 3> u;

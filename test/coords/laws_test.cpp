@@ -42,8 +42,8 @@ TEST(Laws, Green) {
     for (const Cage& cage : cages()) {
         std::vector<Point> points;
         for (const Point& p : test::places(cage.mesh)) {
-            const double turns = test::turns(cage.mesh, p);
-            if (turns > 0.999 && turns < 1.001 && test::distance(cage.mesh, p) > 1e-12) points.push_back(p);
+            const double winding_number = test::winding_number(cage.mesh, p);
+            if (winding_number > 0.999 && winding_number < 1.001 && test::distance(cage.mesh, p) > 1e-12) points.push_back(p);
         }
         const Coordinates c = compute_coordinates("green", cage.mesh, points);
         double partition = 0;

@@ -133,16 +133,16 @@ TEST(MeanValue, NothingHappensInThePlaneOfAFarFace) {
     }
     // The same on a slanted copy, where the plane cannot be met exactly.
     const double a = 0.3, b = 0.7;
-    const auto turn = [&](const Point& p) {
+    const auto rotated = [&](const Point& p) {
         const Point q(std::cos(a) * p.x() - std::sin(a) * p.y(), std::sin(a) * p.x() + std::cos(a) * p.y(), p.z());
         return Point(q.x(), std::cos(b) * q.y() - std::sin(b) * q.z(), std::sin(b) * q.y() + std::cos(b) * q.z());
     };
     Mesh turned = cage;
-    for (const Vertex v : turned.vertices()) turned.point(v) = turn(cage.point(v));
+    for (const Vertex v : turned.vertices()) turned.point(v) = rotated(cage.point(v));
     std::mt19937_64 random(5);
     std::uniform_real_distribution<double> unit(0.05, 0.95);
     std::vector<Point> flat, slanted;
-    for (int i = 0; i < 500; ++i) flat.emplace_back(1, unit(random), unit(random)), slanted.push_back(turn(flat.back()));
+    for (int i = 0; i < 500; ++i) flat.emplace_back(1, unit(random), unit(random)), slanted.push_back(rotated(flat.back()));
     const Coordinates f = compute_coordinates("mean-value", cage, flat), s = compute_coordinates("mean-value", turned, slanted);
     EXPECT_LT((f.vertex - s.vertex).cwiseAbs().maxCoeff(), 1e-13);
 }

@@ -41,12 +41,12 @@ TEST(Facets, ASherdHasTwoSidesAndABreak) {
 TEST(Facets, UnitPlaceResolutionAndThreadsDoNotMatter) {
     const SyntheticSherd sherd = synthetic_sherd(1, 2, 0, 1);
     const Facets found = find_facets(sherd.mesh);
-    Motion turn;
-    turn.rotation = Eigen::AngleAxisd(2, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+    Motion motion;
+    motion.rotation = Eigen::AngleAxisd(2, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
     for (const double scale : {1e-6, 1.0, 1e6}) {
-        turn.scale = scale;
-        turn.translation = 1000 * scale * Eigen::Vector3d(1, -1, 2);
-        EXPECT_GT(agreement({moved(sherd.mesh, turn), found.of_face}, find_facets(moved(sherd.mesh, turn)).of_face), 0.995)
+        motion.scale = scale;
+        motion.translation = 1000 * scale * Eigen::Vector3d(1, -1, 2);
+        EXPECT_GT(agreement({moved(sherd.mesh, motion), found.of_face}, find_facets(moved(sherd.mesh, motion)).of_face), 0.995)
             << scale;
     }
     const SyntheticSherd fine = synthetic_sherd(1, 2, 0, 1, 2);

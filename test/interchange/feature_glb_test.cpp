@@ -140,8 +140,8 @@ TEST(FeatureGlb, IsShownUprightInMetres) {
     EXPECT_NEAR(node["scale"][0].GetDouble(), 0.001, 1e-15);
     // The quaternion takes z, up in the set, to y.
     const auto& q = node["rotation"];
-    const Eigen::Quaterniond turn(q[3].GetDouble(), q[0].GetDouble(), q[1].GetDouble(), q[2].GetDouble());
-    EXPECT_LT((turn * Eigen::Vector3d::UnitZ() - Eigen::Vector3d::UnitY()).norm(), 1e-12);
+    const Eigen::Quaterniond rotation(q[3].GetDouble(), q[0].GetDouble(), q[1].GetDouble(), q[2].GetDouble());
+    EXPECT_LT((rotation * Eigen::Vector3d::UnitZ() - Eigen::Vector3d::UnitY()).norm(), 1e-12);
     set.up.reset();
     set.unit = "";
     EXPECT_EQ(json_of(written(mesh, set))["nodes"].Size(), 1U);

@@ -26,7 +26,7 @@ using namespace test;
 TEST(OrientedBox, IsExactOnBoxes) {
     for (int seed = 0; seed < 12; ++seed) {
         const double a = 1, b = 1 + seed * 0.3, c = 4 - seed * 0.2;
-        const TriangleSoup soup = moved(box(1 + seed % 4, a, b, c), some_turn(seed), Vector3d(seed, 2 * seed, -seed));
+        const TriangleSoup soup = moved(box(1 + seed % 4, a, b, c), some_rotation(seed), Vector3d(seed, 2 * seed, -seed));
         const OrientedBox found = oriented_box(soup.points);
         std::array<double, 3> sides{a, b, c};
         std::sort(sides.rbegin(), sides.rend());
@@ -79,7 +79,7 @@ TEST(OrientedBox, IsWithinOnePercentOfTheLeast) {
             if (kind == 3) p = Vector3d(std::cos(i), std::sin(i), 0.01 * i) + 0.05 * p;  // a spring
             soup.points.push_back({p[0], p[1], p[2]});
         }
-        const auto points = moved(soup, some_turn(seed + 50), Vector3d::Zero()).points;
+        const auto points = moved(soup, some_rotation(seed + 50), Vector3d::Zero()).points;
         const double minimum = min_box_by_search(points), found = oriented_box(points).volume();
         EXPECT_LE(found, 1.01 * minimum) << "kind " << kind;
         RecordProperty("ratio_" + std::to_string(seed), std::to_string(found / minimum));
@@ -297,7 +297,7 @@ TEST(Uncertainty, CoversWhatPickingOnCoarseMeshesGivesAway) {
     int outside = 0;
     const int count = 200;
     for (int seed = 0; seed < count; ++seed) {
-        const Mesh mesh = build_mesh(moved(test::octahedron_sphere(4), some_turn(seed + 1000), Vector3d::Zero()));
+        const Mesh mesh = build_mesh(moved(test::octahedron_sphere(4), some_rotation(seed + 1000), Vector3d::Zero()));
         const auto nearest = [&](const Vector3d& place) {
             Index best = 0;
             for (const Vertex v : mesh.vertices()) {

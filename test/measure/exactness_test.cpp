@@ -24,9 +24,9 @@ TEST(Exactness, OfPolyhedraUnderRigidMotionToRounding) {
     };
     const Index o = corner(0, 0, 0), far = corner(a, b, c), up = corner(0, 0, c);
     for (const double offset : {0.0, 10.0, 1e3, 1e6}) {
-        const Vector3d shift = offset * Vector3d(1, -2, 3).normalized();
-        const Eigen::Matrix3d turn = offset == 0 ? Eigen::Matrix3d::Identity() : some_turn(static_cast<int>(offset));
-        const Mesh mesh = build_mesh(moved(soup, turn, shift));
+        const Vector3d translation = offset * Vector3d(1, -2, 3).normalized();
+        const Eigen::Matrix3d rotation = offset == 0 ? Eigen::Matrix3d::Identity() : some_rotation(static_cast<int>(offset));
+        const Mesh mesh = build_mesh(moved(soup, rotation, translation));
         const Annotation root = whole(mesh);
         const double tolerance = 1e-12 * (1 + offset / diagonal);
         DescriptorSearch search(mesh);
@@ -38,7 +38,7 @@ TEST(Exactness, OfPolyhedraUnderRigidMotionToRounding) {
         near(value("volume"), a * b * c, "volume");
         EXPECT_EQ(value("volume bound"), 0);
         near(value("mean curvature integral"), std::numbers::pi * (a + b + c), "mean curvature");
-        const Vector3d middle = turn * Vector3d(a / 2, b / 2, c / 2) + shift;
+        const Vector3d middle = rotation * Vector3d(a / 2, b / 2, c / 2) + translation;
         for (const char* name : {"centroid", "solid centroid", "box centre"}) {
             const auto at = search.find(root, name)->values;
             const double allowed = (std::string(name) == "box centre" ? 1e-6 : tolerance) * (diagonal + offset);
@@ -47,13 +47,13 @@ TEST(Exactness, OfPolyhedraUnderRigidMotionToRounding) {
         near(evaluate(mesh, root, pins("ruler", {o, far})), diagonal, "ruler");
         near(evaluate(mesh, root, pins("tape", {o, up})), c, "tape");
         Measure bounding = pins("bounding", {o, far});
-        const Vector3d z = turn * Vector3d::UnitZ();
+        const Vector3d z = rotation * Vector3d::UnitZ();
         bounding.direction = std::array<double, 3>{z[0], z[1], z[2]};
         near(evaluate(mesh, root, bounding), c, "bounding");
         Annotation side;  // the faces on x = 0
         for (const Face f : mesh.faces())
-            if (std::abs((turn.transpose() *
-                          (Vector3d(centroid(mesh, f).x(), centroid(mesh, f).y(), centroid(mesh, f).z()) - shift))[0]) < 1e-6)
+            if (std::abs((rotation.transpose() * (Vector3d(centroid(mesh, f).x(), centroid(mesh, f).y(), centroid(mesh, f).z()) -
+                                                  translation))[0]) < 1e-6)
                 side.faces.push_back(f);
         near(search.find(side, "area")->values.front(), b * c, "area of a side");
         near(search.find(side, "perimeter")->values.front(), 2 * (b + c), "perimeter of a side");
@@ -120,9 +120,9 @@ TEST(Exactness, OfRegularPolyhedra) {
     for (Solid& solid : solids) {
         for (int k = 0; k < 4; ++k) solid.soup = in_four(solid.soup);
         for (const double offset : {0.0, 1e3, 1e6}) {
-            const Vector3d shift = offset * Vector3d(2, 1, -2) / 3;
-            const Eigen::Matrix3d turn = some_turn(static_cast<int>(offset) + 5);
-            const Mesh mesh = build_mesh(moved(solid.soup, turn, shift));
+            const Vector3d translation = offset * Vector3d(2, 1, -2) / 3;
+            const Eigen::Matrix3d rotation = some_rotation(static_cast<int>(offset) + 5);
+            const Mesh mesh = build_mesh(moved(solid.soup, rotation, translation));
             const Annotation root = whole(mesh);
             const double diagonal = box_diagonal(mesh), tolerance = 1e-12 * (1 + offset / diagonal);
             DescriptorSearch search(mesh);
@@ -130,10 +130,11 @@ TEST(Exactness, OfRegularPolyhedra) {
             EXPECT_LE(std::abs(search.find(root, "volume")->values[0] - solid.volume), tolerance * solid.volume) << offset;
             for (const char* name : {"centroid", "solid centroid"}) {
                 const auto at = search.find(root, name)->values;
-                EXPECT_LE((Vector3d(at[0], at[1], at[2]) - shift).norm(), tolerance * (diagonal + offset)) << name << offset;
+                EXPECT_LE((Vector3d(at[0], at[1], at[2]) - translation).norm(), tolerance * (diagonal + offset))
+                    << name << offset;
             }
             Measure bounding = pins("bounding", {0, 1});
-            const Vector3d x = turn * Vector3d::UnitX();
+            const Vector3d x = rotation * Vector3d::UnitX();
             bounding.direction = std::array<double, 3>{x[0], x[1], x[2]};
             const auto ends = extremes(mesh, root, *bounding.direction);
             bounding.points.assign(ends.begin(), ends.end());
@@ -152,7 +153,7 @@ TEST(Exactness, OfTheExactTape) {
     }
     for (const double offset : {0.0, 10.0, 1e3, 1e6}) {
         const Mesh mesh =
-            build_mesh(moved(soup, some_turn(static_cast<int>(offset) + 1), offset * Vector3d(1, -2, 3).normalized()));
+            build_mesh(moved(soup, some_rotation(static_cast<int>(offset) + 1), offset * Vector3d(1, -2, 3).normalized()));
         Measure exact = pins("tape", {first, last});
         exact.exact = true;
         EXPECT_NEAR(evaluate(mesh, whole(mesh), exact), std::hypot(a + b, c),

@@ -12,16 +12,16 @@ namespace ostraka::test {
 
 using Eigen::Vector3d;
 
-/// Vertices moved by a rotation and a shift.
-inline TriangleSoup moved(TriangleSoup soup, const Eigen::Matrix3d& turn, const Vector3d& shift) {
+/// Vertices moved by a rotation and a translation.
+inline TriangleSoup moved(TriangleSoup soup, const Eigen::Matrix3d& rotation, const Vector3d& translation) {
     for (auto& p : soup.points) {
-        const Vector3d q = turn * Vector3d(p[0], p[1], p[2]) + shift;
+        const Vector3d q = rotation * Vector3d(p[0], p[1], p[2]) + translation;
         p = {q[0], q[1], q[2]};
     }
     return soup;
 }
 
-inline Eigen::Matrix3d some_turn(int seed) {
+inline Eigen::Matrix3d some_rotation(int seed) {
     std::mt19937 random(static_cast<unsigned>(seed));
     std::normal_distribution<double> normal;
     return Eigen::Quaterniond(normal(random), normal(random), normal(random), normal(random)).normalized().toRotationMatrix();

@@ -23,7 +23,7 @@ TEST(Align, FindsTheMotionOfAMovedSurface) {
     const Motion truth = test::motion();
     const AlignSurface other(test::moved(a, truth));
     const Alignment found = align(surface, other, {nearly(truth, 10, 2)});
-    EXPECT_LT(test::turn_between(found.motion.rotation, truth.rotation), 0.1);
+    EXPECT_LT(test::rotation_between(found.motion.rotation, truth.rotation), 0.1);
     EXPECT_LT(found.distance, 2e-3);
     EXPECT_GT(found.overlap, 0.9);
     EXPECT_TRUE(found.settled);
@@ -63,7 +63,7 @@ TEST(Align, PrincipalAxesServeWithoutAStart) {
     const Motion truth = test::motion();
     const AlignSurface a(test::head(1, 1).mesh), b(test::moved(test::head(1, 1).mesh, truth));
     const Alignment found = align(a, b, {});
-    EXPECT_LT(test::turn_between(found.motion.rotation, truth.rotation), 1);
+    EXPECT_LT(test::rotation_between(found.motion.rotation, truth.rotation), 1);
     for (const Motion& start : principal_starts(a, b)) EXPECT_NEAR(start.rotation.determinant(), 1, 1e-9);
 }
 

@@ -34,7 +34,7 @@ inline Motion motion(double scale = 1, double far = 100) {
 }
 
 /// Angle between two rotations, degrees.
-inline double turn_between(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
+inline double rotation_between(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
     return Eigen::AngleAxisd(a.transpose() * b).angle() * 180 / 3.14159265358979323846;
 }
 

@@ -128,7 +128,7 @@ TEST(Matches, ConsistentOnesTellTheMotion) {
         consistent.shrinkage = scale < 1 ? 0.15 : 0;
         const auto found = consistent_matches(fa, fb, match_features(fa, fb), consistent);
         EXPECT_GT(found.matches.size(), 8U);
-        EXPECT_LT(test::turn_between(found.motion.rotation, truth.rotation), 4);
+        EXPECT_LT(test::rotation_between(found.motion.rotation, truth.rotation), 4);
         EXPECT_NEAR(found.motion.scale, scale, 0.03);
         for (const auto& match : found.matches)
             EXPECT_LT((found.motion(fa.features[match.a].point) - fb.features[match.b].point).norm(), 0.0201 * 66);

@@ -63,8 +63,8 @@ inline Polygon refined(const Polygon& polygon, int pieces) {
 
 inline Polygon transformed(const Polygon& polygon, double scale, double angle, const Eigen::Vector2d& by) {
     Polygon moved;
-    const Eigen::Rotation2Dd turn(angle);
-    for (const auto& p : polygon) moved.push_back(turn * (scale * p) + by);
+    const Eigen::Rotation2Dd rotation(angle);
+    for (const auto& p : polygon) moved.push_back(rotation * (scale * p) + by);
     return moved;
 }
 

@@ -219,15 +219,15 @@ TEST(SliceDescriptors, DoNotMoveWithTheFigureNorWithItsUnit) {
 TEST(SliceDescriptors, OfTheMeshMovedRigidly) {
     const TriangleSoup soup = joined(torus(60, 40), moved(octahedron_sphere(4), 0.6, {0.1, 0.2, 0.1}));
     const Mesh mesh = build_mesh(soup);
-    const Eigen::Matrix3d turn =
+    const Eigen::Matrix3d rotation =
         (Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()) * Eigen::AngleAxisd(1.1, Eigen::Vector3d::UnitX()))
             .toRotationMatrix();
     TriangleSoup turned = soup;
     for (auto& p : turned.points) {
-        const Eigen::Vector3d q = turn * Eigen::Vector3d(p[0], p[1], p[2]) + Eigen::Vector3d(3, -2, 1);
+        const Eigen::Vector3d q = rotation * Eigen::Vector3d(p[0], p[1], p[2]) + Eigen::Vector3d(3, -2, 1);
         p = {q.x(), q.y(), q.z()};
     }
-    const Eigen::Vector3d n(0.3, -0.2, 1), m = turn * n;
+    const Eigen::Vector3d n(0.3, -0.2, 1), m = rotation * n;
     const auto heights = slice_heights(-0.9, 0.9, 20);
     const auto before = describe_slices(slice_mesh(mesh, slice_frame({0, 0, 0}, {n.x(), n.y(), n.z()}), heights).slices);
     const auto after =

@@ -11,14 +11,14 @@ double min_by_trying(const Points& rows, const Vector3d& axis, const Vector3d& d
     double minimum = std::numeric_limits<double>::infinity();
     constexpr int steps = 120;
     const Vector3d e1 = direction.unitOrthogonal();
-    const auto turn = [](int i, const Vector3d& about) {
+    const auto rotation = [](int i, const Vector3d& about) {
         return Eigen::AngleAxisd(2 * std::numbers::pi * i / steps, about).toRotationMatrix();
     };
     for (const double side : {1.0, -1.0})
         for (int i = 0; i < steps; ++i) {
-            const Vector3d to = std::cos(wanted) * side * direction + std::sin(wanted) * (turn(i, direction) * e1);
+            const Vector3d to = std::cos(wanted) * side * direction + std::sin(wanted) * (rotation(i, direction) * e1);
             const Matrix3d first = Eigen::Quaterniond::FromTwoVectors(axis, to).toRotationMatrix();
-            for (int j = 0; j < steps; ++j) minimum = std::min(minimum, (turn(j, to) * first * rows - rows).squaredNorm());
+            for (int j = 0; j < steps; ++j) minimum = std::min(minimum, (rotation(j, to) * first * rows - rows).squaredNorm());
         }
     return minimum;
 }
@@ -33,11 +33,12 @@ TEST(Constraint, AxesTurnNoFartherThanTheyMust) {
         rest = size.asDiagonal() * rest;
         for (const Vector3d& own : {Vector3d(0, 0, 1), Vector3d(0.6, 0, 0.8)})
             for (int place = 0; place < 4; ++place) {
-                Matrix3d turn = some_turn();
-                if (place == 1) turn = Eigen::Quaterniond::FromTwoVectors(own, d).toRotationMatrix();
-                if (place == 2) turn = Eigen::Quaterniond::FromTwoVectors(own, d.unitOrthogonal()).toRotationMatrix();
-                if (place == 3) turn = Eigen::Quaterniond::FromTwoVectors(own, -d + 1e-7 * d.unitOrthogonal()).toRotationMatrix();
-                const Points rows = turn * rest;
+                Matrix3d rotation = some_rotation();
+                if (place == 1) rotation = Eigen::Quaterniond::FromTwoVectors(own, d).toRotationMatrix();
+                if (place == 2) rotation = Eigen::Quaterniond::FromTwoVectors(own, d.unitOrthogonal()).toRotationMatrix();
+                if (place == 3)
+                    rotation = Eigen::Quaterniond::FromTwoVectors(own, -d + 1e-7 * d.unitOrthogonal()).toRotationMatrix();
+                const Points rows = rotation * rest;
                 for (const double wanted : {0.0, 1e-4, 0.3, 1.2, std::numbers::pi / 2}) {
                     ConstraintParameters parameters;
                     parameters.direction = d;
@@ -49,9 +50,9 @@ TEST(Constraint, AxesTurnNoFartherThanTheyMust) {
                                              " angle " + std::to_string(wanted);
                     const Matrix3d found = Eigen::umeyama(rows, o.projected, false).topLeftCorner<3, 3>();
                     ASSERT_LT((found * rows - o.projected).norm(), 1e-10) << what;
-                    const double angle_there = angle(found * turn * own, d);
+                    const double angle_there = angle(found * rotation * own, d);
                     ASSERT_NEAR(std::min(angle_there, std::numbers::pi - angle_there), wanted, 2e-8) << what;
-                    const double minimum = min_by_trying(rows, turn * own, d, wanted),
+                    const double minimum = min_by_trying(rows, rotation * own, d, wanted),
                                  reached = (o.rows - o.projected).squaredNorm();
                     ASSERT_LE(reached, minimum + 1e-9 * rows.squaredNorm()) << what;
                     ASSERT_LT((again(*c, o.projected) - o.projected).norm(), 1e-7) << what;

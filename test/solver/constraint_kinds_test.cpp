@@ -225,7 +225,7 @@ TEST(Constraint, SolidsOfRevolutionHaveTheAxisThatIsCarried) {
     parameters.rest_direction = Vector3d(0, 0, 1);
     parameters.rest_point = Vector3d(0, 0, 0);
     const auto c = make_constraint("CoAxiality", first_ids(40), 1, parameters, rest);
-    const Points points = some_turn() * rest;
+    const Points points = some_rotation() * rest;
     const Points p = outcome(*c, points).projected;
     const Vector3d d = parameters.direction->normalized();
     for (int i = 0; i < 40; ++i) EXPECT_NEAR((p.col(i) - *parameters.point).cross(d).norm(), 1, 1e-10);

@@ -45,10 +45,10 @@ TEST(Constraint, NoAdmissibleRowsFoundBySearchAreCloser) {
 }
 
 TEST(Constraint, MovesWithItsPoints) {
-    const Matrix3d turn = some_turn();
+    const Matrix3d rotation = some_rotation();
     const Vector3d by(3, -2, 5);
     for (const Example& e : examples()) {
-        const Matrix3d own = e.turns ? turn : Matrix3d::Identity();
+        const Matrix3d own = e.rotates ? rotation : Matrix3d::Identity();
         const Example there = moved(e, own, by);
         const auto c = make(e), d = make(there);
         const Outcome o = outcome(*c, e.points), p = outcome(*d, there.points);

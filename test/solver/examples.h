@@ -14,7 +14,7 @@ struct Example {
     std::vector<int> ids;
     ConstraintParameters parameters;
     Points rest, points;
-    bool turns = true;    ///< rotates with its points and parameters; displacement forms only move
+    bool rotates = true;  ///< rotates with its points and parameters; displacement forms only move
     bool closest = true;  ///< closest of all admissible rows, as against all motions of the points as they are
 };
 
@@ -33,7 +33,7 @@ inline std::vector<int> first_ids(int count) {
     return ids;
 }
 
-/// Closest point of a sphere that `turn` leaves where it is.
+/// Closest point of a sphere that `rotation` leaves where it is.
 inline Eigen::Vector3d onto_sphere(const Eigen::Vector3d& p, const Eigen::Vector3d& centre, double radius) {
     const Eigen::Vector3d v = p - centre;
     return v.norm() > 0 ? Eigen::Vector3d(centre + radius * v.normalized())
@@ -130,7 +130,7 @@ inline std::vector<Example> examples() {
     add("Parallelogram", "Parallelogram", 4);
     add("Rectangle", "Rectangle", 4);
     add("Laplacian", "Laplacian", 6);
-    add("LaplacianDisplacement", "LaplacianDisplacement", 6).turns = false;
+    add("LaplacianDisplacement", "LaplacianDisplacement", 6).rotates = false;
     const auto fan = [&](Example& e) {
         for (Eigen::Index i = 1; i < e.rest.cols(); ++i) {
             const double a = 2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(e.rest.cols() - 1);
@@ -143,7 +143,7 @@ inline std::vector<Example> examples() {
     {
         Example& e = add("CotangentLaplacianDisplacement", "CotangentLaplacianDisplacement", 6);
         fan(e);
-        e.turns = false;
+        e.rotates = false;
     }
     {
         Example& e = add("FittedPlaneOrientation", "FittedPlaneOrientation", 6);
@@ -279,21 +279,21 @@ inline std::unique_ptr<Constraint> make(const Example& e, double weight = 1) {
 }
 
 /// Points, rest state and parameters, turned and then moved.
-inline Example moved(Example e, const Eigen::Matrix3d& turn, const Eigen::Vector3d& by) {
-    const auto move = [&](Points& p) { p = (turn * p).colwise() + by; };
+inline Example moved(Example e, const Eigen::Matrix3d& rotation, const Eigen::Vector3d& by) {
+    const auto move = [&](Points& p) { p = (rotation * p).colwise() + by; };
     move(e.rest);
     move(e.points);
     if (e.parameters.target) {
-        if (e.kind == "MirrorSymmetry") *e.parameters.target = turn * *e.parameters.target;  // differences of points
+        if (e.kind == "MirrorSymmetry") *e.parameters.target = rotation * *e.parameters.target;  // differences of points
         else move(*e.parameters.target);
     }
     for (auto* direction : {&e.parameters.direction, &e.parameters.second_direction, &e.parameters.rest_direction})
-        if (*direction) *direction = turn * **direction;
+        if (*direction) *direction = rotation * **direction;
     for (auto* point : {&e.parameters.point, &e.parameters.rest_point})
-        if (*point) *point = turn * **point + by;
+        if (*point) *point = rotation * **point + by;
     if (e.parameters.closest_point)
-        e.parameters.closest_point = [inner = e.parameters.closest_point, turn, by](const Eigen::Vector3d& p) {
-            return Eigen::Vector3d(turn * inner(turn.transpose() * (p - by)) + by);
+        e.parameters.closest_point = [inner = e.parameters.closest_point, rotation, by](const Eigen::Vector3d& p) {
+            return Eigen::Vector3d(rotation * inner(rotation.transpose() * (p - by)) + by);
         };
     return e;
 }

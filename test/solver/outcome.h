@@ -42,7 +42,7 @@ inline Eigen::MatrixXd matrix_of(const Constraint& c) {
     return b;
 }
 
-inline Matrix3d some_turn() { return Eigen::AngleAxisd(1.1, Vector3d(1, 2, -2).normalized()).toRotationMatrix(); }
+inline Matrix3d some_rotation() { return Eigen::AngleAxisd(1.1, Vector3d(1, 2, -2).normalized()).toRotationMatrix(); }
 inline double angle(const Vector3d& a, const Vector3d& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
 }  // namespace ostraka
