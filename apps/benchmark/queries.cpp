@@ -17,15 +17,15 @@ enum class Query {
     closest_point  ///< a single one
 };
 
-struct Asker {
+struct QuerySet {
     std::vector<Point> points;
     std::vector<Vector> normals;
     double near = 0, far = 0;
 };
 
-const Asker& asker() {
-    static const Asker made = [] {
-        Asker result;
+const QuerySet& query_set() {
+    static const QuerySet made = [] {
+        QuerySet result;
         const Mesh& mesh = source().mesh;
         for (const Vertex v : mesh.vertices()) {
             result.points.push_back(mesh.point(v));
@@ -38,14 +38,14 @@ const Asker& asker() {
     return made;
 }
 
-Index ask(const SurfaceSearch& search, const Asker& from, Query query, std::size_t i) {
+Index ask(const SurfaceSearch& search, const QuerySet& from, Query query, std::size_t i) {
     if (query == Query::closest_point) return search.closest(from.points[i]).face;
     const auto hits = search.line_hits(from.points[i], from.normals[i], query == Query::near_line ? from.near : from.far);
     return hits.empty() ? no_index : hits.front().face;
 }
 
 void run_queries(benchmark::State& state, Query query, int thread_count) {
-    const Asker& from = asker();
+    const QuerySet& from = query_set();
     const SurfaceSearch& search = target_search(target_vertices);
     std::vector<Index> faces(from.points.size());
     set_threads(thread_count);

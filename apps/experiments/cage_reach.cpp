@@ -36,15 +36,15 @@ std::string deviations(const ConstraintReport& report, bool before) {
     return text.empty() ? report.text : text;
 }
 
-struct Way {
+struct SpaceVariant {
     std::string name, about;
     std::string space;
     double closeness;
 };
 /// With the default closeness of 0.001 a cage is hardly held where no constraint is.
-const std::vector<Way> ways{{"by-mesh", "mesh", "mesh", DeformOptions().closeness},
-                            {"by-cage", "cage", "cage", DeformOptions().closeness},
-                            {"by-held-cage", "cage, closeness 1", "cage", 1}};
+const std::vector<SpaceVariant> variants{{"by-mesh", "mesh", "mesh", DeformOptions().closeness},
+                                         {"by-cage", "cage", "cage", DeformOptions().closeness},
+                                         {"by-held-cage", "cage, closeness 1", "cage", 1}};
 
 }  // namespace
 
@@ -72,7 +72,7 @@ void cage_reach(const CageReachOptions& options) {
             const std::vector<EditState> states = follow_edit(edit, space, edit_file);
             const long handles = std::count(states.back().touched.begin(), states.back().touched.end(), true);
             const std::string stem = edit_name + '-' + cage_name + '-';
-            for (const Way& way : ways) {
+            for (const SpaceVariant& way : variants) {
                 DeformOptions deforming;
                 set_option(deforming, "space", way.space);
                 deforming.closeness = way.closeness;
@@ -102,7 +102,7 @@ void cage_reach(const CageReachOptions& options) {
                         format(" | %.3f (%.2f) | %.2f |\n", 100 * mean / diagonal, 100 * maximum / diagonal, seconds);
                 write_coloured(folder / (stem + way.name + ".ply"), with_points(mesh, result.points), lengths);
                 if (way.space == "cage") write_mesh(folder / (stem + way.name + "-cage.ply"), with_points(cage, result.cage));
-                if (&way == &ways.front())
+                if (&way == &variants.front())
                     write_coloured(folder / (stem + "edited.ply"), with_points(mesh, result.edited),
                                    displacements(ostraka::points_of(mesh), result.edited));
             }

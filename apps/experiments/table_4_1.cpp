@@ -24,18 +24,18 @@ namespace ostraka::experiments {
 namespace {
 
 /// Seconds as published (thesis, Table 4.1) and as measured of its prototype: set-up and iterations.
-struct Others {
+struct PublishedTimes {
     double thesis_mesh, thesis_cage;
     std::optional<std::pair<double, double>> prototype_mesh, prototype_cage;
 };
-const std::map<std::uint64_t, Others> others{{20'000, {0.228, 0.133, {{0.68, 0.33}}, {{0.25, 0.78}}}},
-                                             {50'000, {2.064, 0.393, {{18.7, 2.15}}, {{0.89, 1.7}}}},
-                                             {70'000, {2.866, 0.49, {}, {}}},
-                                             {100'000, {6.735, 0.819, {{69.9, 6.8}}, {{3.5, 3.1}}}},
-                                             {150'000, {15.543, 1.18, {}, {}}},
-                                             {200'000, {28.601, 1.622, {{689, 17.9}}, {{16, 5.5}}}},
-                                             {280'000, {45.566, 1.95, {}, {}}},
-                                             {500'000, {147.518, 5.019, {}, {}}}};
+const std::map<std::uint64_t, PublishedTimes> published{{20'000, {0.228, 0.133, {{0.68, 0.33}}, {{0.25, 0.78}}}},
+                                                        {50'000, {2.064, 0.393, {{18.7, 2.15}}, {{0.89, 1.7}}}},
+                                                        {70'000, {2.866, 0.49, {}, {}}},
+                                                        {100'000, {6.735, 0.819, {{69.9, 6.8}}, {{3.5, 3.1}}}},
+                                                        {150'000, {15.543, 1.18, {}, {}}},
+                                                        {200'000, {28.601, 1.622, {{689, 17.9}}, {{16, 5.5}}}},
+                                                        {280'000, {45.566, 1.95, {}, {}}},
+                                                        {500'000, {147.518, 5.019, {}, {}}}};
 
 struct Measured {
     std::size_t vertices = 0, region = 0;
@@ -153,10 +153,10 @@ std::string row(const Measured& mesh, const Measured& cage, bool beside) {
                    cage.summary.iterations, cage.weights.processor, cage.setup.processor, cage.iterate.processor,
                    megabytes(cage).c_str());
     text += format(" %.2g, %.2g %% |", 100 * mesh.flat_after / mesh.flat_before, 100 * cage.flat_after / cage.flat_before);
-    const auto known = others.find(mesh.vertices);
+    const auto known = published.find(mesh.vertices);
     if (!beside) return text + '\n';
-    if (known == others.end()) return text + " - | - |\n";
-    const Others& o = known->second;
+    if (known == published.end()) return text + " - | - |\n";
+    const PublishedTimes& o = known->second;
     return text + format(" %.3g, %.3g |", o.thesis_mesh, o.thesis_cage) + ' ' + pair_text(o.prototype_mesh) + ", " +
            pair_text(o.prototype_cage) + " |\n";
 }
@@ -240,7 +240,7 @@ void table_4_1(const Table41Options& options) {
     for (auto& [name, line] : lines) plot.series.push_back(std::move(line));
     PlotSeries thesis_mesh{"thesis: ShapeOp", {}, true, true}, thesis_cage{"thesis: cage", {}, true, true},
         prototype{"prototype, set-up too: mesh", {}, true, true};
-    for (const auto& [size, o] : others) {
+    for (const auto& [size, o] : published) {
         thesis_mesh.points.push_back({static_cast<double>(size), o.thesis_mesh});
         thesis_cage.points.push_back({static_cast<double>(size), o.thesis_cage});
         if (o.prototype_mesh)

@@ -15,18 +15,18 @@ namespace {
 Vector vector_of(const std::array<double, 3>& way) { return {way[0], way[1], way[2]}; }
 
 /// A direction and where it is from.
-struct Upward {
+struct UpDirection {
     Vector way;
     const char* from;
 };
-Upward upward(const CollectionObject& object, const Mesh& mesh, const std::optional<std::array<double, 3>>& up) {
+UpDirection up_direction(const CollectionObject& object, const Mesh& mesh, const std::optional<std::array<double, 3>>& up) {
     std::optional<std::array<double, 3>> known;
     try {
         if (!object.annotations.empty()) known = read_annotations(object.annotations, mesh).up;
     } catch (const Error&) {
         if (!up) throw;  // else nothing is asked of these annotations
     }
-    if (!up) return known ? Upward{vector_of(*known), "annotations"} : Upward{Vector(0, 0, 1), "assumed"};
+    if (!up) return known ? UpDirection{vector_of(*known), "annotations"} : UpDirection{Vector(0, 0, 1), "assumed"};
     const Vector way = vector_of(*up);
     const bool other =
         known && way * vector_of(*known) < std::cos(0.5 * std::numbers::pi / 180) *
@@ -46,7 +46,7 @@ std::vector<ObjectResult> measure_technique(const Collection& collection, const 
         if (object.mesh.empty()) fail_input(object.name, "has landmarks but no mesh", "give a mesh, or leave the object out");
         const MeshFile file = read_mesh(object.mesh);
         try {
-            const Upward direction = upward(object, file.mesh, up);
+            const UpDirection direction = up_direction(object, file.mesh, up);
             Json kept = technique_to_json(measure_technique(file.mesh, direction.way, options));
             add_member(kept, "upFrom", direction.from, kept.GetAllocator());
             return kept;

@@ -47,9 +47,9 @@ std::vector<VertexPath> vertex_paths_of(const Mesh& mesh, const Annotation& part
 
 namespace {
 
-/// A path with the way to each of its vertices from the first.
-struct Way {
-    explicit Way(const Mesh& mesh, VertexPath of) : vertex_path(std::move(of)) {
+/// A vertex path with the arc length of each of its vertices from the first.
+struct ArcLengthPath {
+    explicit ArcLengthPath(const Mesh& mesh, VertexPath of) : vertex_path(std::move(of)) {
         for (const Index v : vertex_path.vertices) places.push_back(eigen(mesh.point(Vertex(v))));
         for (std::size_t i = 0; i < places.size(); ++i) {
             at.push_back(length);
@@ -74,18 +74,18 @@ struct Way {
     double length = 0;
 };
 
-std::vector<Way> ways_of(const Mesh& mesh, std::vector<VertexPath> vertex_paths) {
-    std::vector<Way> ways;
+std::vector<ArcLengthPath> arc_length_paths_of(const Mesh& mesh, std::vector<VertexPath> vertex_paths) {
+    std::vector<ArcLengthPath> ways;
     for (VertexPath& vertex_path : vertex_paths) {
         if (vertex_path.vertices.size() < 2) continue;
-        Way way(mesh, std::move(vertex_path));
+        ArcLengthPath way(mesh, std::move(vertex_path));
         if (way.length > 0) ways.push_back(std::move(way));
     }
     return ways;
 }
 
 /// Where a vertex is on one of the paths: which, and how far along; -1 where it is on none.
-std::pair<int, double> on_vertex_path(const std::vector<Way>& ways, const Vector3d& place) {
+std::pair<int, double> on_vertex_path(const std::vector<ArcLengthPath>& ways, const Vector3d& place) {
     std::pair<int, double> found{-1, 0};
     double minimum = std::numeric_limits<double>::infinity();
     for (std::size_t c = 0; c < ways.size(); ++c)
@@ -98,13 +98,14 @@ std::pair<int, double> on_vertex_path(const std::vector<Way>& ways, const Vector
     return found;
 }
 
-struct Along {
+struct PathCorrespondences {
     std::vector<OutlineCorrespondence> correspondences;
     std::size_t pieces = 0;  ///< between landmarks that follow each other on both
 };
 
 /// Correspondences of one path by the landmarks on it (way along ours, along theirs). A way of ours is `scale` of theirs.
-Along along(const Way& ours, const Way& theirs, std::vector<std::pair<double, double>> marks, double scale) {
+PathCorrespondences correspondences_along(const ArcLengthPath& ours, const ArcLengthPath& theirs,
+                                          std::vector<std::pair<double, double>> marks, double scale) {
     constexpr double share_beyond = 0.25;
     std::sort(marks.begin(), marks.end());
     marks.erase(std::unique(marks.begin(), marks.end(), [](const auto& a, const auto& b) { return a.first == b.first; }),
@@ -129,7 +130,7 @@ Along along(const Way& ours, const Way& theirs, std::vector<std::pair<double, do
         known_there += d - b;
     }
     const double ratio = known > 0 ? known_there / known : scale;
-    Along result;
+    PathCorrespondences result;
     result.pieces = pieces.size();
     for (std::size_t i = 0; i < ours.places.size(); ++i) {
         const std::size_t count = ours.places.size();
@@ -181,16 +182,16 @@ double mean_square(const Mesh& mesh, const std::vector<OutlineCorrespondence>& c
 std::vector<OutlineCorrespondence> outline_correspondences(const Mesh& mesh, const Annotation& part, const Mesh& fragment,
                                                            const Annotation& of_fragment, const std::vector<bool>& broken,
                                                            const std::vector<std::pair<Index, Index>>& landmarks, double scale) {
-    const std::vector<Way> ours = ways_of(mesh, vertex_paths_of(mesh, part));
+    const std::vector<ArcLengthPath> ours = arc_length_paths_of(mesh, vertex_paths_of(mesh, part));
     const auto theirs_turned = [&](bool turned) {
         std::vector<VertexPath> vertex_paths = vertex_paths_of(fragment, of_fragment, broken);
         if (turned)
             for (VertexPath& vertex_path : vertex_paths) std::reverse(vertex_path.vertices.begin(), vertex_path.vertices.end());
-        return ways_of(fragment, std::move(vertex_paths));
+        return arc_length_paths_of(fragment, std::move(vertex_paths));
     };
-    const std::vector<Way> forward = theirs_turned(false);
+    const std::vector<ArcLengthPath> forward = theirs_turned(false);
     const bool line = part.type == AnnotationType::line;
-    const std::vector<Way> backward = line ? theirs_turned(true) : std::vector<Way>();
+    const std::vector<ArcLengthPath> backward = line ? theirs_turned(true) : std::vector<ArcLengthPath>();
     using Marks = std::vector<std::pair<double, double>>;
     std::map<std::pair<int, int>, std::pair<Marks, Marks>> marks;  // by paths, forward and backward
     for (const auto& [vertex, there] : landmarks) {
@@ -204,11 +205,11 @@ std::vector<OutlineCorrespondence> outline_correspondences(const Mesh& mesh, con
     }
     std::vector<OutlineCorrespondence> correspondences;
     for (const auto& [vertex_paths, both] : marks) {
-        const Way& way = ours[static_cast<std::size_t>(vertex_paths.first)];
+        const ArcLengthPath& way = ours[static_cast<std::size_t>(vertex_paths.first)];
         const auto there = static_cast<std::size_t>(vertex_paths.second);
-        Along best = along(way, forward[there], both.first, scale);
+        PathCorrespondences best = correspondences_along(way, forward[there], both.first, scale);
         if (line) {
-            Along other = along(way, backward[there], both.second, scale);
+            PathCorrespondences other = correspondences_along(way, backward[there], both.second, scale);
             if (other.pieces > best.pieces || (other.pieces == best.pieces && mean_square(mesh, other.correspondences, scale) <
                                                                                   mean_square(mesh, best.correspondences, scale)))
                 best = std::move(other);

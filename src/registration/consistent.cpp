@@ -16,9 +16,10 @@ Matrix3d frame(const Feature& feature) {
     return m;
 }
 
-class Judge {
+class MotionConsistency {
 public:
-    Judge(const FeatureSet& a, const FeatureSet& b, const std::vector<FeatureMatch>& matches, const ConsistentOptions& options)
+    MotionConsistency(const FeatureSet& a, const FeatureSet& b, const std::vector<FeatureMatch>& matches,
+                      const ConsistentOptions& options)
         : a_(a),
           b_(b),
           matches_(matches),
@@ -62,14 +63,14 @@ ConsistentMatches consistent_matches(const FeatureSet& a, const FeatureSet& b, c
                                      const ConsistentOptions& options) {
     check_options(options, "matches");
     ConsistentMatches result;
-    Judge judge(a, b, matches, options);
+    MotionConsistency consistency(a, b, matches, options);
     std::vector<std::size_t> best;
     for (const FeatureMatch& match : matches) {
         const Feature &from = a.features[match.a], &to = b.features[match.b];
         Motion motion;
         motion.rotation = frame(to) * frame(from).transpose();
         motion.translation = to.point - motion.rotation * from.point;
-        const auto& explained = judge.explained(motion);
+        const auto& explained = consistency.explained(motion);
         if (explained.size() <= best.size()) continue;
         best = explained;
         result.motion = motion;
@@ -85,7 +86,7 @@ ConsistentMatches consistent_matches(const FeatureSet& a, const FeatureSet& b, c
             to.push_back(b.features[matches[i].b].point);
         }
         const Motion motion = fit_motion(from, to, {}, fit);
-        const auto& explained = judge.explained(motion);
+        const auto& explained = consistency.explained(motion);
         if (explained.size() < best.size()) break;
         const bool settled = explained == best;
         best = explained;

@@ -116,7 +116,7 @@ std::vector<Salient> extrema(const Mesh& mesh, const std::vector<Level>& levels,
 }
 
 /// What lies around a salient point: places in its tangent plane, with weights.
-struct Around {
+struct TangentNeighbourhood {
     std::vector<Vector2d> place, tilt;  ///< in units of sigma; the normal's projection
     std::vector<Index> vertex;
 };
@@ -232,7 +232,7 @@ private:
     const Level& level_;
     Index vertex_;
     Vector3d normal_, u_, v_;
-    Around around_;
+    TangentNeighbourhood around_;
 };
 
 }  // namespace

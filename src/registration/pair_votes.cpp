@@ -144,12 +144,12 @@ std::vector<VotedMotion> PairTable::vote(const SurfacePoints& part, int referenc
                 }
             }
             // The best turn of each point of the whole (with its neighbours' votes), then the best points.
-            struct Best {
+            struct ReferencePeak {
                 float votes;
                 std::uint32_t reference;
                 double turn;
             };
-            std::vector<Best> best;
+            std::vector<ReferencePeak> best;
             best.reserve(whole);
             for (std::size_t p = 0; p < whole; ++p) {
                 const float* v = &votes[p * rotation_bins];
@@ -163,7 +163,7 @@ std::vector<VotedMotion> PairTable::vote(const SurfacePoints& part, int referenc
                 const double shift = v[at] + before + after > 0 ? double(after - before) / double(v[at] + before + after) : 0;
                 if (maximum > 0) best.push_back({maximum, static_cast<std::uint32_t>(p), at + shift});
             }
-            const auto better = [](const Best& a, const Best& b) {
+            const auto better = [](const ReferencePeak& a, const ReferencePeak& b) {
                 return a.votes != b.votes ? a.votes > b.votes : a.reference < b.reference;
             };
             const std::size_t take = std::min(best.size(), static_cast<std::size_t>(kept));

@@ -15,14 +15,14 @@ using Eigen::Vector3d;
 namespace {
 
 /// Points as faces give them, more than are wanted: each stands for an area.
-struct Raw {
+struct DenseSamples {
     std::vector<Vector3d> places, normals;
     std::vector<double> areas;
 };
 
-Raw raw_points(const Mesh& mesh, const std::vector<bool>& faces, double patch) {
+DenseSamples dense_samples(const Mesh& mesh, const std::vector<bool>& faces, double patch) {
     constexpr double maximum = 4096;  // of one face
-    Raw raw;
+    DenseSamples dense;
     for (const Face face : mesh.faces()) {
         if (!faces.empty() && !faces[face]) continue;
         const Vector3d across = eigen(area_vector(mesh, face));
@@ -40,12 +40,12 @@ Raw raw_points(const Mesh& mesh, const std::vector<bool>& faces, double patch) {
                 t = std::modf(0.5 + 0.5698402909980532 * k, &whole);
                 if (s + t > 1) s = 1 - s, t = 1 - t;
             }
-            raw.places.push_back(a + s * u + t * v);
-            raw.normals.push_back(across / area);
-            raw.areas.push_back(area / count);
+            dense.places.push_back(a + s * u + t * v);
+            dense.normals.push_back(across / area);
+            dense.areas.push_back(area / count);
         }
     }
-    return raw;
+    return dense;
 }
 
 /// Points by cells of a grid, not more cells than points call for.
@@ -114,15 +114,15 @@ SurfacePoints spread_points(const Mesh& mesh, const std::vector<bool>& faces, do
                    " faces");
     SurfacePoints points;
     points.spacing = spacing;
-    const Raw raw = raw_points(mesh, faces, spacing * spacing / 6);
-    if (raw.places.empty()) return points;
-    const Cells cells(raw.places, std::max(spacing, radius));
+    const DenseSamples dense = dense_samples(mesh, faces, spacing * spacing / 6);
+    if (dense.places.empty()) return points;
+    const Cells cells(dense.places, std::max(spacing, radius));
     std::vector<Index> chosen;
-    std::vector<bool> taken(raw.places.size(), false);
-    for (const std::size_t i : Random(seed).permutation(raw.places.size())) {
+    std::vector<bool> taken(dense.places.size(), false);
+    for (const std::size_t i : Random(seed).permutation(dense.places.size())) {
         bool room = true;
-        cells.near(raw.places[i], spacing,
-                   [&](Index j) { room = room && !(taken[j] && raw.normals[j].dot(raw.normals[i]) > 0); });
+        cells.near(dense.places[i], spacing,
+                   [&](Index j) { room = room && !(taken[j] && dense.normals[j].dot(dense.normals[i]) > 0); });
         if (!room) continue;
         taken[i] = true;
         chosen.push_back(static_cast<Index>(i));
@@ -131,20 +131,20 @@ SurfacePoints spread_points(const Mesh& mesh, const std::vector<bool>& faces, do
     points.places.resize(chosen.size());
     points.normals.resize(chosen.size());
     parallel_for(chosen.size(), [&](std::size_t k) {
-        const Vector3d p = raw.places[chosen[k]];
-        Vector3d normal = raw.normals[chosen[k]];
+        const Vector3d p = dense.places[chosen[k]];
+        Vector3d normal = dense.normals[chosen[k]];
         for (const double cosine : {0.0, 0.3}) {
             Vector3d sum = Vector3d::Zero();
             cells.near(p, radius, [&](Index j) {
-                if (raw.normals[j].dot(normal) > cosine) sum += raw.areas[j] * raw.normals[j];
+                if (dense.normals[j].dot(normal) > cosine) sum += dense.areas[j] * dense.normals[j];
             });
             if (sum.norm() > 0) normal = sum.normalized();
         }
         double height = 0, area = 0;
         cells.near(p, radius, [&](Index j) {
-            if (raw.normals[j].dot(normal) <= 0.3) return;
-            height += raw.areas[j] * normal.dot(raw.places[j] - p);
-            area += raw.areas[j];
+            if (dense.normals[j].dot(normal) <= 0.3) return;
+            height += dense.areas[j] * normal.dot(dense.places[j] - p);
+            area += dense.areas[j];
         });
         points.places[k] = area > 0 ? Vector3d(p + height / area * normal) : p;
         points.normals[k] = normal;

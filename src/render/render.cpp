@@ -75,7 +75,7 @@ std::vector<LegendEntry> merged_legend(const std::vector<Scene>& scenes) {
 }
 
 /// Room for the panes of a sheet.
-struct Room {
+struct PaneSize {
     double width = 0, height = 0;  ///< of all panes
     double strip = 0;              ///< under each: scale bar and caption
 };
@@ -84,7 +84,7 @@ struct Room {
 /// columns that lets the objects be largest: the smallest of them if they share one scale, else their logarithms in the mean.
 /// `extents` are width and height of each pane's object in its view.
 std::size_t column_count(const std::vector<std::array<double, 2>>& extents, bool six, std::size_t scenes, bool one_scale,
-                         const Room& room) {
+                         const PaneSize& room) {
     const std::size_t panes = extents.size();
     if (six) return scenes == 1 ? 3 : 6;
     if (panes <= 3) return panes;

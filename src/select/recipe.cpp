@@ -24,9 +24,9 @@ AnnotationType type_of(const std::string& name) {
 }
 
 /// Members of a recipe must all be understood: a misspelt one would silently change the outcome.
-class Cook {
+class RecipeRunner {
 public:
-    Cook(const Mesh& mesh, RecipeStart start, std::string where)
+    RecipeRunner(const Mesh& mesh, RecipeStart start, std::string where)
         : mesh_(mesh),
           where_(std::move(where)),
           face_labels_(std::move(start.face_labels)),
@@ -288,7 +288,7 @@ AnnotationSet follow_recipe(const JsonValue& recipe, const Mesh& mesh, RecipeSta
         fail_input(where, std::string("at /format: the format is '") + format->GetString() + "'",
                    "give a recipe ('ostraka-recipe')");
     validate(recipe, "recipe", where);
-    return Cook(mesh, std::move(start), where).follow(recipe);
+    return RecipeRunner(mesh, std::move(start), where).follow(recipe);
 }
 
 AnnotationSet apply_recipe(const JsonValue& recipe, const Mesh& mesh, const std::vector<std::int32_t>& face_labels,

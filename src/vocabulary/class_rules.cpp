@@ -87,9 +87,10 @@ ClassRule class_rule_of(const JsonValue& object, const std::string& where, const
     return rule;
 }
 
-class Judge {
+class RuleChecker {
 public:
-    Judge(const AnnotationSet& set, const Vocabulary* vocabulary, const std::vector<RelationFact>& relations, std::string where)
+    RuleChecker(const AnnotationSet& set, const Vocabulary* vocabulary, const std::vector<RelationFact>& relations,
+                std::string where)
         : set_(set), relations_(relations), where_(std::move(where)) {
         if (vocabulary != nullptr) search_.emplace(*vocabulary);
         for (const Annotation& annotation : set.annotations)
@@ -311,9 +312,9 @@ ClassRules read_class_rules(const Path& file) { return class_rules_from_json(rea
 
 std::vector<BrokenRule> check_class_rules(const AnnotationSet& set, const ClassRules& rules, const Vocabulary* vocabulary,
                                           const std::vector<RelationFact>& relations, const std::string& where) {
-    Judge judge(set, vocabulary, relations, where);
-    for (std::size_t i = 0; i < rules.rules.size(); ++i) judge.look_at(rules.rules[i], "/rules/" + to_string(i));
-    return std::move(judge.broken);
+    RuleChecker checker(set, vocabulary, relations, where);
+    for (std::size_t i = 0; i < rules.rules.size(); ++i) checker.look_at(rules.rules[i], "/rules/" + to_string(i));
+    return std::move(checker.broken);
 }
 
 }  // namespace ostraka

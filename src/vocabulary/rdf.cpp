@@ -16,7 +16,7 @@ namespace ostraka {
 
 namespace {
 
-struct Free {
+struct RaptorDeleter {
     void operator()(raptor_world* world) const { raptor_free_world(world); }
     void operator()(raptor_parser* parser) const { raptor_free_parser(parser); }
     void operator()(raptor_serializer* serializer) const { raptor_free_serializer(serializer); }
@@ -24,7 +24,7 @@ struct Free {
     void operator()(raptor_statement* statement) const { raptor_free_statement(statement); }
 };
 template <class T>
-using Owned = std::unique_ptr<T, Free>;
+using Owned = std::unique_ptr<T, RaptorDeleter>;
 
 /// Raptor and the XML library under it have global state.
 std::mutex& library_mutex() {
