@@ -1,4 +1,4 @@
-// Two halves of a bottle, and neighbours among scanned sherds, laid together by their breaks.
+// Two halves of a bottle, and neighbours among scanned sherds, fitted together by their breaks.
 #include "breaks.h"
 #include "experiments.h"
 #include "report.h"

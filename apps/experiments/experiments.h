@@ -143,7 +143,7 @@ struct PoseSearchExperiment {
 };
 void pose_search(const PoseSearchExperiment& options);
 
-/// Fragments laid together by their breaks.
+/// Fragments fitted together by their breaks.
 struct BreakExperiment {
     std::string output = "experiments-output/breaks";
     std::string data = "../shared/data";  ///< folder with fragments-bottle-pair and fragments-vessel-sherds

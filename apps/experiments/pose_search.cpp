@@ -83,7 +83,7 @@ struct Count {
     double seconds = 0;
 };
 
-/// The pieces of one case, laid onto its whole.
+/// The pieces of one case, registered to its whole.
 class CaseTrial {
 public:
     CaseTrial(const Case& one, const PoseSearchExperiment& options, std::ostream& csv)

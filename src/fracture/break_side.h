@@ -1,4 +1,4 @@
-// What is asked of a fragment when its break is laid against another one.
+// What is asked of a fragment when its break is matched with another one.
 #pragma once
 
 #include "ostraka/fracture/fragment.h"

@@ -79,7 +79,7 @@ Candidate box_across(const Vector3d& normal, const std::vector<Vector3d>& points
     });
     Candidate best;
     best.normal = normal;
-    // Flat objects have boxes of no volume: a trace of the sides' sum tells them apart.
+    // Flat objects have boxes of no volume: a trace of the sides' sum distinguishes them.
     const auto cost_of = [&](const Extent& e) {
         const double thickness = high - low, x = e.x1 - e.x0, y = e.y1 - e.y0, sum = thickness + x + y;
         return thickness * x * y + 1e-9 * sum * sum * sum;

@@ -80,7 +80,7 @@ struct Fit final : Operation {
         Reconstructor reconstructor(mesh, *known->annotations, graph, options, prior ? &*prior : nullptr,
                                     cage ? &*cage : nullptr);
         for (std::size_t k = 0; k < fragments.size(); ++k) reconstructor.add(*fragments[k], std::move(stated[k]));
-        // No fragment stands where a result will be written: told before the work.
+        // No fragment stands where a result will be written: reported before the work.
         for (const char* name : {"fit.assembly.json", searches_file, "completed.ply", "completed.ant.json"})
             static_cast<void>(output.in(name));
         for (const std::string& name : names.fragments) static_cast<void>(output.in(name + ".placed.ply"));

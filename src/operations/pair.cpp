@@ -1,4 +1,4 @@
-// pair: two fragments laid together by the break they share.
+// pair: two fragments fitted together by the break they share.
 #include "operations.h"
 
 #include "ostraka/fracture/break_pair.h"

@@ -10,7 +10,7 @@
 
 namespace ostraka {
 
-/// What is told of a cut object.
+/// What is reported of a cut object.
 struct SliceFindings {
     const CutObject& cut;
     std::string unit;

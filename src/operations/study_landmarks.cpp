@@ -1,4 +1,4 @@
-// study landmarks: shapes of landmarks laid over each other, their mean and how they vary.
+// study landmarks: shapes of landmarks superimposed, their mean and how they vary.
 #include "study.h"
 
 #include "ostraka/collection/landmark_shapes.h"

@@ -59,7 +59,7 @@ struct StudyOfTechnique final : Operation {
         if (study.learned) report_learned(report, study);
         else report_divided(report, study, known);
         report_answers(report, study);
-        // Whether they can be told apart is the question, and without known answers whether there are two groups at all.
+        // Whether they can be distinguished is the question, and without known answers whether there are two groups at all.
         if (!study.separated) report.answer_no();
     }
 
@@ -110,7 +110,7 @@ struct StudyOfTechnique final : Operation {
         row("descriptors", std::move(descriptors))("words", each.words);
     }
 
-    /// What was learned from the labels: the scores, and whether the answering classifier tells them apart.
+    /// What was learned from the labels: the scores, and whether the answering classifier distinguishes them.
     static void report_learned(Report& report, const TechniqueStudy& study) {
         report.line("F1 of " + printable(study.positive) +
                     " when left out: means over the repeats of the cross-validation; from, to: 95 % over objects drawn anew");

@@ -53,7 +53,7 @@ struct TemplateClassify final : Operation {
                 fail_input(files.file(i), "is a class of meshes, or of landmarks, and the first is not",
                            "ask them one after the other");
         }
-        // Those of one name are told apart by their files.
+        // Those of one name are distinguished by their files.
         for (std::size_t i = 0; i < classes.size(); ++i)
             if (std::count_if(known.begin(), known.end(), [&](const auto* k) { return k->learnt.name == classes[i].name; }) > 1)
                 classes[i].name += " (" + class_files[i] + ")";

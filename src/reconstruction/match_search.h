@@ -29,7 +29,7 @@ struct FragmentSample {
 /// Like is looked for among like: vertices in a matched annotation on the faces of its counterpart, all others on faces in none.
 class MatchSearch {
 public:
-    /// `mesh` is the template, whose unit is `scale` times that of the placed fragments: all that is asked and told is in the
+    /// `mesh` is the template, whose unit is `scale` times that of the placed fragments: all that is asked and answered is in the
     /// template's. Trees are those of the fragments, in their own coordinates, where they bring them along.
     /// `outlines`: correspondences are not only landmarks, but also the places along matched outlines and lines.
     MatchSearch(const Mesh& mesh, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments, double scale = 1,

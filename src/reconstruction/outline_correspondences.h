@@ -10,7 +10,7 @@
 
 namespace ostraka {
 
-/// Vertices joined by edges along which positions are told.
+/// Vertices joined by edges along which positions are given.
 struct VertexPath {
     std::vector<Index> vertices;
     bool closed = false;

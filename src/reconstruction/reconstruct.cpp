@@ -262,7 +262,7 @@ private:
     /// The place of a landmark on the template as it is now.
     [[nodiscard]] Eigen::Vector3d on_scaled(const LandmarkPair& pair) const { return eigen(scaled_.point(Vertex(pair.vertex))); }
 
-    /// The fragments stay the template's frame: the shape of the class comes to them, then they are laid onto it.
+    /// The fragments stay the template's frame: the shape of the class comes to them, then they are registered to it.
     void take_shape_of_class() {
         constexpr int rounds = 2;
         for (int round = 0; round < rounds; ++round) {

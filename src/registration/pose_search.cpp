@@ -227,7 +227,7 @@ struct PoseSearch::State {
         one.residual = on > 0 ? scale * std::sqrt(squares / static_cast<double>(on)) : 0;
     }
 
-    /// Laid onto the faces, if that is better.
+    /// Registered to the faces, if that is better.
     void settle(const Mesh& part, const std::vector<bool>& of_part, const SurfacePoints& judges, double tolerance,
                 PoseCandidate& one) const {
         PartAlignmentOptions how;
@@ -378,7 +378,7 @@ PoseSearchResult PoseSearch::find(const Mesh& part, const std::vector<bool>& of_
                    " faces");
     if (!(marked_area(part, of_part) > 0))
         fail_input("fragment", "has no area that could be laid onto a template", "look at its faces and facets");
-    // A part is no larger than its whole, and one that is next to nothing of it cannot be told from noise.
+    // A part is no larger than its whole, and one that is next to nothing of it cannot be distinguished from noise.
     constexpr double too_large = 1.8, too_small = 0.01;  // diagonals of boxes, which turn
     const double ratio = marked_diagonal(part, of_part) / s.whole.diagonal();
     if (ratio > too_large * max_scale || ratio < too_small * min_scale) {

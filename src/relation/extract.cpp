@@ -1,4 +1,4 @@
-// Candidates for the geometric relationships, each measured before it is told.
+// Candidates for the geometric relationships, each measured before it is reported.
 #include "meter.h"
 
 #include "ostraka/core/limits.h"

@@ -12,7 +12,7 @@ using Contacts = std::map<std::pair<int, int>, detail::Cloud>;
 
 namespace detail {
 
-/// Why a relationship cannot be told; not an error: other relationships can.
+/// Why a relationship cannot be determined; not an error: other relationships can.
 struct Unknown {
     std::string text;
 };

@@ -18,7 +18,7 @@ namespace ostraka::report {
 inline constexpr double text_size = 13, margin = 14;
 inline constexpr Rgb ink{30, 30, 30}, pale{222, 222, 222}, paper{255, 255, 255};
 
-/// Colours that colour-blind eyes tell apart too (Okabe and Ito), others after them.
+/// Colours that colour-blind eyes distinguish too (Okabe and Ito), others after them.
 Rgb series_colour(std::size_t index);
 /// The colour with paper mixed in: 0 is the colour, 1 is paper.
 Rgb lighter(const Rgb& colour, double share);
@@ -46,7 +46,7 @@ public:
     void rectangle(const Box& box, const Rgb& colour);
     void frame(const Box& box, const Rgb& colour, double width);
     void dot(double x, double y, const Rgb& colour, double radius = 3);
-    /// A mark told apart by its form: dot, square, triangle, rhomb, cross, ring ...
+    /// A mark distinguished by its form: dot, square, triangle, rhomb, cross, ring ...
     void mark(double x, double y, std::size_t form, const Rgb& colour);
 
     [[nodiscard]] double width_of(const std::string& words, double size = text_size);

@@ -1,4 +1,4 @@
-// Sherds as one mesh, and their axes laid onto their mean.
+// Sherds as one mesh, and their axes aligned with their mean.
 #pragma once
 
 #include "ostraka/revolution/surface_of_revolution.h"
@@ -13,8 +13,8 @@ struct JoinedSherds {
 
 JoinedSherds joined(const std::vector<const Fragment*>& sherds, const std::vector<Motion>& motions);
 
-/// Each sherd's own axis is laid onto the mean of all: sherds put together by hand stand off each other by their joints. Fills in
-/// axis, sherds and notes of the template. The motions, one a sherd.
+/// Each sherd's own axis is aligned with the mean of all: sherds put together by hand stand off each other by their joints. Fills
+/// in axis, sherds and notes of the template. The motions, one a sherd.
 std::vector<Motion> common_axis(const std::vector<const Fragment*>& sherds, const RevolutionOptions& options,
                                 RevolutionTemplate& result);
 

@@ -309,7 +309,7 @@ std::vector<Crease> find_creases(const Mesh& mesh, const CreaseOptions& options)
 }
 
 namespace {
-/// Ridges are warm and hollows cold; those next in number are told apart by tone, six of each.
+/// Ridges are warm and hollows cold; those next in number are distinguished by tone, six of each.
 std::array<int, 3> shade(bool ridge, int number) {
     static constexpr std::array<std::array<int, 3>, 6> warm{
         {{213, 94, 0}, {230, 159, 0}, {153, 27, 30}, {240, 120, 110}, {120, 70, 20}, {250, 200, 90}}};

@@ -64,7 +64,7 @@ std::vector<StatuetteParameters> draw_population(const PopulationOptions& option
         one.sway = std::min(draw.around(medians.sway, level.spread), 0.2);
         one.wall_noise = std::min(draw.around(medians.wall_noise, level.spread), 0.25);
         one.off_centre = std::min(draw.around(medians.off_centre, level.spread), 0.4);
-        // What does not tell the techniques apart by itself: all thrown bodies are hollow, half of the others as well.
+        // What does not distinguish the techniques by itself: all thrown bodies are hollow, half of the others as well.
         const double hollow = draw.share(), wall = draw.around(5, 0.1), grooves = draw.share();
         one.wall = wheel || hollow < 0.5 ? wall : 0;
         one.grooves = wheel ? 0.25 * grooves : 0;

@@ -129,7 +129,7 @@ TEST(BreakPair, WhatCannotBeLaidTogetherIsSaid) {
     PairOptions options;
     options.search_radius = 2;
     EXPECT_THROW(pair_breaks(a, a, options), Error);
-    // Far too small to touch a share of the other's break: cannot be told.
+    // Far too small to touch a share of the other's break: cannot be determined.
     options = quick();
     options.min_contact = 1;
     Motion smaller;

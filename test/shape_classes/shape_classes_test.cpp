@@ -190,7 +190,7 @@ TEST(Classify, SaysWhenItCannotDecide) {
     EXPECT_NE(same.notes.back().find("one shape"), std::string::npos) << same.notes.back();
     EXPECT_EQ(ask_class(same, known.known(), member_of(known, "x", 1, 0.9, 1)).verdict, Membership::member);
     EXPECT_EQ(ask_class(same, known.known(), member_of(known, "x", 1, 1.8, 1)).verdict, Membership::other);
-    // Two classes that say the same cannot be told apart.
+    // Two classes that say the same cannot be distinguished.
     const ShapeClass learnt = class_of(known, usual(known));
     const ClassAnswer yes = ask_class(learnt, known.known(), member_of(known, "x", 1, 1, 1));
     const Classification both = decide("x", {yes, yes});

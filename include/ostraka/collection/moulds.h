@@ -63,7 +63,7 @@ struct PreparedCollection {
     std::vector<std::size_t> objects;  ///< of the collection, those that could be made ready
     std::vector<std::string> names, checksums;
     std::vector<PreparedHead> heads;
-    std::vector<ObjectResult> results;  ///< of all objects; those that could not are told by their problem
+    std::vector<ObjectResult> results;  ///< of all objects; those that could not are reported with their problem
     CompareOptions options;             ///< with the size that was used
 };
 

@@ -27,7 +27,7 @@ struct Proposals {
 /// larger one, between the quantiles of the ratio that were observed. The part that changes is the annotation of the smaller
 /// measure, the reference that of the larger one. Measures that the template's annotations do not carry yet are taken and added.
 /// What has no annotation of its own (the whole object, descriptors, two measures of one annotation), or cannot be taken on the
-/// template, is told in the notes. `existing` may be empty; constraints that stand there already are not repeated.
+/// template, is reported in the notes. `existing` may be empty; constraints that stand there already are not repeated.
 Proposals propose_proportions(const Mesh& mesh, const AnnotationSet& set, RelationGraph existing,
                               const MeasureDefinitions& definitions, const ProportionStudy& study,
                               const ProposalOptions& options = {});

@@ -50,9 +50,10 @@ struct RatioRow {
     double low = 0, high = 0;  ///< quantiles that span the share `range` of the ratios
     double p_pairing = 1;      ///< that the one measure of an object is paired with the other of any
     double p_others = 1;  ///< that the ratio is as variable as those of any two measures, deviations from the size dealt out anew
-    std::optional<double> p_size;  ///< that nothing but the common size binds them; none where it was not asked or cannot be told
-    double q = 1, q_pairing = 1;   ///< corrected for the number of ratios: of the larger of p_others and p_size, and of p_pairing
-    double q_others = 1;           ///< the same of p_others
+    std::optional<double>
+        p_size;  ///< that nothing but the common size binds them; none where it was not asked or cannot be determined
+    double q = 1, q_pairing = 1;  ///< corrected for the number of ratios: of the larger of p_others and p_size, and of p_pairing
+    double q_others = 1;          ///< the same of p_others
     Fixedness fixedness = Fixedness::unknown;
 };
 

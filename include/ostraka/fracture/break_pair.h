@@ -1,4 +1,4 @@
-// Two fragments that share a break, laid together by it.
+// Two fragments that share a break, fitted together by it.
 #pragma once
 
 #include "ostraka/core/json.h"
@@ -19,8 +19,8 @@ struct PairOptions {
     double last_search_radius = 0.025;  ///< at the end
     double edges = 1;                   ///< weight of the rims against the fracture surfaces
     double min_contact = 0.1;           ///< of the smaller fracture that must be in contact
-    double min_confidence = 0.5;        ///< below it cannot be told how the fragments go together
-    int candidates = 5;                 ///< told
+    double min_confidence = 0.5;        ///< below it cannot be determined how the fragments go together
+    int candidates = 5;                 ///< reported
 
     void describe(OptionList& visit);
 };
@@ -40,7 +40,7 @@ struct PairCandidate {
 struct BreakPair {
     std::vector<PairCandidate> candidates;  ///< best first, each of another place
     double confidence = 0;                  ///< 0 to 1: contact of the best, and how far it is ahead of the next
-    std::string undecided;                  ///< why it cannot be told, in words; empty: the first candidate is the answer
+    std::string undecided;                  ///< why it cannot be determined, in words; empty: the first candidate is the answer
     double fracture_a = 0, fracture_b = 0;  ///< areas
     double size = 0;                        ///< square root of the area of the smaller fragment
     std::size_t tried = 0;                  ///< poses
@@ -48,9 +48,9 @@ struct BreakPair {
 };
 
 /// Along the rims of the fractures stand frames: the normal of the outer (or inner) surface, that of the fracture, and the rim.
-/// Each frame of the second fragment laid onto each of the first with the same side, fractures facing each other, is a pose; all
-/// are scored by the fracture that comes into contact and by what would lie inside the other fragment. The best are refined by
-/// closest points, point to plane, between fractures that face each other, and between rims, whose sides continue each other;
+/// Each frame of the second fragment aligned with each of the first with the same side, fractures facing each other, is a pose;
+/// all are scored by the fracture that comes into contact and by what would lie inside the other fragment. The best are refined
+/// by closest points, point to plane, between fractures that face each other, and between rims, whose sides continue each other;
 /// the search radius falls to its last value. Facets must be known (facets.h, or annotations). No chance is involved, and places
 /// and poses of the fragments do not matter. Throws Error (input) for a fragment without fracture, or without a rim.
 BreakPair pair_breaks(const Fragment& a, const Fragment& b, const PairOptions& options = {});

@@ -1,4 +1,4 @@
-// Outer, inner and fracture surface of a fragment told apart from its shape.
+// Outer, inner and fracture surface of a fragment classified by its shape.
 #pragma once
 
 #include "ostraka/core/options.h"
@@ -42,8 +42,8 @@ struct Facets {
 /// along all normals. Labels minimise what faces show plus the length of their boundaries, which cost little along
 /// sharp convex edges (alpha expansion; Boykov, Veksler and Zabih 2001). Solids, and open meshes: patches are merged as long as
 /// the surface does not turn sharply outward, on average, over the boundary of two; of what remains, parts that lie over a plane
-/// but not smoothly (quadric) are fractures, never the largest one. A clean cut is not told from a made end. Throws Error (input)
-/// for a mesh without area.
+/// but not smoothly (quadric) are fractures, never the largest one. A clean cut is not distinguished from a formed end. Throws
+/// Error (input) for a mesh without area.
 Facets find_facets(const Mesh& mesh, const FacetOptions& options = {});
 
 }  // namespace ostraka

@@ -42,7 +42,7 @@ public:
     std::vector<std::function<void()>> checks;  ///< of single options; run before Operation::check, and throw as it does
 
     /// Names, in the order in which the command line gives them, where that is not the order of the declarations; several where
-    /// there are several ways, told apart by how many there are. A name that may repeat takes what is left.
+    /// there are several ways, distinguished by how many there are. A name that may repeat takes what is left.
     std::vector<std::vector<std::string>> orders;
     void order(std::vector<std::string> names) { orders.push_back(std::move(names)); }
 

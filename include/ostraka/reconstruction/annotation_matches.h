@@ -33,7 +33,7 @@ struct StatedMatch {
 };
 
 /// Annotations of the same type and tag are candidates. Where several have a tag (two eyes), attributes, the tags of what
-/// contains them, and the place and extent under the pose of the fragment tell them apart; each template annotation is given to
+/// contains them, and the place and extent under the pose of the fragment distinguish them; each template annotation is given to
 /// one of the fragment at most, with the largest sum of scores. A part of a part (half an eye) may be smaller, not larger.
 /// `scaled` is the template at the scale and place of the pose's goal. Throws Error (input) for stated ids that are not there.
 std::vector<AnnotationMatch> match_annotations(const Mesh& scaled, const AnnotationSet& of_template, const Mesh& fragment,

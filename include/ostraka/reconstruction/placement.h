@@ -1,5 +1,5 @@
-// Fragments laid onto a template by landmarks that both have (thesis, section 5.3.1, step 3, with its erratum): one scale, on the
-// template, for all fragments together; each fragment moves rigidly.
+// Fragments registered to a template by landmarks that both have (thesis, section 5.3.1, step 3, with its erratum): one scale, on
+// the template, for all fragments together; each fragment moves rigidly.
 #pragma once
 
 #include "ostraka/annotation/annotation.h"

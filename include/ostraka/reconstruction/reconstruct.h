@@ -44,7 +44,7 @@ struct Objection {
     ObjectionKind kind = ObjectionKind::placement;
     int fragment = -1;    ///< -1: none by itself
     int constraint = -1;  ///< id of a relationship of the graph; -1: geometry
-    double strain = 0;    ///< how far off, in times of what is allowed; 0: cannot be told
+    double strain = 0;    ///< how far off, in times of what is allowed; 0: cannot be determined
     std::string text;
 };
 
@@ -112,7 +112,7 @@ private:
 };
 
 /// With a `prior`, the template takes the most probable shape of its class before it is deformed freely, and the fragments are
-/// laid onto that shape anew, in two rounds: what is not observed is then as in the class's members that look so where it is.
+/// registered to that shape anew, in two rounds: what is not observed is then as in the class's members that look so where it is.
 ///
 /// A proportion changes the part of the two that was observed less, whichever the graph names first.
 ///

@@ -45,7 +45,7 @@ struct PriorFit {
 /// spread over the fragments (about 3000, like among like as in `fit_template`), and a linear least squares problem for a
 /// rotation, translation and scale of the shape and the coefficients, point to plane with Tukey's biweight, with the landmarks
 /// and the coefficients' Mahalanobis distance, against which the residuals count as the independent places that they show. Starts
-/// at the mean laid onto `scaled`. Throws Error as ShapePrior::check.
+/// at the mean registered to `scaled`. Throws Error as ShapePrior::check.
 PriorFit fit_prior(const Mesh& scaled, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments,
                    const ShapePrior& prior, const PriorOptions& options = {});
 

@@ -1,4 +1,4 @@
-// One surface laid onto another, and how far they are apart then.
+// One surface registered to another, and how far they are apart then.
 #pragma once
 
 #include "ostraka/core/mesh.h"
@@ -52,7 +52,7 @@ struct Alignment {
 Alignment align(const AlignSurface& a, const AlignSurface& b, const std::vector<Motion>& starts,
                 const AlignOptions& options = {});
 
-/// The principal axes of one laid onto those of the other, in the four ways that are rotations.
+/// The principal axes of one aligned with those of the other, in the four ways that are rotations.
 std::vector<Motion> principal_starts(const AlignSurface& a, const AlignSurface& b);
 
 }  // namespace ostraka

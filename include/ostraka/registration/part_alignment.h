@@ -1,4 +1,4 @@
-// A part of a surface laid onto the whole: iterative closest points, one way.
+// A part of a surface registered to the whole: iterative closest points, one way.
 #pragma once
 
 #include "ostraka/core/options.h"
@@ -14,7 +14,7 @@ struct PartAlignmentOptions {
     double search_radius = 0.1;  ///< farthest pair, as a share of the whole's diagonal
     double angle = 60;           ///< pairs whose normals differ by more are none, degrees
     double anchors = 1;          ///< weight of all anchors together against that of all pairs
-    int samples = 3000;          ///< points of the part that are laid onto the whole, evenly spread
+    int samples = 3000;          ///< points of the part that are registered to the whole, evenly spread
     int iterations = 60;
 
     void describe(OptionList& visit);

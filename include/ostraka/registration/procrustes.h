@@ -1,4 +1,4 @@
-// Configurations of landmarks laid over each other (Procrustes analysis; Gower 1975, Dryden and Mardia 2016).
+// Configurations of landmarks superimposed (Procrustes analysis; Gower 1975, Dryden and Mardia 2016).
 #pragma once
 
 #include "ostraka/core/options.h"

@@ -22,7 +22,7 @@ std::string to_string(Verdict verdict);
 struct RelationCheck {
     Verdict verdict = Verdict::unknown;
     RelationParameters parameters;  ///< as measured on this mesh, with the tolerances that were asked for
-    std::string text;               ///< why it fails or cannot be told
+    std::string text;               ///< why it fails or cannot be determined
 };
 
 /// Checks each relationship of `graph`, in its order. Unknown are constraints, types that only experts can tell, and types whose

@@ -23,7 +23,7 @@ ColourScale scale_of(const std::vector<const std::vector<double>*>& values, cons
 /// The colour of a value; a neutral grey for values that are not numbers.
 Rgb colour_of(const ColourScale& scale, double value);
 
-/// Colours for things without an order, told apart easily: the hue turns by the golden angle from one index to the next.
+/// Colours for things without an order, easily distinguished: the hue turns by the golden angle from one index to the next.
 Rgb category_colour(std::size_t index);
 
 /// The largest of 1, 2 and 5 times a power of ten that is not above `length`; 0 unless length is positive and finite.

@@ -42,8 +42,8 @@ struct SegmentOptions {
 };
 
 /// Parts of like thickness (Shapira, Shamir and Cohen-Or 2008, as CGAL implements it): the values of `thickness`, one a face, are
-/// smoothed over faces, told apart by a mixture of Gaussians and cut where the surface is hollow (graph cut); connected faces of
-/// one level are a segment. Returns the number of each face's segment, 0 for the largest by area. Throws Error (input) where
+/// smoothed over faces, distinguished by a mixture of Gaussians and cut where the surface is hollow (graph cut); connected faces
+/// of one level are a segment. Returns the number of each face's segment, 0 for the largest by area. Throws Error (input) where
 /// there is no face, and Error (usage) for options out of range or values that are not one a face.
 std::vector<Index> segment(const Mesh& mesh, const std::vector<double>& thickness, const SegmentOptions& options = {});
 

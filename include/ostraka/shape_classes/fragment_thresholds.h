@@ -1,4 +1,4 @@
-// What a class's members say of the thresholds by which fragments of one object are told from those of others.
+// What a class's members say of the thresholds by which fragments of one object are distinguished from those of others.
 #pragma once
 
 #include "ostraka/reconstruction/reconstruct.h"
@@ -10,10 +10,9 @@ namespace ostraka {
 
 /// As residuals of kind `geometry`, none where it cannot be measured:
 /// "residual": of pieces of a member, each a landmark of the template and those nearest to it (a quarter of them, four at least),
-/// laid on by turn and shift at the scale that all of its landmarks have: root mean square over spread, of the worst piece;
-/// "scale-tolerance": how much the scale of one piece differs from that of its other landmarks, per cent, of the worst piece;
-/// "slack": the farthest that a constraint in per cent is off.
-/// The first two need eight landmarks.
+/// registered by rotation and translation at the scale that all of its landmarks have: root mean square over spread, of the worst
+/// piece; "scale-tolerance": how much the scale of one piece differs from that of its other landmarks, per cent, of the worst
+/// piece; "slack": the farthest that a constraint in per cent is off. The first two need eight landmarks.
 std::vector<ClassQuantity> fragment_quantities(const ClassTemplate& known, const std::vector<Point>& points,
                                                const std::vector<ClassQuantity>& quantities);
 
@@ -30,8 +29,8 @@ std::vector<FragmentThreshold> fragment_thresholds(const ShapeClass& learnt);
 struct UsedThreshold : FragmentThreshold {
     std::string from;  ///< "class", "told" or "default"
 };
-/// What the class's members show takes the place of the defaults in `options`, not of what was told (`told` says of which
-/// options). What scans and measuring leave is not seen on members: a constraint may always be off by the default. Returns
+/// What the class's members show takes the place of the defaults in `options`, not of what was specified (`specified` says of
+/// which options). What scans and measuring leave is not seen on members: a constraint may always be off by the default. Returns
 /// "residual", "scale-tolerance" and "slack" as they are then; without a class none of them changes.
 std::vector<UsedThreshold> take_thresholds(ReconstructOptions& options, const ShapeClass* learnt,
                                            const std::function<bool(const std::string&)>& specified);

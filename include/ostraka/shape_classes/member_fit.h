@@ -1,4 +1,4 @@
-// A template laid onto a whole object of its class: correspondence of vertices, and how far the two are apart.
+// A template registered to a whole object of its class: correspondence of vertices, and how far the two are apart.
 #pragma once
 
 #include "ostraka/core/options.h"

@@ -8,7 +8,7 @@
 
 namespace ostraka {
 
-/// In the order in which reasons are told.
+/// In the order in which reasons are reported.
 enum class QuantityKind { proportion, constraint, relation, part, attribute, geometry };
 std::string to_string(QuantityKind kind);
 /// Throws Error (usage) for another word.

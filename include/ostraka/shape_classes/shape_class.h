@@ -57,7 +57,7 @@ struct ShapeClass {
     static constexpr std::size_t min_members = 3;
 };
 
-/// Whether the template is laid onto `member` as it is or by a fit.
+/// Whether the template is registered to `member` as it is or by a fit.
 MemberFit fit_by_method(const ClassTemplate& known, const WholeObject& member, CorrespondenceChoice correspondence,
                         const MemberFitOptions& options);
 
@@ -68,11 +68,11 @@ struct LearntMember {
     std::vector<ClassQuantity> fragments;   ///< of pieces of it (fragment_quantities)
 };
 /// The fit of one member and all that is measured of it alone. `whole` spares measuring the surface anew where many templates are
-/// laid onto one object.
+/// registered to one object.
 LearntMember learn_member(const ClassTemplate& known, const WholeObject& member, const LearnOptions& options = {},
                           const WholeShape* whole = nullptr);
 
-/// What is measured of a member that the template was laid onto already: with its own annotations, where it has regions, and
+/// What is measured of a member that the template was registered to already: with its own annotations, where it has regions, and
 /// those of the template.
 LearntMember measure_member(const ClassTemplate& known, const WholeObject& member, MemberFit fit,
                             const LearnOptions& options = {}, const WholeShape* whole = nullptr);
@@ -83,7 +83,7 @@ ShapeClass learn_class(const ClassTemplate& known, const std::vector<LearntMembe
 /// Sets of each range whether it decides, its share of `reject`, and what is accepted: the prediction interval (`predict`) of
 /// its values or their logarithms, one-sided for residuals. The rate is shared by the kinds of quantities that there are, and by
 /// the quantities of each kind (Bonferroni), so that it holds however they depend on each other. Of single parts nothing decides,
-/// only of all together. Attributes get bounds as if they were a kind, which comes on top where they are told to decide.
+/// only of all together. Attributes get bounds as if they were a kind, which comes on top where they are specified to decide.
 void learn_thresholds(ShapeClass& learnt);
 
 /// The same for classes that are asked together: what a quantity of geometry or of parts together varies by is moderated by how
@@ -105,7 +105,7 @@ std::vector<PartsTogether> parts_together(const std::vector<LearntRange>& ranges
 std::vector<std::optional<double>> expected_parts(const std::vector<LearntRange>& ranges,
                                                   std::optional<std::size_t> without = {});
 
-/// Mean distance between all pairs of shapes in correspondence, each laid onto the mean of the class, as a share of its mean
+/// Mean distance between all pairs of shapes in correspondence, each registered to the mean of the class, as a share of its mean
 /// size.
 double mean_distance(const ShapeModes& modes, const std::vector<Landmarks>& shapes);
 

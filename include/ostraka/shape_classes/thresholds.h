@@ -24,7 +24,7 @@ struct PredictionInterval {
 /// Where one more value of the same normal distribution lies but for the share `reject` of cases (both sides together; with
 /// `one_sided` all of it above): mean +- t s sqrt(1 + 1/n), t the quantile of Student's distribution with the variance's degrees
 /// of freedom (e.g. Hahn and Meeker 1991, section 4.7). `resolution` is a standard deviation that is added to s: what values
-/// cannot be told apart by. Throws Error (usage) unless 0 < reject < 1, count > 0 and freedom > 0.
+/// cannot be distinguished by. Throws Error (usage) unless 0 < reject < 1, count > 0 and freedom > 0.
 PredictionInterval predict(const SampleMoments& known, bool one_sided, double reject, double resolution = 0);
 
 /// How variances of the same quantity are spread over classes: a scaled inverse chi-squared distribution.
