@@ -3,6 +3,7 @@
 #include "semantics.h"
 
 #include "ostraka/axis/axis.h"
+#include "ostraka/core/dense.h"
 #include "ostraka/core/error.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/surface_search.h"
@@ -79,7 +80,7 @@ Index reference_vertex(const std::vector<Point>& points, const std::vector<Index
     const Eigen::Vector3d mean = mean_of(points, vertices);
     Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
     for (const Index v : vertices) spread += (eigen(points[v]) - mean) * (eigen(points[v]) - mean).transpose();
-    const Eigen::Vector3d normal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0);
+    const Eigen::Vector3d normal = SymmetricEigen3(spread).eigenvectors().col(0);
     const auto off = [&](Index v) { return normal.cross(eigen(points[v]) - mean).squaredNorm(); };
     return *std::min_element(vertices.begin(), vertices.end(), [&](Index v, Index w) { return off(v) < off(w); });
 }
