@@ -1,8 +1,5 @@
 #include "ostraka/core/dense.h"
 
-// What the decompositions leave unset for numbers that are not finite is not read.
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
-
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>

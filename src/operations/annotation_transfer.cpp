@@ -106,10 +106,10 @@ struct AnnotationTransfer final : Operation {
         for (const TransferScore& score : scores) {
             Report::Row row = report.row(table);
             row("id", score.id)("tag", score.tag)("sourceType", to_string(score.source_type))(
-                "targetType", to_string(score.target_type))("outcome", score.outcome);
+                "targetType", to_string(score.target_type))("outcome", to_string(score.outcome));
             if (!score.note.empty()) row("note", score.note);
             const Distortions d = distortions(score);
-            const bool kept = score.outcome == "kept", region = score.source_type == AnnotationType::region,
+            const bool kept = score.outcome == TransferOutcome::kept, region = score.source_type == AnnotationType::region,
                        both = region && score.target_type == AnnotationType::region;
             if (region) {
                 row("sourceArea", score.source_area)("targetArea", score.target_area)("sourcePerimeter", score.source_length)(

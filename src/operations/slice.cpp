@@ -140,8 +140,7 @@ struct SliceObject final : Operation {
         if (range.size() != 2 || !(range[0] < range[1]))
             fail_usage("--range is '" + listed(range) + "'", "give two shares of the height, the lower one first, like 0,0.4");
         if (!plane.empty()) static_cast<void>(frame_of_plane());
-        if (!up.empty()) static_cast<void>(direction_of(up, "--up"));
-        if (direction != "up" && !is_by_axis()) static_cast<void>(asked_direction());
+        if (direction != "up" && !own_axis()) static_cast<void>(asked_direction());
     }
 
     static std::string listed(const std::vector<double>& numbers) {
@@ -150,8 +149,10 @@ struct SliceObject final : Operation {
         return text;
     }
 
-    [[nodiscard]] bool is_by_axis() const {
-        return direction == "principal" || direction == "rotation" || direction == "skeleton";
+    [[nodiscard]] std::optional<AxisMethod> own_axis() const {
+        for (const AxisMethod method : {AxisMethod::principal, AxisMethod::rotation, AxisMethod::skeleton})
+            if (direction == to_string(method)) return method;
+        return std::nullopt;
     }
 
     [[nodiscard]] std::array<double, 3> asked_direction() const {
@@ -204,9 +205,8 @@ struct SliceObject final : Operation {
             CutOptions options;
             options.up = upwards;
             options.places = {heights, spacing, count.value_or(50), range[0], range[1]};
-            if (is_by_axis()) {
-                options.direction = direction;
-            } else if (direction != "up") {
+            options.direction = own_axis();
+            if (!options.direction && direction != "up") {
                 const auto along = asked_direction();
                 options.up = {along[0], along[1], along[2]};
             }

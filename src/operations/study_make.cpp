@@ -130,7 +130,7 @@ struct StudyMakeTechnique final : StudyMakeStatuettes {
         std::vector<std::vector<std::string>> rows(list.size());
         make_each("statuettes", list.size(), [&](std::size_t i) {
             const std::string name = name_of(i, list.size());
-            rows[i] = {name, list[i].technique};
+            rows[i] = {name, option_text(list[i], "technique")};
             for (const auto& [key, value] : list_options(list[i]))
                 if (key != "technique") rows[i].push_back(value);
             make_one(name, list[i], command, true, [&](const Statuette& made) {
@@ -146,8 +146,8 @@ struct StudyMakeTechnique final : StudyMakeStatuettes {
         for (const auto& row : rows) truth += csv_row(row);
         write_file(folder.in("truth.csv"), truth);
 
-        const auto wheel = static_cast<std::size_t>(
-            std::count_if(list.begin(), list.end(), [](const auto& one) { return one.technique == StatuetteParameters::Technique::wheel; }));
+        const auto wheel = static_cast<std::size_t>(std::count_if(
+            list.begin(), list.end(), [](const auto& one) { return one.technique == StatuetteParameters::Technique::wheel; }));
         report("folder", folder.path().string())("objects", list.size())("wheel", wheel)("hand", list.size() - wheel);
         report.line(std::to_string(list.size()) + " statuettes of level " + std::to_string(options.level) + ", " +
                     std::to_string(wheel) + " wheel-made and " + std::to_string(list.size() - wheel) +

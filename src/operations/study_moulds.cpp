@@ -185,9 +185,9 @@ struct StudyMoulds final : Operation {
             for (const char* method : {"linkage", "dbscan", "embedding"}) {
                 for (const char* epsilon : {"0.1", "knn", "volume", "knee", "silhouette", "nested"}) {
                     GroupOptions options = group;
-                    options.method = method;
+                    set_option(options, "method", method);
                     options.epsilon = epsilon;
-                    if (options.epsilon == "volume" && options.method != "embedding") continue;
+                    if (options.epsilon == "volume" && options.method != GroupOptions::Method::embedding) continue;
                     const MouldGroups found = group_heads(distances, options);
                     const int count = *std::max_element(found.labels.begin(), found.labels.end()) + 1;
                     std::vector<TableCell> cells{each,
@@ -224,11 +224,12 @@ struct StudyMoulds final : Operation {
         write_plot(files.plot("distances"), map);
 
         Dendrogram tree;
-        tree.title = group.method == "linkage" ? "Average linkage of the distances" : "Single linkage, which DBSCAN goes by";
+        tree.title = group.method == GroupOptions::Method::linkage ? "Average linkage of the distances"
+                                                                   : "Single linkage, which DBSCAN goes by";
         tree.tree = study.groups.tree;
         tree.names = names;
         tree.groups = study.groups.labels;
-        if (group.method != "embedding") {  // whose epsilon is no distance of this tree
+        if (group.method != GroupOptions::Method::embedding) {  // whose epsilon is no distance of this tree
             tree.cut = study.groups.epsilon;
             tree.cut_label = "epsilon " + significant(study.groups.epsilon, 3);
         }

@@ -54,8 +54,8 @@ struct StudySegments final : Operation {
         for (const ClusterCount::Row& row : segments.count.rows)
             report.row("curve")("clusters", row.clusters)("cost", row.cost)("silhouette", row.silhouette)("gap", row.gap)(
                 "gapError", row.gap_error);
-        report.line(std::to_string(segments.count.proposed) + " clusters proposed by " + options.count.criterion + ", " +
-                    std::to_string(segments.clusters) + " used\n");
+        report.line(std::to_string(segments.count.proposed) + " clusters proposed by " + option_text(options.count, "criterion") +
+                    ", " + std::to_string(segments.clusters) + " used\n");
         for (std::size_t i = 0; i < segments.segments.size(); ++i) {
             const SliceSegment& each = segments.segments[i];
             const Annotation* region = set.find(static_cast<int>(i));
@@ -99,7 +99,7 @@ struct StudySegments final : Operation {
 
     void draw(const SliceSegments& segments) const {
         Plot plot;
-        const bool gap = options.count.criterion == "gap";
+        const bool gap = options.count.criterion == ClusterCountOptions::Criterion::gap;
         plot.title = "Number of clusters: " + std::to_string(segments.count.proposed) + " proposed";
         plot.x = {"clusters"};
         plot.y = {gap ? "gap statistic" : "mean silhouette"};

@@ -393,7 +393,7 @@ Reconstructor::Reconstructor(const Mesh& mesh, const AnnotationSet& set, const R
                    "fit in mesh space, or without the class");
     if (prior != nullptr) prior->check(mesh.number_of_vertices());
     if (inside_out(mesh)) fail_input("template", "is inside out", "run: ostraka mesh repair");
-    prepared_ = std::make_unique<KnownObject>(mesh, set, graph, options, prior, cage);
+    known_ = std::make_unique<KnownObject>(mesh, set, graph, options, prior, cage);
 }
 Reconstructor::~Reconstructor() = default;
 Reconstructor::Reconstructor(Reconstructor&&) noexcept = default;
@@ -403,25 +403,25 @@ void Reconstructor::add(const Fragment& fragment, std::vector<StatedMatch> state
     KnownFragment known;
     known.fragment = &fragment;
     known.stated = std::move(stated);
-    known.pairs = common_landmarks(prepared_->mesh, prepared_->set, fragment.mesh, fragment.annotations, &known.notes);
+    known.pairs = common_landmarks(known_->mesh, known_->set, fragment.mesh, fragment.annotations, &known.notes);
     known.trees = std::make_shared<FragmentTrees>(fragment.mesh, fragment.facets);
-    prepared_->fragments.push_back(std::move(known));
+    known_->fragments.push_back(std::move(known));
 }
 
 void Reconstructor::remove(std::size_t position) {
     if (position >= size())
         fail_usage("there is no fragment at position " + std::to_string(position),
                    "give a position below " + std::to_string(size()));
-    prepared_->fragments.erase(prepared_->fragments.begin() + static_cast<std::ptrdiff_t>(position));
+    known_->fragments.erase(known_->fragments.begin() + static_cast<std::ptrdiff_t>(position));
 }
 
-std::size_t Reconstructor::size() const { return prepared_->fragments.size(); }
+std::size_t Reconstructor::size() const { return known_->fragments.size(); }
 
-PoseSearches& Reconstructor::searches() { return prepared_->searches; }
+PoseSearches& Reconstructor::searches() { return known_->searches; }
 
 Reconstruction Reconstructor::run() {
     if (size() == 0) fail_usage("there is no fragment", "give one or more");
-    return ReconstructionRun(*prepared_).run();
+    return ReconstructionRun(*known_).run();
 }
 
 Reconstruction reconstruct(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
