@@ -1,4 +1,4 @@
-// Annotations in the formats of others. doc/exchange.md says what each keeps and what it loses.
+// Annotations in the formats of others. doc/interchange.md says what each keeps and what it loses.
 #pragma once
 
 #include "ostraka/annotation/annotation_file.h"

@@ -1,4 +1,4 @@
-// Landmarks: named places with coordinates, as morphometry and picking tools keep them. doc/exchange.md says what each format
+// Landmarks: named places with coordinates, as morphometry and picking tools keep them. doc/interchange.md says what each format
 // holds.
 #pragma once
 
