@@ -55,7 +55,7 @@ SyntheticMesh dumbbell() {
     object.name = "dumbbell";
     object.parts = {"one", "other", "rod"};
     object.part_colours = {{9, 9, 9}, {99, 9, 9}, {9, 99, 9}};
-    Placement left, right;
+    SolidPose left, right;
     left.centre = {-50, 0, 0};
     right.centre = {50, 0, 0};
     object.members.push_back({make_ellipsoid(left, {20, 20, 20}), 0, false, {{1e9, 0}}});

@@ -168,7 +168,7 @@ TEST(Screen, APixelOfAPictureSelectsWhatIsSeenThere) {
             RenderOptions options;
             options.size = "360x300";
             options.view = view;
-            options.projection = perspective ? "perspective" : "orthographic";
+            options.projection = perspective ? RenderOptions::Projection::perspective : RenderOptions::Projection::orthographic;
             options.samples = 1;
             const Rendering rendering = render({scene}, options);
             const PictureCamera drawn_by = rendering.panes[0].camera, camera = camera_of(mesh, view, perspective, 360, 300);
