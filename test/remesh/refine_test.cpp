@@ -180,8 +180,8 @@ TEST(Refine, WrongRequests) {
     Mesh mesh = build_mesh(octahedron_sphere(2));
     const auto kind_of = [&](auto change) {
         RefineOptions options;
-        change(options);
         try {
+            change(options);
             Mesh copy = mesh;
             refine(copy, options);
         } catch (const Error& error) {
