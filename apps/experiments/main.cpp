@@ -154,7 +154,7 @@ void declare_class_membership(CLI::App& command, ClassMembershipOptions& options
     command.add_option("--vertices", options.template_vertices, "of the templates")->capture_default_str();
     command.add_option("--object-vertices", options.object_vertices, "of the objects, at most")->capture_default_str();
     command.add_option("--tries", options.tries, "placements that are fitted")->check(CLI::Range(1, 5));
-    command.add_option("--reach", options.reach, "farthest match in the first level, as a share of the diagonal")
+    command.add_option("--reach", options.search_radius, "farthest match in the first level, as a share of the diagonal")
         ->capture_default_str();
 }
 

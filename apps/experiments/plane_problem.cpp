@@ -1,5 +1,6 @@
 #include "plane_problem.h"
 
+#include "ostraka/core/dense.h"
 #include "ostraka/core/error.h"
 #include "ostraka/geom/eigen.h"
 
@@ -49,7 +50,7 @@ double flatness(const Points& points, const std::vector<Index>& region) {
     for (std::size_t i = 0; i < region.size(); ++i) part.col(static_cast<Eigen::Index>(i)) = points.col(region[i]);
     part.colwise() -= part.rowwise().mean().eval();
     const Eigen::Matrix3d scatter = part * part.transpose();
-    const double minimum = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvalues()[0];
+    const double minimum = symmetric_eigenvalues(scatter)[0];
     return std::sqrt(std::max(0.0, minimum) / static_cast<double>(region.size()));
 }
 
