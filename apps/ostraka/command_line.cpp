@@ -34,6 +34,20 @@ std::vector<std::string> words_of(const std::string& name) {
     fail_usage("'" + printable(word, 60) + "' is no " + what, near.empty() ? help : "did you mean '" + near + "'?");
 }
 
+/// Names the nearest option: the operation's or one that all have.
+[[noreturn]] void refuse_option(const Call& call, const std::string& written) {
+    const std::size_t begin = written.find_first_not_of('-');
+    const std::string name = begin == std::string::npos ? written : written.substr(begin, written.find('=') - begin);
+    std::vector<std::string> names{"json", "show", "quiet", "threads", "help"};
+    for (const Option& option : call.parameters().options) names.push_back(option.name);
+    for (const Slot* slot : call.parameters().slots()) names.push_back(slot->name);
+    const std::string near = nearest_name(name, names);
+    throw Error(ErrorKind::usage, call.entry().name, "has no option '" + printable(name, 60) + "'",
+                near.empty()   ? "'ostraka " + std::string(call.entry().name) + " --help' shows them"
+                : near == name ? "options begin with --"
+                               : "did you mean '" + near + "'?");
+}
+
 /// The operation whose words begin the arguments; null where they name a group or nothing. Throws where they name neither.
 const OperationEntry* named_operation(int argc, char** argv) {
     std::vector<std::string> given;
@@ -305,10 +319,7 @@ int run_command_line(int argc, char** argv) {
         if (extra.size() < 2 || extra[0] != '-')
             throw Error(ErrorKind::usage, call->entry().name, "'" + printable(extra, 60) + "' is one argument too many",
                         "'ostraka " + std::string(call->entry().name) + " --help' shows what it takes");
-        static_cast<void>(
-            call->option(extra.substr(extra.find_first_not_of('-') == std::string::npos ? 0 : extra.find_first_not_of('-'))));
-        throw Error(ErrorKind::usage, call->entry().name, "has no option '" + printable(extra, 60) + "'",
-                    "options begin with --");
+        refuse_option(*call, extra);
     }
     if (by_count) take_positionals(*call, words);
     for (const Slot* slot : call->parameters().slots())

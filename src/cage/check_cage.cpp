@@ -1,6 +1,7 @@
 #include "ostraka/cage/cage.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
+#include "ostraka/core/words.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/io/diagnose.h"
 
@@ -33,10 +34,6 @@ std::size_t count_components(const Mesh& mesh) {
         }
     }
     return count;
-}
-
-std::string counted(std::size_t count, const std::string& one) {
-    return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
 }
 
 double largest_coordinate_of(const Mesh& mesh) {

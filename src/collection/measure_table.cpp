@@ -1,6 +1,7 @@
 #include "ostraka/collection/measure_table.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/words.h"
 #include "ostraka/stats/random.h"
 
 #include <algorithm>
@@ -47,10 +48,6 @@ std::optional<double> metres(const std::string& unit) {
 std::string power_of(const std::string& unit, int power) {
     if (unit.empty() || power == 0) return {};
     return power == 1 ? unit : unit + "^" + std::to_string(power);
-}
-
-std::string counted(std::size_t count, const std::string& what) {
-    return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
 }  // namespace

@@ -40,6 +40,18 @@ BreakAligner::BreakAligner(const Mesh& a, const BreakSide& side_a, const BreakSi
       whole_(a),
       surface_(a.number_of_faces() > 0 ? std::make_unique<SurfaceSearch>(whole_) : nullptr) {}
 
+const RimFrame* BreakAligner::continued_by(const RimFrame& frame, const Motion& pose, double search_radius,
+                                           double& squared) const {
+    const PointTree::Near near = frames_.nearest(point_of(pose(frame.place)), 1.5 * search_radius);
+    if (near.index == no_index) return nullptr;
+    const RimFrame& other = a_.frames[near.index];
+    if (other.facet != frame.facet || other.side.dot(pose.rotation * frame.side) < continued ||
+        other.fracture.dot(pose.rotation * frame.fracture) > -min_facing)
+        return nullptr;
+    squared = near.squared;
+    return &other;
+}
+
 Motion BreakAligner::align(const Motion& start, std::size_t samples, int steps, double hold) const {
     Motion pose = start;
     const std::size_t count = std::min(samples, b_.fracture.places.size());
@@ -71,13 +83,11 @@ Motion BreakAligner::align(const Motion& start, std::size_t samples, int steps, 
         double rim = 0;
         for (const RimFrame& frame : b_.frames) {
             const Vector3d p = pose(frame.place);
-            const PointTree::Near near = frames_.nearest(point_of(p), 1.5 * search_radius);
-            if (near.index == no_index) continue;
-            const RimFrame& other = a_.frames[near.index];
-            if (other.facet != frame.facet || other.side.dot(pose.rotation * frame.side) < continued ||
-                other.fracture.dot(pose.rotation * frame.fracture) > -min_facing)
-                continue;
-            const double weight = std::pow(1 - near.squared / (2.25 * search_radius * search_radius), 2);
+            double squared = 0;
+            const RimFrame* found = continued_by(frame, pose, search_radius, squared);
+            if (found == nullptr) continue;
+            const RimFrame& other = *found;
+            const double weight = std::pow(1 - squared / (2.25 * search_radius * search_radius), 2);
             rims.push_back({p, other.side, other.side.dot(other.place - p), weight});
             rims.push_back({p, other.fracture, other.fracture.dot(other.place - p), weight});
             rim += weight;
@@ -158,12 +168,10 @@ PairCandidate BreakAligner::judge(const Motion& pose, std::size_t samples, doubl
     double rim = 0;
     for (const RimFrame& frame : b_.frames) {
         const Vector3d p = pose(frame.place);
-        const PointTree::Near near = frames_.nearest(point_of(p), 1.5 * last_search_radius_);
-        if (near.index == no_index) continue;
-        const RimFrame& other = a_.frames[near.index];
-        if (other.facet != frame.facet || other.side.dot(pose.rotation * frame.side) < continued ||
-            other.fracture.dot(pose.rotation * frame.fracture) > -min_facing)
-            continue;
+        double squared = 0;
+        const RimFrame* found = continued_by(frame, pose, last_search_radius_, squared);
+        if (found == nullptr) continue;
+        const RimFrame& other = *found;
         // Across the side's plane counts, along the rim does not.
         const double step = other.side.dot(p - other.place) / last_search_radius_;
         rim += std::max(0.0, 1 - step * step);

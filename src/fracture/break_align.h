@@ -7,7 +7,7 @@
 
 namespace ostraka {
 
-/// Lays the second fragment's fracture and rim onto those of the first.
+/// Aligns the second fragment's fracture and rim with those of the first.
 class BreakAligner {
 public:
     /// Without a mesh (empty) nothing penetrates.
@@ -22,6 +22,10 @@ public:
     [[nodiscard]] PairCandidate judge(const Motion& pose, std::size_t samples, double close) const;
 
 private:
+    /// The first's frame that a frame of the second, posed, continues: within 1.5 search radii, its square distance.
+    [[nodiscard]] const RimFrame* continued_by(const RimFrame& frame, const Motion& pose, double search_radius,
+                                               double& squared) const;
+
     const BreakSide &a_, &b_;
     double search_radius_, last_search_radius_, edges_;
     PointTree fractures_, frames_;

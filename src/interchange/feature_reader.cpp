@@ -10,6 +10,7 @@
 #include "ostraka/annotation/label_file.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/core/words.h"
 #include "ostraka/measure/measure.h"
 
 #include <algorithm>

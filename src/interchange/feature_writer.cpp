@@ -8,6 +8,7 @@
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/limits.h"
+#include "ostraka/core/words.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/io/glb.h"
 #include "ostraka/vocabulary/text_match.h"

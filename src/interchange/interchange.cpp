@@ -3,6 +3,7 @@
 #include "landmark_formats.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/words.h"
 #include "ostraka/interchange/attribute_table.h"
 #include "ostraka/interchange/feature_glb.h"
 #include "ostraka/interchange/prototype_files.h"
@@ -147,7 +148,7 @@ PlacedAnnotations import_annotations(const Mesh& mesh, const std::string& bytes,
         result.set.annotations = onto->annotations;
         result.set.notes = onto->notes;
         const std::size_t changed = apply_attribute_table(bytes, result.set, where);
-        result.set.notes.push_back(interchange::counted(changed, "annotation") + " of the table taken over");
+        result.set.notes.push_back(counted(changed, "annotation") + " of the table taken over");
     } else if (format == Format::web) {
         result = read_web_annotations(bytes, mesh, where, options.place);
     } else if (format == Format::glb) {

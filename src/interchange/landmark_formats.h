@@ -1,6 +1,7 @@
 // The readers and writers behind landmarks_from_text and landmarks_to_text, one pair a format.
 #pragma once
 
+#include "ostraka/core/words.h"
 #include "ostraka/interchange/landmarks.h"
 
 namespace ostraka::interchange {
@@ -26,8 +27,5 @@ std::array<double, 3> in_mesh_space(std::array<double, 3> position, std::optiona
 
 /// Throws Error (input) naming `at` if the place is beyond what can be computed with, as a mesh's would be.
 void check_place(const std::array<double, 3>& position, const std::string& at);
-
-/// "1 landmark", "2 landmarks".
-std::string counted(std::size_t count, const std::string& noun);
 
 }  // namespace ostraka::interchange

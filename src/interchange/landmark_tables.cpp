@@ -70,10 +70,6 @@ void check_place(const std::array<double, 3>& position, const std::string& at) {
                    "check its numbers, or choose another unit");
 }
 
-std::string counted(std::size_t count, const std::string& noun) {
-    return to_string(count) + " " + noun + (count == 1 ? "" : "s");
-}
-
 LandmarkSet read_landmark_table(const std::string& bytes, const std::string& where, const LandmarkFileOptions& options) {
     std::vector<CsvRow> rows = csv_rows(bytes, csv_separator(bytes), where);
     LandmarkSet set;

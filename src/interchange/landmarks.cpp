@@ -15,7 +15,6 @@ namespace ostraka {
 
 namespace {
 
-using interchange::counted;
 using interchange::Placed;
 using interchange::Placer;
 using std::to_string;
