@@ -68,6 +68,7 @@ TEST(MakeCommand, RefusesWithoutLeavingAnything) {
         EXPECT_FALSE(std::filesystem::exists(mesh));
     };
     refused("tepot " + mesh.string(), 2, "did you mean 'teapot'");
+    refused("teapot " + mesh.string() + " --thraeds 2", 2, "did you mean 'threads'");
     refused("teapot " + mesh.string() + " --vertices 100", 2, "at least");
     refused("teapot " + mesh.string() + " --vertices -5", 2, "vertices");
     refused("sphere " + mesh.string() + " --noise 3", 2, "noise");
