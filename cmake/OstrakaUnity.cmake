@@ -1,10 +1,10 @@
 # Batches of files that are compiled as one: files of one module, in the order of their names, up to a number of bytes. What a batch
 # saves is reading the same headers and making the same templates again for each file. Files that take long on their own, and those
 # with flags of their own, stay alone.
-set(OSTRAKA_UNITY_BATCH 100000 CACHE STRING "Bytes of source a batch")
+set(OSTRAKA_UNITY_BATCH 250000 CACHE STRING "Bytes of source a batch")
 set(OSTRAKA_UNITY_ALONE src/core/dense.cpp)
-# The largest algorithms of CGAL, in pairs that share most.
-set(OSTRAKA_UNITY_PAIRS "src/axis/skeleton.cpp|src/remesh/remesh.cpp" "src/io/wrap.cpp|src/synthetic/shatter.cpp"
+# The largest algorithms of CGAL, together with those that share most with them.
+set(OSTRAKA_UNITY_TOGETHER "src/axis/skeleton.cpp|src/remesh/remesh.cpp|src/io/wrap.cpp"
   "src/point_cloud/point_cloud.cpp|src/point_cloud/point_surface.cpp")
 
 function(ostraka_unity target)
@@ -15,7 +15,7 @@ function(ostraka_unity target)
     file(RELATIVE_PATH name ${CMAKE_CURRENT_SOURCE_DIR} ${source})
     get_source_file_property(own_flags ${source} COMPILE_OPTIONS)
     set(paired FALSE)
-    foreach(pair IN LISTS OSTRAKA_UNITY_PAIRS)
+    foreach(pair IN LISTS OSTRAKA_UNITY_TOGETHER)
       if(pair MATCHES "${name}")
         string(MAKE_C_IDENTIFIER "${pair}" group)
         set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group})
@@ -41,4 +41,6 @@ function(ostraka_unity target)
     math(EXPR bytes "${bytes} + ${size}")
     set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${last}_${batch})
   endforeach()
+  # A type of a source file may use its own unnamed namespace, whatever file includes it.
+  target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
 endfunction()

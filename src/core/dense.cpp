@@ -49,7 +49,14 @@ SvdX::SvdX(const Eigen::MatrixXd& matrix, bool full_v) {
 }
 
 Eigen::Quaterniond rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-    return Eigen::Quaterniond::FromTwoVectors(from, to);
+    const Eigen::Vector3d a = from.normalized(), b = to.normalized();
+    const double cosine = a.dot(b);
+    if (cosine < -1 + 1e-12) return Eigen::Quaterniond(Eigen::AngleAxisd(M_PI, a.unitOrthogonal()));
+    const double s = std::sqrt((1 + cosine) * 2);
+    Eigen::Quaterniond rotation;
+    rotation.vec() = a.cross(b) * (1 / s);
+    rotation.w() = s * 0.5;
+    return rotation;
 }
 
 template <int N>

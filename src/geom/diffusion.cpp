@@ -1,9 +1,8 @@
 #include "ostraka/geom/diffusion.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/sparse.h"
 #include "ostraka/geom/eigen.h"
-
-#include <Eigen/SparseCholesky>
 
 #include <cmath>
 
@@ -82,14 +81,14 @@ Eigen::MatrixXd Diffusion::smoothed(const Eigen::MatrixXd& values, double sigma,
     for (const auto& e : s.laplacian) entries.emplace_back(e.row(), e.col(), time * e.value());
     for (Eigen::Index i = 0; i < count; ++i) entries.emplace_back(static_cast<int>(i), static_cast<int>(i), s.mass[i]);
     a.setFromTriplets(entries.begin(), entries.end());
-    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(a);
-    if (solver.info() != Eigen::Success)
+    const SparseLdlt solver(a);
+    if (!solver.found())
         throw Error(ErrorKind::failure, "mesh", "the surface cannot be smoothed", "repair it: are there faces without area?");
     Eigen::MatrixXd pull = Eigen::MatrixXd::Zero(count, values.cols()), x(count, values.cols());
     for (const auto& e : s.to_fixed) pull.row(e.row()) += time * e.value() * values.row(e.col());
     for (Eigen::Index i = 0; i < count; ++i)
         x.row(i) = values.row(static_cast<Eigen::Index>(s.free[static_cast<std::size_t>(i)]));
-    for (int step = 0; step < steps; ++step) x = solver.solve(s.mass.asDiagonal() * x + pull).eval();
+    for (int step = 0; step < steps; ++step) x = solver.solve(s.mass.asDiagonal() * x + pull);
     Eigen::MatrixXd result = values;
     for (Eigen::Index i = 0; i < count; ++i)
         result.row(static_cast<Eigen::Index>(s.free[static_cast<std::size_t>(i)])) = x.row(i);

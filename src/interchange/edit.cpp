@@ -18,7 +18,7 @@ namespace {
 using namespace interchange;
 using std::to_string;
 
-std::string words(const EntryName& name) { return name.id ? to_string(*name.id) : "'" + interchange::words(name.text) + "'"; }
+std::string id_or_tag(const EntryName& name) { return name.id ? to_string(*name.id) : "'" + interchange::words(name.text) + "'"; }
 
 EntryName name_of(const JsonValue& value) {
     EntryName name;
@@ -115,9 +115,10 @@ private:
         std::vector<std::size_t> found;
         for (std::size_t i = 0; i < set_.annotations.size(); ++i)
             if (name.id ? set_.annotations[i].id == *name.id : set_.annotations[i].tag == name.text) found.push_back(i);
-        if (found.empty()) fail_input(here_, "there is no annotation " + words(name), "'annotation list' shows ids and tags");
+        if (found.empty()) fail_input(here_, "there is no annotation " + id_or_tag(name), "'annotation list' shows ids and tags");
         if (found.size() > 1)
-            fail_input(here_, counted_annotations(found.size()) + " have the tag " + words(name), "name the one meant by its id");
+            fail_input(here_, counted_annotations(found.size()) + " have the tag " + id_or_tag(name),
+                       "name the one meant by its id");
         return found.front();
     }
     static std::string counted_annotations(std::size_t count) { return to_string(count) + " annotations"; }
@@ -126,8 +127,9 @@ private:
         const auto matches = [&](const Attribute& a) { return name.id ? a.id == *name.id : a.name == name.text; };
         const auto count = std::count_if(annotation.attributes.begin(), annotation.attributes.end(), matches);
         const std::string whose = "annotation " + to_string(annotation.id);
-        if (count == 0) fail_input(here_, whose + " has no attribute " + words(name), "'annotation list' shows its attributes");
-        if (count > 1) fail_input(here_, whose + " has several attributes " + words(name), "name the one meant by its id");
+        if (count == 0)
+            fail_input(here_, whose + " has no attribute " + id_or_tag(name), "'annotation list' shows its attributes");
+        if (count > 1) fail_input(here_, whose + " has several attributes " + id_or_tag(name), "name the one meant by its id");
         annotation.attributes.erase(std::find_if(annotation.attributes.begin(), annotation.attributes.end(), matches));
     }
 

@@ -1,13 +1,11 @@
 #include "reattachment.h"
 
 #include "ostraka/core/dense.h"
+#include "ostraka/core/sparse.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/geom/with_points.h"
 #include "ostraka/semantic/edit.h"
-
-#include <Eigen/Sparse>
-#include <Eigen/SparseCholesky>
 
 #include <algorithm>
 #include <cmath>
@@ -51,7 +49,7 @@ void smooth(const Mesh& mesh, const std::vector<Index>& free, bool to_others, Po
     rows.setFromTriplets(entries.begin(), entries.end());
     Eigen::MatrixX3d wanted(rows.rows(), 3);
     for (std::size_t i = 0; i < right.size(); ++i) wanted.row(static_cast<Eigen::Index>(i)) = right[i];
-    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(Eigen::SparseMatrix<double>(rows.transpose() * rows));
+    const SparseLdlt solver(rows.transpose() * rows);
     const Eigen::MatrixX3d found = solver.solve(rows.transpose() * wanted);
     if (!found.allFinite()) return;  // a free piece without anything around it: it stays
     for (std::size_t i = 0; i < free.size(); ++i) values.col(free[i]) = found.row(static_cast<Eigen::Index>(i)).transpose();

@@ -94,6 +94,10 @@ std::array<double, 3> with_product(const std::array<double, 3>& a, int n, double
     return best;
 }
 
+struct SvdOfTwo : Eigen::JacobiSVD<Eigen::Matrix<double, 3, 2>> {
+    explicit SvdOfTwo(const Eigen::Matrix<double, 3, 2>& matrix) : JacobiSVD(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV) {}
+};
+
 enum class Limits { singular_values, product };
 
 /// Rows: the columns of the deformation gradient F of a simplex times a length, the 1/2 or 1/3 power of its rest area or volume.
@@ -102,16 +106,23 @@ template <int N>
 class Simplex final : public Constraint {
     using Edges = Eigen::Matrix<double, 3, N>;
     using Square = Eigen::Matrix<double, N, N>;
+    using Decomposition = std::conditional_t<N == 3, Svd3, SvdOfTwo>;
 
 public:
     Simplex(Making&& m, Limits limits) : Constraint(m.kind, m.ids, m.weight), limits_(limits) {
         Edges edges;
         for (int i = 0; i < N; ++i) edges.col(i) = m.rest.col(i + 1) - m.rest.col(0);
-        // Edges in a frame of their own.
-        const Eigen::HouseholderQR<Edges> qr(edges);
-        Square local = qr.matrixQR().template topRows<N>().template triangularView<Eigen::Upper>();
-        for (int i = 0; i < N; ++i)  // as Gram and Schmidt have it
-            if (local(i, i) < 0) local.row(i) *= -1;
+        // Edges in a frame of their own, by Gram and Schmidt.
+        Square local = Square::Zero();
+        Edges frame = edges;
+        for (int i = 0; i < N; ++i) {
+            for (int j = 0; j < i; ++j) {
+                local(j, i) = frame.col(j).dot(frame.col(i));
+                frame.col(i) -= local(j, i) * frame.col(j);
+            }
+            local(i, i) = frame.col(i).norm();
+            if (local(i, i) > 0) frame.col(i) /= local(i, i);
+        }
         const double measure = std::abs(local.determinant()) / (N == 2 ? 2.0 : 6.0);
         const double size = edges.cwiseAbs().maxCoeff();
         if (!(measure > 1e-14 * std::pow(size, N)))
@@ -137,11 +148,11 @@ public:
 
     void project(const RowsIn& rows, RowsOut projected) const override {
         const Edges f = rows / scale_;
-        const Eigen::JacobiSVD<Eigen::Matrix<double, 3, N>> svd(f, Eigen::ComputeFullU | Eigen::ComputeFullV);
-        if (svd.info() != Eigen::Success) {  // not finite
+        if (!f.allFinite()) {
             projected = rows;
             return;
         }
+        const Decomposition svd(f);
         Eigen::Matrix<double, 3, N> u = svd.matrixU().template leftCols<N>();
         const Square v = svd.matrixV();
         std::array<double, 3> s{1, 1, 1};

@@ -1,4 +1,5 @@
-// Small dense linear algebra behind plain functions, compiled once. Each is Eigen's algorithm of that name, to the bit.
+// Small dense linear algebra behind plain functions, compiled once. Those with the name of an algorithm of Eigen are that, to the
+// bit.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -77,7 +78,8 @@ private:
     Eigen::VectorXd values_;
 };
 
-/// The rotation of the smallest angle that turns the direction of `from` into that of `to` (vectors of any length but zero).
+/// The rotation of the smallest angle that turns the direction of `from` into that of `to` (vectors of any length but zero); of
+/// opposite directions a half turn about an axis across them.
 Eigen::Quaterniond rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
 /// Solves A x = b for a symmetric, positive or negative semidefinite A by LDL^T. N: 3, 4, 6 or Eigen::Dynamic.
