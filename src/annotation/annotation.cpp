@@ -66,6 +66,12 @@ std::vector<bool> face_flags(const Mesh& mesh, const std::vector<Index>& faces) 
     return flags;
 }
 
+double area_of(const Mesh& mesh, const std::vector<Index>& faces) {
+    double area = 0;
+    for (const Index face : faces) area += face_area(mesh, Face(face));
+    return area;
+}
+
 std::vector<Index> flagged(const std::vector<bool>& flags) {
     std::vector<Index> list;
     for (std::size_t i = 0; i < flags.size(); ++i)

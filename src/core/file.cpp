@@ -1,6 +1,7 @@
 #include "ostraka/core/file.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/text.h"
 #include "ostraka/core/transaction.h"
 #include "output_sweep.h"
 
@@ -10,7 +11,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <map>
@@ -391,11 +391,7 @@ void check_outputs(const std::vector<Path>& inputs, const std::vector<Path>& out
     }
 }
 
-std::string extension(const Path& file) {
-    std::string text = file.extension().string();
-    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return text;
-}
+std::string extension(const Path& file) { return lower_case(file.extension().string()); }
 
 Sha256::Sha256() : context_(EVP_MD_CTX_new()) {
     if (context_ == nullptr || EVP_DigestInit_ex(static_cast<EVP_MD_CTX*>(context_), EVP_sha256(), nullptr) != 1)

@@ -240,15 +240,25 @@ void add_member(JsonValue& object, std::string_view name, std::string_view text,
     add_member(object, name, json_string(text, allocator), allocator);
 }
 
+JsonValue json_list_of(JsonValue value, JsonAllocator& allocator) {
+    JsonValue list(rapidjson::kArrayType);
+    list.PushBack(value, allocator);
+    return list;
+}
+
+JsonValue json_number(double value) {
+    return std::abs(value) < 1e9 && value == std::floor(value) ? JsonValue(static_cast<int>(value)) : JsonValue(value);
+}
+
+void copy_members(JsonValue& object, JsonAllocator& allocator, const JsonValue& from, std::initializer_list<const char*> names) {
+    for (const char* name : names)
+        if (const JsonValue* value = find_member(from, name)) add_members(object, allocator, name, *value);
+}
+
 Json json_document(std::string_view kind) {
     Json document(rapidjson::kObjectType);
     add_members(document, document.GetAllocator(), "format", "ostraka-" + std::string(kind), "version", 1);
     return document;
-}
-
-double number_or(const JsonValue& object, std::string_view name, double otherwise) {
-    const JsonValue* value = find_member(object, name);
-    return value == nullptr ? otherwise : value->GetDouble();
 }
 
 const JsonValue* find_member(const JsonValue& object, std::string_view name) {
@@ -256,6 +266,40 @@ const JsonValue* find_member(const JsonValue& object, std::string_view name) {
     const JsonValue key(rapidjson::StringRef(name.data(), static_cast<rapidjson::SizeType>(name.size())));
     const auto found = object.FindMember(key);
     return found == object.MemberEnd() ? nullptr : &found->value;
+}
+
+std::optional<double> number_in(const JsonValue& object, std::string_view name) {
+    const JsonValue* value = find_member(object, name);
+    return value == nullptr ? std::nullopt : std::optional(value->GetDouble());
+}
+
+double number_or(const JsonValue& object, std::string_view name, double otherwise) {
+    return number_in(object, name).value_or(otherwise);
+}
+
+std::string text_in(const JsonValue& object, std::string_view name) {
+    const JsonValue* value = find_member(object, name);
+    return value != nullptr && value->IsString() ? text_of(*value) : std::string();
+}
+
+bool flag_in(const JsonValue& object, std::string_view name) {
+    const JsonValue* value = find_member(object, name);
+    return value != nullptr && value->GetBool();
+}
+
+JsonValue::ConstArray list_in(const JsonValue& object, std::string_view name) {
+    static const JsonValue none(rapidjson::kArrayType);
+    const JsonValue* value = find_member(object, name);
+    return (value != nullptr && value->IsArray() ? *value : none).GetArray();
+}
+
+std::string text_of(const JsonValue& value) { return {value.GetString(), value.GetStringLength()}; }
+
+std::array<double, 3> triple_of(const JsonValue& list) { return {list[0].GetDouble(), list[1].GetDouble(), list[2].GetDouble()}; }
+
+void check_format(const JsonValue& document, const std::string& format, const std::string& where, const std::string& remedy) {
+    if (const JsonValue* said = find_member(document, "format"); said != nullptr && said->IsString() && text_of(*said) != format)
+        fail_input(where, "at /format: the format is '" + text_of(*said) + "'", remedy);
 }
 
 }  // namespace ostraka

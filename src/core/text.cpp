@@ -2,6 +2,7 @@
 
 #include "ostraka/core/json.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -51,6 +52,28 @@ std::string_view trimmed(std::string_view text) {
     const std::size_t begin = text.find_first_not_of(" \t\r\n");
     if (begin == std::string_view::npos) return {};
     return text.substr(begin, text.find_last_not_of(" \t\r\n") - begin + 1);
+}
+
+std::string lower_case(std::string_view text) {
+    std::string result(text);
+    for (char& c : result)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return result;
+}
+
+std::string_view line_at(std::string_view text, std::size_t& at) {
+    const std::size_t begin = at, end = std::min(text.find('\n', at), text.size());
+    at = end + 1;
+    return text.substr(begin, end - begin);
+}
+
+std::vector<std::string_view> words_of(std::string_view text, std::string_view blanks) {
+    std::vector<std::string_view> words;
+    for (std::size_t end = 0, begin = 0; (begin = text.find_first_not_of(blanks, end)) != std::string_view::npos;) {
+        end = std::min(text.find_first_of(blanks, begin), text.size());
+        words.push_back(text.substr(begin, end - begin));
+    }
+    return words;
 }
 
 std::optional<double> number_of(std::string_view text) {

@@ -137,7 +137,7 @@ void FeatureFile::read_table() {
     if (properties == nullptr || !properties->IsObject()) return;
     for (const char* name : {"tag", "name", "label"})
         if (tags.empty()) tags = texts(*properties, name, at);
-    ours = text_member(table, "class") == "annotation" && find_member(*properties, "attributes") != nullptr;
+    ours = text_in(table, "class") == "annotation" && find_member(*properties, "attributes") != nullptr;
     if (!ours) return;
     remarks = texts(*properties, "note", at);
     this->attributes = texts(*properties, "attributes", at);
@@ -168,7 +168,7 @@ std::vector<std::string> FeatureFile::texts(const JsonValue& properties, const c
     const JsonValue* property = find_member(properties, name);
     if (property == nullptr || find_member(*property, "stringOffsets") == nullptr) return list;
     const std::string here = at + "/properties/" + name;
-    const std::string type = text_member(*property, "stringOffsetType");
+    const std::string type = text_in(*property, "stringOffsetType");
     const std::size_t width = type == "UINT8" ? 1 : type == "UINT16" ? 2 : type == "UINT64" ? 8 : 4;
     const std::string_view bytes = file.view(file.number(*property, "values", here, absent), here);
     const std::string_view offsets = file.view(file.number(*property, "stringOffsets", here, absent), here);

@@ -26,19 +26,13 @@ bool same(const Annotation& a, const Annotation& b) {
 
 std::string words(const std::string& text) { return one_line(text); }
 
-std::string words(const std::array<int, 3>& colour) {
-    return std::to_string(colour[0]) + " " + std::to_string(colour[1]) + " " + std::to_string(colour[2]);
-}
+std::string words(const std::array<int, 3>& colour) { return joined_numbers(colour); }
 
 std::string words(const std::optional<std::array<double, 3>>& direction) {
-    return direction ? digits((*direction)[0]) + " " + digits((*direction)[1]) + " " + digits((*direction)[2]) : std::string();
+    return direction ? joined_numbers(*direction) : std::string();
 }
 
-std::string words(const std::vector<int>& ids) {
-    std::string text;
-    for (const int id : ids) text += (text.empty() ? "" : " ") + std::to_string(id);
-    return words(text);
-}
+std::string words(const std::vector<int>& ids) { return joined_numbers(ids); }
 
 std::string words(const Attribute& attribute) {
     if (attribute.type == AttributeType::semantic)

@@ -3,7 +3,7 @@
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/annotation/outline.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/json.h"
+#include "ostraka/core/flood.h"
 #include "ostraka/core/json_build.h"
 #include "ostraka/measure/measure.h"
 
@@ -121,18 +121,7 @@ std::vector<bool> Placer::fill(const std::vector<std::vector<Index>>& vertex_pat
 
 std::vector<bool> Placer::component(Index face) const {
     std::vector<bool> selected(mesh_.number_of_faces(), false);
-    std::vector<Index> stack{face};
-    selected[face] = true;
-    while (!stack.empty()) {
-        const Halfedge first = mesh_.halfedge(Face(stack.back()));
-        stack.pop_back();
-        for (const Halfedge h : mesh_.halfedges_around_face(first)) {
-            const Face next = mesh_.face(mesh_.opposite(h));
-            if (next == Mesh::null_face() || selected[next]) continue;
-            selected[next] = true;
-            stack.push_back(next);
-        }
-    }
+    flood_faces(mesh_, Face(face), selected);
     return selected;
 }
 
@@ -140,13 +129,10 @@ PlacedAnnotations placed_annotations(Json& native, JsonValue list, const JsonVal
                                      const std::string& where, bool same_mesh, std::vector<std::string> notes,
                                      std::vector<PlacedAnnotation> placements) {
     auto& allocator = native.GetAllocator();
-    JsonValue made_for = json_object(allocator, "vertices", mesh.number_of_vertices(), "faces", mesh.number_of_faces());
-    add_member(native, "mesh", std::move(made_for), allocator);
-    if (about != nullptr)
-        for (const char* name : {"class", "unit", "up"})
-            if (const JsonValue* value = find_member(*about, name))
-                add_member(native, name, JsonValue(*value, allocator), allocator);
-    add_member(native, "annotations", std::move(list), allocator);
+    add_members(native, allocator, "mesh",
+                json_object(allocator, "vertices", mesh.number_of_vertices(), "faces", mesh.number_of_faces()));
+    if (about != nullptr) copy_members(native, allocator, *about, {"class", "unit", "up"});
+    add_members(native, allocator, "annotations", std::move(list));
     PlacedAnnotations result;
     result.set = annotations_from_json(native, mesh, where);
     if (!same_mesh) {

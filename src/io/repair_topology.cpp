@@ -3,7 +3,6 @@
 #include "soup_geometry.h"
 
 #include <cmath>
-#include <numeric>
 
 namespace ostraka::detail {
 
@@ -231,11 +230,7 @@ Counts take_apart(Worksoup& work) {
 Counts turn_outwards(Worksoup& work) {
     auto& soup = work.soup;
     const std::vector<Index> opposite = pair_manifold(soup);
-    DisjointSets sets(soup.points.size());
-    for (const auto& t : soup.triangles) {
-        sets.unite(t[0], t[1]);
-        sets.unite(t[0], t[2]);
-    }
+    DisjointSets sets = joined_vertices(soup);
     std::vector<Index> number(soup.points.size(), no_index), component(soup.triangles.size());
     std::vector<bool> closed;
     std::vector<std::uint8_t> as_read;

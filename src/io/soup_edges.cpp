@@ -5,10 +5,18 @@
 
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <numeric>
 
 namespace ostraka::detail {
+
+DisjointSets joined_vertices(const TriangleSoup& soup) {
+    DisjointSets sets(soup.points.size());
+    for (const auto& t : soup.triangles) {
+        sets.unite(t[0], t[1]);
+        sets.unite(t[0], t[2]);
+    }
+    return sets;
+}
 
 SoupEdges group_edges(const TriangleSoup& soup) {
     const auto count = static_cast<Index>(3 * soup.triangles.size());

@@ -196,7 +196,7 @@ ContainmentOrder order_of(const Mesh& mesh, const AnnotationSet& set, Containmen
     std::vector<double> area(n, 0);
     for (std::size_t a = 0; a < n; ++a) {
         if (!containments.empty[a]) contains.clear(a, a);
-        for (const Index face : set.annotations[a].faces) area[a] += face_area(mesh, Face(face));
+        area[a] = area_of(mesh, set.annotations[a].faces);
     }
 
     BitTable farther(n, n);

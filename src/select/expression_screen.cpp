@@ -43,7 +43,7 @@ ScreenCamera ExpressionEvaluator::camera(const JsonValue& owner, PlaceFrame fram
     };
     const JsonValue& value = owner["camera"];
     if (!value.IsString()) return read(value, frame, at + "/camera");
-    const std::string name(value.GetString(), value.GetStringLength());
+    const std::string name = text_of(value);
     const JsonValue* named = surroundings_.cameras == nullptr ? nullptr : find_member(*surroundings_.cameras, name);
     if (named == nullptr)
         fail(at + "/camera", "no camera has the name '" + name + "'", "define it under \"cameras\" of the recipe");

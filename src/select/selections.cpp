@@ -1,12 +1,12 @@
 #include "ostraka/select/selections.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/flood.h"
 #include "ostraka/core/limits.h"
 #include "ostraka/geom/surface_search.h"
 
 #include "crossing.h"
 
-#include <algorithm>
 #include <limits>
 #include <sstream>
 
@@ -24,23 +24,12 @@ struct Flood {
 Flood flood(const Mesh& mesh, Index seed, const std::vector<bool>& wall) {
     Flood result;
     result.reached.assign(mesh.number_of_faces(), false);
-    result.reached[seed] = true;
-    std::vector<Index> front{seed};
-    while (!front.empty()) {
-        const Face face(front.back());
-        front.pop_back();
-        ++result.count;
-        for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(face))) {
-            if (!wall.empty() && wall[mesh.edge(h)]) {
-                ++result.walls;
-                continue;
-            }
-            const Face next = mesh.face(mesh.opposite(h));
-            if (next == Mesh::null_face() || result.reached[next]) continue;
-            result.reached[next] = true;
-            front.push_back(next);
-        }
-    }
+    const auto is_open = [&](Halfedge h) {
+        const bool closed = !wall.empty() && wall[mesh.edge(h)];
+        result.walls += closed ? 1 : 0;
+        return !closed;
+    };
+    result.count = flood_faces(mesh, Face(seed), result.reached, is_open).size();
     return result;
 }
 

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <map>
 #include <set>
-#include <sstream>
 
 namespace ostraka {
 
@@ -35,25 +34,17 @@ Subject subject_of(const JsonValue& value) {
     return subject;
 }
 
-std::vector<std::string> names_of(const JsonValue& value) {
-    if (value.IsString()) return {text_of(value)};
-    std::vector<std::string> names;
-    for (const auto& name : value.GetArray()) names.push_back(text_of(name));
-    return names;
-}
-
-template <class Number>
-std::optional<Number> number_of(const JsonValue& object, const char* name) {
+std::optional<int> whole_in(const JsonValue& object, const char* name) {
     const JsonValue* value = find_member(object, name);
-    return value == nullptr ? std::nullopt : std::optional<Number>(value->Get<Number>());
+    return value == nullptr ? std::nullopt : std::optional(value->GetInt());
 }
 
 ClassRule class_rule_of(const JsonValue& object, const std::string& where, const std::string& at) {
     ClassRule rule;
     rule.id = text_of(object["id"]);
-    if (const JsonValue* note = find_member(object, "note")) rule.note = text_of(*note);
+    rule.note = text_in(object, "note");
     if (const JsonValue* count = find_member(object, "count")) {
-        rule.count = CountRule{subject_of((*count)["of"]), number_of<int>(*count, "min"), number_of<int>(*count, "max")};
+        rule.count = CountRule{subject_of((*count)["of"]), whole_in(*count, "min"), whole_in(*count, "max")};
         const auto& [subject, min, max] = *rule.count;
         if (!min && !max) fail_input(where, "at " + at + "/count: a count without bounds", "give min, max or both");
         if (min && max && *min > *max) fail_input(where, "at " + at + "/count: min is above max", "swap them");
@@ -62,10 +53,10 @@ ClassRule class_rule_of(const JsonValue& object, const std::string& where, const
         AttributeRule wanted;
         wanted.subject = subject_of((*attribute)["of"]);
         wanted.name = text_of((*attribute)["name"]);
-        if (const JsonValue* is = find_member(*attribute, "is")) wanted.values = names_of(*is);
-        wanted.min = number_of<double>(*attribute, "min");
-        wanted.max = number_of<double>(*attribute, "max");
-        if (const JsonValue* unit = find_member(*attribute, "unit")) wanted.unit = text_of(*unit);
+        wanted.values = names_in(*attribute, "is");
+        wanted.min = number_in(*attribute, "min");
+        wanted.max = number_in(*attribute, "max");
+        wanted.unit = text_in(*attribute, "unit");
         if (!wanted.values.empty() && (wanted.min || wanted.max || !wanted.unit.empty()))
             fail_input(where, "at " + at + "/attribute: words and bounds",
                        "give 'is' for a word, min, max and unit for a number");
@@ -74,11 +65,11 @@ ClassRule class_rule_of(const JsonValue& object, const std::string& where, const
         rule.attribute = std::move(wanted);
     }
     if (const JsonValue* relation = find_member(object, "relation")) {
-        RelationRule wanted{subject_of((*relation)["of"]), names_of((*relation)["is"]), subject_of((*relation)["to"]), {}};
-        if (const JsonValue* place = find_member(*relation, "place"))
-            wanted.place = text_of(*place) == "first"    ? RelationRule::Place::first
-                           : text_of(*place) == "second" ? RelationRule::Place::second
-                                                         : RelationRule::Place::any;
+        RelationRule wanted{subject_of((*relation)["of"]), names_in(*relation, "is"), subject_of((*relation)["to"]), {}};
+        const std::string place = text_in(*relation, "place");
+        wanted.place = place == "first"    ? RelationRule::Place::first
+                       : place == "second" ? RelationRule::Place::second
+                                           : RelationRule::Place::any;
         rule.relation = std::move(wanted);
     }
     if (rule.count.has_value() + rule.attribute.has_value() + rule.relation.has_value() != 1)
@@ -290,12 +281,10 @@ bool ClassRules::about_relations() const {
 }
 
 ClassRules class_rules_from_json(const JsonValue& document, const std::string& where) {
-    if (const JsonValue* format = find_member(document, "format");
-        format != nullptr && format->IsString() && text_of(*format) != "ostraka-rules")
-        fail_input(where, "at /format: the format is '" + text_of(*format) + "'", "give rules of a class ('ostraka-rules')");
+    check_format(document, "ostraka-rules", where, "give rules of a class ('ostraka-rules')");
     validate(document, "rules", where);
     ClassRules result;
-    if (const JsonValue* name = find_member(document, "class")) result.object_class = text_of(*name);
+    result.object_class = text_in(document, "class");
     const JsonValue& rules = document["rules"];
     std::set<std::string> ids;
     for (rapidjson::SizeType i = 0; i < rules.Size(); ++i) {

@@ -8,7 +8,14 @@
 
 namespace ostraka::detail {
 
-inline std::string text_of(const JsonValue& value) { return {value.GetString(), value.GetStringLength()}; }
+/// A name or a list of them in a member.
+inline std::vector<std::string> names_in(const JsonValue& object, const char* member) {
+    const JsonValue* value = find_member(object, member);
+    if (value != nullptr && value->IsString()) return {ostraka::text_of(*value)};
+    std::vector<std::string> names;
+    for (const auto& name : list_in(object, member)) names.push_back(ostraka::text_of(name));
+    return names;
+}
 
 inline std::string text_of(double value) { return digits(value, 9); }
 

@@ -110,6 +110,7 @@ std::vector<Index> pins_of(const Measure& measure);
 
 /// One flag per face of a region.
 std::vector<bool> face_flags(const Mesh& mesh, const std::vector<Index>& faces);
+double area_of(const Mesh& mesh, const std::vector<Index>& faces);
 /// The faces whose flag is set, ascending.
 std::vector<Index> flagged(const std::vector<bool>& flags);
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace ostraka {
 
@@ -31,5 +32,12 @@ std::optional<double> number_of(std::string_view text);
 std::optional<int> whole_of(std::string_view text);
 /// Without blanks around it.
 std::string_view trimmed(std::string_view text);
+/// With small letters for the capital ones of ASCII.
+std::string lower_case(std::string_view text);
+
+/// The line of a text that begins at `at`, without its line feed; `at` moves to the next one.
+std::string_view line_at(std::string_view text, std::size_t& at);
+/// What stands between blanks, which are these characters.
+std::vector<std::string_view> words_of(std::string_view text, std::string_view blanks = " \t\r\n");
 
 }  // namespace ostraka
