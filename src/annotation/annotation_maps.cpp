@@ -56,20 +56,10 @@ public:
         for (const Vertex vertex : mesh.vertices()) hand_out(vertex_sets[vertex], vertex, vertices_);
     }
 
-    Annotation follow(const Annotation& before) {
-        Annotation now = before;
-        switch (before.type) {
-            case AnnotationType::point:
-                points(now);
-                break;
-            case AnnotationType::line:
-                line(now);
-                break;
-            case AnnotationType::region:
-                region(now);
-                break;
-        }
-        return now;
+    void follow(Annotation& annotation) {
+        if (annotation.type == AnnotationType::point) points(annotation);
+        else if (annotation.type == AnnotationType::line) line(annotation);
+        else region(annotation);
     }
 
 private:
@@ -262,15 +252,10 @@ AnnotationSet collect_annotations(const Mesh& mesh, const AnnotationTable& table
     if (mesh.has_garbage())
         throw Error(ErrorKind::failure, "mesh", "has removed elements", "collect its garbage before reading annotations back");
     Collector collector(mesh, table, before, vertex_map);
-    AnnotationSet set;
-    set.object_class = before.object_class;
-    set.unit = before.unit;
-    set.up = before.up;
-    set.provenance.CopyFrom(before.provenance, set.provenance.GetAllocator());
-    set.notes = before.notes;
-    for (const auto& annotation : before.annotations) {
-        set.annotations.push_back(collector.follow(annotation));
-        move_pins(set.annotations.back(), vertex_map, mesh.number_of_vertices());
+    AnnotationSet set = before;
+    for (Annotation& annotation : set.annotations) {
+        collector.follow(annotation);
+        move_pins(annotation, vertex_map, mesh.number_of_vertices());
     }
     return set;
 }
@@ -286,20 +271,17 @@ void move_pins(Annotation& annotation, const std::vector<Index>& vertex_map, std
         if (attribute.type == AttributeType::descriptor) attribute.descriptor.stale = true;
         if (attribute.type != AttributeType::measure) continue;
         Measure& measure = attribute.measure;
-        bool lost = false;
-        for (Index& pin : measure.points) {
-            if (!vertex_map.empty()) pin = pin < vertex_map.size() ? vertex_map[pin] : no_index;
-            lost = lost || pin >= vertex_count;
-        }
-        // A picking that loses a pin is none; the others are left.
-        std::erase_if(measure.repeats, [&](std::vector<Index>& pins) {
-            bool gone = false;
+        const auto loses_a_pin = [&](std::vector<Index>& pins) {
+            bool lost = false;
             for (Index& pin : pins) {
                 if (!vertex_map.empty()) pin = pin < vertex_map.size() ? vertex_map[pin] : no_index;
-                gone = gone || pin >= vertex_count;
+                lost = lost || pin >= vertex_count;
             }
-            return gone;
-        });
+            return lost;
+        };
+        const bool lost = loses_a_pin(measure.points);
+        // A picking that loses a pin is none; the others are left.
+        std::erase_if(measure.repeats, loses_a_pin);
         measure.locations.clear();
         measure.uncertainty.reset();
         measure.stale = true;

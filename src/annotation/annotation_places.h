@@ -11,6 +11,7 @@ namespace ostraka {
 namespace places {
 [[noreturn]] void fail(const std::string& where, const std::string& pointer, const std::string& what, const std::string& remedy);
 void check_vertex(const Mesh& mesh, Index vertex, const std::string& where, const std::string& pointer);
+void check_vertices(const Mesh& mesh, const std::vector<Index>& vertices, const std::string& where, const std::string& pointer);
 void check_face(const Mesh& mesh, Index face, const std::string& where, const std::string& pointer);
 void check_edge(const Mesh& mesh, Index a, Index b, const std::string& where, const std::string& pointer);
 }  // namespace places

@@ -110,7 +110,7 @@ std::vector<Outline> outlines_of(const JsonValue& object, const Mesh& mesh, cons
     for (std::size_t i = 0; i < outlines.size(); ++i) {
         Outline& outline = outlines[i];
         const std::string here = at + "/boundaries/" + to_string(i);
-        for (std::size_t k = 0; k < outline.size(); ++k) places::check_vertex(mesh, outline[k], where, here + '/' + to_string(k));
+        places::check_vertices(mesh, outline, where, here);
         if (outline.size() > 3 && outline.front() == outline.back()) outline.pop_back();
         if (outline.size() < 3)
             fail(where, here, "an outline of " + to_string(outline.size()) + (outline.size() == 1 ? " vertex" : " vertices"),

@@ -2,10 +2,11 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/text.h"
+#include "ostraka/core/words.h"
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
+#include <concepts>
 #include <sstream>
 #include <stdexcept>
 
@@ -117,10 +118,7 @@ std::vector<std::string> Option::texts() const {
 }
 
 std::string Option::text() const {
-    std::string all;
-    const char* between = std::holds_alternative<std::vector<std::string>*>(value.place) ? "; " : ",";
-    for (const std::string& word : texts()) all += (all.empty() ? "" : between) + word;
-    return all;
+    return joined(texts(), std::holds_alternative<std::vector<std::string>*>(value.place) ? "; " : ",");
 }
 
 void Option::set(const std::vector<std::string>& words) {
@@ -175,8 +173,7 @@ void Option::set(const std::vector<double>& values) {
     std::vector<std::string> words;
     for (const double one : values) words.push_back(word_of(one));
     if (type() != OptionType::numbers && type() != OptionType::integers) {
-        std::string list;
-        for (const auto& word : words) list += (list.empty() ? "" : ",") + word;
+        const std::string list = joined(words, ",");
         // Directions and the like: three numbers, or a word.
         if (type() != OptionType::text) refuse(*this, list);
         set(std::vector{list});
@@ -186,11 +183,7 @@ void Option::set(const std::vector<double>& values) {
 }
 
 std::string Option::allowed() const {
-    if (const auto* choices = std::get_if<Choices>(&rule)) {
-        std::string list;
-        for (const auto& choice : choices->names) list += (list.empty() ? "" : ", ") + choice;
-        return "one of: " + list;
-    }
+    if (const auto* choices = std::get_if<Choices>(&rule)) return "one of: " + joined(choices->names);
     const OptionType kind = type();
     const bool whole = kind == OptionType::integer || kind == OptionType::integers;
     std::string what = kind == OptionType::boolean                                 ? "true or false"
@@ -204,29 +197,22 @@ std::string Option::allowed() const {
 
 void Option::check(const std::string& where) const {
     if (const auto* range = std::get_if<Range>(&rule)) {
-        const auto within = [&](double number) { return number >= range->min && number <= range->max; };
-        const auto look = [&](double number, const std::string& word) {
-            if (within(number)) return;
-            throw Error(ErrorKind::usage, where, "option " + name + " is " + word, "use " + allowed());
+        const auto look = [&]<class T>(T one) {
+            if constexpr (std::is_arithmetic_v<T> && !std::same_as<T, bool>) {
+                const auto number = static_cast<double>(one);
+                if (number >= range->min && number <= range->max) return;
+                const std::string word = std::floating_point<T> ? digits(number) : word_of(one);
+                throw Error(ErrorKind::usage, where, "option " + name + " is " + word, "use " + allowed());
+            }
         };
-        std::visit(Overloaded{[&](double* one) { look(*one, digits(*one)); }, [&](int* one) { look(*one, std::to_string(*one)); },
-                              [&](std::uint64_t* one) { look(static_cast<double>(*one), std::to_string(*one)); },
-                              [&](std::optional<double>* one) {
-                                  if (*one) look(**one, digits(**one));
+        std::visit(Overloaded{[](const EnumValue&) {},
+                              [&]<class T>(std::vector<T>* list) {
+                                  for (const T& one : *list) look(one);
                               },
-                              [&](std::optional<int>* one) {
-                                  if (*one) look(**one, std::to_string(**one));
+                              [&]<class T>(std::optional<T>* maybe) {
+                                  if (*maybe) look(**maybe);
                               },
-                              [&](std::optional<std::uint32_t>* one) {
-                                  if (*one) look(**one, std::to_string(**one));
-                              },
-                              [&](std::vector<double>* list) {
-                                  for (const double one : *list) look(one, digits(one));
-                              },
-                              [&](std::vector<int>* list) {
-                                  for (const int one : *list) look(one, std::to_string(one));
-                              },
-                              [](const auto&) {}},
+                              [&](auto* one) { look(*one); }},
                    value.place);
     }
     if (std::holds_alternative<Choices>(rule) && !std::holds_alternative<EnumValue>(value.place))

@@ -81,21 +81,10 @@ PolygonSoup read_polygons(const Path& file) {
     const std::string name = file.string();
     if (bytes.empty()) fail_input(name, "is empty", "export it again");
     const Format format = format_of_content(named, bytes);
-    PolygonSoup soup;
-    switch (format) {
-        case Format::obj:
-            soup = read_obj(bytes, name);
-            break;
-        case Format::off:
-            soup = read_off(bytes, name);
-            break;
-        case Format::ply:
-            soup = read_ply(bytes, name);
-            break;
-        case Format::stl:
-            soup = read_stl(bytes, name);
-            break;
-    }
+    PolygonSoup soup = format == Format::obj   ? read_obj(bytes, name)
+                       : format == Format::off ? read_off(bytes, name)
+                       : format == Format::ply ? read_ply(bytes, name)
+                                               : read_stl(bytes, name);
     if (soup.points.size() >= no_index)
         throw Error(ErrorKind::failure, name, "has more than four thousand million vertices", "split it");
     if (format != named)

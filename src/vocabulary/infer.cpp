@@ -36,13 +36,7 @@ struct Judgement {
 class Reasoner {
 public:
     Reasoner(const AnnotationSet& set, const Vocabulary& vocabulary) : search_(vocabulary) {
-        result_.annotations.object_class = set.object_class;
-        result_.annotations.unit = set.unit;
-        result_.annotations.up = set.up;
-        result_.annotations.notes = set.notes;
-        if (!set.provenance.IsNull())
-            result_.annotations.provenance.CopyFrom(set.provenance, result_.annotations.provenance.GetAllocator());
-        result_.annotations.annotations = set.annotations;
+        result_.annotations = set;
         for (Annotation& annotation : result_.annotations.annotations) {
             std::erase_if(annotation.attributes, [](const Attribute& attribute) { return inferred(attribute); });
             concepts_.push_back(search_.concept_of(annotation.tag));
