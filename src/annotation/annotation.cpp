@@ -56,6 +56,14 @@ std::vector<Index> pins_of(const Measure& measure) {
     return pins;
 }
 
+Figures figures_of(const Attribute& attribute) {
+    const Measure& measure = attribute.measure;
+    const Descriptor& descriptor = attribute.descriptor;
+    if (attribute.type == AttributeType::descriptor) return {descriptor.values, descriptor.unit, descriptor.stale};
+    if (attribute.type == AttributeType::semantic) return {};
+    return {measure.value ? std::vector{*measure.value} : std::vector<double>(), measure.unit, measure.stale};
+}
+
 std::vector<bool> face_flags(const Mesh& mesh, const std::vector<Index>& faces) {
     std::vector<bool> flags(mesh.number_of_faces(), false);
     for (const Index face : faces) {

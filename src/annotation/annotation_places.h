@@ -16,13 +16,6 @@ void check_face(const Mesh& mesh, Index face, const std::string& where, const st
 void check_edge(const Mesh& mesh, Index a, Index b, const std::string& where, const std::string& pointer);
 }  // namespace places
 
-/// The closed components of the mesh that a region covers wholly and that therefore have no outline in it.
-struct WholeComponents {
-    std::vector<Index> seeds;  ///< the smallest face of each
-    std::vector<Index> faces;  ///< all their faces
-};
-WholeComponents whole_components(const Mesh& mesh, const std::vector<Index>& faces, const std::vector<bool>& selected);
-
 /// Turns a prototype document (types Area, Line, Point; key color; flat attributes) into the thesis's form; adds to `notes` what
 /// had to be guessed or left out. Throws Error (input).
 Json convert_prototype(const JsonValue& document, const std::string& where, std::vector<std::string>& notes);

@@ -3,7 +3,6 @@
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/annotation/outline.h"
-#include "ostraka/core/error.h"
 #include "ostraka/core/flood.h"
 
 #include <algorithm>

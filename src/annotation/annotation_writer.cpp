@@ -1,5 +1,4 @@
 // Annotations -> JSON.
-#include "annotation_places.h"
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/annotation/outline.h"
@@ -52,6 +51,29 @@ JsonValue json_of(const Attribute& attribute, JsonAllocator& allocator) {
     return object;
 }
 
+/// The closed components of the mesh that a region covers wholly and that therefore have no outline in it.
+struct WholeComponents {
+    std::vector<Index> seeds;  ///< the smallest face of each
+    std::vector<Index> faces;  ///< all their faces
+};
+WholeComponents whole_components(const Mesh& mesh, const std::vector<Index>& faces, const std::vector<bool>& selected) {
+    WholeComponents result;
+    std::vector<bool> seen(selected.size(), false);
+    for (const Index first : faces) {
+        if (seen[first]) continue;
+        bool whole = true;
+        const std::vector<Face> part = flood_faces(mesh, Face(first), seen, [&](Halfedge h) {
+            const bool stays = !mesh.is_border(mesh.opposite(h)) && selected[mesh.face(mesh.opposite(h))];
+            whole = whole && stays;
+            return stays;
+        });
+        if (!whole) continue;
+        result.seeds.push_back(first);  // the smallest of its component, as `faces` ascends
+        result.faces.insert(result.faces.end(), part.begin(), part.end());
+    }
+    return result;
+}
+
 /// Boundaries always, as the thesis's readers ask for them; seeds for whole closed components; the faces themselves only if those
 /// two do not tell them.
 void add_region(JsonValue& object, const Annotation& annotation, const Mesh& mesh, JsonAllocator& allocator) {
@@ -82,24 +104,6 @@ JsonValue json_of(const Annotation& annotation, const Mesh& mesh, JsonAllocator&
 }
 
 }  // namespace
-
-WholeComponents whole_components(const Mesh& mesh, const std::vector<Index>& faces, const std::vector<bool>& selected) {
-    WholeComponents result;
-    std::vector<bool> seen(selected.size(), false);
-    for (const Index first : faces) {
-        if (seen[first]) continue;
-        bool whole = true;
-        const std::vector<Face> part = flood_faces(mesh, Face(first), seen, [&](Halfedge h) {
-            const bool stays = !mesh.is_border(mesh.opposite(h)) && selected[mesh.face(mesh.opposite(h))];
-            whole = whole && stays;
-            return stays;
-        });
-        if (!whole) continue;
-        result.seeds.push_back(first);  // the smallest of its component, as `faces` ascends
-        result.faces.insert(result.faces.end(), part.begin(), part.end());
-    }
-    return result;
-}
 
 Json annotations_to_json(const AnnotationSet& set, const Mesh& mesh, const std::string& mesh_file, const Provenance& provenance) {
     check_annotations(set, mesh, mesh_file.empty() ? "annotations" : "annotations of " + mesh_file);

@@ -327,13 +327,11 @@ private:
                     values[i] += (values[i].empty() ? "" : "; ") + attribute.note;
                     continue;
                 }
-                const bool measured = attribute.type == AttributeType::measure;
-                const auto& list = attribute.descriptor.values;
-                if (measured ? !attribute.measure.value.has_value() : list.size() != 1) continue;
-                const std::string& unit = measured ? attribute.measure.unit : attribute.descriptor.unit;
-                auto& values = numbers[unit.empty() ? attribute.name : attribute.name + " (" + unit + ")"];
+                const Figures figures = figures_of(attribute);
+                if (figures.values.size() != 1) continue;
+                auto& values = numbers[figures.unit.empty() ? attribute.name : attribute.name + " (" + figures.unit + ")"];
                 values.resize(none(), missing);
-                values[i] = measured ? *attribute.measure.value : list.front();
+                values[i] = figures.values.front();
             }
         std::size_t number = 0;
         for (const auto& [name, values] : numbers) {

@@ -9,67 +9,23 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace ostraka::interchange {
 
-VertexSearch::VertexSearch(const Mesh& mesh) : mesh_(mesh) {
-    for (const Vertex v : mesh.vertices())
-        if (!mesh.is_isolated(v)) order_.push_back(v);
-    if (order_.empty()) fail_input("mesh", "has no faces", "give a mesh with faces");
-    struct Range {
-        std::size_t begin, end;
-        int axis;
-    };
-    std::vector<Range> ranges{{0, order_.size(), 0}};
-    while (!ranges.empty()) {
-        const auto [begin, end, axis] = ranges.back();
-        ranges.pop_back();
-        if (end - begin < 2) continue;
-        const std::size_t middle = begin + (end - begin) / 2;
-        const auto at = [this](std::size_t i) { return order_.begin() + static_cast<std::ptrdiff_t>(i); };
-        std::nth_element(at(begin), at(middle), at(end), [&](Index a, Index b) {
-            const double x = mesh_.point(Vertex(a))[axis], y = mesh_.point(Vertex(b))[axis];
-            return x < y || (x == y && a < b);
-        });
-        ranges.push_back({begin, middle, (axis + 1) % 3});
-        ranges.push_back({middle + 1, end, (axis + 1) % 3});
+Placer::Placer(const Mesh& mesh) : mesh_(mesh), surface_(mesh) {
+    std::vector<Point> points;
+    for (const Vertex v : mesh.vertices()) {
+        if (mesh.is_isolated(v)) continue;
+        vertices_.push_back(v);
+        points.push_back(mesh.point(v));
     }
+    if (points.empty()) fail_input("mesh", "has no faces", "give a mesh with faces");
+    points_ = PointTree(points);
 }
-
-Index VertexSearch::nearest(const Point& query) const {
-    double best = std::numeric_limits<double>::infinity();
-    Index found = no_index;
-    search(0, order_.size(), 0, query, best, found);
-    return found;
-}
-
-// NOLINTNEXTLINE(misc-no-recursion): as deep as the logarithm of the number of vertices
-void VertexSearch::search(std::size_t begin, std::size_t end, int axis, const Point& query, double& best, Index& found) const {
-    if (begin >= end) return;
-    const std::size_t middle = begin + (end - begin) / 2;
-    const Point& point = mesh_.point(Vertex(order_[middle]));
-    const double distance = CGAL::squared_distance(point, query);
-    if (found == no_index || distance < best || (distance == best && order_[middle] < found)) {
-        best = distance;
-        found = order_[middle];
-    }
-    const double offset = query[axis] - point[axis];
-    const int next = (axis + 1) % 3;
-    if (offset < 0) {
-        search(begin, middle, next, query, best, found);
-        if (offset * offset <= best) search(middle + 1, end, next, query, best, found);
-    } else {
-        search(middle + 1, end, next, query, best, found);
-        if (offset * offset <= best) search(begin, middle, next, query, best, found);
-    }
-}
-
-Placer::Placer(const Mesh& mesh) : mesh_(mesh), surface_(mesh), vertices_(mesh) {}
 
 Placed Placer::place(const Point& point) const {
     Placed placed;
-    placed.vertex = vertices_.nearest(point);
+    placed.vertex = vertices_[points_.nearest(point).index];
     placed.to_vertex = std::sqrt(CGAL::squared_distance(point, mesh_.point(Vertex(placed.vertex))));
     placed.to_surface = std::min(surface_.closest(point).distance, placed.to_vertex);
     return placed;

@@ -26,26 +26,14 @@ std::string uuid_of(const std::string& content) {
            hex.substr(20);
 }
 
-/// A file name as a relative IRI (RFC 3986): everything but unreserved characters as percent codes.
-std::string iri_of(const std::string& name) {
-    std::string iri;
-    for (const char c : name) {
-        const auto byte = static_cast<unsigned char>(c);
-        const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '.' ||
-                           c == '_' || c == '~';
-        if (plain) iri += c;
-        else iri += std::string("%") + "0123456789ABCDEF"[byte >> 4] + "0123456789ABCDEF"[byte & 15];
-    }
-    return iri.empty() ? "mesh" : iri;
-}
-
 class Writer {
 public:
     Writer(const Mesh& mesh, const AnnotationSet& set, const std::string& mesh_file, const Provenance& provenance)
         : mesh_(mesh), set_(set), native_(annotations_to_json(set, mesh, mesh_file, provenance)), number_(components()) {
         document_.SetObject();
         checksum_ = text_in(native_["mesh"], "sha256");
-        source_ = iri_of(Path(mesh_file).filename().string());
+        source_ = percent_encoded(Path(mesh_file).filename().string());  // a relative IRI
+        if (source_.empty()) source_ = "mesh";
     }
 
     std::string write() {
@@ -90,14 +78,10 @@ private:
 
     static std::string in_words(const Attribute& attribute) {
         if (attribute.type == AttributeType::semantic) return attribute.name + ": " + attribute.note;
-        const bool measured = attribute.type == AttributeType::measure;
+        const auto [values, unit, stale] = figures_of(attribute);
         std::string text = attribute.name + ":";
-        if (measured && attribute.measure.value) text += " " + digits(*attribute.measure.value);
-        for (std::size_t i = 0; !measured && i < attribute.descriptor.values.size() && i < 8; ++i)
-            text += " " + digits(attribute.descriptor.values[i]);
-        const std::string& unit = measured ? attribute.measure.unit : attribute.descriptor.unit;
-        if (!unit.empty()) text += " " + unit;
-        return text + ((measured ? attribute.measure.stale : attribute.descriptor.stale) ? " (stale)" : "");
+        for (std::size_t i = 0; i < values.size() && i < 8; ++i) text += " " + digits(values[i]);
+        return text + (unit.empty() ? "" : " " + unit) + (stale ? " (stale)" : "");
     }
 
     JsonValue annotation(const JsonValue& native, const Annotation& annotation) {

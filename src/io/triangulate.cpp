@@ -1,8 +1,6 @@
 #include "ostraka/io/mesh_file.h"
 #include "polygon_cutter.h"
 
-#include "ostraka/core/error.h"
-
 namespace ostraka {
 
 namespace {

@@ -256,8 +256,6 @@ double rival(const Mesh& mesh, const std::vector<double>& strength, Index top, d
 
 }  // namespace
 
-std::vector<double> crease_response(const Mesh& mesh, const CreaseOptions& options) { return respond(mesh, options).values; }
-
 std::vector<Crease> find_creases(const Mesh& mesh, const CreaseOptions& options) {
     const Response response = respond(mesh, options);
     if (mesh.number_of_faces() == 0) return {};
@@ -292,9 +290,7 @@ std::vector<Crease> find_creases(const Mesh& mesh, const CreaseOptions& options)
             crease.length = ground.length_of(crease.line);
             if (crease.faces.empty() || !(crease.length >= options.shortest * diagonal)) continue;
             crease.closed = crease.line.front() == crease.line.back();
-            double area = 0;
-            for (const Index f : crease.faces) area += face_area(mesh, Face(f));
-            crease.width = area / crease.length;
+            crease.width = area_of(mesh, crease.faces) / crease.length;
             for (const Index v : crease.line) {
                 crease.mean_curvature += response.curvature[v] / double(crease.line.size());
                 crease.strength += strength[v] / double(crease.line.size());

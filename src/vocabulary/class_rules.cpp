@@ -206,7 +206,6 @@ private:
 
     static bool satisfies(const AttributeRule& rule, const AllowedAttribute* allowed, const Attribute& attribute,
                           std::string& text) {
-        const bool measured = attribute.type == AttributeType::measure;
         if (attribute.type == AttributeType::semantic) {
             text = in_quotes(attribute.note);
             if (rule.min || rule.max || !rule.unit.empty()) return false;
@@ -217,14 +216,12 @@ private:
                 return term != nullptr && term == term_of(*allowed, attribute.note);
             });
         }
-        const std::string& unit = measured ? attribute.measure.unit : attribute.descriptor.unit;
-        std::vector<double> values = attribute.descriptor.values;
-        if (measured) values = attribute.measure.value ? std::vector<double>{*attribute.measure.value} : std::vector<double>{};
+        const auto [values, unit, stale] = figures_of(attribute);
         text = values.empty() ? "without a value" : text_of(values.front()) + (unit.empty() ? "" : " " + unit);
-        if (measured ? attribute.measure.stale : attribute.descriptor.stale) text += " (stale)";
+        if (stale) text += " (stale)";
         if (!rule.values.empty()) return false;
         if (!rule.min && !rule.max && rule.unit.empty()) return true;
-        if (values.empty() || (measured ? attribute.measure.stale : attribute.descriptor.stale)) return false;
+        if (values.empty() || stale) return false;
         for (const double value : values) {
             const auto number = rule.unit.empty() ? std::optional<double>(value) : converted(value, unit, rule.unit);
             if (!number || (rule.min && *number < *rule.min) || (rule.max && *number > *rule.max)) return false;

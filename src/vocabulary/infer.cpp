@@ -7,10 +7,8 @@
 #include "words.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <set>
-#include <sstream>
 
 namespace ostraka {
 
@@ -162,16 +160,15 @@ private:
             return value;
         }
         const Attribute& attribute = *found.front();
-        const bool measured = attribute.type == AttributeType::measure;
         if (attribute.type == AttributeType::semantic) {
             value.word = attribute.note;
             return value;
         }
-        value.unit = measured ? attribute.measure.unit : attribute.descriptor.unit;
-        if (measured ? attribute.measure.stale : attribute.descriptor.stale) value.missing = name + " is stale";
-        else if (measured && attribute.measure.value) value.number = attribute.measure.value;
-        else if (!measured && attribute.descriptor.values.size() == 1) value.number = attribute.descriptor.values.front();
-        else value.missing = name + (measured || attribute.descriptor.values.empty() ? " has no value" : " is a list of numbers");
+        const Figures figures = figures_of(attribute);
+        value.unit = figures.unit;
+        if (figures.stale) value.missing = name + " is stale";
+        else if (figures.values.size() == 1) value.number = figures.values.front();
+        else value.missing = name + (figures.values.empty() ? " has no value" : " is a list of numbers");
         return value;
     }
 

@@ -153,7 +153,7 @@ private:
             ids_[text] = id;
             Concept entry;
             entry.id = id;
-            if (prefix + skos::percent_encoded(id) != text) entry.uri = text;
+            if (prefix + percent_encoded(id) != text) entry.uri = text;
             vocabulary_.concepts.push_back(std::move(entry));
             index_[text] = i;
         }

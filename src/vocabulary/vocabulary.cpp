@@ -34,7 +34,7 @@ public:
                 fail(at + "/id", "the id '" + entry.id + "' is that of /concepts/" + to_string(first->second) + " as well",
                      "give each concept an id of its own");
             const std::string uri =
-                entry.uri.empty() ? skos::namespace_of(vocabulary_.uri) + skos::percent_encoded(entry.id) : entry.uri;
+                entry.uri.empty() ? skos::namespace_of(vocabulary_.uri) + percent_encoded(entry.id) : entry.uri;
             if (!uris.insert(uri).second)
                 fail(at + "/uri", "another concept has the URI <" + uri + "> as well", "give each concept its own");
             attributes(entry.attributes, at);

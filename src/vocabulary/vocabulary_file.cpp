@@ -267,7 +267,7 @@ Vocabulary vocabulary_from_json(const JsonValue& document, const std::string& wh
     vocabulary.others = statements_of(document, where, "");
     if (vocabulary.uri == skos::default_scheme) vocabulary.uri.clear();
     for (Concept& entry : vocabulary.concepts)
-        if (entry.uri == skos::namespace_of(vocabulary.uri) + skos::percent_encoded(entry.id)) entry.uri.clear();
+        if (entry.uri == skos::namespace_of(vocabulary.uri) + percent_encoded(entry.id)) entry.uri.clear();
     check_vocabulary(vocabulary, where);
     return vocabulary;
 }

@@ -2,7 +2,6 @@
 #include "rdf.h"
 #include "skos_terms.h"
 
-#include "ostraka/core/error.h"
 #include "ostraka/vocabulary/skos.h"
 
 #include <charconv>
@@ -34,8 +33,7 @@ public:
                 {Kind::text, to_text(vocabulary_to_json(vocabulary)["rules"]), {}, skos::rdf + "JSON"});
         std::map<std::string, RdfTerm> terms;
         for (const Concept& entry : vocabulary.concepts)
-            terms[entry.id] =
-                uri(entry.uri.empty() ? skos::namespace_of(vocabulary.uri) + skos::percent_encoded(entry.id) : entry.uri);
+            terms[entry.id] = uri(entry.uri.empty() ? skos::namespace_of(vocabulary.uri) + percent_encoded(entry.id) : entry.uri);
         for (std::size_t i = 0; i < vocabulary.concepts.size(); ++i) {
             const Concept& entry = vocabulary.concepts[i];
             const RdfTerm& term = terms.at(entry.id);

@@ -23,6 +23,9 @@ bool is_control(char32_t code);
 /// The text with `instead` for each control character.
 std::string without_controls(std::string_view text, std::string_view instead);
 
+/// Every byte but letters, digits and -._~ as %XX (RFC 3986).
+std::string percent_encoded(std::string_view text);
+
 /// The shortest digits that read back to the same double.
 std::string digits(double value);
 /// At most so many significant digits, for people.
