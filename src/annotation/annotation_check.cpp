@@ -135,8 +135,7 @@ void check_selection(const Annotation& annotation, const Mesh& mesh, const std::
 }  // namespace
 
 void check_annotations(const AnnotationSet& set, const Mesh& mesh, const std::string& where) {
-    if (mesh.has_garbage())
-        throw Error(ErrorKind::failure, where, "the mesh has removed elements", "collect the mesh's garbage first");
+    if (mesh.has_garbage()) fail_work(where, "the mesh has removed elements", "collect the mesh's garbage first");
     if (set.up) {
         const auto& [x, y, z] = *set.up;
         if (unit_vector({x, y, z}) == CGAL::NULL_VECTOR)

@@ -100,11 +100,8 @@ private:
     void line(int indent) { text += '\n', text.append(2 * static_cast<std::size_t>(indent), ' '); }
     void plain(const JsonValue& v) {
         if (v.IsDouble() && !std::isfinite(v.GetDouble()))
-            throw Error(ErrorKind::failure, "JSON output", "a number is not finite", "report this as a defect");
-        rapidjson::StringBuffer buffer;
-        rapidjson::Writer<rapidjson::StringBuffer> writer(buffer);
-        v.Accept(writer);
-        text.append(buffer.GetString(), buffer.GetSize());
+            fail_work("JSON output", "a number is not finite", "report this as a defect");
+        text += to_compact_text(v);
     }
     static bool is_short(const JsonValue& v) {
         for (const auto& element : v.GetArray())
@@ -164,6 +161,13 @@ std::string to_text(const JsonValue& value) {
     return std::move(printer.text);
 }
 
+std::string to_compact_text(const JsonValue& value) {
+    rapidjson::StringBuffer buffer;
+    rapidjson::Writer<rapidjson::StringBuffer> writer(buffer);
+    value.Accept(writer);
+    return {buffer.GetString(), buffer.GetSize()};
+}
+
 void write_json(const Path& file, const JsonValue& value) { write_file(file, to_text(value)); }
 
 void validate(const JsonValue& value, const std::string& schema, const std::string& where) {
@@ -191,10 +195,7 @@ void validate(const JsonValue& value, const std::string& schema, const std::stri
     if (const JsonValue* rules = validator.GetInvalidSchemaPointer().Get(schema_document);
         rules != nullptr && rules->IsObject()) {
         if (const JsonValue* rule = find_member(*rules, keyword)) {
-            rapidjson::StringBuffer buffer;
-            rapidjson::Writer<rapidjson::StringBuffer> writer(buffer);
-            rule->Accept(writer);
-            std::string rule_text(buffer.GetString(), buffer.GetSize());
+            std::string rule_text = to_compact_text(*rule);
             if (rule_text.size() > 200) rule_text = rule_text.substr(0, 197) + "...";
             expected += " " + rule_text;
         }

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <charconv>
 #include <concepts>
-#include <sstream>
 #include <stdexcept>
 
 namespace ostraka {
@@ -23,10 +22,8 @@ std::string word_of(bool value) { return value ? "true" : "false"; }
 std::string word_of(const std::string& value) { return value; }
 template <class Number>
 std::string word_of(Number value) {
-    std::ostringstream text;
-    text.precision(17);
-    text << value;
-    return text.str();
+    if constexpr (std::floating_point<Number>) return digits(value, 17);
+    else return std::to_string(value);
 }
 
 [[noreturn]] void refuse(const Option& option, const std::string& value, const std::string& where = {}) {
@@ -62,16 +59,18 @@ std::vector<std::string> split(const std::string& list) {
     return words;
 }
 
-std::string shown(double bound) {
-    std::ostringstream text;
-    text << bound;
-    return text.str();
-}
-
 const std::vector<std::string>& names_of(const Option& option) {
     const auto* choices = std::get_if<Choices>(&option.rule);
     if (choices == nullptr) throw std::logic_error("option " + option.name + " has no choices");
     return choices->names;
+}
+
+template <class T>
+OptionType type_of() {
+    return std::same_as<T, bool>          ? OptionType::boolean
+           : std::same_as<T, std::string> ? OptionType::text
+           : std::floating_point<T>       ? OptionType::number
+                                          : OptionType::integer;
 }
 
 }  // namespace
@@ -80,14 +79,9 @@ OptionType Option::type() const {
     if (std::holds_alternative<Choices>(rule) && !is_list()) return OptionType::choice;
     return std::visit(
         Overloaded{
-            [](bool*) { return OptionType::boolean; }, [](int*) { return OptionType::integer; },
-            [](std::uint64_t*) { return OptionType::integer; }, [](double*) { return OptionType::number; },
-            [](std::string*) { return OptionType::text; }, [](std::vector<std::string>*) { return OptionType::texts; },
+            [](const EnumValue&) { return OptionType::choice; }, [](std::vector<std::string>*) { return OptionType::texts; },
             [](std::vector<double>*) { return OptionType::numbers; }, [](std::vector<int>*) { return OptionType::integers; },
-            [](std::optional<bool>*) { return OptionType::boolean; }, [](std::optional<int>*) { return OptionType::integer; },
-            [](std::optional<std::uint32_t>*) { return OptionType::integer; },
-            [](std::optional<double>*) { return OptionType::number; },
-            [](std::optional<std::string>*) { return OptionType::text; }, [](const EnumValue&) { return OptionType::choice; }},
+            []<class T>(std::optional<T>*) { return type_of<T>(); }, []<class T>(T*) { return type_of<T>(); }},
         value.place);
 }
 
@@ -190,7 +184,8 @@ std::string Option::allowed() const {
                        : whole                                                     ? "a whole number"
                        : kind == OptionType::number || kind == OptionType::numbers ? "a number"
                                                                                    : "a text";
-    if (const auto* range = std::get_if<Range>(&rule)) what = "a value from " + shown(range->min) + " to " + shown(range->max);
+    if (const auto* range = std::get_if<Range>(&rule))
+        what = "a value from " + digits(range->min, 6) + " to " + digits(range->max, 6);
     if (is_list() && kind != OptionType::texts) what += ", with commas between several";
     return what + (unit.empty() ? "" : " (" + unit + ")");
 }

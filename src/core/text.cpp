@@ -20,6 +20,17 @@ Character character_at(std::string_view text, std::size_t at) {
     return {code, length};
 }
 
+std::u32string characters(std::string_view text) {
+    std::u32string list;
+    for (std::size_t at = 0; at < text.size();) {
+        const Character here = character_at(text, at);
+        const bool odd = here.code == 0xFFFD && here.length == 1;
+        list += odd ? not_utf8 + static_cast<unsigned char>(text[at]) : here.code;
+        at += here.length;
+    }
+    return list;
+}
+
 bool is_control(char32_t code) {
     return code < 0x20 || (code >= 0x7F && code < 0xA0) || (code >= 0x202A && code <= 0x202E) ||
            (code >= 0x2066 && code <= 0x2069);

@@ -51,9 +51,9 @@ public:
 
     std::string write() {
         if (mesh_.number_of_faces() == 0)
-            throw Error(ErrorKind::failure, where_, "glTF does not hold a mesh without triangles", "export another format");
+            fail_work(where_, "glTF does not hold a mesh without triangles", "export another format");
         if (set_.annotations.size() >= exact_in_float)
-            throw Error(ErrorKind::failure, where_, "more annotations than feature ids can tell apart", "export fewer");
+            fail_work(where_, "more annotations than feature ids can tell apart", "export fewer");
         JsonValue primitives(rapidjson::kArrayType);
         primitives.PushBack(primitive(surface(), glb::triangles_mode), a());
         const Corners drawn = lines(), marked = points();
@@ -198,8 +198,7 @@ private:
             const Point& p = mesh_.point(Vertex(corners_.vertices[i]));
             for (int k = 0; k < 3; ++k) {
                 if (std::fabs(p[k]) > static_cast<double>(std::numeric_limits<float>::max()))
-                    throw Error(ErrorKind::failure, where_, "a coordinate does not fit the single precision of glTF",
-                                "rescale the mesh");
+                    fail_work(where_, "a coordinate does not fit the single precision of glTF", "rescale the mesh");
                 const auto narrow = static_cast<float>(p[k]);
                 rounded_ = rounded_ || static_cast<double>(narrow) != p[k];
                 low[static_cast<std::size_t>(k)] = std::min(low[static_cast<std::size_t>(k)], narrow);
@@ -269,7 +268,7 @@ private:
         for (const std::string& text : texts) {
             bytes += as_utf8(text);
             if (bytes.size() > std::numeric_limits<std::uint32_t>::max())
-                throw Error(ErrorKind::failure, where_, "its texts exceed four gigabytes", "shorten them");
+                fail_work(where_, "its texts exceed four gigabytes", "shorten them");
             append(offsets, static_cast<std::uint32_t>(bytes.size()));
         }
         JsonValue values = stored(bytes);

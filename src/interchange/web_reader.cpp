@@ -2,7 +2,6 @@
 #include "ostraka/interchange/web_annotation.h"
 
 #include "landmark_formats.h"
-#include "place_region.h"
 #include "placing.h"
 #include "text.h"
 #include "web_terms.h"
@@ -13,6 +12,7 @@
 #include "ostraka/measure/measure.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <set>
 
@@ -43,6 +43,45 @@ std::vector<const JsonValue*> listed(const JsonValue* value) {
 bool is_selector(const JsonValue& value, const std::string& name) {
     const JsonValue* type = find_member(value, "type");
     return holds(type, name) || holds(type, web::terms + name.substr(name.find(':') + 1));
+}
+
+/// What of a region lies on one connected component of its own mesh.
+struct RegionPart {
+    double area = 0;
+    Point inside{0, 0, 0};
+    std::vector<std::vector<Index>>
+        outlines;  ///< vertices of the mesh at hand nearest to the outline's; none: the whole component
+};
+
+/// The faces of the region, ascending. Outlines are joined along edges and filled by winding number; `remarks` says where the
+/// area changed by more than a twentieth or nothing was left.
+std::vector<Index> region_of(Placer& placer, const std::vector<RegionPart>& parts, const std::string& where,
+                             std::vector<std::string>& remarks) {
+    const Mesh& mesh = placer.mesh();
+    std::vector<bool> selected(mesh.number_of_faces(), false);
+    for (const RegionPart& part : parts) {
+        std::vector<bool> flags;
+        if (part.outlines.empty()) {
+            flags = placer.component(placer.nearest(part.inside).face);
+        } else {
+            std::vector<std::vector<Index>> vertex_paths;
+            for (const auto& outline : part.outlines) {
+                std::vector<Index> vertex_path = placer.vertex_path(outline, true, where);
+                if (vertex_path.size() > 3) vertex_paths.push_back(std::move(vertex_path));
+            }
+            flags = placer.fill(vertex_paths, part.area);
+        }
+        double area = 0;
+        for (std::size_t f = 0; f < flags.size(); ++f)
+            if (flags[f]) {
+                area += face_area(mesh, Face(static_cast<Index>(f)));
+                selected[f] = true;
+            }
+        if (area == 0) remarks.emplace_back("a part of the region shrank to nothing on this mesh");
+        else if (std::abs(area - part.area) > part.area / 20)
+            remarks.push_back("a part's area of " + digits(part.area) + " became " + digits(area) + " on this mesh");
+    }
+    return flagged(selected);
 }
 
 class WebReader {

@@ -63,11 +63,11 @@ private:
     JsonAllocator& a() { return document_.GetAllocator(); }
 
     JsonValue context() {
-        JsonValue terms = json_object(a(), "@version", 1.1, "ostraka", web::terms), list(rapidjson::kArrayType);
+        JsonValue terms = json_object(a(), "@version", 1.1, "ostraka", web::terms);
         for (const char* name : {"sha256", "vertices", "faces"}) add_member(terms, name, std::string("ostraka:") + name, a());
         for (const char* name : {"indices", "places", "about"})
             add_members(terms, a(), name, json_object(a(), "@id", std::string("ostraka:") + name, "@type", "@json"));
-        list.PushBack(json_string(web::context, a()), a());
+        JsonValue list = json_value(std::array{web::context}, a());
         list.PushBack(terms, a());
         return list;
     }

@@ -6,9 +6,6 @@
 #include "ostraka/core/provenance.h"
 #include "ostraka/core/text.h"
 
-#include <rapidjson/stringbuffer.h>
-#include <rapidjson/writer.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -59,7 +56,7 @@ std::uint16_t linear_channel(std::size_t value) {
 
 void check_size(std::size_t bytes, const std::string& where, const std::string& remedy) {
     if (bytes > std::numeric_limits<std::uint32_t>::max())
-        throw Error(ErrorKind::failure, where, "would exceed the four gigabytes of a GLB file", remedy);
+        fail_work(where, "would exceed the four gigabytes of a GLB file", remedy);
 }
 
 Builder::Builder(std::size_t alignment, bool escapes) : alignment_(alignment), escapes_(escapes) {
@@ -102,7 +99,7 @@ int Builder::announce_accessor(std::size_t size, int target, int component, std:
 }
 
 void Builder::mark_normalised(int accessor) {
-    add_member(accessors_[static_cast<rapidjson::SizeType>(accessor)], "normalized", JsonValue(true), allocator());
+    add_members(accessors_[static_cast<rapidjson::SizeType>(accessor)], allocator(), "normalized", true);
 }
 
 std::string Builder::head(const std::string& where, const std::string& remedy) {
@@ -110,10 +107,7 @@ std::string Builder::head(const std::string& where, const std::string& remedy) {
     if (!binary_.empty()) binary_.resize(size_, '\0');
     add_members(document_, allocator(), "accessors", std::move(accessors_), "bufferViews", std::move(views_), "buffers",
                 json_list_of(json_object(allocator(), "byteLength", size_), allocator()));
-    rapidjson::StringBuffer text;
-    rapidjson::Writer<rapidjson::StringBuffer> writer(text);
-    document_.Accept(writer);
-    std::string json(text.GetString(), text.GetSize());
+    std::string json = to_compact_text(document_);
     if (escapes_) json = with_markup_escaped(json);
     while ((12 + 8 + json.size() + 8) % alignment_ != 0) json += ' ';
     const std::size_t total = 12 + 8 + json.size() + 8 + size_;

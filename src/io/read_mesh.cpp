@@ -11,7 +11,7 @@ namespace io {
 
 void close_polygon(PolygonSoup& soup, const std::string& file) {
     if (soup.corners.size() >= no_index || soup.polygon_begin.size() >= no_index)
-        throw Error(ErrorKind::failure, file, "has more than four thousand million face corners", "split it");
+        fail_work(file, "has more than four thousand million face corners", "split it");
     soup.polygon_begin.push_back(static_cast<Index>(soup.corners.size()));
 }
 
@@ -85,8 +85,7 @@ PolygonSoup read_polygons(const Path& file) {
                        : format == Format::off ? read_off(bytes, name)
                        : format == Format::ply ? read_ply(bytes, name)
                                                : read_stl(bytes, name);
-    if (soup.points.size() >= no_index)
-        throw Error(ErrorKind::failure, name, "has more than four thousand million vertices", "split it");
+    if (soup.points.size() >= no_index) fail_work(name, "has more than four thousand million vertices", "split it");
     if (format != named)
         soup.notes.push_back("named " + extension(file) + " but holds " + name_of(format) + ", and was read as such");
     return soup;

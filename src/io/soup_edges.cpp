@@ -70,7 +70,7 @@ std::vector<Index> same_place(const std::vector<std::array<double, 3>>& points) 
 
 void check_soup(const TriangleSoup& soup) {
     if (soup.points.size() >= no_index / 8 || soup.triangles.size() >= no_index / 8)
-        throw Error(ErrorKind::failure, "mesh", "has more than 536 million vertices or triangles", "split it");
+        fail_work("mesh", "has more than 536 million vertices or triangles", "split it");
     for (std::size_t t = 0; t < soup.triangles.size(); ++t)
         for (const Index v : soup.triangles[t])
             if (v >= soup.points.size())

@@ -11,8 +11,7 @@
 namespace ostraka::io {
 
 Notes write_glb(const Path& file, const TriangleSoup& soup, const MeshExtras& extras, const WriteOptions& options) {
-    if (soup.triangles.empty())
-        throw Error(ErrorKind::failure, file.string(), "glTF does not hold a mesh without triangles", "write PLY, OBJ or OFF");
+    if (soup.triangles.empty()) fail_work(file.string(), "glTF does not hold a mesh without triangles", "write PLY, OBJ or OFF");
     const bool corner_texture = extras.vertex_texture.empty() && !extras.corner_texture.empty();
     const bool textured = corner_texture || !extras.vertex_texture.empty();
     const bool face_coloured = extras.vertex_colours.empty() && !extras.face_colours.empty();
@@ -34,8 +33,8 @@ Notes write_glb(const Path& file, const TriangleSoup& soup, const MeshExtras& ex
         for (std::size_t k = 0; k < 3; ++k) {
             const double x = soup.points[vertex_of(i)][k];
             if (std::fabs(x) > static_cast<double>(std::numeric_limits<float>::max()))
-                throw Error(ErrorKind::failure, file.string(), "a coordinate does not fit the single precision of glTF",
-                            "write PLY, OBJ or OFF, or rescale the mesh");
+                fail_work(file.string(), "a coordinate does not fit the single precision of glTF",
+                          "write PLY, OBJ or OFF, or rescale the mesh");
             const auto narrow = static_cast<float>(x);
             rounded = rounded || static_cast<double>(narrow) != x;
             low[k] = std::min(low[k], narrow);

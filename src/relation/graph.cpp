@@ -139,6 +139,16 @@ std::string nearest_relation_type(const std::string& name) {
     return best->name;
 }
 
+Relationship extracted_relationship(GeometricRelation kind, int id, std::vector<int> annotations) {
+    Relationship relationship;
+    relationship.id = id;
+    relationship.type = relation_type(kind).name;
+    relationship.directed = relation_type(kind).directed;
+    relationship.annotations = std::move(annotations);
+    relationship.origin = "extracted";
+    return relationship;
+}
+
 int free_id(const RelationGraph& graph) { return next_free_id(graph.relationships); }
 
 void check_relationship(const Relationship& relationship, const AnnotationSet& set, const std::string& place) {

@@ -2,6 +2,7 @@
 
 #include "ostraka/annotation/outline.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/text.h"
 #include "ostraka/fields/curvature.h"
 #include "ostraka/fields/statistics.h"
 #include "ostraka/measure/descriptors.h"
@@ -11,7 +12,6 @@
 #include <limits>
 #include <queue>
 #include <set>
-#include <sstream>
 
 namespace ostraka {
 
@@ -33,12 +33,7 @@ double robust_deviation(const Mesh& mesh, const std::vector<double>& values) {
     return 1.4826 * quantile(sizes, areas, 0.5, "creases");
 }
 
-std::string text(double value) {
-    std::ostringstream stream;
-    stream.precision(3);
-    stream << value;
-    return stream.str();
-}
+std::string text(double value) { return digits(value, 3); }
 
 void check(const Mesh& mesh, const CreaseOptions& options) {
     check_options(options, "creases");

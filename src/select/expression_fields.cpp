@@ -3,6 +3,7 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/inside.h"
+#include "ostraka/core/text.h"
 #include "ostraka/fields/curvature.h"
 #include "ostraka/fields/thickness.h"
 #include "ostraka/render/values.h"
@@ -10,7 +11,6 @@
 #include "ostraka/select/selections.h"
 
 #include <algorithm>
-#include <sstream>
 
 namespace ostraka {
 
@@ -18,12 +18,7 @@ namespace {
 
 using std::to_string;
 
-std::string key_of(const char* name, double a, double b = 0) {
-    std::ostringstream text;
-    text.precision(17);
-    text << name << ' ' << a << ' ' << b;
-    return text.str();
-}
+std::string key_of(const char* name, double a, double b = 0) { return std::string(name) + ' ' + digits(a) + ' ' + digits(b); }
 
 }  // namespace
 

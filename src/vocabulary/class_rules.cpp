@@ -17,13 +17,6 @@ namespace {
 
 using std::to_string;
 
-std::string alternatives(const std::vector<std::string>& list) {
-    std::string text;
-    for (std::size_t i = 0; i < list.size(); ++i)
-        text += (i == 0 ? "" : i + 1 == list.size() ? " or " : ", ") + in_quotes(list[i]);
-    return text;
-}
-
 Subject subject_of(const JsonValue& value) {
     if (value.IsString()) return {text_of(value), std::nullopt};
     Subject subject{text_of(value["tag"]), std::nullopt};
@@ -102,9 +95,6 @@ private:
     void report(std::optional<int> annotation, const std::string& text) {
         broken.push_back({rule_->id, annotation, text + (rule_->note.empty() ? "" : " (" + rule_->note + ")")});
     }
-    static std::string whose(const Annotation& annotation) {
-        return in_quotes(annotation.tag) + " (id " + to_string(annotation.id) + ")";
-    }
     static std::string name_of(const Subject& subject) {
         const std::string kind = subject.type ? ostraka::to_string(*subject.type) : "annotation";
         return subject.tag == "*" ? kind : in_quotes(subject.tag) + (subject.type ? " " + kind : "");
@@ -155,9 +145,7 @@ private:
     /// Without a vocabulary: by the letters, a number at the end of the annotation's tag aside.
     static bool same_tag(const std::string& tag, const std::string& wanted) {
         const std::string text = folded(tag), other = folded(wanted);
-        if (text == other) return true;
-        const std::size_t last = text.find_last_not_of("0123456789");
-        return last != std::string::npos && last + 1 < text.size() && text[last] == ' ' && text.substr(0, last) == other;
+        return text == other || without_number(text) == other;
     }
 
     void count(const CountRule& rule) {
@@ -209,12 +197,7 @@ private:
         if (attribute.type == AttributeType::semantic) {
             text = in_quotes(attribute.note);
             if (rule.min || rule.max || !rule.unit.empty()) return false;
-            if (rule.values.empty()) return true;
-            return std::any_of(rule.values.begin(), rule.values.end(), [&](const std::string& value) {
-                if (folded(value) == folded(attribute.note)) return true;
-                const Term* term = allowed == nullptr ? nullptr : term_of(*allowed, value);
-                return term != nullptr && term == term_of(*allowed, attribute.note);
-            });
+            return rule.values.empty() || is_one_of(attribute.note, rule.values, allowed);
         }
         const auto [values, unit, stale] = figures_of(attribute);
         text = values.empty() ? "without a value" : text_of(values.front()) + (unit.empty() ? "" : " " + unit);

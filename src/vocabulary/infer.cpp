@@ -183,11 +183,7 @@ private:
             if (value.number) return {Verdict::unknown, {}, in_quotes(c.operand.attribute) + " is a number"};
             const AllowedAttribute* allowed =
                 concepts_[i] && c.operand.concept_id.empty() ? search_.attribute_of(*concepts_[i], c.operand.attribute) : nullptr;
-            const bool holds = std::any_of(c.is.begin(), c.is.end(), [&](const std::string& word) {
-                if (folded(word) == folded(value.word)) return true;
-                const Term* term = allowed == nullptr ? nullptr : term_of(*allowed, word);
-                return term != nullptr && term == term_of(*allowed, value.word);
-            });
+            const bool holds = is_one_of(value.word, c.is, allowed);
             return {holds ? Verdict::holds : Verdict::fails, name_of(c.operand) + " is " + value.word, {}};
         }
         if (!value.number) return {Verdict::unknown, {}, in_quotes(c.operand.attribute) + " is a word"};
@@ -265,7 +261,7 @@ private:
         const Term* term = term_of(allowed, rule.value);
         const std::string value = term == nullptr ? rule.value : term->name;
         const auto stands = attributes_named(key.first, allowed.name);
-        const std::string whose = in_quotes(annotation.tag) + " (id " + std::to_string(annotation.id) + "): ";
+        const std::string whose = detail::whose(annotation) + ": ";
         const std::string says = "the rule " + in_quotes(rule.id) + " says " + in_quotes(value) + ", since " + why;
         for (const Attribute* other : stands) {
             if (other->type == AttributeType::semantic) {
@@ -296,8 +292,8 @@ private:
             for (const auto& [rule, allowed] : rules_of(i)) {
                 const Judgement judgement = judge(*rule, i);
                 if (judgement.verdict == Verdict::unknown)
-                    result_.missing.push_back(in_quotes(annotations()[i].tag) + " (id " + std::to_string(annotations()[i].id) +
-                                              "): the rule " + in_quotes(rule->id) + " cannot be judged: " + judgement.missing);
+                    result_.missing.push_back(detail::whose(annotations()[i]) + ": the rule " + in_quotes(rule->id) +
+                                              " cannot be judged: " + judgement.missing);
             }
     }
 

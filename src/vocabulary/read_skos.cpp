@@ -299,16 +299,11 @@ private:
     Vocabulary vocabulary_;
 };
 
-bool is_xml(const Path& file) {
-    const std::string ending = extension(file);
-    return ending == ".rdf" || ending == ".owl" || ending == ".xml";
-}
-
 }  // namespace
 
 bool is_skos(const Path& file) {
     const std::string ending = extension(file);
-    return is_xml(file) || ending == ".ttl" || ending == ".turtle" || ending == ".nt";
+    return skos::is_rdf_xml(file) || ending == ".ttl" || ending == ".turtle" || ending == ".nt";
 }
 
 Vocabulary vocabulary_from_skos(const std::string& text, bool rdf_xml, const std::string& where, const std::string& scheme) {
@@ -318,7 +313,7 @@ Vocabulary vocabulary_from_skos(const std::string& text, bool rdf_xml, const std
 }
 
 Vocabulary read_skos(const Path& file, const std::string& scheme) {
-    return vocabulary_from_skos(read_file(file), is_xml(file), file.string(), scheme);
+    return vocabulary_from_skos(read_file(file), skos::is_rdf_xml(file), file.string(), scheme);
 }
 
 }  // namespace ostraka

@@ -1,6 +1,7 @@
 // The names that SKOS files are made of.
 #pragma once
 
+#include "ostraka/core/file.h"
 #include "ostraka/core/text.h"
 
 #include <string>
@@ -16,6 +17,11 @@ inline const std::string dcterms = "http://purl.org/dc/terms/";
 inline const std::string own = "urn:ostraka:ns#";
 /// The URI of a vocabulary that has none.
 inline const std::string default_scheme = "urn:ostraka:vocabulary";
+
+inline bool is_rdf_xml(const Path& file) {
+    const std::string ending = extension(file);
+    return ending == ".rdf" || ending == ".owl" || ending == ".xml";
+}
 
 /// What stands before the id in the URI of a concept.
 inline std::string namespace_of(const std::string& scheme) {

@@ -1,10 +1,11 @@
 // Texts and numbers of rules and vocabularies, as messages show them.
 #pragma once
 
-#include "ostraka/core/json.h"
 #include "ostraka/core/text.h"
+#include "ostraka/vocabulary/text_match.h"
+#include "ostraka/vocabulary/vocabulary.h"
 
-#include <string>
+#include <algorithm>
 
 namespace ostraka::detail {
 
@@ -20,5 +21,18 @@ inline std::vector<std::string> names_in(const JsonValue& object, const char* me
 inline std::string text_of(double value) { return digits(value, 9); }
 
 inline std::string in_quotes(const std::string& text) { return "'" + text + "'"; }
+
+inline std::string whose(const Annotation& annotation) {
+    return in_quotes(annotation.tag) + " (id " + std::to_string(annotation.id) + ")";
+}
+
+/// Is a word one of several, or by `allowed`, which may be none, another name of the same term?
+inline bool is_one_of(const std::string& stated, const std::vector<std::string>& words, const AllowedAttribute* allowed) {
+    return std::any_of(words.begin(), words.end(), [&](const std::string& word) {
+        if (folded(word) == folded(stated)) return true;
+        const Term* term = allowed == nullptr ? nullptr : term_of(*allowed, word);
+        return term != nullptr && term == term_of(*allowed, stated);
+    });
+}
 
 }  // namespace ostraka::detail

@@ -109,8 +109,7 @@ std::string vocabulary_to_skos(const Vocabulary& vocabulary, bool rdf_xml, const
 }
 
 void write_skos(const Path& file, const Vocabulary& vocabulary) {
-    const std::string ending = extension(file);
-    write_file(file, vocabulary_to_skos(vocabulary, ending == ".rdf" || ending == ".owl" || ending == ".xml", file.string()));
+    write_file(file, vocabulary_to_skos(vocabulary, skos::is_rdf_xml(file), file.string()));
 }
 
 }  // namespace ostraka

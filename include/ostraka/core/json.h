@@ -24,6 +24,8 @@ Json read_json(const Path& file);
 /// members in the order of the document, a newline at the end. Refuses NaN and infinities (Error, failure).
 std::string to_text(const JsonValue& value);
 void write_json(const Path& file, const JsonValue& value);
+/// On one line, without blanks between the values.
+std::string to_compact_text(const JsonValue& value);
 
 /// Checks `value` against the schema `doc/schema/<name>.schema.json` (built into the library). Error (input) names
 /// the JSON pointer and what was expected. Throws std::logic_error for an unknown schema name.

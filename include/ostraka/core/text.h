@@ -16,6 +16,10 @@ struct Character {
 };
 Character character_at(std::string_view text, std::size_t at);
 
+/// The characters of a text; a byte at which no UTF-8 character begins stands for itself, `not_utf8` higher.
+inline constexpr char32_t not_utf8 = 0x110000;
+std::u32string characters(std::string_view text);
+
 /// What steers terminals and the order of letters instead of being shown: U+0000 to U+001F, U+007F to U+009F, and the marks that
 /// turn the direction of writing around (U+202A to U+202E, U+2066 to U+2069).
 bool is_control(char32_t code);
