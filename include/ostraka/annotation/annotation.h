@@ -118,6 +118,7 @@ Figures figures_of(const Attribute& attribute);
 
 /// One flag per face of a region.
 std::vector<bool> face_flags(const Mesh& mesh, const std::vector<Index>& faces);
+/// Of faces, in their order.
 double area_of(const Mesh& mesh, const std::vector<Index>& faces);
 /// The faces whose flag is set, ascending.
 std::vector<Index> flagged(const std::vector<bool>& flags);
