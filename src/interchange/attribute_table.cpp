@@ -22,14 +22,14 @@ const std::vector<std::string>& column_names() {
 }
 
 /// Face and two of the three weights would do, but all three read back to the bit.
-std::string joined(const std::vector<Location>& locations) {
+std::string in_cell(const std::vector<Location>& locations) {
     std::string text;
     for (const Location& location : locations)
         text += (text.empty() ? "" : " ") + to_string(location.face) + " " + joined_numbers(location.barycentric);
     return text;
 }
 
-std::string joined(const std::vector<std::vector<Index>>& pickings) {
+std::string in_cell(const std::vector<std::vector<Index>>& pickings) {
     std::string text;
     for (const auto& pins : pickings) text += (text.empty() ? "" : " | ") + joined_numbers(pins);
     return text;
@@ -238,8 +238,8 @@ std::string attribute_table(const AnnotationSet& set) {
                     break;
                 case AttributeType::measure:
                     add({id, attribute.name, "measure", m.value ? digits(*m.value) : "", m.unit, "", m.tool,
-                         joined_numbers(m.points), m.direction ? joined_numbers(*m.direction) : "", joined(m.locations), "",
-                         m.stale ? "true" : "", m.exact ? "exact" : "", joined(m.repeats),
+                         joined_numbers(m.points), m.direction ? joined_numbers(*m.direction) : "", in_cell(m.locations), "",
+                         m.stale ? "true" : "", m.exact ? "exact" : "", in_cell(m.repeats),
                          m.uncertainty ? digits(*m.uncertainty) : ""});
                     break;
                 case AttributeType::descriptor:

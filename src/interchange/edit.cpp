@@ -19,7 +19,7 @@ namespace {
 using namespace interchange;
 using std::to_string;
 
-std::string words(const EntryName& name) { return name.id ? to_string(*name.id) : "'" + interchange::words(name.text) + "'"; }
+std::string in_words(const EntryName& name) { return name.id ? to_string(*name.id) : "'" + interchange::words(name.text) + "'"; }
 
 EntryName name_of(const JsonValue& value) {
     EntryName name;
@@ -110,9 +110,9 @@ private:
         std::vector<std::size_t> found;
         for (std::size_t i = 0; i < set_.annotations.size(); ++i)
             if (name.id ? set_.annotations[i].id == *name.id : set_.annotations[i].tag == name.text) found.push_back(i);
-        if (found.empty()) fail_input(here_, "there is no annotation " + words(name), "'annotation list' shows ids and tags");
+        if (found.empty()) fail_input(here_, "there is no annotation " + in_words(name), "'annotation list' shows ids and tags");
         if (found.size() > 1)
-            fail_input(here_, to_string(found.size()) + " annotations have the tag " + words(name),
+            fail_input(here_, to_string(found.size()) + " annotations have the tag " + in_words(name),
                        "name the one meant by its id");
         return found.front();
     }
@@ -121,8 +121,9 @@ private:
         const auto matches = [&](const Attribute& a) { return name.id ? a.id == *name.id : a.name == name.text; };
         const auto count = std::count_if(annotation.attributes.begin(), annotation.attributes.end(), matches);
         const std::string whose = "annotation " + to_string(annotation.id);
-        if (count == 0) fail_input(here_, whose + " has no attribute " + words(name), "'annotation list' shows its attributes");
-        if (count > 1) fail_input(here_, whose + " has several attributes " + words(name), "name the one meant by its id");
+        if (count == 0)
+            fail_input(here_, whose + " has no attribute " + in_words(name), "'annotation list' shows its attributes");
+        if (count > 1) fail_input(here_, whose + " has several attributes " + in_words(name), "name the one meant by its id");
         annotation.attributes.erase(std::find_if(annotation.attributes.begin(), annotation.attributes.end(), matches));
     }
 

@@ -39,10 +39,10 @@ struct Corners {
     std::vector<std::uint32_t> indices;
 };
 
-class Writer {
+class FeatureWriter {
 public:
-    Writer(const Mesh& mesh, const AnnotationSet& set, const std::string& mesh_file, const Provenance& provenance,
-           std::vector<std::string>& notes)
+    FeatureWriter(const Mesh& mesh, const AnnotationSet& set, const std::string& mesh_file, const Provenance& provenance,
+                  std::vector<std::string>& notes)
         : mesh_(mesh),
           set_(set),
           where_(mesh_file.empty() ? "GLB" : mesh_file),
@@ -362,7 +362,7 @@ private:
 
 std::string feature_glb(const Mesh& mesh, const AnnotationSet& set, const std::string& mesh_file, const Provenance& provenance,
                         std::vector<std::string>& notes) {
-    return Writer(mesh, set, mesh_file, provenance, notes).write();
+    return FeatureWriter(mesh, set, mesh_file, provenance, notes).write();
 }
 
 }  // namespace ostraka

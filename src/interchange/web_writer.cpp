@@ -26,9 +26,9 @@ std::string uuid_of(const std::string& content) {
            hex.substr(20);
 }
 
-class Writer {
+class WebWriter {
 public:
-    Writer(const Mesh& mesh, const AnnotationSet& set, const std::string& mesh_file, const Provenance& provenance)
+    WebWriter(const Mesh& mesh, const AnnotationSet& set, const std::string& mesh_file, const Provenance& provenance)
         : mesh_(mesh), set_(set), native_(annotations_to_json(set, mesh, mesh_file, provenance)), number_(components()) {
         document_.SetObject();
         checksum_ = text_in(native_["mesh"], "sha256");
@@ -204,7 +204,7 @@ private:
 
 std::string web_annotations(const Mesh& mesh, const AnnotationSet& set, const std::string& mesh_file,
                             const Provenance& provenance) {
-    return Writer(mesh, set, mesh_file, provenance).write();
+    return WebWriter(mesh, set, mesh_file, provenance).write();
 }
 
 }  // namespace ostraka
