@@ -56,6 +56,14 @@ std::vector<Index> pins_of(const Measure& measure) {
     return pins;
 }
 
+Figures figures_of(const Attribute& attribute) {
+    const Measure& measure = attribute.measure;
+    const Descriptor& descriptor = attribute.descriptor;
+    if (attribute.type == AttributeType::descriptor) return {descriptor.values, descriptor.unit, descriptor.stale};
+    if (attribute.type == AttributeType::semantic) return {};
+    return {measure.value ? std::vector{*measure.value} : std::vector<double>(), measure.unit, measure.stale};
+}
+
 std::vector<bool> face_flags(const Mesh& mesh, const std::vector<Index>& faces) {
     std::vector<bool> flags(mesh.number_of_faces(), false);
     for (const Index face : faces) {
@@ -64,6 +72,12 @@ std::vector<bool> face_flags(const Mesh& mesh, const std::vector<Index>& faces) 
         flags[face] = true;
     }
     return flags;
+}
+
+double area_of(const Mesh& mesh, const std::vector<Index>& faces) {
+    double area = 0;
+    for (const Index face : faces) area += face_area(mesh, Face(face));
+    return area;
 }
 
 std::vector<Index> flagged(const std::vector<bool>& flags) {

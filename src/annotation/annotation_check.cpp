@@ -23,6 +23,10 @@ void check_vertex(const Mesh& mesh, Index vertex, const std::string& where, cons
          "give the mesh the annotations were made for");
 }
 
+void check_vertices(const Mesh& mesh, const std::vector<Index>& vertices, const std::string& where, const std::string& pointer) {
+    for (std::size_t i = 0; i < vertices.size(); ++i) check_vertex(mesh, vertices[i], where, pointer + '/' + std::to_string(i));
+}
+
 void check_face(const Mesh& mesh, Index face, const std::string& where, const std::string& pointer) {
     if (face < mesh.number_of_faces()) return;
     fail(where, pointer, "face " + std::to_string(face) + " of a mesh with " + std::to_string(mesh.number_of_faces()) + " faces",
@@ -50,8 +54,7 @@ void check_measure(const Measure& measure, const Mesh& mesh, const std::string& 
     if (measure.points.size() < 2)
         fail(where, at + "/points", "a " + measure.tool + " needs two points or more, not " + to_string(measure.points.size()),
              "add its pins");
-    for (std::size_t i = 0; i < measure.points.size(); ++i)
-        places::check_vertex(mesh, measure.points[i], where, at + "/points/" + to_string(i));
+    places::check_vertices(mesh, measure.points, where, at + "/points");
     if (!measure.locations.empty() && measure.locations.size() != measure.points.size())
         fail(where, at + "/locations",
              to_string(measure.locations.size()) + " locations for " + to_string(measure.points.size()) + " points",
@@ -77,8 +80,7 @@ void check_measure(const Measure& measure, const Mesh& mesh, const std::string& 
             fail(where, here,
                  to_string(measure.repeats[i].size()) + " pins where the measure has " + to_string(measure.points.size()),
                  "pick the same pins again");
-        for (std::size_t k = 0; k < measure.repeats[i].size(); ++k)
-            places::check_vertex(mesh, measure.repeats[i][k], where, here + '/' + to_string(k));
+        places::check_vertices(mesh, measure.repeats[i], where, here);
     }
     if (measure.uncertainty && !(std::isfinite(*measure.uncertainty) && *measure.uncertainty >= 0))
         fail(where, at + "/uncertainty", "is negative or not finite", "leave it out");
@@ -107,16 +109,14 @@ void check_selection(const Annotation& annotation, const Mesh& mesh, const std::
     if (annotation.type != AnnotationType::point && !annotation.points.empty()) misplaced("points", "point");
     if (annotation.type != AnnotationType::line && !annotation.polylines.empty()) misplaced("polylines", "line");
     if (annotation.type != AnnotationType::region && (!annotation.faces.empty() || annotation.all)) misplaced("faces", "region");
-    for (std::size_t i = 0; i < annotation.points.size(); ++i)
-        places::check_vertex(mesh, annotation.points[i], where, at + "/points/" + to_string(i));
+    places::check_vertices(mesh, annotation.points, where, at + "/points");
     for (std::size_t i = 0; i < annotation.polylines.size(); ++i) {
         const auto& polyline = annotation.polylines[i];
         const std::string here = at + "/polylines/" + to_string(i);
         if (polyline.size() < 2)
             fail(where, here, "a poly-line of " + to_string(polyline.size()) + (polyline.size() == 1 ? " vertex" : " vertices"),
                  "give two vertices or more, or use the type point");
-        for (std::size_t k = 0; k < polyline.size(); ++k)
-            places::check_vertex(mesh, polyline[k], where, here + '/' + to_string(k));
+        places::check_vertices(mesh, polyline, where, here);
         for (std::size_t k = 0; k + 1 < polyline.size(); ++k)
             places::check_edge(mesh, polyline[k], polyline[k + 1], where, here + '/' + to_string(k + 1));
     }
@@ -135,8 +135,7 @@ void check_selection(const Annotation& annotation, const Mesh& mesh, const std::
 }  // namespace
 
 void check_annotations(const AnnotationSet& set, const Mesh& mesh, const std::string& where) {
-    if (mesh.has_garbage())
-        throw Error(ErrorKind::failure, where, "the mesh has removed elements", "collect the mesh's garbage first");
+    if (mesh.has_garbage()) fail_work(where, "the mesh has removed elements", "collect the mesh's garbage first");
     if (set.up) {
         const auto& [x, y, z] = *set.up;
         if (unit_vector({x, y, z}) == CGAL::NULL_VECTOR)

@@ -1,13 +1,12 @@
 #include "ostraka/annotation/annotation_maps.h"
 
-#include "vertex_paths.h"
-
 #include "ostraka/core/error.h"
 #include "ostraka/geom/shortest_path.h"
 
 #include <algorithm>
 #include <optional>
 #include <set>
+#include <tuple>
 
 namespace ostraka {
 
@@ -37,9 +36,54 @@ void store(Mesh& mesh, const char* name, std::vector<std::pair<Index, int>>& ent
 template <class Index_type>
 auto stored(const Mesh& mesh, const char* name) {
     const auto [map, found] = mesh.property_map<Index_type, std::uint32_t>(name);
-    if (!found)
-        throw Error(ErrorKind::failure, "mesh", std::string("has no property map ") + name, "attach the annotations first");
+    if (!found) fail_work("mesh", std::string("has no property map ") + name, "attach the annotations first");
     return map;
+}
+
+/// Joins edges (pairs of vertices, in any order, each once) into as few vertex paths as simple walking gives: paths begin where
+/// the number of edges is not two, the rest are closed (first = last). Deterministic: lowest vertex first. O(n log n).
+std::vector<std::vector<Index>> join_into_paths(const std::vector<std::pair<Index, Index>>& edges) {
+    struct Link {
+        Index from, to;
+        std::size_t edge;
+        bool operator<(const Link& other) const { return std::tie(from, to) < std::tie(other.from, other.to); }
+    };
+    std::vector<Link> links;
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        links.push_back({edges[e].first, edges[e].second, e});
+        links.push_back({edges[e].second, edges[e].first, e});
+    }
+    std::sort(links.begin(), links.end());
+    std::vector<bool> used(edges.size(), false);
+    const auto around = [&](Index vertex) {
+        return std::equal_range(links.begin(), links.end(), Link{vertex, 0, 0},
+                                [](const Link& a, const Link& b) { return a.from < b.from; });
+    };
+    const auto unused = [&](Index vertex) {
+        const auto [first, last] = around(vertex);
+        return std::find_if(first, last, [&](const Link& link) { return !used[link.edge]; }) != last;
+    };
+    const auto degree = [&](Index vertex) {
+        const auto [first, last] = around(vertex);
+        return last - first;
+    };
+    std::vector<std::vector<Index>> vertex_paths;
+    const auto walk = [&](const Link& start) {
+        std::vector<Index> vertex_path{start.from, start.to};
+        used[start.edge] = true;
+        while (vertex_path.back() != vertex_path.front() && degree(vertex_path.back()) == 2 && unused(vertex_path.back())) {
+            const auto [first, last] = around(vertex_path.back());
+            const auto next = std::find_if(first, last, [&](const Link& link) { return !used[link.edge]; });
+            used[next->edge] = true;
+            vertex_path.push_back(next->to);
+        }
+        vertex_paths.push_back(std::move(vertex_path));
+    };
+    for (const Link& link : links)
+        if (!used[link.edge] && degree(link.from) != 2) walk(link);
+    for (const Link& link : links)
+        if (!used[link.edge]) walk(link);
+    return vertex_paths;
 }
 
 /// Where the annotations' elements are now.
@@ -56,20 +100,10 @@ public:
         for (const Vertex vertex : mesh.vertices()) hand_out(vertex_sets[vertex], vertex, vertices_);
     }
 
-    Annotation follow(const Annotation& before) {
-        Annotation now = before;
-        switch (before.type) {
-            case AnnotationType::point:
-                points(now);
-                break;
-            case AnnotationType::line:
-                line(now);
-                break;
-            case AnnotationType::region:
-                region(now);
-                break;
-        }
-        return now;
+    void follow(Annotation& annotation) {
+        if (annotation.type == AnnotationType::point) points(annotation);
+        else if (annotation.type == AnnotationType::line) line(annotation);
+        else region(annotation);
     }
 
 private:
@@ -238,8 +272,7 @@ bool AnnotationTable::contains(std::uint32_t set, int id) const {
 }
 
 AnnotationTable attach_annotations(Mesh& mesh, const AnnotationSet& set) {
-    if (mesh.has_garbage())
-        throw Error(ErrorKind::failure, "mesh", "has removed elements", "collect its garbage before attaching annotations");
+    if (mesh.has_garbage()) fail_work("mesh", "has removed elements", "collect its garbage before attaching annotations");
     AnnotationTable table;
     std::vector<std::pair<Index, int>> vertices, edges, faces;
     for (const auto& annotation : set.annotations) {
@@ -259,18 +292,12 @@ AnnotationTable attach_annotations(Mesh& mesh, const AnnotationSet& set) {
 
 AnnotationSet collect_annotations(const Mesh& mesh, const AnnotationTable& table, const AnnotationSet& before,
                                   const std::vector<Index>& vertex_map) {
-    if (mesh.has_garbage())
-        throw Error(ErrorKind::failure, "mesh", "has removed elements", "collect its garbage before reading annotations back");
+    if (mesh.has_garbage()) fail_work("mesh", "has removed elements", "collect its garbage before reading annotations back");
     Collector collector(mesh, table, before, vertex_map);
-    AnnotationSet set;
-    set.object_class = before.object_class;
-    set.unit = before.unit;
-    set.up = before.up;
-    set.provenance.CopyFrom(before.provenance, set.provenance.GetAllocator());
-    set.notes = before.notes;
-    for (const auto& annotation : before.annotations) {
-        set.annotations.push_back(collector.follow(annotation));
-        move_pins(set.annotations.back(), vertex_map, mesh.number_of_vertices());
+    AnnotationSet set = before;
+    for (Annotation& annotation : set.annotations) {
+        collector.follow(annotation);
+        move_pins(annotation, vertex_map, mesh.number_of_vertices());
     }
     return set;
 }
@@ -286,20 +313,17 @@ void move_pins(Annotation& annotation, const std::vector<Index>& vertex_map, std
         if (attribute.type == AttributeType::descriptor) attribute.descriptor.stale = true;
         if (attribute.type != AttributeType::measure) continue;
         Measure& measure = attribute.measure;
-        bool lost = false;
-        for (Index& pin : measure.points) {
-            if (!vertex_map.empty()) pin = pin < vertex_map.size() ? vertex_map[pin] : no_index;
-            lost = lost || pin >= vertex_count;
-        }
-        // A picking that loses a pin is none; the others are left.
-        std::erase_if(measure.repeats, [&](std::vector<Index>& pins) {
-            bool gone = false;
+        const auto loses_a_pin = [&](std::vector<Index>& pins) {
+            bool lost = false;
             for (Index& pin : pins) {
                 if (!vertex_map.empty()) pin = pin < vertex_map.size() ? vertex_map[pin] : no_index;
-                gone = gone || pin >= vertex_count;
+                lost = lost || pin >= vertex_count;
             }
-            return gone;
-        });
+            return lost;
+        };
+        const bool lost = loses_a_pin(measure.points);
+        // A picking that loses a pin is none; the others are left.
+        std::erase_if(measure.repeats, loses_a_pin);
         measure.locations.clear();
         measure.uncertainty.reset();
         measure.stale = true;

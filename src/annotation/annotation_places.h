@@ -11,16 +11,10 @@ namespace ostraka {
 namespace places {
 [[noreturn]] void fail(const std::string& where, const std::string& pointer, const std::string& what, const std::string& remedy);
 void check_vertex(const Mesh& mesh, Index vertex, const std::string& where, const std::string& pointer);
+void check_vertices(const Mesh& mesh, const std::vector<Index>& vertices, const std::string& where, const std::string& pointer);
 void check_face(const Mesh& mesh, Index face, const std::string& where, const std::string& pointer);
 void check_edge(const Mesh& mesh, Index a, Index b, const std::string& where, const std::string& pointer);
 }  // namespace places
-
-/// The closed components of the mesh that a region covers wholly and that therefore have no outline in it.
-struct WholeComponents {
-    std::vector<Index> seeds;  ///< the smallest face of each
-    std::vector<Index> faces;  ///< all their faces
-};
-WholeComponents whole_components(const Mesh& mesh, const std::vector<Index>& faces, const std::vector<bool>& selected);
 
 /// Turns a prototype document (types Area, Line, Point; key color; flat attributes) into the thesis's form; adds to `notes` what
 /// had to be guessed or left out. Throws Error (input).

@@ -3,7 +3,7 @@
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/annotation/outline.h"
-#include "ostraka/core/error.h"
+#include "ostraka/core/flood.h"
 
 #include <algorithm>
 #include <numeric>
@@ -18,60 +18,41 @@ using std::to_string;
 
 using VertexPaths = std::vector<std::vector<Index>>;
 
-std::string text_of(const JsonValue& object, const char* name) {
-    const JsonValue* value = find_member(object, name);
-    return value == nullptr ? std::string() : std::string(value->GetString(), value->GetStringLength());
-}
-
-bool flag_of(const JsonValue& object, const char* name) {
-    const JsonValue* value = find_member(object, name);
-    return value != nullptr && value->GetBool();
-}
-
-std::vector<Index> indices_of(const JsonValue& list) {
+std::vector<Index> indices_of(const JsonValue::ConstArray& list) {
     std::vector<Index> indices;
     indices.reserve(list.Size());
-    for (const auto& value : list.GetArray()) indices.push_back(value.GetUint());
+    for (const auto& value : list) indices.push_back(value.GetUint());
     return indices;
-}
-
-std::vector<Index> indices_of(const JsonValue& object, const char* name) {
-    const JsonValue* value = find_member(object, name);
-    return value == nullptr ? std::vector<Index>() : indices_of(*value);
 }
 
 VertexPaths vertex_paths_of(const JsonValue& object, const char* name) {
     VertexPaths vertex_paths;
-    if (const JsonValue* value = find_member(object, name))
-        for (const auto& vertex_path : value->GetArray()) vertex_paths.push_back(indices_of(vertex_path));
+    for (const auto& vertex_path : list_in(object, name)) vertex_paths.push_back(indices_of(vertex_path.GetArray()));
     return vertex_paths;
 }
-
-std::array<double, 3> vector_of(const JsonValue& list) { return {list[0].GetDouble(), list[1].GetDouble(), list[2].GetDouble()}; }
 
 /// Members that the format does not have are named in a note: they are lost when the set is written again.
 void note_unknown(const JsonValue& object, const std::set<std::string>& known, const std::string& pointer,
                   std::vector<std::string>& notes) {
     for (const auto& member : object.GetObject()) {
-        const std::string name(member.name.GetString(), member.name.GetStringLength());
+        const std::string name = text_of(member.name);
         if (!known.contains(name)) notes.push_back("at " + pointer + '/' + name + ": an unknown member, not kept");
     }
 }
 
 Measure measure_of(const JsonValue& object) {
     Measure measure;
-    measure.tool = text_of(object, "tool");
-    measure.points = indices_of(object, "points");
-    if (const JsonValue* locations = find_member(object, "locations"))
-        for (const auto& location : locations->GetArray())
-            measure.locations.push_back({location["face"].GetUint(), vector_of(location["barycentric"])});
-    if (const JsonValue* direction = find_member(object, "direction")) measure.direction = vector_of(*direction);
-    measure.exact = text_of(object, "geodesic") == "exact";
+    measure.tool = text_in(object, "tool");
+    measure.points = indices_of(list_in(object, "points"));
+    for (const auto& location : list_in(object, "locations"))
+        measure.locations.push_back({location["face"].GetUint(), triple_of(location["barycentric"])});
+    if (const JsonValue* direction = find_member(object, "direction")) measure.direction = triple_of(*direction);
+    measure.exact = text_in(object, "geodesic") == "exact";
     measure.repeats = vertex_paths_of(object, "repeats");
-    if (const JsonValue* value = find_member(object, "value")) measure.value = value->GetDouble();
-    if (const JsonValue* value = find_member(object, "uncertainty")) measure.uncertainty = value->GetDouble();
-    measure.unit = text_of(object, "unit");
-    measure.stale = flag_of(object, "stale");
+    measure.value = number_in(object, "value");
+    measure.uncertainty = number_in(object, "uncertainty");
+    measure.unit = text_in(object, "unit");
+    measure.stale = flag_in(object, "stale");
     return measure;
 }
 
@@ -79,14 +60,14 @@ Attribute attribute_of(const JsonValue& object, const std::string& where, const 
                        std::vector<std::string>& notes) {
     Attribute attribute;
     attribute.id = object["id"].GetInt();
-    attribute.name = text_of(object, "name");
-    const std::string type = text_of(object, "type");
+    attribute.name = text_in(object, "name");
+    const std::string type = text_in(object, "type");
     if (type == "semantic") {
         note_unknown(object, {"id", "name", "type", "note", "origin"}, at, notes);
         if (find_member(object, "note") == nullptr)
             fail(where, at, "a semantic attribute without a note", "add the member \"note\"");
-        attribute.note = text_of(object, "note");
-        attribute.origin = text_of(object, "origin");
+        attribute.note = text_in(object, "note");
+        attribute.origin = text_in(object, "origin");
     } else if (type == "measure") {
         note_unknown(object, {"id", "name", "type", "measure"}, at, notes);
         attribute.type = AttributeType::measure;
@@ -102,17 +83,24 @@ Attribute attribute_of(const JsonValue& object, const std::string& where, const 
         Descriptor& descriptor = attribute.descriptor;
         if (const JsonValue* value = find_member(object, "value")) {
             descriptor.is_list = value->IsArray();
-            if (descriptor.is_list)
-                for (const auto& element : value->GetArray()) descriptor.values.push_back(element.GetDouble());
-            else descriptor.values.push_back(value->GetDouble());
+            for (const auto& element : list_in(object, "value")) descriptor.values.push_back(element.GetDouble());
+            if (!descriptor.is_list) descriptor.values.push_back(value->GetDouble());
         }
-        descriptor.file = text_of(object, "file");
-        descriptor.unit = text_of(object, "unit");
-        descriptor.stale = flag_of(object, "stale");
+        descriptor.file = text_in(object, "file");
+        descriptor.unit = text_in(object, "unit");
+        descriptor.stale = flag_in(object, "stale");
         if (find_member(object, "value") != nullptr && !descriptor.file.empty())
             fail(where, at, "a descriptor with a value and a file", "keep one of them");
     }
     return attribute;
+}
+
+std::vector<Attribute> attributes_of(const JsonValue::ConstArray& list, const std::string& where, const std::string& at,
+                                     std::vector<std::string>& notes) {
+    std::vector<Attribute> attributes;
+    for (const auto& attribute : list)
+        attributes.push_back(attribute_of(attribute, where, at + '/' + to_string(attributes.size()), notes));
+    return attributes;
 }
 
 /// Outlines as they stand, checked vertex by vertex and edge by edge. The prototype repeats the first vertex at the end.
@@ -121,7 +109,7 @@ std::vector<Outline> outlines_of(const JsonValue& object, const Mesh& mesh, cons
     for (std::size_t i = 0; i < outlines.size(); ++i) {
         Outline& outline = outlines[i];
         const std::string here = at + "/boundaries/" + to_string(i);
-        for (std::size_t k = 0; k < outline.size(); ++k) places::check_vertex(mesh, outline[k], where, here + '/' + to_string(k));
+        places::check_vertices(mesh, outline, where, here);
         if (outline.size() > 3 && outline.front() == outline.back()) outline.pop_back();
         if (outline.size() < 3)
             fail(where, here, "an outline of " + to_string(outline.size()) + (outline.size() == 1 ? " vertex" : " vertices"),
@@ -154,30 +142,20 @@ void fill_seeds(const std::vector<Index>& seeds, const std::vector<Outline>& out
         places::check_face(mesh, seeds[i], where, here);
         if (selected[seeds[i]])
             fail(where, here, "the seed lies in a part that is selected already", "give one seed for each whole component");
-        std::vector<Index> front{seeds[i]};
-        selected[seeds[i]] = true;
-        while (!front.empty()) {
-            const Face face(front.back());
-            front.pop_back();
-            for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(face))) {
-                if (outlined[mesh.edge(h)])
-                    fail(where, here, "the seed's component is cut by an outline",
-                         "outlines say what they enclose; a seed stands for a whole closed component");
-                const Face next = mesh.face(mesh.opposite(h));
-                if (next == Mesh::null_face() || selected[next]) continue;
-                selected[next] = true;
-                front.push_back(next);
-            }
-        }
+        flood_faces(mesh, Face(seeds[i]), selected, [&](Halfedge h) {
+            if (outlined[mesh.edge(h)])
+                fail(where, here, "the seed's component is cut by an outline",
+                     "outlines say what they enclose; a seed stands for a whole closed component");
+            return true;
+        });
     }
 }
 
 std::vector<Index> faces_of(const JsonValue& object, const Mesh& mesh, bool all, const std::string& where,
                             const std::string& at) {
     const std::vector<Outline> outlines = outlines_of(object, mesh, where, at);
-    const std::vector<Index> seeds = indices_of(object, "seeds");
-    const JsonValue* listed = find_member(object, "faces");
-    if (!all && listed == nullptr) {
+    const std::vector<Index> seeds = indices_of(list_in(object, "seeds"));
+    if (!all && find_member(object, "faces") == nullptr) {
         if (find_member(object, "boundaries") == nullptr && seeds.empty())
             fail(where, at, "a region without boundaries", "add \"boundaries\", \"faces\", \"seeds\" or \"all\": true");
         Filling filling = fill_outlines(mesh, outlines);
@@ -193,7 +171,7 @@ std::vector<Index> faces_of(const JsonValue& object, const Mesh& mesh, bool all,
         faces.resize(mesh.number_of_faces());
         std::iota(faces.begin(), faces.end(), Index{0});
     } else {
-        faces = indices_of(*listed);
+        faces = indices_of(list_in(object, "faces"));
         for (std::size_t i = 0; i < faces.size(); ++i) places::check_face(mesh, faces[i], where, at + "/faces/" + to_string(i));
         std::sort(faces.begin(), faces.end());
         faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
@@ -213,10 +191,10 @@ Annotation annotation_of(const JsonValue& object, const Mesh& mesh, const std::s
         notes);
     Annotation annotation;
     annotation.id = object["id"].GetInt();
-    annotation.tag = text_of(object, "tag");
+    annotation.tag = text_in(object, "tag");
     if (const JsonValue* colour = find_member(object, "colour"))
         annotation.colour = {(*colour)[0].GetInt(), (*colour)[1].GetInt(), (*colour)[2].GetInt()};
-    const std::string type = text_of(object, "type");
+    const std::string type = text_in(object, "type");
     const auto require = [&](const char* member) {
         if (find_member(object, member) == nullptr)
             fail(where, at, "an annotation of type " + type + " without " + member,
@@ -231,7 +209,7 @@ Annotation annotation_of(const JsonValue& object, const Mesh& mesh, const std::s
         annotation.type = AnnotationType::point;
         refuse({"polylines", "boundaries", "faces", "seeds", "all"});
         require("points");
-        annotation.points = indices_of(object, "points");
+        annotation.points = indices_of(list_in(object, "points"));
     } else if (type == "line") {
         annotation.type = AnnotationType::line;
         refuse({"points", "boundaries", "faces", "seeds", "all"});
@@ -239,13 +217,11 @@ Annotation annotation_of(const JsonValue& object, const Mesh& mesh, const std::s
         annotation.polylines = vertex_paths_of(object, "polylines");
     } else {
         refuse({"points", "polylines"});
-        annotation.all = flag_of(object, "all");
+        annotation.all = flag_in(object, "all");
         annotation.faces = faces_of(object, mesh, annotation.all, where, at);
     }
-    annotation.note = text_of(object, "note");
-    if (const JsonValue* attributes = find_member(object, "attributes"))
-        for (rapidjson::SizeType i = 0; i < attributes->Size(); ++i)
-            annotation.attributes.push_back(attribute_of((*attributes)[i], where, at + "/attributes/" + to_string(i), notes));
+    annotation.note = text_in(object, "note");
+    annotation.attributes = attributes_of(list_in(object, "attributes"), where, at + "/attributes", notes);
     return annotation;
 }
 
@@ -269,11 +245,11 @@ void check_mesh(const JsonValue& document, const Mesh& mesh, const std::string& 
     };
     count("vertices", mesh.number_of_vertices());
     count("faces", mesh.number_of_faces());
-    const std::string checksum = text_of(*made_for, "sha256");
+    const std::string checksum = text_in(*made_for, "sha256");
     if (differences.empty() && !checksum.empty() && checksum != mesh_checksum(mesh))
         differ("other coordinates or triangles (the checksum differs, the counts agree)");
     if (differences.empty()) return;
-    const std::string name = text_of(*made_for, "file");
+    const std::string name = text_in(*made_for, "file");
     const std::string what = "made for another mesh" + (name.empty() ? std::string() : " ('" + name + "')") + ": " + differences;
     if (!force)
         fail(where, "/mesh", what,
@@ -285,19 +261,13 @@ void check_mesh(const JsonValue& document, const Mesh& mesh, const std::string& 
 }  // namespace
 
 std::vector<Attribute> attributes_from_json(const JsonValue& list, const std::string& where, const std::string& pointer) {
-    std::vector<Attribute> attributes;
     std::vector<std::string> notes;
-    for (rapidjson::SizeType i = 0; i < list.Size(); ++i)
-        attributes.push_back(attribute_of(list[i], where, pointer + '/' + to_string(i), notes));
-    return attributes;
+    return attributes_of(list.GetArray(), where, pointer, notes);
 }
 
 AnnotationSet annotations_from_json(const JsonValue& document, const Mesh& mesh, const std::string& where,
                                     const ReadAnnotationsOptions& options) {
-    if (const JsonValue* format = find_member(document, "format");
-        format != nullptr && format->IsString() && text_of(document, "format") != "ostraka-annotations")
-        fail(where, "/format", "the format is '" + text_of(document, "format") + "'",
-             "give an annotation file ('ostraka-annotations')");
+    check_format(document, "ostraka-annotations", where, "give an annotation file ('ostraka-annotations')");
     AnnotationSet set;
     if (is_prototype(document)) {
         std::vector<std::string> notes;
@@ -313,16 +283,20 @@ AnnotationSet annotations_from_json(const JsonValue& document, const Mesh& mesh,
         fail(where, "/version", "the file is of a newer version than 1", "use a newer ostraka");
     note_unknown(document, {"format", "version", "mesh", "unit", "class", "up", "annotations", "provenance"}, "", set.notes);
     check_mesh(document, mesh, where, options.force_mesh, set.notes);
-    set.object_class = text_of(document, "class");
-    set.unit = text_of(document, "unit");
-    if (const JsonValue* up = find_member(document, "up")) set.up = vector_of(*up);
+    set.object_class = text_in(document, "class");
+    set.unit = text_in(document, "unit");
+    if (const JsonValue* up = find_member(document, "up")) set.up = triple_of(*up);
     if (const JsonValue* provenance = find_member(document, "provenance"))
         set.provenance.CopyFrom(*provenance, set.provenance.GetAllocator());
-    const JsonValue& list = document["annotations"];
-    for (rapidjson::SizeType i = 0; i < list.Size(); ++i)
-        set.annotations.push_back(annotation_of(list[i], mesh, where, "/annotations/" + to_string(i), set.notes));
+    for (const auto& annotation : list_in(document, "annotations"))
+        set.annotations.push_back(
+            annotation_of(annotation, mesh, where, "/annotations/" + to_string(set.annotations.size()), set.notes));
     check_annotations(set, mesh, where);
     return set;
+}
+
+void ReadAnnotationsOptions::describe(OptionList& visit) {
+    visit("force-mesh", force_mesh, "use annotations made for another mesh if their indices and edges fit", Anything{});
 }
 
 AnnotationSet read_annotations(const Path& file, const Mesh& mesh, const ReadAnnotationsOptions& options) {

@@ -29,9 +29,7 @@ std::vector<std::int32_t> read_labels(const Path& file, std::size_t face_count, 
     std::vector<std::int32_t> labels;
     std::size_t line_number = 0, blank_since = 0;
     for (std::size_t at = 0; at < text.size();) {
-        const std::size_t end = std::min(text.find('\n', at), text.size());
-        const std::string_view line = trimmed(std::string_view(text).substr(at, end - at));
-        at = end + 1;
+        const std::string_view line = trimmed(line_at(text, at));
         ++line_number;
         if (line.empty()) {
             if (blank_since == 0) blank_since = line_number;
@@ -72,11 +70,11 @@ std::map<std::int32_t, std::string> read_label_names(const Path& file) {
     const auto add = [&](std::int32_t label, const JsonValue& name, const std::string& pointer) {
         if (!name.IsString())
             fail_input(file.string(), "at " + pointer + ": a name must be text", R"(write {"0": "head", "1": "arm"})");
-        names[label] = std::string(name.GetString(), name.GetStringLength());
+        names[label] = text_of(name);
     };
     if (document.IsObject()) {
         for (const auto& member : document.GetObject()) {
-            const std::string key(member.name.GetString(), member.name.GetStringLength());
+            const std::string key = text_of(member.name);
             add(parse_label(key, file.string() + ", at /" + key), member.value, "/" + key);
         }
     } else if (document.IsArray()) {

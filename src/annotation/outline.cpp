@@ -1,5 +1,6 @@
 #include "ostraka/annotation/outline.h"
 
+#include "ostraka/annotation/annotation.h"
 #include "ostraka/core/error.h"
 
 #include <algorithm>
@@ -190,7 +191,7 @@ std::optional<std::vector<bool>> fill_by_winding(const Mesh& mesh, const std::ve
 
 RegionMeasures measure_region(const Mesh& mesh, const std::vector<Index>& faces) {
     RegionMeasures measures;
-    for (const Index f : faces) measures.area += face_area(mesh, Face(f));
+    measures.area = area_of(mesh, faces);
     for (const Outline& outline : extract_outlines(mesh, faces))
         for (std::size_t i = 0; i < outline.size(); ++i)
             measures.perimeter += std::sqrt(

@@ -2,9 +2,12 @@
 #include "annotation_places.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/json_build.h"
+#include "ostraka/core/text.h"
 
 #include <algorithm>
 #include <cctype>
+#include <set>
 
 namespace ostraka {
 
@@ -13,17 +16,7 @@ namespace {
 using places::fail;
 using std::to_string;
 
-std::string lower(const JsonValue* value) {
-    if (value == nullptr || !value->IsString()) return {};
-    std::string text(value->GetString(), value->GetStringLength());
-    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return text;
-}
-
-const std::vector<std::string>& capital_types() {
-    static const std::vector<std::string> types{"Area", "Surface", "Region", "Line", "Point"};
-    return types;
-}
+std::string lower_in(const JsonValue& object, const char* name) { return lower_case(text_in(object, name)); }
 
 class Converter {
 public:
@@ -50,7 +43,7 @@ private:
     JsonValue whole(const JsonValue& value, const std::string& at) {
         if (value.IsInt()) return JsonValue(value.GetInt());
         if (value.IsString()) {
-            const std::string text(value.GetString(), value.GetStringLength());
+            const std::string text = text_of(value);
             if (!text.empty() && text.size() < 10 &&
                 std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; }))
                 return JsonValue(std::stoi(text));
@@ -61,12 +54,12 @@ private:
     JsonValue annotation(const JsonValue& source, const std::string& at) {
         if (!source.IsObject()) fail(where_, at, "is not an object", "mend or regenerate the file");
         JsonValue result(rapidjson::kObjectType);
-        std::string type = lower(find_member(source, "type"));
+        std::string type = lower_in(source, "type");
         if (type == "area" || type == "surface") type = "region";
         const bool known = type == "region" || type == "line" || type == "point";
         if (!known) fail(where_, at + "/type", "'" + type + "' is no type of annotation", "use Area, Line or Point");
         for (const auto& member : source.GetObject()) {
-            const std::string name(member.name.GetString(), member.name.GetStringLength());
+            const std::string name = text_of(member.name);
             if (name == "id") add_member(result, "id", whole(member.value, at + "/id"), allocator());
             else if (name == "color") add_member(result, "colour", copy(member.value), allocator());
             else if (name == "type") add_member(result, "type", type, allocator());
@@ -85,7 +78,7 @@ private:
             const std::string here = at + '/' + to_string(i);
             const JsonValue& entry = source[i];
             if (!entry.IsObject()) fail(where_, here, "is not an object", "mend or regenerate the file");
-            const std::string type = lower(find_member(entry, "type"));
+            const std::string type = lower_in(entry, "type");
             if (type == "semantic" && find_member(entry, "note") == nullptr) list.PushBack(semantic(entry), allocator());
             else if (type == "geometric") list.PushBack(geometric(entry, here), allocator());
             else list.PushBack(copy(entry), allocator());
@@ -95,22 +88,19 @@ private:
 
     JsonValue head(const JsonValue& entry, const char* type) {
         JsonValue result(rapidjson::kObjectType);
-        for (const char* name : {"id", "name"})
-            if (const JsonValue* value = find_member(entry, name)) add_member(result, name, copy(*value), allocator());
+        copy_members(result, allocator(), entry, {"id", "name"});
         add_member(result, "type", type, allocator());
         return result;
     }
 
     JsonValue semantic(const JsonValue& entry) {
         JsonValue result = head(entry, "semantic");
-        const JsonValue* value = find_member(entry, "value");
-        add_member(result, "note", value != nullptr && value->IsString() ? copy(*value) : json_string("", allocator()),
-                   allocator());
+        add_member(result, "note", text_in(entry, "value"), allocator());
         return result;
     }
 
     JsonValue geometric(const JsonValue& entry, const std::string& at) {
-        std::string tool = lower(find_member(entry, "tool"));
+        std::string tool = lower_in(entry, "tool");
         const JsonValue* value = find_member(entry, "value");
         const JsonValue* points = find_member(entry, "points");
         const JsonValue* direction = find_member(entry, "direction");
@@ -126,13 +116,11 @@ private:
             if (value != nullptr && value->IsNumber()) add_member(result, "value", copy(*value), allocator());
             return result;
         }
-        JsonValue measure(rapidjson::kObjectType);
-        add_member(measure, "tool", tool, allocator());
         JsonValue pins(rapidjson::kArrayType);
         for (rapidjson::SizeType i = 0; i < points->Size(); ++i)
             pins.PushBack(whole((*points)[i], at + "/points/" + to_string(i)), allocator());
-        add_member(measure, "points", std::move(pins), allocator());
-        if (direction != nullptr) add_member(measure, "direction", copy(*direction), allocator());
+        JsonValue measure = json_object(allocator(), "tool", tool, "points", std::move(pins));
+        copy_members(measure, allocator(), entry, {"direction"});
         if (value != nullptr && value->IsNumber()) add_member(measure, "value", copy(*value), allocator());
         JsonValue result = head(entry, "measure");
         add_member(result, "measure", std::move(measure), allocator());
@@ -147,15 +135,12 @@ private:
 }  // namespace
 
 bool is_prototype(const JsonValue& document) {
-    const JsonValue* list = find_member(document, "annotations");
-    if (find_member(document, "format") != nullptr || list == nullptr || !list->IsArray()) return false;
-    for (const auto& annotation : list->GetArray()) {
-        if (find_member(annotation, "color") != nullptr) return true;
-        const JsonValue* type = find_member(annotation, "type");
-        for (const std::string& capital : capital_types())
-            if (type != nullptr && type->IsString() && capital == type->GetString()) return true;
-    }
-    return false;
+    if (find_member(document, "format") != nullptr) return false;
+    const auto list = list_in(document, "annotations");
+    return std::any_of(list.begin(), list.end(), [](const JsonValue& annotation) {
+        static const std::set<std::string> capital_types{"Area", "Surface", "Region", "Line", "Point"};
+        return find_member(annotation, "color") != nullptr || capital_types.contains(text_in(annotation, "type"));
+    });
 }
 
 Json convert_prototype(const JsonValue& document, const std::string& where, std::vector<std::string>& notes) {

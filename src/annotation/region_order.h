@@ -13,9 +13,7 @@ inline std::vector<const Annotation*> regions_largest_first(const Mesh& mesh, co
     std::vector<std::pair<double, const Annotation*>> regions;
     for (auto annotation = set.annotations.rbegin(); annotation != set.annotations.rend(); ++annotation) {
         if (annotation->type != AnnotationType::region) continue;
-        double area = 0;
-        for (const Index face : annotation->faces) area += face_area(mesh, Face(face));
-        regions.emplace_back(area, &*annotation);
+        regions.emplace_back(area_of(mesh, annotation->faces), &*annotation);
     }
     std::stable_sort(regions.begin(), regions.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
     std::vector<const Annotation*> order;

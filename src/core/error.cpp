@@ -17,6 +17,10 @@ void fail_input(const std::string& where, const std::string& what, const std::st
     throw Error(ErrorKind::input, where, what, remedy);
 }
 
+void fail_work(const std::string& where, const std::string& what, const std::string& remedy) {
+    throw Error(ErrorKind::failure, where, what, remedy);
+}
+
 void fail_usage(const std::string& what, const std::string& remedy) { throw Error(ErrorKind::usage, {}, what, remedy); }
 
 }  // namespace ostraka

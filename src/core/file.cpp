@@ -1,6 +1,7 @@
 #include "ostraka/core/file.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/text.h"
 #include "ostraka/core/transaction.h"
 #include "output_sweep.h"
 
@@ -10,7 +11,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <map>
@@ -120,7 +120,7 @@ MemoryFiles& memory_files() {
 void rename_file(const Path& from, const Path& to) {
     if (is_memory(from)) return memory_files().rename(from, to);
     if (::rename(from.c_str(), to.c_str()) != 0)
-        throw Error(ErrorKind::failure, to.string(), "cannot be written: " + reason(), "check the rights of its folder");
+        fail_work(to.string(), "cannot be written: " + reason(), "check the rights of its folder");
 }
 
 /// What a link points to, whether that exists or not.
@@ -174,8 +174,7 @@ std::vector<std::string> files_in(const Path& folder, std::vector<std::string>* 
         else if (others != nullptr && !std::filesystem::is_directory(status))
             others->push_back(entry->path().filename().string());
     }
-    if (code)
-        throw Error(ErrorKind::failure, folder.string(), "the folder cannot be read: " + code.message(), "check its rights");
+    if (code) fail_work(folder.string(), "the folder cannot be read: " + code.message(), "check its rights");
     std::sort(names.begin(), names.end());
     if (others != nullptr) std::sort(others->begin(), others->end());
     return names;
@@ -186,8 +185,7 @@ void make_folder(const Path& folder) {
     std::error_code code;
     std::filesystem::create_directories(folder, code);
     if (code || !std::filesystem::is_directory(folder, code))
-        throw Error(ErrorKind::failure, folder.string(), "the folder cannot be made" + (code ? ": " + code.message() : ""),
-                    "name another one");
+        fail_work(folder.string(), "the folder cannot be made" + (code ? ": " + code.message() : ""), "name another one");
 }
 
 void remove_file(const Path& file) {
@@ -242,7 +240,7 @@ std::string read_file(const Path& file) {
         }
         bytes.resize(used);
     } catch (const std::bad_alloc&) {
-        throw Error(ErrorKind::failure, file.string(), "does not fit into memory");
+        fail_work(file.string(), "does not fit into memory");
     }
     return recorded(file, std::move(bytes));
 }
@@ -251,13 +249,11 @@ std::string read_file(const Path& file) {
 AtomicFile::AtomicFile(Path file) : file_(is_memory(file) ? std::move(file) : behind_links(std::move(file))) {
     if (is_memory(file_)) return;
     std::error_code code;
-    if (std::filesystem::is_directory(file_, code))
-        throw Error(ErrorKind::failure, file_.string(), "is a folder", "name a file to write");
+    if (std::filesystem::is_directory(file_, code)) fail_work(file_.string(), "is a folder", "name a file to write");
     // A device or a pipe (/dev/null, /dev/stdout) is written to, not replaced by a file.
     if (std::filesystem::exists(file_, code) && !std::filesystem::is_regular_file(file_, code)) {
         stream_ = std::fopen(file_.c_str(), "wb");
-        if (stream_ == nullptr)
-            throw Error(ErrorKind::failure, file_.string(), "cannot be written: " + reason(), "check its rights");
+        if (stream_ == nullptr) fail_work(file_.string(), "cannot be written: " + reason(), "check its rights");
         return;
     }
     // Not the file's own name with an ending: that may be as long as names can be.
@@ -265,8 +261,7 @@ AtomicFile::AtomicFile(Path file) : file_(is_memory(file) ? std::move(file) : be
     const int descriptor = ::mkstemp(pattern.data());
     if (descriptor < 0) {
         const std::string why = reason();
-        throw Error(ErrorKind::failure, file_.string(), "cannot be written: " + why,
-                    "check that its folder exists and may be written to");
+        fail_work(file_.string(), "cannot be written: " + why, "check that its folder exists and may be written to");
     }
     temporary_ = pattern;
     const mode_t mask = ::umask(0);
@@ -276,7 +271,7 @@ AtomicFile::AtomicFile(Path file) : file_(is_memory(file) ? std::move(file) : be
     if (stream_ == nullptr) {
         ::close(descriptor);
         ::unlink(temporary_.c_str());
-        throw Error(ErrorKind::failure, file_.string(), "cannot be written: " + reason());
+        fail_work(file_.string(), "cannot be written: " + reason());
     }
 }
 
@@ -293,8 +288,7 @@ void AtomicFile::write(std::string_view bytes) {
         return;
     }
     if (!bytes.empty() && std::fwrite(bytes.data(), 1, bytes.size(), stream_) != bytes.size())
-        throw Error(ErrorKind::failure, file_.string(), "cannot be written: " + reason(),
-                    "free some space; an earlier file of that name is untouched");
+        fail_work(file_.string(), "cannot be written: " + reason(), "free some space; an earlier file of that name is untouched");
 }
 
 void AtomicFile::commit() {
@@ -314,8 +308,7 @@ void AtomicFile::commit() {
     else if (!flushed || !closed || (!direct && ::rename(temporary_.c_str(), file_.c_str()) != 0)) {
         const std::string cause = flushed ? reason() : why;
         if (!direct) ::unlink(temporary_.c_str());
-        throw Error(ErrorKind::failure, file_.string(), "cannot be written: " + cause,
-                    "free some space; an earlier file of that name is untouched");
+        fail_work(file_.string(), "cannot be written: " + cause, "free some space; an earlier file of that name is untouched");
     }
 }
 
@@ -384,22 +377,16 @@ void check_outputs(const std::vector<Path>& inputs, const std::vector<Path>& out
                 fail_usage("two outputs have the name " + output.string(), "give each output its own name");
         const Path folder = output.has_parent_path() ? output.parent_path() : Path(".");
         if (!std::filesystem::is_directory(folder, code))
-            throw Error(ErrorKind::failure, output.string(), "its folder does not exist",
-                        "make the folder " + folder.string() + " first");
-        if (std::filesystem::is_directory(output, code))
-            throw Error(ErrorKind::failure, output.string(), "is a folder", "name a file to write");
+            fail_work(output.string(), "its folder does not exist", "make the folder " + folder.string() + " first");
+        if (std::filesystem::is_directory(output, code)) fail_work(output.string(), "is a folder", "name a file to write");
     }
 }
 
-std::string extension(const Path& file) {
-    std::string text = file.extension().string();
-    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return text;
-}
+std::string extension(const Path& file) { return lower_case(file.extension().string()); }
 
 Sha256::Sha256() : context_(EVP_MD_CTX_new()) {
     if (context_ == nullptr || EVP_DigestInit_ex(static_cast<EVP_MD_CTX*>(context_), EVP_sha256(), nullptr) != 1)
-        throw Error(ErrorKind::failure, "SHA-256", "cannot be started");
+        fail_work("SHA-256", "cannot be started");
 }
 
 Sha256::~Sha256() { EVP_MD_CTX_free(static_cast<EVP_MD_CTX*>(context_)); }

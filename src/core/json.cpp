@@ -100,11 +100,8 @@ private:
     void line(int indent) { text += '\n', text.append(2 * static_cast<std::size_t>(indent), ' '); }
     void plain(const JsonValue& v) {
         if (v.IsDouble() && !std::isfinite(v.GetDouble()))
-            throw Error(ErrorKind::failure, "JSON output", "a number is not finite", "report this as a defect");
-        rapidjson::StringBuffer buffer;
-        rapidjson::Writer<rapidjson::StringBuffer> writer(buffer);
-        v.Accept(writer);
-        text.append(buffer.GetString(), buffer.GetSize());
+            fail_work("JSON output", "a number is not finite", "report this as a defect");
+        text += to_compact_text(v);
     }
     static bool is_short(const JsonValue& v) {
         for (const auto& element : v.GetArray())
@@ -164,6 +161,13 @@ std::string to_text(const JsonValue& value) {
     return std::move(printer.text);
 }
 
+std::string to_compact_text(const JsonValue& value) {
+    rapidjson::StringBuffer buffer;
+    rapidjson::Writer<rapidjson::StringBuffer> writer(buffer);
+    value.Accept(writer);
+    return {buffer.GetString(), buffer.GetSize()};
+}
+
 void write_json(const Path& file, const JsonValue& value) { write_file(file, to_text(value)); }
 
 void validate(const JsonValue& value, const std::string& schema, const std::string& where) {
@@ -191,10 +195,7 @@ void validate(const JsonValue& value, const std::string& schema, const std::stri
     if (const JsonValue* rules = validator.GetInvalidSchemaPointer().Get(schema_document);
         rules != nullptr && rules->IsObject()) {
         if (const JsonValue* rule = find_member(*rules, keyword)) {
-            rapidjson::StringBuffer buffer;
-            rapidjson::Writer<rapidjson::StringBuffer> writer(buffer);
-            rule->Accept(writer);
-            std::string rule_text(buffer.GetString(), buffer.GetSize());
+            std::string rule_text = to_compact_text(*rule);
             if (rule_text.size() > 200) rule_text = rule_text.substr(0, 197) + "...";
             expected += " " + rule_text;
         }
@@ -240,15 +241,25 @@ void add_member(JsonValue& object, std::string_view name, std::string_view text,
     add_member(object, name, json_string(text, allocator), allocator);
 }
 
+JsonValue json_list_of(JsonValue value, JsonAllocator& allocator) {
+    JsonValue list(rapidjson::kArrayType);
+    list.PushBack(value, allocator);
+    return list;
+}
+
+JsonValue json_number(double value) {
+    return std::abs(value) < 1e9 && value == std::floor(value) ? JsonValue(static_cast<int>(value)) : JsonValue(value);
+}
+
+void copy_members(JsonValue& object, JsonAllocator& allocator, const JsonValue& from, std::initializer_list<const char*> names) {
+    for (const char* name : names)
+        if (const JsonValue* value = find_member(from, name)) add_members(object, allocator, name, *value);
+}
+
 Json json_document(std::string_view kind) {
     Json document(rapidjson::kObjectType);
     add_members(document, document.GetAllocator(), "format", "ostraka-" + std::string(kind), "version", 1);
     return document;
-}
-
-double number_or(const JsonValue& object, std::string_view name, double otherwise) {
-    const JsonValue* value = find_member(object, name);
-    return value == nullptr ? otherwise : value->GetDouble();
 }
 
 const JsonValue* find_member(const JsonValue& object, std::string_view name) {
@@ -256,6 +267,40 @@ const JsonValue* find_member(const JsonValue& object, std::string_view name) {
     const JsonValue key(rapidjson::StringRef(name.data(), static_cast<rapidjson::SizeType>(name.size())));
     const auto found = object.FindMember(key);
     return found == object.MemberEnd() ? nullptr : &found->value;
+}
+
+std::optional<double> number_in(const JsonValue& object, std::string_view name) {
+    const JsonValue* value = find_member(object, name);
+    return value == nullptr ? std::nullopt : std::optional(value->GetDouble());
+}
+
+double number_or(const JsonValue& object, std::string_view name, double otherwise) {
+    return number_in(object, name).value_or(otherwise);
+}
+
+std::string text_in(const JsonValue& object, std::string_view name) {
+    const JsonValue* value = find_member(object, name);
+    return value != nullptr && value->IsString() ? text_of(*value) : std::string();
+}
+
+bool flag_in(const JsonValue& object, std::string_view name) {
+    const JsonValue* value = find_member(object, name);
+    return value != nullptr && value->GetBool();
+}
+
+JsonValue::ConstArray list_in(const JsonValue& object, std::string_view name) {
+    static const JsonValue none(rapidjson::kArrayType);
+    const JsonValue* value = find_member(object, name);
+    return (value != nullptr && value->IsArray() ? *value : none).GetArray();
+}
+
+std::string text_of(const JsonValue& value) { return {value.GetString(), value.GetStringLength()}; }
+
+std::array<double, 3> triple_of(const JsonValue& list) { return {list[0].GetDouble(), list[1].GetDouble(), list[2].GetDouble()}; }
+
+void check_format(const JsonValue& document, const std::string& format, const std::string& where, const std::string& remedy) {
+    if (const JsonValue* said = find_member(document, "format"); said != nullptr && said->IsString() && text_of(*said) != format)
+        fail_input(where, "at /format: the format is '" + text_of(*said) + "'", remedy);
 }
 
 }  // namespace ostraka

@@ -105,7 +105,7 @@ ManifoldDefects try_build_mesh(const TriangleSoup& soup, Mesh& mesh) {
     mesh.clear();
     const std::size_t vertex_count = soup.points.size(), face_count = soup.triangles.size();
     if (vertex_count >= no_index / 8 || face_count >= no_index / 8)
-        throw Error(ErrorKind::failure, "mesh", "has more than 536 million vertices or triangles", "split it");
+        fail_work("mesh", "has more than 536 million vertices or triangles", "split it");
     ManifoldDefects repeated;
     for (std::size_t t = 0; t < face_count; ++t) {
         const auto& [a, b, c] = soup.triangles[t];

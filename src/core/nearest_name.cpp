@@ -7,22 +7,6 @@
 
 namespace ostraka {
 
-namespace {
-
-/// A byte that is not UTF-8 stands for itself, beyond all characters.
-std::u32string characters(std::string_view text) {
-    std::u32string list;
-    for (std::size_t at = 0; at < text.size();) {
-        const Character here = character_at(text, at);
-        const bool odd = here.code == 0xFFFD && here.length == 1;
-        list += odd ? 0x110000U + static_cast<unsigned char>(text[at]) : here.code;
-        at += here.length;
-    }
-    return list;
-}
-
-}  // namespace
-
 std::size_t edit_distance(std::string_view first, std::string_view second, std::size_t limit) {
     const std::u32string a = characters(first), b = characters(second);
     const std::size_t longer = std::max(a.size(), b.size()), shorter = std::min(a.size(), b.size());

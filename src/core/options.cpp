@@ -2,11 +2,11 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/text.h"
+#include "ostraka/core/words.h"
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
-#include <sstream>
+#include <concepts>
 #include <stdexcept>
 
 namespace ostraka {
@@ -22,10 +22,8 @@ std::string word_of(bool value) { return value ? "true" : "false"; }
 std::string word_of(const std::string& value) { return value; }
 template <class Number>
 std::string word_of(Number value) {
-    std::ostringstream text;
-    text.precision(17);
-    text << value;
-    return text.str();
+    if constexpr (std::floating_point<Number>) return digits(value, 17);
+    else return std::to_string(value);
 }
 
 [[noreturn]] void refuse(const Option& option, const std::string& value, const std::string& where = {}) {
@@ -61,16 +59,18 @@ std::vector<std::string> split(const std::string& list) {
     return words;
 }
 
-std::string shown(double bound) {
-    std::ostringstream text;
-    text << bound;
-    return text.str();
-}
-
 const std::vector<std::string>& names_of(const Option& option) {
     const auto* choices = std::get_if<Choices>(&option.rule);
     if (choices == nullptr) throw std::logic_error("option " + option.name + " has no choices");
     return choices->names;
+}
+
+template <class T>
+OptionType type_of() {
+    return std::same_as<T, bool>          ? OptionType::boolean
+           : std::same_as<T, std::string> ? OptionType::text
+           : std::floating_point<T>       ? OptionType::number
+                                          : OptionType::integer;
 }
 
 }  // namespace
@@ -79,14 +79,9 @@ OptionType Option::type() const {
     if (std::holds_alternative<Choices>(rule) && !is_list()) return OptionType::choice;
     return std::visit(
         Overloaded{
-            [](bool*) { return OptionType::boolean; }, [](int*) { return OptionType::integer; },
-            [](std::uint64_t*) { return OptionType::integer; }, [](double*) { return OptionType::number; },
-            [](std::string*) { return OptionType::text; }, [](std::vector<std::string>*) { return OptionType::texts; },
+            [](const EnumValue&) { return OptionType::choice; }, [](std::vector<std::string>*) { return OptionType::texts; },
             [](std::vector<double>*) { return OptionType::numbers; }, [](std::vector<int>*) { return OptionType::integers; },
-            [](std::optional<bool>*) { return OptionType::boolean; }, [](std::optional<int>*) { return OptionType::integer; },
-            [](std::optional<std::uint32_t>*) { return OptionType::integer; },
-            [](std::optional<double>*) { return OptionType::number; },
-            [](std::optional<std::string>*) { return OptionType::text; }, [](const EnumValue&) { return OptionType::choice; }},
+            []<class T>(std::optional<T>*) { return type_of<T>(); }, []<class T>(T*) { return type_of<T>(); }},
         value.place);
 }
 
@@ -117,10 +112,7 @@ std::vector<std::string> Option::texts() const {
 }
 
 std::string Option::text() const {
-    std::string all;
-    const char* between = std::holds_alternative<std::vector<std::string>*>(value.place) ? "; " : ",";
-    for (const std::string& word : texts()) all += (all.empty() ? "" : between) + word;
-    return all;
+    return joined(texts(), std::holds_alternative<std::vector<std::string>*>(value.place) ? "; " : ",");
 }
 
 void Option::set(const std::vector<std::string>& words) {
@@ -175,8 +167,7 @@ void Option::set(const std::vector<double>& values) {
     std::vector<std::string> words;
     for (const double one : values) words.push_back(word_of(one));
     if (type() != OptionType::numbers && type() != OptionType::integers) {
-        std::string list;
-        for (const auto& word : words) list += (list.empty() ? "" : ",") + word;
+        const std::string list = joined(words, ",");
         // Directions and the like: three numbers, or a word.
         if (type() != OptionType::text) refuse(*this, list);
         set(std::vector{list});
@@ -186,47 +177,37 @@ void Option::set(const std::vector<double>& values) {
 }
 
 std::string Option::allowed() const {
-    if (const auto* choices = std::get_if<Choices>(&rule)) {
-        std::string list;
-        for (const auto& choice : choices->names) list += (list.empty() ? "" : ", ") + choice;
-        return "one of: " + list;
-    }
+    if (const auto* choices = std::get_if<Choices>(&rule)) return "one of: " + joined(choices->names);
     const OptionType kind = type();
     const bool whole = kind == OptionType::integer || kind == OptionType::integers;
     std::string what = kind == OptionType::boolean                                 ? "true or false"
                        : whole                                                     ? "a whole number"
                        : kind == OptionType::number || kind == OptionType::numbers ? "a number"
                                                                                    : "a text";
-    if (const auto* range = std::get_if<Range>(&rule)) what = "a value from " + shown(range->min) + " to " + shown(range->max);
+    if (const auto* range = std::get_if<Range>(&rule))
+        what = "a value from " + digits(range->min, 6) + " to " + digits(range->max, 6);
     if (is_list() && kind != OptionType::texts) what += ", with commas between several";
     return what + (unit.empty() ? "" : " (" + unit + ")");
 }
 
 void Option::check(const std::string& where) const {
     if (const auto* range = std::get_if<Range>(&rule)) {
-        const auto within = [&](double number) { return number >= range->min && number <= range->max; };
-        const auto look = [&](double number, const std::string& word) {
-            if (within(number)) return;
-            throw Error(ErrorKind::usage, where, "option " + name + " is " + word, "use " + allowed());
+        const auto look = [&]<class T>(T one) {
+            if constexpr (std::is_arithmetic_v<T> && !std::same_as<T, bool>) {
+                const auto number = static_cast<double>(one);
+                if (number >= range->min && number <= range->max) return;
+                const std::string word = std::floating_point<T> ? digits(number) : word_of(one);
+                throw Error(ErrorKind::usage, where, "option " + name + " is " + word, "use " + allowed());
+            }
         };
-        std::visit(Overloaded{[&](double* one) { look(*one, digits(*one)); }, [&](int* one) { look(*one, std::to_string(*one)); },
-                              [&](std::uint64_t* one) { look(static_cast<double>(*one), std::to_string(*one)); },
-                              [&](std::optional<double>* one) {
-                                  if (*one) look(**one, digits(**one));
+        std::visit(Overloaded{[](const EnumValue&) {},
+                              [&]<class T>(std::vector<T>* list) {
+                                  for (const T& one : *list) look(one);
                               },
-                              [&](std::optional<int>* one) {
-                                  if (*one) look(**one, std::to_string(**one));
+                              [&]<class T>(std::optional<T>* maybe) {
+                                  if (*maybe) look(**maybe);
                               },
-                              [&](std::optional<std::uint32_t>* one) {
-                                  if (*one) look(**one, std::to_string(**one));
-                              },
-                              [&](std::vector<double>* list) {
-                                  for (const double one : *list) look(one, digits(one));
-                              },
-                              [&](std::vector<int>* list) {
-                                  for (const int one : *list) look(one, std::to_string(one));
-                              },
-                              [](const auto&) {}},
+                              [&](auto* one) { look(*one); }},
                    value.place);
     }
     if (std::holds_alternative<Choices>(rule) && !std::holds_alternative<EnumValue>(value.place))

@@ -1,6 +1,7 @@
 #include "output_sweep.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/text.h"
 
 #include <algorithm>
 #include <chrono>
@@ -32,9 +33,7 @@ std::map<std::string, std::string> read_list(const Path& list) {
         return entries;
     }
     for (std::size_t at = 0; at < text.size();) {
-        const std::size_t end = std::min(text.find('\n', at), text.size());
-        const std::string line = text.substr(at, end - at);
-        at = end + 1;
+        const std::string line(line_at(text, at));
         if (line.size() > sum_length + 2 && line.compare(sum_length, 2, "  ") == 0 && plain(line.substr(sum_length + 2)))
             entries[line.substr(sum_length + 2)] = line.substr(0, sum_length);
     }

@@ -10,8 +10,6 @@ std::string version() { return OSTRAKA_VERSION; }
 void Provenance::add_input(const Path& file) { inputs.emplace_back(file.filename().string(), sha256_of_file(file)); }
 
 JsonValue Provenance::to_json(JsonAllocator& allocator) const {
-    JsonValue result = json_object(allocator, "tool", "ostraka " + version(), "command", command);
-    JsonValue option_values(rapidjson::kObjectType);
     // An option that was given several times is one member: no name stands twice in an object.
     std::vector<std::pair<std::string, std::string>> members;
     for (const auto& [name, value] : options) {
@@ -19,15 +17,11 @@ JsonValue Provenance::to_json(JsonAllocator& allocator) const {
         if (known == members.end()) members.emplace_back(name, value);
         else known->second += "; " + value;
     }
+    JsonValue option_values(rapidjson::kObjectType);
     for (const auto& [name, value] : members) add_member(option_values, name, value, allocator);
-    add_member(result, "options", std::move(option_values), allocator);
-    JsonValue input_values(rapidjson::kArrayType);
-    for (const auto& [name, hash] : inputs) {
-        JsonValue input = json_object(allocator, "file", name, "sha256", hash);
-        input_values.PushBack(input, allocator);
-    }
-    add_member(result, "inputs", std::move(input_values), allocator);
-    return result;
+    const auto json_of = [&](const auto& input) { return json_object(allocator, "file", input.first, "sha256", input.second); };
+    return json_object(allocator, "tool", "ostraka " + version(), "command", command, "options", std::move(option_values),
+                       "inputs", json_list(inputs, allocator, json_of));
 }
 
 std::string Provenance::to_line() const {

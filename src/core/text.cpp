@@ -2,6 +2,7 @@
 
 #include "ostraka/core/json.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -19,6 +20,17 @@ Character character_at(std::string_view text, std::size_t at) {
     return {code, length};
 }
 
+std::u32string characters(std::string_view text) {
+    std::u32string list;
+    for (std::size_t at = 0; at < text.size();) {
+        const Character here = character_at(text, at);
+        const bool odd = here.code == 0xFFFD && here.length == 1;
+        list += odd ? not_utf8 + static_cast<unsigned char>(text[at]) : here.code;
+        at += here.length;
+    }
+    return list;
+}
+
 bool is_control(char32_t code) {
     return code < 0x20 || (code >= 0x7F && code < 0xA0) || (code >= 0x202A && code <= 0x202E) ||
            (code >= 0x2066 && code <= 0x2069);
@@ -31,6 +43,18 @@ std::string without_controls(std::string_view text, std::string_view instead) {
         const Character here = character_at(text, at);
         result += is_control(here.code) ? instead : text.substr(at, here.length);
         at += here.length;
+    }
+    return result;
+}
+
+std::string percent_encoded(std::string_view text) {
+    std::string result;
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                           std::string_view("-._~").find(c) != std::string_view::npos;
+        if (plain) result += c;
+        else result += {'%', "0123456789ABCDEF"[byte >> 4], "0123456789ABCDEF"[byte & 15]};
     }
     return result;
 }
@@ -51,6 +75,28 @@ std::string_view trimmed(std::string_view text) {
     const std::size_t begin = text.find_first_not_of(" \t\r\n");
     if (begin == std::string_view::npos) return {};
     return text.substr(begin, text.find_last_not_of(" \t\r\n") - begin + 1);
+}
+
+std::string lower_case(std::string_view text) {
+    std::string result(text);
+    for (char& c : result)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return result;
+}
+
+std::string_view line_at(std::string_view text, std::size_t& at) {
+    const std::size_t begin = at, end = std::min(text.find('\n', at), text.size());
+    at = end + 1;
+    return text.substr(begin, end - begin);
+}
+
+std::vector<std::string_view> words_of(std::string_view text, std::string_view blanks) {
+    std::vector<std::string_view> words;
+    for (std::size_t end = 0, begin = 0; (begin = text.find_first_not_of(blanks, end)) != std::string_view::npos;) {
+        end = std::min(text.find_first_of(blanks, begin), text.size());
+        words.push_back(text.substr(begin, end - begin));
+    }
+    return words;
 }
 
 std::optional<double> number_of(std::string_view text) {

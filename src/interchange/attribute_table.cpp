@@ -11,6 +11,7 @@ namespace ostraka {
 
 namespace {
 
+using namespace interchange;
 using std::to_string;
 
 const std::vector<std::string>& column_names() {
@@ -20,28 +21,17 @@ const std::vector<std::string>& column_names() {
     return names;
 }
 
-template <class Numbers>
-std::string joined(const Numbers& numbers) {
-    std::string text;
-    for (const auto number : numbers) {
-        text += text.empty() ? "" : " ";
-        if constexpr (std::is_floating_point_v<std::decay_t<decltype(number)>>) text += digits(number);
-        else text += to_string(number);
-    }
-    return text;
-}
-
 /// Face and two of the three weights would do, but all three read back to the bit.
-std::string joined(const std::vector<Location>& locations) {
+std::string in_cell(const std::vector<Location>& locations) {
     std::string text;
     for (const Location& location : locations)
-        text += (text.empty() ? "" : " ") + to_string(location.face) + " " + joined(location.barycentric);
+        text += (text.empty() ? "" : " ") + to_string(location.face) + " " + joined_numbers(location.barycentric);
     return text;
 }
 
-std::string joined(const std::vector<std::vector<Index>>& pickings) {
+std::string in_cell(const std::vector<std::vector<Index>>& pickings) {
     std::string text;
-    for (const auto& pins : pickings) text += (text.empty() ? "" : " | ") + joined(pins);
+    for (const auto& pins : pickings) text += (text.empty() ? "" : " | ") + joined_numbers(pins);
     return text;
 }
 
@@ -52,8 +42,8 @@ public:
         if (rows_.empty()) fail_at(1, "the file is empty", "give a table that 'annotation export' wrote");
         const auto& header = rows_.front().cells;
         for (std::size_t i = 0; i < header.size(); ++i)
-            if (!columns_.emplace(interchange::lower(trimmed(header[i])), i).second)
-                fail_at(rows_.front().line, "the column '" + interchange::one_line(header[i]) + "' stands twice", "remove one");
+            if (!columns_.emplace(lower_case(trimmed(header[i])), i).second)
+                fail_at(rows_.front().line, "the column '" + one_line(header[i]) + "' stands twice", "remove one");
         for (const char* needed : {"annotation", "attribute", "name", "kind"})
             if (!columns_.contains(needed))
                 fail_at(rows_.front().line, std::string("there is no column '") + needed + "'",
@@ -103,26 +93,20 @@ private:
     [[nodiscard]] std::string cell(const std::string& column) const {
         const auto found = columns_.find(column);
         if (found == columns_.end() || found->second >= row_->cells.size()) return {};
-        return interchange::as_utf8(unguarded(row_->cells[found->second]));
+        return as_utf8(unguarded(row_->cells[found->second]));
     }
     [[nodiscard]] int whole(const std::string& column) const {
         const auto value = whole_of(cell(column));
-        if (!value)
-            fail(column, "'" + interchange::one_line(cell(column)).substr(0, 40) + "' is not a whole number", "mend the cell");
+        if (!value) fail(column, "'" + one_line(cell(column)).substr(0, 40) + "' is not a whole number", "mend the cell");
         return *value;
     }
     [[nodiscard]] std::vector<double> numbers(const std::string& column) const { return numbers(column, cell(column)); }
     [[nodiscard]] std::vector<double> numbers(const std::string& column, const std::string& text) const {
         std::vector<double> list;
-        for (std::size_t from = 0; from < text.size();) {
-            const std::size_t begin = text.find_first_not_of(" \t\r\n", from);
-            if (begin == std::string::npos) break;
-            from = std::min(text.find_first_of(" \t\r\n", begin), text.size());
-            const auto value = number_of(std::string_view(text).substr(begin, from - begin));
+        for (const std::string_view word : words_of(text)) {
+            const auto value = number_of(word);
             if (!value)
-                fail(column,
-                     "'" + interchange::one_line(text.substr(begin, std::min<std::size_t>(from - begin, 40))) +
-                         "' is not a number",
+                fail(column, "'" + one_line(word.substr(0, 40)) + "' is not a number",
                      "give numbers with a decimal point, separated by blanks");
             list.push_back(*value);
         }
@@ -176,9 +160,9 @@ private:
         attribute.id = whole("attribute");
         attribute.name = cell("name");
         const std::string kind = cell("kind"), stale = cell("stale");
-        if (!stale.empty() && interchange::lower(stale) != "true" && interchange::lower(stale) != "false")
+        if (!stale.empty() && lower_case(stale) != "true" && lower_case(stale) != "false")
             fail("stale", "is neither true nor false", "mend the cell");
-        const bool is_stale = interchange::lower(stale) == "true";
+        const bool is_stale = lower_case(stale) == "true";
         if (kind == "semantic") {
             attribute.note = cell("note");
             attribute.origin = cell("origin");
@@ -192,8 +176,7 @@ private:
             if (kind == "descriptor" && attribute.descriptor.values.size() > 1)
                 fail("value", "more than one number", "write 'list' as the kind");
         } else {
-            fail("kind", "'" + interchange::one_line(kind).substr(0, 40) + "' is not known",
-                 "use semantic, measure, descriptor or list");
+            fail("kind", "'" + one_line(kind).substr(0, 40) + "' is not known", "use semantic, measure, descriptor or list");
         }
         return attribute;
     }
@@ -236,7 +219,7 @@ std::string attribute_table(const AnnotationSet& set) {
     std::string text = csv_row(column_names());
     for (const Annotation& annotation : set.annotations) {
         const std::vector<std::string> head{to_string(annotation.id), annotation.tag, to_string(annotation.type),
-                                            joined(annotation.colour)};
+                                            joined_numbers(annotation.colour)};
         const auto add = [&](const std::vector<std::string>& rest) {
             std::vector<std::string> cells = head;
             cells.insert(cells.end(), rest.begin(), rest.end());
@@ -254,13 +237,14 @@ std::string attribute_table(const AnnotationSet& set) {
                          attribute.origin});
                     break;
                 case AttributeType::measure:
-                    add({id, attribute.name, "measure", m.value ? digits(*m.value) : "", m.unit, "", m.tool, joined(m.points),
-                         m.direction ? joined(*m.direction) : "", joined(m.locations), "", m.stale ? "true" : "",
-                         m.exact ? "exact" : "", joined(m.repeats), m.uncertainty ? digits(*m.uncertainty) : ""});
+                    add({id, attribute.name, "measure", m.value ? digits(*m.value) : "", m.unit, "", m.tool,
+                         joined_numbers(m.points), m.direction ? joined_numbers(*m.direction) : "", in_cell(m.locations), "",
+                         m.stale ? "true" : "", m.exact ? "exact" : "", in_cell(m.repeats),
+                         m.uncertainty ? digits(*m.uncertainty) : ""});
                     break;
                 case AttributeType::descriptor:
-                    add({id, attribute.name, d.is_list ? "list" : "descriptor", joined(d.values), d.unit, "", "", "", "", "",
-                         d.file, d.stale ? "true" : ""});
+                    add({id, attribute.name, d.is_list ? "list" : "descriptor", joined_numbers(d.values), d.unit, "", "", "", "",
+                         "", d.file, d.stale ? "true" : ""});
                     break;
             }
         }

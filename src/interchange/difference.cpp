@@ -86,7 +86,7 @@ private:
             list.back().only_after = a.type == b.type ? count_only_in(after, before) : after.size();
         }
         if (a.note != b.note) change("note", words(a.note), words(b.note));
-        order_of_attributes(a, b);
+        order(ids_of(a.attributes), ids_of(b.attributes));
         std::map<int, std::pair<const Attribute*, const Attribute*>> pairs;
         for (const Attribute& attribute : a.attributes) pairs[attribute.id].first = &attribute;
         for (const Attribute& attribute : b.attributes) pairs[attribute.id].second = &attribute;
@@ -97,8 +97,6 @@ private:
                    after == nullptr ? "" : words(*after));
         }
     }
-
-    void order_of_attributes(const Annotation& a, const Annotation& b) { order(ids_of(a.attributes), ids_of(b.attributes)); }
 
     std::optional<int> id_;
     std::string tag_;

@@ -5,6 +5,7 @@
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/flood.h"
 #include "ostraka/core/ids.h"
 #include "ostraka/measure/measure.h"
 
@@ -18,12 +19,12 @@ namespace {
 using namespace interchange;
 using std::to_string;
 
-std::string id_or_tag(const EntryName& name) { return name.id ? to_string(*name.id) : "'" + interchange::words(name.text) + "'"; }
+std::string in_words(const EntryName& name) { return name.id ? to_string(*name.id) : "'" + interchange::words(name.text) + "'"; }
 
 EntryName name_of(const JsonValue& value) {
     EntryName name;
     if (value.IsInt()) name.id = value.GetInt();
-    else name.text.assign(value.GetString(), value.GetStringLength());
+    else name.text = text_of(value);
     return name;
 }
 
@@ -34,17 +35,11 @@ std::vector<std::vector<Index>> patches(const Mesh& mesh, const std::vector<Inde
     std::vector<std::vector<Index>> result;
     for (const Index start : faces) {
         if (seen[start]) continue;
-        std::vector<Index> patch{start};
-        seen[start] = true;
-        for (std::size_t i = 0; i < patch.size(); ++i)
-            for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(Face(patch[i])))) {
-                const Face next = mesh.face(mesh.opposite(h));
-                if (next == Mesh::null_face() || !selected[next] || seen[next]) continue;
-                seen[next] = true;
-                patch.push_back(next);
-            }
-        std::sort(patch.begin(), patch.end());
-        result.push_back(std::move(patch));
+        const std::vector<Face> patch = flood_faces(mesh, Face(start), seen, [&](Halfedge h) {
+            return !mesh.is_border(mesh.opposite(h)) && selected[mesh.face(mesh.opposite(h))];
+        });
+        std::vector<Index>& indices = result.emplace_back(patch.begin(), patch.end());
+        std::sort(indices.begin(), indices.end());
     }
     return result;
 }
@@ -115,21 +110,20 @@ private:
         std::vector<std::size_t> found;
         for (std::size_t i = 0; i < set_.annotations.size(); ++i)
             if (name.id ? set_.annotations[i].id == *name.id : set_.annotations[i].tag == name.text) found.push_back(i);
-        if (found.empty()) fail_input(here_, "there is no annotation " + id_or_tag(name), "'annotation list' shows ids and tags");
+        if (found.empty()) fail_input(here_, "there is no annotation " + in_words(name), "'annotation list' shows ids and tags");
         if (found.size() > 1)
-            fail_input(here_, counted_annotations(found.size()) + " have the tag " + id_or_tag(name),
+            fail_input(here_, to_string(found.size()) + " annotations have the tag " + in_words(name),
                        "name the one meant by its id");
         return found.front();
     }
-    static std::string counted_annotations(std::size_t count) { return to_string(count) + " annotations"; }
 
     void remove_attribute(Annotation& annotation, const EntryName& name) const {
         const auto matches = [&](const Attribute& a) { return name.id ? a.id == *name.id : a.name == name.text; };
         const auto count = std::count_if(annotation.attributes.begin(), annotation.attributes.end(), matches);
         const std::string whose = "annotation " + to_string(annotation.id);
         if (count == 0)
-            fail_input(here_, whose + " has no attribute " + id_or_tag(name), "'annotation list' shows its attributes");
-        if (count > 1) fail_input(here_, whose + " has several attributes " + id_or_tag(name), "name the one meant by its id");
+            fail_input(here_, whose + " has no attribute " + in_words(name), "'annotation list' shows its attributes");
+        if (count > 1) fail_input(here_, whose + " has several attributes " + in_words(name), "name the one meant by its id");
         annotation.attributes.erase(std::find_if(annotation.attributes.begin(), annotation.attributes.end(), matches));
     }
 
@@ -251,35 +245,24 @@ private:
 std::vector<AnnotationEdit> edits_from_json(const JsonValue& document, const std::string& where) {
     validate(document, "annotation-edits", where);
     std::vector<AnnotationEdit> edits;
-    const JsonValue& list = document["edits"];
-    for (rapidjson::SizeType i = 0; i < list.Size(); ++i) {
-        const JsonValue& entry = list[i];
+    for (const auto& entry : list_in(document, "edits")) {
+        const std::string at = "/edits/" + to_string(edits.size());
         AnnotationEdit& edit = edits.emplace_back();
         edit.annotation = name_of(entry["annotation"]);
-        if (find_member(entry, "tag") != nullptr) edit.tag = text_member(entry, "tag");
-        if (find_member(entry, "note") != nullptr) edit.note = text_member(entry, "note");
+        if (find_member(entry, "tag") != nullptr) edit.tag = text_in(entry, "tag");
+        if (find_member(entry, "note") != nullptr) edit.note = text_in(entry, "note");
         if (const JsonValue* id = find_member(entry, "id")) edit.id = id->GetInt();
         if (const JsonValue* colour = find_member(entry, "colour"))
             edit.colour = {(*colour)[0].GetInt(), (*colour)[1].GetInt(), (*colour)[2].GetInt()};
         if (const JsonValue* attributes = find_member(entry, "attributes"))
-            edit.attributes = attributes_from_json(*attributes, where, "/edits/" + to_string(i) + "/attributes");
+            edit.attributes = attributes_from_json(*attributes, where, at + "/attributes");
         if (const JsonValue* texts = find_member(entry, "texts"))
-            for (const auto& text : texts->GetObject())
-                edit.texts.emplace_back(std::string(text.name.GetString(), text.name.GetStringLength()),
-                                        std::string(text.value.GetString(), text.value.GetStringLength()));
-        const auto names = [&](const char* member, std::vector<EntryName>& into) {
-            if (const JsonValue* value = find_member(entry, member))
-                for (const auto& name : value->GetArray()) into.push_back(name_of(name));
-        };
-        names("merge", edit.merge);
-        names("removeAttributes", edit.remove_attributes);
-        const auto flag = [&](const char* member) {
-            const JsonValue* value = find_member(entry, member);
-            return value != nullptr && value->GetBool();
-        };
-        edit.duplicate = flag("duplicate");
-        edit.split = flag("split");
-        edit.remove = flag("remove");
+            for (const auto& text : texts->GetObject()) edit.texts.emplace_back(text_of(text.name), text_of(text.value));
+        for (const auto& name : list_in(entry, "merge")) edit.merge.push_back(name_of(name));
+        for (const auto& name : list_in(entry, "removeAttributes")) edit.remove_attributes.push_back(name_of(name));
+        edit.duplicate = flag_in(entry, "duplicate");
+        edit.split = flag_in(entry, "split");
+        edit.remove = flag_in(entry, "remove");
     }
     return edits;
 }

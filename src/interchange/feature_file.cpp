@@ -17,26 +17,22 @@ FeatureFile::FeatureFile(const std::string& bytes, const std::string& where) : f
 }
 
 void FeatureFile::refuse_what_is_not_read() const {
-    if (const JsonValue* required = find_member(file.document(), "extensionsRequired");
-        required != nullptr && required->IsArray())
-        for (const auto& name : required->GetArray())
-            if (!name.IsString() || (std::string(name.GetString()) != "EXT_mesh_features" &&
-                                     std::string(name.GetString()) != "EXT_structural_metadata"))
-                file.fail("/extensionsRequired", "asks for an extension that is not known here");
-    if (const JsonValue* nodes = find_member(file.document(), "nodes"); nodes != nullptr && nodes->IsArray())
-        for (rapidjson::SizeType i = 0; i < nodes->Size(); ++i) {
-            const JsonValue* extras = find_member((*nodes)[i], "extras");
-            if (extras != nullptr && find_member(*extras, glb::display_only) != nullptr) continue;
-            for (const char* name : {"matrix", "translation", "rotation", "scale"})
-                if (find_member((*nodes)[i], name) != nullptr)
-                    file.fail("/nodes/" + std::to_string(i) + "/" + name, "transformations of nodes are not read");
-        }
+    for (const auto& name : list_in(file.document(), "extensionsRequired"))
+        if (!name.IsString() || (text_of(name) != "EXT_mesh_features" && text_of(name) != "EXT_structural_metadata"))
+            file.fail("/extensionsRequired", "asks for an extension that is not known here");
+    const auto nodes = list_in(file.document(), "nodes");
+    for (rapidjson::SizeType i = 0; i < nodes.Size(); ++i) {
+        const JsonValue* extras = find_member(nodes[i], "extras");
+        if (extras != nullptr && find_member(*extras, glb::display_only) != nullptr) continue;
+        for (const char* name : {"matrix", "translation", "rotation", "scale"})
+            if (find_member(nodes[i], name) != nullptr)
+                file.fail("/nodes/" + std::to_string(i) + "/" + name, "transformations of nodes are not read");
+    }
 }
 
 const JsonValue* FeatureFile::extras() const {
-    const JsonValue* meshes = find_member(file.document(), "meshes");
-    if (meshes == nullptr || !meshes->IsArray() || meshes->Empty()) return nullptr;
-    const JsonValue* extras = find_member((*meshes)[0], "extras");
+    const auto meshes = list_in(file.document(), "meshes");
+    const JsonValue* extras = meshes.Empty() ? nullptr : find_member(meshes[0], "extras");
     return extras == nullptr ? nullptr : find_member(*extras, "ostraka");
 }
 
@@ -90,10 +86,11 @@ void FeatureFile::read_primitive(const JsonValue& object, const std::string& at)
         file.fail(at + "/indices", "do not come out even");
     const JsonValue* extensions = find_member(object, "extensions");
     const JsonValue* extension = extensions == nullptr ? nullptr : find_member(*extensions, "EXT_mesh_features");
-    const JsonValue* values = extension == nullptr ? nullptr : find_member(*extension, "featureIds");
-    if (values != nullptr && values->IsArray())
-        for (rapidjson::SizeType i = 0; i < values->Size(); ++i)
-            read_ids((*values)[i], *accessors, primitive, at + "/extensions/EXT_mesh_features/featureIds/" + std::to_string(i));
+    if (extension != nullptr) {
+        const auto sets = list_in(*extension, "featureIds");
+        for (rapidjson::SizeType i = 0; i < sets.Size(); ++i)
+            read_ids(sets[i], *accessors, primitive, at + "/extensions/EXT_mesh_features/featureIds/" + std::to_string(i));
+    }
     primitives.push_back(std::move(primitive));
 }
 
@@ -137,7 +134,7 @@ void FeatureFile::read_table() {
     if (properties == nullptr || !properties->IsObject()) return;
     for (const char* name : {"tag", "name", "label"})
         if (tags.empty()) tags = texts(*properties, name, at);
-    ours = text_member(table, "class") == "annotation" && find_member(*properties, "attributes") != nullptr;
+    ours = text_in(table, "class") == "annotation" && find_member(*properties, "attributes") != nullptr;
     if (!ours) return;
     remarks = texts(*properties, "note", at);
     this->attributes = texts(*properties, "attributes", at);
@@ -168,7 +165,7 @@ std::vector<std::string> FeatureFile::texts(const JsonValue& properties, const c
     const JsonValue* property = find_member(properties, name);
     if (property == nullptr || find_member(*property, "stringOffsets") == nullptr) return list;
     const std::string here = at + "/properties/" + name;
-    const std::string type = text_member(*property, "stringOffsetType");
+    const std::string type = text_in(*property, "stringOffsetType");
     const std::size_t width = type == "UINT8" ? 1 : type == "UINT16" ? 2 : type == "UINT64" ? 8 : 4;
     const std::string_view bytes = file.view(file.number(*property, "values", here, absent), here);
     const std::string_view offsets = file.view(file.number(*property, "stringOffsets", here, absent), here);

@@ -9,6 +9,7 @@
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/annotation/label_file.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/json_build.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/words.h"
 #include "ostraka/measure/measure.h"
@@ -33,7 +34,7 @@ public:
         const JsonValue* ours = file_.extras();
         const JsonValue* made_of = ours == nullptr ? nullptr : find_member(*ours, "mesh");
         same_mesh_ = made_of != nullptr && file_.triangles() == mesh_.number_of_faces() &&
-                     text_member(*made_of, "sha256") == mesh_checksum(mesh_);
+                     text_in(*made_of, "sha256") == mesh_checksum(mesh_);
         JsonValue list(rapidjson::kArrayType);
         for (const auto& [id, feature] : file_.features) {
             JsonValue entry = annotation(id, feature);
@@ -106,33 +107,31 @@ private:
         return no_index;
     }
 
-    JsonValue json_of(const std::vector<Index>& indices) {
-        JsonValue list(rapidjson::kArrayType);
-        for (const Index index : indices) list.PushBack(index, a());
-        return list;
+    /// The vertices for corners of a primitive, without those that are too far.
+    std::vector<Index> vertices_of(std::size_t primitive, const std::vector<std::size_t>& chosen, PlacedAnnotation& placement) {
+        std::vector<Index> vertices;
+        for (const std::size_t corner : chosen)
+            if (const Index vertex = vertex_of(file_.primitives[primitive], corner, placement); vertex != no_index)
+                vertices.push_back(vertex);
+        return vertices;
     }
 
     JsonValue annotation(std::size_t row, const Feature& feature) {
-        JsonValue result(rapidjson::kObjectType);
         PlacedAnnotation placement;
         placement.tag = row < file_.tags.size() ? file_.tags[row] : "feature " + std::to_string(row);
         placement.id = file_.ours ? file_.ids[row] : static_cast<int>(std::min<std::size_t>(row, 2147483647));
         placement.how = same_mesh_ ? "indices" : "places";
         if (!used_.insert(placement.id).second)
             fail_input(where_, "two features have the id " + std::to_string(placement.id), "mend the table");
-        add_member(result, "id", JsonValue(placement.id), a());
-        add_member(result, "tag", placement.tag, a());
         const std::array<int, 3> colour =
             file_.ours ? std::array<int, 3>{file_.colours[3 * row], file_.colours[3 * row + 1], file_.colours[3 * row + 2]}
                        : distinct_colour(row);
-        JsonValue parts(rapidjson::kArrayType);
-        for (const int part : colour) parts.PushBack(part, a());
-        add_member(result, "colour", std::move(parts), a());
+        JsonValue result = json_object(a(), "id", placement.id, "tag", placement.tag, "colour", colour);
         if (!select(row, feature, result, placement)) {
             notes_.push_back("'" + one_line(placement.tag) + "' could not be placed on this mesh and was left out");
             return {};
         }
-        if (row < file_.remarks.size() && !file_.remarks[row].empty()) add_member(result, "note", file_.remarks[row], a());
+        if (row < file_.remarks.size()) add_given(result, a(), "note", file_.remarks[row]);
         JsonValue attributes(rapidjson::kArrayType);
         if (row < file_.attributes.size()) {
             const Json list = parse_json(file_.attributes[row], where_ + ", attributes of feature " + std::to_string(row));
@@ -146,8 +145,7 @@ private:
 
     bool select(std::size_t row, const Feature& feature, JsonValue& result, PlacedAnnotation& placement) {
         if (file_.ours && file_.kinds[row] == 3) {
-            add_member(result, "type", "region", a());
-            add_member(result, "all", JsonValue(true), a());
+            add_members(result, a(), "type", "region", "all", true);
         } else if (feature.faces) {
             std::vector<Index> faces;
             if (same_mesh_) {
@@ -163,34 +161,23 @@ private:
                 placement.to_surface = to_surface_;
             }
             if (faces.empty()) return false;
-            add_member(result, "type", "region", a());
-            add_member(result, "faces", json_of(faces), a());
+            add_members(result, a(), "type", "region", "faces", faces);
         } else if (!feature.polylines.empty()) {
-            JsonValue list(rapidjson::kArrayType);
+            std::vector<std::vector<Index>> list;
             for (const auto& polyline : feature.polylines) {
-                std::vector<Index> vertices;
-                for (const std::size_t corner : polyline) {
-                    const Index vertex = vertex_of(file_.primitives[feature.line_primitive], corner, placement);
-                    if (vertex != no_index) vertices.push_back(vertex);
-                }
+                std::vector<Index> vertices = vertices_of(feature.line_primitive, polyline, placement);
                 if (!same_mesh_ && !vertices.empty()) {
                     const bool closed = vertices.size() > 3 && vertices.front() == vertices.back();
                     vertices = placer().vertex_path(vertices, closed, where_ + ", '" + one_line(placement.tag) + "'");
                 }
-                if (vertices.size() > 1) list.PushBack(json_of(vertices), a());
+                if (vertices.size() > 1) list.push_back(std::move(vertices));
             }
-            if (list.Empty()) return false;
-            add_member(result, "type", "line", a());
-            add_member(result, "polylines", std::move(list), a());
+            if (list.empty()) return false;
+            add_members(result, a(), "type", "line", "polylines", list);
         } else {
-            std::vector<Index> vertices;
-            for (const std::size_t corner : feature.points) {
-                const Index vertex = vertex_of(file_.primitives[feature.point_primitive], corner, placement);
-                if (vertex != no_index) vertices.push_back(vertex);
-            }
+            const std::vector<Index> vertices = vertices_of(feature.point_primitive, feature.points, placement);
             if (vertices.empty()) return false;
-            add_member(result, "type", "point", a());
-            add_member(result, "points", json_of(vertices), a());
+            add_members(result, a(), "type", "point", "points", vertices);
         }
         return true;
     }
@@ -211,31 +198,24 @@ private:
     void without_pins(JsonValue& attributes) {
         if (!attributes.IsArray()) return;
         for (auto& attribute : attributes.GetArray()) {
-            if (!attribute.IsObject() || text_member(attribute, "type") != "measure" || !attribute.HasMember("measure") ||
+            if (!attribute.IsObject() || text_in(attribute, "type") != "measure" || !attribute.HasMember("measure") ||
                 !attribute["measure"].IsObject())
                 continue;
             JsonValue& measure = attribute["measure"];
             if (const auto vertices = found_again(find_member(measure, "points"))) {
-                JsonValue again(rapidjson::kArrayType);
-                if (const JsonValue* repeats = find_member(measure, "repeats"); repeats != nullptr && repeats->IsArray())
-                    for (const auto& picked : repeats->GetArray())
-                        if (const auto places = found_again(&picked)) again.PushBack(json_of(*places), a());
-                measure.RemoveMember("repeats");
-                if (!again.Empty()) add_member(measure, "repeats", std::move(again), a());
-                measure.RemoveMember("points");
-                measure.RemoveMember("locations");
-                measure.RemoveMember("stale");
-                add_member(measure, "points", json_of(*vertices), a());
-                add_member(measure, "stale", JsonValue(true), a());
+                std::vector<std::vector<Index>> again;
+                for (const auto& picked : list_in(measure, "repeats"))
+                    if (const auto places = found_again(&picked)) again.push_back(*places);
+                for (const char* name : {"points", "locations", "stale", "repeats"}) measure.RemoveMember(name);
+                add_given(measure, a(), "repeats", again);
+                add_members(measure, a(), "points", *vertices, "stale", true);
                 continue;
             }
             JsonValue number(rapidjson::kObjectType);
-            for (const char* name : {"id", "name"})
-                if (const JsonValue* value = find_member(attribute, name)) add_member(number, name, JsonValue(*value, a()), a());
-            add_member(number, "type", "descriptor", a());
-            for (const char* name : {"value", "unit"})
-                if (const JsonValue* value = find_member(measure, name)) add_member(number, name, JsonValue(*value, a()), a());
-            add_member(number, "stale", JsonValue(true), a());
+            copy_members(number, a(), attribute, {"id", "name"});
+            add_members(number, a(), "type", "descriptor");
+            copy_members(number, a(), measure, {"value", "unit"});
+            add_members(number, a(), "stale", true);
             attribute = std::move(number);
         }
     }

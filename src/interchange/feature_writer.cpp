@@ -7,6 +7,7 @@
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/json_build.h"
 #include "ostraka/core/limits.h"
 #include "ostraka/core/words.h"
 #include "ostraka/geom/eigen.h"
@@ -50,9 +51,9 @@ public:
 
     std::string write() {
         if (mesh_.number_of_faces() == 0)
-            throw Error(ErrorKind::failure, where_, "glTF does not hold a mesh without triangles", "export another format");
+            fail_work(where_, "glTF does not hold a mesh without triangles", "export another format");
         if (set_.annotations.size() >= exact_in_float)
-            throw Error(ErrorKind::failure, where_, "more annotations than feature ids can tell apart", "export fewer");
+            fail_work(where_, "more annotations than feature ids can tell apart", "export fewer");
         JsonValue primitives(rapidjson::kArrayType);
         primitives.PushBack(primitive(surface(), glb::triangles_mode), a());
         const Corners drawn = lines(), marked = points();
@@ -60,34 +61,19 @@ public:
         if (!marked.vertices.empty()) primitives.PushBack(primitive(marked, glb::points_mode), a());
         if (!set_.annotations.empty()) add_table();
 
-        JsonValue mesh(rapidjson::kObjectType), node(rapidjson::kObjectType), scene(rapidjson::kObjectType),
-            surface_material(rapidjson::kObjectType), material(rapidjson::kObjectType), extras(rapidjson::kObjectType);
-        add_member(mesh, "primitives", std::move(primitives), a());
-        for (const char* name : {"mesh", "class", "unit", "up", "provenance"})
-            if (const JsonValue* value = find_member(native_, name)) add_member(extras, name, JsonValue(*value, a()), a());
-        JsonValue ours(rapidjson::kObjectType);
-        add_member(ours, "ostraka", std::move(extras), a());
-        add_member(mesh, "extras", std::move(ours), a());
-        add_member(node, "mesh", JsonValue(0), a());
-        JsonValue nodes = in_list(std::move(node));
+        JsonValue extras(rapidjson::kObjectType);
+        copy_members(extras, a(), native_, {"mesh", "class", "unit", "up", "provenance"});
+        JsonValue mesh =
+            json_object(a(), "primitives", std::move(primitives), "extras", json_object(a(), "ostraka", std::move(extras)));
+        JsonValue nodes = in_list(json_object(a(), "mesh", 0));
         const bool turned = add_display_node(nodes);
-        add_member(scene, "nodes", in_list(JsonValue(turned ? 1 : 0)), a());
-        add_member(surface_material, "metallicFactor", JsonValue(0), a());
-        add_member(surface_material, "roughnessFactor", JsonValue(1), a());
-        add_member(material, "pbrMetallicRoughness", std::move(surface_material), a());
-        add_member(material, "doubleSided", JsonValue(true), a());
+        JsonValue material = json_object(a(), "pbrMetallicRoughness", json_object(a(), "metallicFactor", 0, "roughnessFactor", 1),
+                                         "doubleSided", true);
         Json& root = builder_.document();
-        add_member(root, "scene", JsonValue(0), a());
-        add_member(root, "scenes", in_list(std::move(scene)), a());
-        add_member(root, "nodes", std::move(nodes), a());
-        add_member(root, "meshes", in_list(std::move(mesh)), a());
-        add_member(root, "materials", in_list(std::move(material)), a());
-        JsonValue used(rapidjson::kArrayType);
-        if (!set_.annotations.empty()) {
-            used.PushBack("EXT_mesh_features", a());
-            used.PushBack("EXT_structural_metadata", a());
-            add_member(root, "extensionsUsed", std::move(used), a());
-        }
+        add_members(root, a(), "scene", 0, "scenes", in_list(json_object(a(), "nodes", std::array{turned ? 1 : 0})), "nodes",
+                    std::move(nodes), "meshes", in_list(std::move(mesh)), "materials", in_list(std::move(material)));
+        if (!set_.annotations.empty())
+            add_members(root, a(), "extensionsUsed", std::array{"EXT_mesh_features", "EXT_structural_metadata"});
         const auto empty = std::count_if(set_.annotations.begin(), set_.annotations.end(), [](const Annotation& annotation) {
             return annotation.points.empty() && annotation.polylines.empty() && annotation.faces.empty();
         });
@@ -100,11 +86,7 @@ public:
 
 private:
     JsonAllocator& a() { return builder_.allocator(); }
-    JsonValue in_list(JsonValue value) {
-        JsonValue list(rapidjson::kArrayType);
-        list.PushBack(value, a());
-        return list;
-    }
+    JsonValue in_list(JsonValue value) { return json_list_of(std::move(value), a()); }
     [[nodiscard]] Index none() const { return static_cast<Index>(set_.annotations.size()); }
 
     /// Smallest regions first, each in the first set in which it meets no other.
@@ -113,9 +95,7 @@ private:
         for (Index i = 0; i < none(); ++i) {
             const Annotation& annotation = set_.annotations[i];
             if (annotation.type != AnnotationType::region || annotation.faces.empty()) continue;
-            double area = 0;
-            for (const Index face : annotation.faces) area += face_area(mesh_, Face(face));
-            regions.emplace_back(area, i);
+            regions.emplace_back(area_of(mesh_, annotation.faces), i);
         }
         std::sort(regions.begin(), regions.end());
         std::vector<std::vector<Index>> result;
@@ -185,18 +165,10 @@ private:
         const Eigen::Quaterniond rotation = rotation_between(up, Vector3d::UnitY());
         const bool rotates = (up - Vector3d::UnitY()).norm() > 1e-12, scales = metres && *metres != 1;
         if (!rotates && !scales) return false;
-        JsonValue shown(rapidjson::kObjectType), extras(rapidjson::kObjectType);
-        add_member(shown, "name", "as glTF wants it: y up, in metres", a());
-        add_member(shown, "children", in_list(JsonValue(0)), a());
-        const auto numbers = [&](std::initializer_list<double> values) {
-            JsonValue list(rapidjson::kArrayType);
-            for (const double value : values) list.PushBack(value, a());
-            return list;
-        };
-        if (rotates) add_member(shown, "rotation", numbers({rotation.x(), rotation.y(), rotation.z(), rotation.w()}), a());
-        if (scales) add_member(shown, "scale", numbers({*metres, *metres, *metres}), a());
-        add_member(extras, glb::display_only, JsonValue(true), a());
-        add_member(shown, "extras", std::move(extras), a());
+        JsonValue shown = json_object(a(), "name", "as glTF wants it: y up, in metres", "children", std::array{0});
+        if (rotates) add_members(shown, a(), "rotation", std::array{rotation.x(), rotation.y(), rotation.z(), rotation.w()});
+        if (scales) add_members(shown, a(), "scale", std::array{*metres, *metres, *metres});
+        add_members(shown, a(), "extras", json_object(a(), glb::display_only, true));
         nodes.PushBack(shown, a());
         return true;
     }
@@ -217,7 +189,7 @@ private:
 
     JsonValue primitive(const Corners& corners_, int mode) {
         const std::size_t count = corners_.vertices.size();
-        JsonValue attributes(rapidjson::kObjectType), result(rapidjson::kObjectType);
+        JsonValue attributes(rapidjson::kObjectType);
         std::string positions, colours, origins;
         std::array<float, 3> low, high;
         low.fill(std::numeric_limits<float>::max());
@@ -226,8 +198,7 @@ private:
             const Point& p = mesh_.point(Vertex(corners_.vertices[i]));
             for (int k = 0; k < 3; ++k) {
                 if (std::fabs(p[k]) > static_cast<double>(std::numeric_limits<float>::max()))
-                    throw Error(ErrorKind::failure, where_, "a coordinate does not fit the single precision of glTF",
-                                "rescale the mesh");
+                    fail_work(where_, "a coordinate does not fit the single precision of glTF", "rescale the mesh");
                 const auto narrow = static_cast<float>(p[k]);
                 rounded_ = rounded_ || static_cast<double>(narrow) != p[k];
                 low[static_cast<std::size_t>(k)] = std::min(low[static_cast<std::size_t>(k)], narrow);
@@ -238,12 +209,8 @@ private:
             append(colours, std::uint16_t{65535});
             append(origins, static_cast<float>(corners_.vertices[i]));
         }
-        JsonValue min(rapidjson::kArrayType), max(rapidjson::kArrayType);
-        for (const float x : low) min.PushBack(static_cast<double>(x), a());
-        for (const float x : high) max.PushBack(static_cast<double>(x), a());
-        const auto attribute = [&](const std::string& name, int accessor) {
-            add_member(attributes, name, JsonValue(accessor), a());
-        };
+        JsonValue min = json_value(low, a()), max = json_value(high, a());
+        const auto attribute = [&](const std::string& name, int accessor) { add_members(attributes, a(), name, accessor); };
         attribute("POSITION", builder_.add_accessor(positions, glb::array_buffer, 0, glb::single, count, "VEC3", &min, &max));
         const int colour = builder_.add_accessor(colours, glb::array_buffer, 0, glb::short_word, count, "VEC4");
         builder_.mark_normalised(colour);
@@ -266,31 +233,21 @@ private:
             attribute(
                 "_FEATURE_ID_" + std::to_string(s),
                 builder_.add_accessor(bytes, glb::array_buffer, 4, narrow ? glb::short_word : glb::single, count, "SCALAR"));
-            JsonValue id(rapidjson::kObjectType);
-            add_member(id, "featureCount", JsonValue(static_cast<std::uint64_t>(distinct.size())), a());
-            add_member(id, "nullFeatureId", JsonValue(none()), a());
-            add_member(id, "label", "annotations_" + std::to_string(s), a());
-            add_member(id, "attribute", JsonValue(static_cast<std::uint64_t>(s)), a());
-            add_member(id, "propertyTable", JsonValue(0), a());
+            JsonValue id = json_object(a(), "featureCount", distinct.size(), "nullFeatureId", none(), "label",
+                                       "annotations_" + std::to_string(s), "attribute", s, "propertyTable", 0);
             ids.PushBack(id, a());
         }
-        add_member(result, "attributes", std::move(attributes), a());
+        JsonValue result = json_object(a(), "attributes", std::move(attributes));
         if (!corners_.indices.empty()) {
             std::string bytes;
             for (const std::uint32_t index : corners_.indices) append(bytes, index);
-            add_member(result, "indices",
-                       JsonValue(builder_.add_accessor(bytes, glb::element_array_buffer, 0, glb::word, corners_.indices.size(),
-                                                       "SCALAR")),
-                       a());
+            add_members(result, a(), "indices",
+                        builder_.add_accessor(bytes, glb::element_array_buffer, 0, glb::word, corners_.indices.size(), "SCALAR"));
         }
-        add_member(result, "mode", JsonValue(mode), a());
-        add_member(result, "material", JsonValue(0), a());
-        if (!ids.Empty()) {
-            JsonValue extensions(rapidjson::kObjectType), features(rapidjson::kObjectType);
-            add_member(features, "featureIds", std::move(ids), a());
-            add_member(extensions, "EXT_mesh_features", std::move(features), a());
-            add_member(result, "extensions", std::move(extensions), a());
-        }
+        add_members(result, a(), "mode", mode, "material", 0);
+        if (!ids.Empty())
+            add_members(result, a(), "extensions",
+                        json_object(a(), "EXT_mesh_features", json_object(a(), "featureIds", std::move(ids))));
         return result;
     }
 
@@ -299,31 +256,23 @@ private:
         add_member(properties_, id, std::move(described), a());
         add_member(columns_, id, std::move(stored), a());
     }
-    JsonValue described(const char* type, const char* component, const std::string& name, bool required) {
+    JsonValue described(const std::string& type, const std::string& component, const std::string& name, bool required) {
         JsonValue property(rapidjson::kObjectType);
-        if (!name.empty()) add_member(property, "name", name, a());
-        add_member(property, "type", type, a());
-        if (component != nullptr) add_member(property, "componentType", component, a());
-        if (required) add_member(property, "required", JsonValue(true), a());
+        add_given(property, a(), "name", name, "type", type, "componentType", component, "required", required);
         return property;
     }
-    JsonValue stored(const std::string& bytes) {
-        JsonValue values(rapidjson::kObjectType);
-        add_member(values, "values", JsonValue(builder_.add_view(bytes)), a());
-        return values;
-    }
+    JsonValue stored(const std::string& bytes) { return json_object(a(), "values", builder_.add_view(bytes)); }
     JsonValue stored(const std::vector<std::string>& texts) {
         std::string bytes, offsets;
         append(offsets, std::uint32_t{0});
         for (const std::string& text : texts) {
             bytes += as_utf8(text);
             if (bytes.size() > std::numeric_limits<std::uint32_t>::max())
-                throw Error(ErrorKind::failure, where_, "its texts exceed four gigabytes", "shorten them");
+                fail_work(where_, "its texts exceed four gigabytes", "shorten them");
             append(offsets, static_cast<std::uint32_t>(bytes.size()));
         }
         JsonValue values = stored(bytes);
-        add_member(values, "stringOffsets", JsonValue(builder_.add_view(offsets)), a());
-        add_member(values, "stringOffsetType", "UINT32", a());
+        add_members(values, a(), "stringOffsets", builder_.add_view(offsets), "stringOffsetType", "UINT32");
         return values;
     }
 
@@ -341,43 +290,27 @@ private:
             attributes.emplace_back(trimmed(to_text(list[i]["attributes"])));
         }
         column("id", described("SCALAR", "INT32", "", true), stored(ids));
-        column("tag", described("STRING", nullptr, "", true), stored(tags));
-        JsonValue kind = described("ENUM", nullptr, "", true);
+        column("tag", described("STRING", "", "", true), stored(tags));
+        JsonValue kind = described("ENUM", "", "", true);
         add_member(kind, "enumType", "annotationKind", a());
         column("kind", std::move(kind), stored(kinds));
         column("colour", described("VEC3", "UINT8", "", true), stored(colours));
-        column("note", described("STRING", nullptr, "", true), stored(notes));
-        column("attributes", described("STRING", nullptr, "all attributes as JSON", true), stored(attributes));
+        column("note", described("STRING", "", "", true), stored(notes));
+        column("attributes", described("STRING", "", "all attributes as JSON", true), stored(attributes));
         add_attribute_columns();
 
-        JsonValue kind_names(rapidjson::kArrayType), kind_type(rapidjson::kObjectType), enums(rapidjson::kObjectType);
         int value = 0;
-        for (const char* name : {"point", "line", "region", "whole"}) {
-            JsonValue entry(rapidjson::kObjectType);
-            add_member(entry, "name", name, a());
-            add_member(entry, "value", JsonValue(value++), a());
-            kind_names.PushBack(entry, a());
-        }
-        add_member(kind_type, "valueType", "UINT8", a());
-        add_member(kind_type, "values", std::move(kind_names), a());
-        add_member(enums, "annotationKind", std::move(kind_type), a());
-        JsonValue type(rapidjson::kObjectType), classes(rapidjson::kObjectType), schema(rapidjson::kObjectType),
-            table(rapidjson::kObjectType), metadata(rapidjson::kObjectType), extensions(rapidjson::kObjectType);
-        add_member(type, "name", "Annotation", a());
-        add_member(type, "properties", std::move(properties_), a());
-        add_member(classes, "annotation", std::move(type), a());
-        add_member(schema, "id", "ostraka_annotations", a());
-        add_member(schema, "version", "1.0.0", a());
-        add_member(schema, "classes", std::move(classes), a());
-        add_member(schema, "enums", std::move(enums), a());
-        add_member(table, "name", "annotations", a());
-        add_member(table, "class", "annotation", a());
-        add_member(table, "count", JsonValue(none()), a());
-        add_member(table, "properties", std::move(columns_), a());
-        add_member(metadata, "schema", std::move(schema), a());
-        add_member(metadata, "propertyTables", in_list(std::move(table)), a());
-        add_member(extensions, "EXT_structural_metadata", std::move(metadata), a());
-        add_member(builder_.document(), "extensions", std::move(extensions), a());
+        JsonValue kind_names = json_list(std::array{"point", "line", "region", "whole"}, a(),
+                                         [&](const char* name) { return json_object(a(), "name", name, "value", value++); });
+        JsonValue kind_type = json_object(a(), "valueType", "UINT8", "values", std::move(kind_names));
+        JsonValue type = json_object(a(), "name", "Annotation", "properties", std::move(properties_));
+        JsonValue schema = json_object(a(), "id", "ostraka_annotations", "version", "1.0.0", "classes",
+                                       json_object(a(), "annotation", std::move(type)), "enums",
+                                       json_object(a(), "annotationKind", std::move(kind_type)));
+        JsonValue table =
+            json_object(a(), "name", "annotations", "class", "annotation", "count", none(), "properties", std::move(columns_));
+        JsonValue metadata = json_object(a(), "schema", std::move(schema), "propertyTables", in_list(std::move(table)));
+        add_members(builder_.document(), a(), "extensions", json_object(a(), "EXT_structural_metadata", std::move(metadata)));
     }
 
     /// For viewers: a column for each name under which annotations have a number or a text.
@@ -393,25 +326,23 @@ private:
                     values[i] += (values[i].empty() ? "" : "; ") + attribute.note;
                     continue;
                 }
-                const bool measured = attribute.type == AttributeType::measure;
-                const auto& list = attribute.descriptor.values;
-                if (measured ? !attribute.measure.value.has_value() : list.size() != 1) continue;
-                const std::string& unit = measured ? attribute.measure.unit : attribute.descriptor.unit;
-                auto& values = numbers[unit.empty() ? attribute.name : attribute.name + " (" + unit + ")"];
+                const Figures figures = figures_of(attribute);
+                if (figures.values.size() != 1) continue;
+                auto& values = numbers[figures.unit.empty() ? attribute.name : attribute.name + " (" + figures.unit + ")"];
                 values.resize(none(), missing);
-                values[i] = measured ? *attribute.measure.value : list.front();
+                values[i] = figures.values.front();
             }
         std::size_t number = 0;
         for (const auto& [name, values] : numbers) {
             std::string bytes;
             for (const double value : values) append(bytes, value);
             JsonValue property = described("SCALAR", "FLOAT64", name, false);
-            add_member(property, "noData", JsonValue(missing), a());
+            add_members(property, a(), "noData", missing);
             column("number_" + std::to_string(number++), std::move(property), stored(bytes));
         }
         number = 0;
         for (const auto& [name, values] : texts) {
-            JsonValue property = described("STRING", nullptr, name, false);
+            JsonValue property = described("STRING", "", name, false);
             add_member(property, "noData", "", a());
             column("text_" + std::to_string(number++), std::move(property), stored(values));
         }

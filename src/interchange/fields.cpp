@@ -14,31 +14,21 @@ bool same_geometry(const Annotation& a, const Annotation& b) {
     return a.type == b.type && a.points == b.points && a.polylines == b.polylines && a.all == b.all && a.faces == b.faces;
 }
 
-bool same_head(const Annotation& a, const Annotation& b) {
-    return a.tag == b.tag && a.colour == b.colour && a.note == b.note && same_geometry(a, b);
-}
-
 bool same(const Annotation& a, const Annotation& b) {
-    return a.id == b.id && same_head(a, b) &&
+    return a.id == b.id && a.tag == b.tag && a.colour == b.colour && a.note == b.note && same_geometry(a, b) &&
            std::equal(a.attributes.begin(), a.attributes.end(), b.attributes.begin(), b.attributes.end(),
                       [](const Attribute& x, const Attribute& y) { return same(x, y); });
 }
 
 std::string words(const std::string& text) { return one_line(text); }
 
-std::string words(const std::array<int, 3>& colour) {
-    return std::to_string(colour[0]) + " " + std::to_string(colour[1]) + " " + std::to_string(colour[2]);
-}
+std::string words(const std::array<int, 3>& colour) { return joined_numbers(colour); }
 
 std::string words(const std::optional<std::array<double, 3>>& direction) {
-    return direction ? digits((*direction)[0]) + " " + digits((*direction)[1]) + " " + digits((*direction)[2]) : std::string();
+    return direction ? joined_numbers(*direction) : std::string();
 }
 
-std::string words(const std::vector<int>& ids) {
-    std::string text;
-    for (const int id : ids) text += (text.empty() ? "" : " ") + std::to_string(id);
-    return words(text);
-}
+std::string words(const std::vector<int>& ids) { return joined_numbers(ids); }
 
 std::string words(const Attribute& attribute) {
     if (attribute.type == AttributeType::semantic)
@@ -51,10 +41,9 @@ std::string words(const Attribute& attribute) {
         if (attribute.measure.value) text += " " + digits(*attribute.measure.value);
         if (attribute.measure.uncertainty) text += " +- " + digits(*attribute.measure.uncertainty);
     }
-    for (std::size_t i = 0; !measured && i < attribute.descriptor.values.size() && i < 4; ++i)
-        text += " " + digits(attribute.descriptor.values[i]);
+    const auto [values, unit, stale] = figures_of(attribute);
+    for (std::size_t i = 0; !measured && i < values.size() && i < 4; ++i) text += " " + digits(values[i]);
     if (!measured && !attribute.descriptor.file.empty()) text += " in " + attribute.descriptor.file;
-    const std::string& unit = measured ? attribute.measure.unit : attribute.descriptor.unit;
     if (!unit.empty()) text += " " + unit;
     if (measured) {
         text += " (pins";
@@ -65,7 +54,7 @@ std::string words(const Attribute& attribute) {
             text += ", picked " + std::to_string(attribute.measure.repeats.size() + 1) + " times";
         text += ")";
     }
-    return words(text + ((measured ? attribute.measure.stale : attribute.descriptor.stale) ? " (stale)" : ""));
+    return words(text + (stale ? " (stale)" : ""));
 }
 
 std::string geometry_words(const Annotation& annotation) {

@@ -7,8 +7,6 @@ namespace ostraka::interchange {
 
 bool same(const Attribute& a, const Attribute& b);
 bool same_geometry(const Annotation& a, const Annotation& b);
-/// All but the attributes' order and the id.
-bool same_head(const Annotation& a, const Annotation& b);
 bool same(const Annotation& a, const Annotation& b);
 
 /// In words, whole and on one line.

@@ -17,37 +17,30 @@ namespace ostraka {
 
 namespace {
 
-/// In the order of interchange_formats().
+/// In the order of interchange_formats(); those of landmarks in that of LandmarkFormat.
 enum class Format { attributes_csv, landmarks_csv, tps, pp, mrk, fcsv, web, glb, ant, fct };
 
 Format format_named(const std::string& name) {
     const auto& names = interchange_formats();
     if (const auto found = std::find(names.begin(), names.end(), name); found != names.end())
         return static_cast<Format>(found - names.begin());
-    std::string list;
-    for (const auto& known : names) list += (list.empty() ? "" : ", ") + known;
-    fail_usage("the format '" + name + "' is not known", "use one of: " + list);
+    fail_usage("the format '" + name + "' is not known", "use one of: " + joined(names));
 }
 
 std::optional<LandmarkFormat> landmark_format(Format format) {
-    static const std::map<Format, LandmarkFormat> formats{{Format::landmarks_csv, LandmarkFormat::csv},
-                                                          {Format::tps, LandmarkFormat::tps},
-                                                          {Format::pp, LandmarkFormat::pp},
-                                                          {Format::mrk, LandmarkFormat::mrk},
-                                                          {Format::fcsv, LandmarkFormat::fcsv}};
-    const auto found = formats.find(format);
-    return found == formats.end() ? std::nullopt : std::optional(found->second);
+    if (format < Format::landmarks_csv || format > Format::fcsv) return {};
+    return static_cast<LandmarkFormat>(static_cast<int>(format) - static_cast<int>(Format::landmarks_csv));
 }
 
 /// Adds what was read to a set; an id that is taken is replaced.
 PlacedAnnotations added_to(const AnnotationSet& onto, PlacedAnnotations read) {
     PlacedAnnotations result;
     result.placements = std::move(read.placements);
-    result.set.object_class = onto.object_class.empty() ? read.set.object_class : onto.object_class;
-    result.set.unit = onto.unit.empty() ? read.set.unit : onto.unit;
-    result.set.up = onto.up ? onto.up : read.set.up;
-    result.set.annotations = onto.annotations;
-    result.set.notes = onto.notes;
+    result.set = onto;
+    result.set.provenance.SetNull();
+    if (onto.object_class.empty()) result.set.object_class = read.set.object_class;
+    if (onto.unit.empty()) result.set.unit = read.set.unit;
+    if (!onto.up) result.set.up = read.set.up;
     result.set.notes.insert(result.set.notes.end(), read.set.notes.begin(), read.set.notes.end());
     if (!onto.unit.empty() && !read.set.unit.empty() && onto.unit != read.set.unit)
         result.set.notes.push_back("the file is in " + read.set.unit + ", the annotations in " + onto.unit +
@@ -142,11 +135,8 @@ PlacedAnnotations import_annotations(const Mesh& mesh, const std::string& bytes,
     } else if (format == Format::attributes_csv) {
         if (onto == nullptr)
             fail_usage("a table of attributes holds no selections", "give the annotations it was made of with --onto FILE");
-        result.set.object_class = onto->object_class;
-        result.set.unit = onto->unit;
-        result.set.up = onto->up;
-        result.set.annotations = onto->annotations;
-        result.set.notes = onto->notes;
+        result.set = *onto;
+        result.set.provenance.SetNull();
         const std::size_t changed = apply_attribute_table(bytes, result.set, where);
         result.set.notes.push_back(counted(changed, "annotation") + " of the table taken over");
     } else if (format == Format::web) {

@@ -3,6 +3,7 @@
 #include "text.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/json_build.h"
 #include "ostraka/core/limits.h"
 
 #include <algorithm>
@@ -27,7 +28,7 @@ constexpr std::size_t nowhere = static_cast<std::size_t>(-1);
 
 std::optional<Columns> columns_of(const std::vector<std::string>& header) {
     std::map<std::string, std::size_t> places;
-    for (std::size_t i = 0; i < header.size(); ++i) places.try_emplace(lower(trimmed(unguarded(header[i]))), i);
+    for (std::size_t i = 0; i < header.size(); ++i) places.try_emplace(lower_case(trimmed(unguarded(header[i]))), i);
     const auto find = [&](std::initializer_list<const char*> names) -> std::size_t {
         for (const char* name : names)
             if (const auto found = places.find(name); found != places.end()) return found->second;
@@ -129,17 +130,13 @@ struct TpsSpecimen {
 /// Nothing for a landmark that is missing.
 std::optional<std::array<double, 3>> tps_point(std::string_view line, const std::string& at) {
     std::array<double, 3> point{};
-    std::size_t count = 0, missing = 0, from = 0;
+    std::size_t count = 0, missing = 0;
     const auto refuse = [&] {
         fail_input(at, "does not hold three coordinates", "give x, y and z, or NA NA NA for a missing landmark");
     };
-    while (from < line.size()) {
-        const std::size_t begin = line.find_first_not_of(" \t,", from);
-        if (begin == std::string_view::npos) break;
-        from = std::min(line.find_first_of(" \t,", begin), line.size());
-        const std::string_view word = line.substr(begin, from - begin);
+    for (const std::string_view word : words_of(line, " \t,")) {
         const auto value = number_of(word);
-        const bool no_value = lower(word) == "na" || lower(word) == "nan";
+        const bool no_value = lower_case(word) == "na" || lower_case(word) == "nan";
         if ((!value && !no_value) || count == 3) refuse();
         missing += no_value ? 1 : 0;
         point[count++] = value.value_or(0);
@@ -153,9 +150,7 @@ std::vector<TpsSpecimen> tps_specimens(const std::string& bytes, const std::stri
     std::vector<TpsSpecimen> specimens;
     std::size_t expected = 0, number = 0;
     for (std::size_t i = 0; i < bytes.size();) {
-        const std::size_t end = std::min(bytes.find('\n', i), bytes.size());
-        const std::string_view line = trimmed(std::string_view(bytes).substr(i, end - i));
-        i = end + 1;
+        const std::string_view line = trimmed(line_at(bytes, i));
         ++number;
         if (line.empty()) continue;
         const std::string at = at_line(where, number);
@@ -167,7 +162,7 @@ std::vector<TpsSpecimen> tps_specimens(const std::string& bytes, const std::stri
         }
         const std::size_t equals = line.find('=');
         if (equals == std::string_view::npos) fail_input(at, "is not KEYWORD=value", "the count after LM3= may be too small");
-        const std::string key = lower(trimmed(line.substr(0, equals)));
+        const std::string key = lower_case(trimmed(line.substr(0, equals)));
         const std::string_view value = trimmed(line.substr(equals + 1));
         if (key == "lm") fail_input(at, "holds landmarks in two dimensions", "give a file with LM3=");
         if (key == "lm3") {
@@ -210,10 +205,8 @@ std::vector<std::string> tps_names(const TpsSpecimen& specimen, const std::strin
     std::vector<std::string> names;
     try {
         const Json comment = parse_json(specimen.comment.empty() ? "null" : specimen.comment, where);
-        if (const JsonValue* list = find_member(comment, "names");
-            list != nullptr && list->IsArray() && list->Size() == specimen.points.size())
-            for (const auto& name : list->GetArray())
-                names.push_back(name.IsString() ? std::string(name.GetString(), name.GetStringLength()) : std::string());
+        if (const auto list = list_in(comment, "names"); list.Size() == specimen.points.size())
+            for (const auto& name : list) names.push_back(name.IsString() ? text_of(name) : std::string());
     } catch (const Error&) {
         names.clear();
     }
@@ -247,13 +240,10 @@ LandmarkSet read_tps(const std::string& bytes, const std::string& where, const L
 
 std::string write_tps(const LandmarkSet& set, const std::string& mesh_file) {
     std::string text = "LM3=" + to_string(set.landmarks.size()) + "\n";
+    for (const Landmark& landmark : set.landmarks) text += joined_numbers(landmark.position) + "\n";
     Json comment(rapidjson::kObjectType);
-    JsonValue names(rapidjson::kArrayType);
-    for (const Landmark& landmark : set.landmarks) {
-        for (std::size_t k = 0; k < 3; ++k) text += digits(landmark.position[k]) + (k < 2 ? " " : "\n");
-        names.PushBack(json_string(landmark.name, comment.GetAllocator()), comment.GetAllocator());
-    }
-    add_member(comment, "names", std::move(names), comment.GetAllocator());
+    add_members(comment, comment.GetAllocator(), "names",
+                json_list(set.landmarks, comment.GetAllocator(), [](const Landmark& landmark) { return landmark.name; }));
     std::string line = json_text(comment);  // its line breaks stand between values
     std::replace(line.begin(), line.end(), '\n', ' ');
     text += "COMMENT=" + std::string(trimmed(line)) + "\n";
@@ -267,11 +257,10 @@ LandmarkSet read_fcsv(const std::string& bytes, const std::string& where, const 
     std::vector<std::string> header;
     std::string body;  // comment lines become blank, so that lines keep their numbers
     for (std::size_t i = 0; i < bytes.size();) {
-        const std::size_t end = std::min(bytes.find('\n', i), bytes.size());
-        const std::string_view line = trimmed(std::string_view(bytes).substr(i, end - i));
+        const std::string_view whole = line_at(bytes, i), line = trimmed(whole);
         if (line.starts_with('#')) {
             const std::size_t equals = line.find('=');
-            const std::string key = lower(trimmed(line.substr(1, equals == std::string_view::npos ? 0 : equals - 1)));
+            const std::string key = lower_case(trimmed(line.substr(1, equals == std::string_view::npos ? 0 : equals - 1)));
             const std::string_view value = equals == std::string_view::npos ? "" : trimmed(line.substr(equals + 1));
             if (key == "coordinatesystem") {
                 if (value == "0" || value == "RAS") space = AnatomicalSpace::ras;
@@ -284,10 +273,9 @@ LandmarkSet read_fcsv(const std::string& bytes, const std::string& where, const 
                 if (!rows.empty()) header = rows.front().cells;
             }
         } else {
-            body.append(bytes, i, end - i);
+            body += whole;
         }
         body += '\n';
-        i = end + 1;
     }
     if (!space) {
         space = AnatomicalSpace::ras;

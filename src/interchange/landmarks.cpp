@@ -69,15 +69,14 @@ public:
     Assembler(const Mesh& mesh, const std::string& where) : placer_(mesh), where_(where) {}
 
     PlacedAnnotations assemble(const LandmarkSet& input, const PlaceOptions& options) {
-        for (const Landmark& landmark : input.landmarks) interchange::check_place(landmark.position, where_);
-        for (const LandmarkCurve& curve : input.curves)
-            for (const auto& position : curve.points) interchange::check_place(position, where_);
         std::vector<Entry> entries;
-        for (const Landmark& landmark : input.landmarks)
-            entries.push_back({landmark.name, "landmark", &landmark.position, placer_.place(point_of(landmark.position))});
+        const auto add = [&](const std::string& name, const char* kind, const std::array<double, 3>& position) {
+            interchange::check_place(position, where_);
+            entries.push_back({name, kind, &position, placer_.place(point_of(position))});
+        };
+        for (const Landmark& landmark : input.landmarks) add(landmark.name, "landmark", landmark.position);
         for (const LandmarkCurve& curve : input.curves)
-            for (const auto& position : curve.points)
-                entries.push_back({curve.name, "point of curve", &position, placer_.place(point_of(position))});
+            for (const auto& position : curve.points) add(curve.name, "point of curve", position);
         const double limit = options.tolerance * placer_.diagonal();
         std::vector<Entry> far;
         std::copy_if(entries.begin(), entries.end(), std::back_inserter(far),
@@ -177,18 +176,10 @@ private:
 LandmarkSet landmarks_from_text(const std::string& bytes, LandmarkFormat format, const std::string& where,
                                 const LandmarkFileOptions& options) {
     check_options(options, "landmarks");
-    switch (format) {
-        case LandmarkFormat::tps:
-            return interchange::read_tps(bytes, where, options);
-        case LandmarkFormat::pp:
-            return interchange::read_picked_points(bytes, where);
-        case LandmarkFormat::mrk:
-            return interchange::read_markups(bytes, where, options);
-        case LandmarkFormat::fcsv:
-            return interchange::read_fcsv(bytes, where, options);
-        case LandmarkFormat::csv:
-            break;
-    }
+    if (format == LandmarkFormat::tps) return interchange::read_tps(bytes, where, options);
+    if (format == LandmarkFormat::pp) return interchange::read_picked_points(bytes, where);
+    if (format == LandmarkFormat::mrk) return interchange::read_markups(bytes, where, options);
+    if (format == LandmarkFormat::fcsv) return interchange::read_fcsv(bytes, where, options);
     return interchange::read_landmark_table(bytes, where, options);
 }
 
@@ -201,18 +192,10 @@ std::string landmarks_to_text(const LandmarkSet& set, LandmarkFormat format, con
     check_options(options, "landmarks");
     if (format != LandmarkFormat::mrk && !set.curves.empty())
         notes.push_back(counted(set.curves.size(), "poly-line") + points_only);
-    switch (format) {
-        case LandmarkFormat::tps:
-            return interchange::write_tps(set, mesh_file);
-        case LandmarkFormat::pp:
-            return interchange::write_picked_points(set, mesh_file, notes);
-        case LandmarkFormat::mrk:
-            return interchange::write_markups(set, options, provenance);
-        case LandmarkFormat::fcsv:
-            return interchange::write_fcsv(set, options, notes);
-        case LandmarkFormat::csv:
-            break;
-    }
+    if (format == LandmarkFormat::tps) return interchange::write_tps(set, mesh_file);
+    if (format == LandmarkFormat::pp) return interchange::write_picked_points(set, mesh_file, notes);
+    if (format == LandmarkFormat::mrk) return interchange::write_markups(set, options, provenance);
+    if (format == LandmarkFormat::fcsv) return interchange::write_fcsv(set, options, notes);
     return interchange::write_landmark_table(set);
 }
 

@@ -3,6 +3,7 @@
 #include "text.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/json_build.h"
 
 namespace ostraka::interchange {
 
@@ -20,7 +21,7 @@ struct Reader {
 
     std::vector<Landmark> points_of(const JsonValue& markup, const std::string& pointer) {
         std::vector<Landmark> points;
-        const std::string stated = text_member(markup, "coordinateSystem");
+        const std::string stated = text_in(markup, "coordinateSystem");
         const auto space = stated == "RAS" ? AnatomicalSpace::ras : AnatomicalSpace::lps;
         if (!stated.empty() && stated != "LPS" && stated != "RAS")
             fail_input(where, "at " + pointer + "/coordinateSystem: '" + one_line(stated).substr(0, 20) + "' is not known",
@@ -30,7 +31,7 @@ struct Reader {
         if (!list->IsArray()) fail_input(where, "at " + pointer + "/controlPoints: is not a list", "mend or regenerate the file");
         for (rapidjson::SizeType i = 0; i < list->Size(); ++i) {
             const JsonValue& point = (*list)[i];
-            const std::string status = text_member(point, "positionStatus");
+            const std::string status = text_in(point, "positionStatus");
             if (!status.empty() && status != "defined") {
                 ++undefined;
                 continue;
@@ -40,14 +41,14 @@ struct Reader {
                 fail_input(where, "at " + pointer + "/controlPoints/" + std::to_string(i) + "/position: not three numbers",
                            "give the position, or \"positionStatus\": \"undefined\"");
             check_place(*position, where + ", at " + pointer + "/controlPoints/" + std::to_string(i) + "/position");
-            points.push_back({text_member(point, "label"), in_mesh_space(*position, space, options.mesh_space), {}});
+            points.push_back({text_in(point, "label"), in_mesh_space(*position, space, options.mesh_space), {}});
         }
         return points;
     }
 
     void read(const JsonValue& markup, const std::string& pointer) {
         if (!markup.IsObject()) fail_input(where, "at " + pointer + ": is not an object", "mend or regenerate the file");
-        const std::string type = text_member(markup, "type"), name = text_member(markup, "name");
+        const std::string type = text_in(markup, "type"), name = text_in(markup, "name");
         const JsonValue* unit = find_member(markup, "coordinateUnits");
         if (unit != nullptr && unit->IsArray() && !unit->Empty()) unit = &(*unit)[0];
         const std::string unit_text = unit != nullptr && unit->IsString() ? unit->GetString() : "";
@@ -83,17 +84,8 @@ struct Reader {
 };
 
 JsonValue control_point(std::size_t number, const std::string& label, const std::array<double, 3>& position, JsonAllocator& a) {
-    JsonValue point(rapidjson::kObjectType);
-    add_member(point, "id", std::to_string(number), a);
-    add_member(point, "label", label, a);
-    add_member(point, "description", "", a);
-    add_member(point, "associatedNodeID", "", a);
-    add_member(point, "position", triple_json(position, a), a);
-    add_member(point, "selected", JsonValue(true), a);
-    add_member(point, "locked", JsonValue(false), a);
-    add_member(point, "visibility", JsonValue(true), a);
-    add_member(point, "positionStatus", "defined", a);
-    return point;
+    return json_object(a, "id", std::to_string(number), "label", label, "description", "", "associatedNodeID", "", "position",
+                       position, "selected", true, "locked", false, "visibility", true, "positionStatus", "defined");
 }
 
 }  // namespace
@@ -114,38 +106,32 @@ std::string write_markups(const LandmarkSet& set, const LandmarkFileOptions& opt
     add_member(document, "@schema", schema_address, a);
     JsonValue list(rapidjson::kArrayType);
     const auto begin = [&](const char* type, const std::string& name) {
-        JsonValue markup(rapidjson::kObjectType);
-        add_member(markup, "type", type, a);
-        add_member(markup, "name", name, a);
-        add_member(markup, "coordinateSystem", option_text(options, "mesh-space"), a);
+        JsonValue markup = json_object(a, "type", type, "name", name, "coordinateSystem", option_text(options, "mesh-space"));
         // The schema knows two units; where the mesh has another, none is better than a wrong one.
         if (set.unit == "mm" || set.unit == "um") add_member(markup, "coordinateUnits", set.unit, a);
-        add_member(markup, "locked", JsonValue(false), a);
-        add_member(markup, "labelFormat", "%N-%d", a);
+        add_members(markup, a, "locked", false, "labelFormat", "%N-%d");
         return markup;
     };
     // All points stand in one list in front, as many readers look at the first markup only.
     if (!set.landmarks.empty() || set.curves.empty()) {
-        JsonValue markup = begin("Fiducial", "landmarks"), points(rapidjson::kArrayType);
+        JsonValue markup = begin("Fiducial", "landmarks");
         std::size_t number = 0;
-        for (const Landmark& landmark : set.landmarks)
-            points.PushBack(control_point(++number, landmark.name, landmark.position, a), a);
-        add_member(markup, "lastUsedControlPointNumber", JsonValue(static_cast<std::uint64_t>(number)), a);
-        add_member(markup, "controlPoints", std::move(points), a);
+        add_members(markup, a, "lastUsedControlPointNumber", set.landmarks.size(), "controlPoints",
+                    json_list(set.landmarks, a, [&](const Landmark& landmark) {
+                        return control_point(++number, landmark.name, landmark.position, a);
+                    }));
         list.PushBack(markup, a);
     }
     for (const LandmarkCurve& curve : set.curves) {
-        JsonValue markup = begin(curve.closed ? "ClosedCurve" : "Curve", curve.name), points(rapidjson::kArrayType);
+        JsonValue markup = begin(curve.closed ? "ClosedCurve" : "Curve", curve.name);
         std::size_t number = 0;
-        for (const auto& position : curve.points) {
-            ++number;
-            points.PushBack(control_point(number, std::to_string(number), position, a), a);
-        }
-        add_member(markup, "controlPoints", std::move(points), a);
+        add_members(markup, a, "controlPoints", json_list(curve.points, a, [&](const auto& position) {
+                        ++number;
+                        return control_point(number, std::to_string(number), position, a);
+                    }));
         list.PushBack(markup, a);
     }
-    add_member(document, "markups", std::move(list), a);
-    add_member(document, "provenance", provenance.to_json(a), a);
+    add_members(document, a, "markups", std::move(list), "provenance", provenance.to_json(a));
     return json_text(document);
 }
 

@@ -44,10 +44,9 @@ public:
         std::vector<Annotation> other = theirs.annotations;
         if (options_.renumber) renumber(base, ours, other);
         AnnotationSet& set = result_.set;
-        const auto text = [](const std::string& t) { return words(t); };
-        set.object_class = field("class", base.object_class, ours.object_class, theirs.object_class, text);
-        set.unit = field("unit", base.unit, ours.unit, theirs.unit, text);
-        set.up = field("up", base.up, ours.up, theirs.up, [](const auto& up) { return words(up); });
+        set.object_class = field("class", base.object_class, ours.object_class, theirs.object_class);
+        set.unit = field("unit", base.unit, ours.unit, theirs.unit);
+        set.up = field("up", base.up, ours.up, theirs.up);
         const auto b = by_id(base.annotations), o = by_id(ours.annotations), t = by_id(other);
         for (const int id : merged_order(ids_of(base.annotations), ids_of(ours.annotations), ids_of(other))) {
             id_ = id;
@@ -63,11 +62,11 @@ private:
     }
     [[nodiscard]] bool theirs_preferred() const { return options_.prefer == MergeOptions::Side::theirs; }
 
-    template <class T, class Words>
-    T field(const std::string& name, const T& base, const T& ours, const T& theirs, Words&& in_words) {
+    template <class T>
+    T field(const std::string& name, const T& base, const T& ours, const T& theirs) {
         if (ours == theirs || theirs == base) return ours;
         if (ours == base) return theirs;
-        conflict(name, in_words(base), in_words(ours), in_words(theirs));
+        conflict(name, words(base), words(ours), words(theirs));
         return theirs_preferred() ? theirs : ours;
     }
 
@@ -110,9 +109,9 @@ private:
 
     Annotation fields(const Annotation& base, const Annotation& ours, const Annotation& theirs) {
         Annotation merged = ours;
-        merged.tag = field("tag", base.tag, ours.tag, theirs.tag, [](const std::string& t) { return words(t); });
-        merged.colour = field("colour", base.colour, ours.colour, theirs.colour, [](const auto& c) { return words(c); });
-        merged.note = field("note", base.note, ours.note, theirs.note, [](const std::string& t) { return words(t); });
+        merged.tag = field("tag", base.tag, ours.tag, theirs.tag);
+        merged.colour = field("colour", base.colour, ours.colour, theirs.colour);
+        merged.note = field("note", base.note, ours.note, theirs.note);
         geometry(merged, base, ours, theirs);
         attributes(merged, base, ours, theirs);
         return merged;

@@ -3,73 +3,29 @@
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/annotation/outline.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/json.h"
+#include "ostraka/core/flood.h"
 #include "ostraka/core/json_build.h"
 #include "ostraka/measure/measure.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace ostraka::interchange {
 
-VertexSearch::VertexSearch(const Mesh& mesh) : mesh_(mesh) {
-    for (const Vertex v : mesh.vertices())
-        if (!mesh.is_isolated(v)) order_.push_back(v);
-    if (order_.empty()) fail_input("mesh", "has no faces", "give a mesh with faces");
-    struct Range {
-        std::size_t begin, end;
-        int axis;
-    };
-    std::vector<Range> ranges{{0, order_.size(), 0}};
-    while (!ranges.empty()) {
-        const auto [begin, end, axis] = ranges.back();
-        ranges.pop_back();
-        if (end - begin < 2) continue;
-        const std::size_t middle = begin + (end - begin) / 2;
-        const auto at = [this](std::size_t i) { return order_.begin() + static_cast<std::ptrdiff_t>(i); };
-        std::nth_element(at(begin), at(middle), at(end), [&](Index a, Index b) {
-            const double x = mesh_.point(Vertex(a))[axis], y = mesh_.point(Vertex(b))[axis];
-            return x < y || (x == y && a < b);
-        });
-        ranges.push_back({begin, middle, (axis + 1) % 3});
-        ranges.push_back({middle + 1, end, (axis + 1) % 3});
+Placer::Placer(const Mesh& mesh) : mesh_(mesh), surface_(mesh) {
+    std::vector<Point> points;
+    for (const Vertex v : mesh.vertices()) {
+        if (mesh.is_isolated(v)) continue;
+        vertices_.push_back(v);
+        points.push_back(mesh.point(v));
     }
+    if (points.empty()) fail_input("mesh", "has no faces", "give a mesh with faces");
+    points_ = PointTree(points);
 }
-
-Index VertexSearch::nearest(const Point& query) const {
-    double best = std::numeric_limits<double>::infinity();
-    Index found = no_index;
-    search(0, order_.size(), 0, query, best, found);
-    return found;
-}
-
-// NOLINTNEXTLINE(misc-no-recursion): as deep as the logarithm of the number of vertices
-void VertexSearch::search(std::size_t begin, std::size_t end, int axis, const Point& query, double& best, Index& found) const {
-    if (begin >= end) return;
-    const std::size_t middle = begin + (end - begin) / 2;
-    const Point& point = mesh_.point(Vertex(order_[middle]));
-    const double distance = CGAL::squared_distance(point, query);
-    if (found == no_index || distance < best || (distance == best && order_[middle] < found)) {
-        best = distance;
-        found = order_[middle];
-    }
-    const double offset = query[axis] - point[axis];
-    const int next = (axis + 1) % 3;
-    if (offset < 0) {
-        search(begin, middle, next, query, best, found);
-        if (offset * offset <= best) search(middle + 1, end, next, query, best, found);
-    } else {
-        search(middle + 1, end, next, query, best, found);
-        if (offset * offset <= best) search(begin, middle, next, query, best, found);
-    }
-}
-
-Placer::Placer(const Mesh& mesh) : mesh_(mesh), surface_(mesh), vertices_(mesh) {}
 
 Placed Placer::place(const Point& point) const {
     Placed placed;
-    placed.vertex = vertices_.nearest(point);
+    placed.vertex = vertices_[points_.nearest(point).index];
     placed.to_vertex = std::sqrt(CGAL::squared_distance(point, mesh_.point(Vertex(placed.vertex))));
     placed.to_surface = std::min(surface_.closest(point).distance, placed.to_vertex);
     return placed;
@@ -121,18 +77,7 @@ std::vector<bool> Placer::fill(const std::vector<std::vector<Index>>& vertex_pat
 
 std::vector<bool> Placer::component(Index face) const {
     std::vector<bool> selected(mesh_.number_of_faces(), false);
-    std::vector<Index> stack{face};
-    selected[face] = true;
-    while (!stack.empty()) {
-        const Halfedge first = mesh_.halfedge(Face(stack.back()));
-        stack.pop_back();
-        for (const Halfedge h : mesh_.halfedges_around_face(first)) {
-            const Face next = mesh_.face(mesh_.opposite(h));
-            if (next == Mesh::null_face() || selected[next]) continue;
-            selected[next] = true;
-            stack.push_back(next);
-        }
-    }
+    flood_faces(mesh_, Face(face), selected);
     return selected;
 }
 
@@ -140,13 +85,10 @@ PlacedAnnotations placed_annotations(Json& native, JsonValue list, const JsonVal
                                      const std::string& where, bool same_mesh, std::vector<std::string> notes,
                                      std::vector<PlacedAnnotation> placements) {
     auto& allocator = native.GetAllocator();
-    JsonValue made_for = json_object(allocator, "vertices", mesh.number_of_vertices(), "faces", mesh.number_of_faces());
-    add_member(native, "mesh", std::move(made_for), allocator);
-    if (about != nullptr)
-        for (const char* name : {"class", "unit", "up"})
-            if (const JsonValue* value = find_member(*about, name))
-                add_member(native, name, JsonValue(*value, allocator), allocator);
-    add_member(native, "annotations", std::move(list), allocator);
+    add_members(native, allocator, "mesh",
+                json_object(allocator, "vertices", mesh.number_of_vertices(), "faces", mesh.number_of_faces()));
+    if (about != nullptr) copy_members(native, allocator, *about, {"class", "unit", "up"});
+    add_members(native, allocator, "annotations", std::move(list));
     PlacedAnnotations result;
     result.set = annotations_from_json(native, mesh, where);
     if (!same_mesh) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ostraka/core/mesh.h"
+#include "ostraka/geom/point_tree.h"
 #include "ostraka/geom/shortest_path.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/interchange/landmarks.h"
@@ -11,18 +12,6 @@
 #include <vector>
 
 namespace ostraka::interchange {
-
-/// The nearest vertex that has a face, by a balanced tree of the vertices; ties go to the lower index.
-class VertexSearch {
-public:
-    explicit VertexSearch(const Mesh& mesh);
-    [[nodiscard]] Index nearest(const Point& query) const;
-
-private:
-    void search(std::size_t begin, std::size_t end, int axis, const Point& query, double& best, Index& found) const;
-    const Mesh& mesh_;
-    std::vector<Index> order_;  ///< each half-open range is split at its middle along x, y, z in turn
-};
 
 struct Placed {
     Index vertex = no_index;
@@ -36,6 +25,7 @@ public:
 
     [[nodiscard]] const Mesh& mesh() const { return mesh_; }
     [[nodiscard]] double diagonal() const { return surface_.diagonal(); }
+    /// At the nearest vertex that has a face, of equally near ones that of the lower index.
     [[nodiscard]] Placed place(const Point& point) const;
     /// The nearest point of the surface.
     [[nodiscard]] SurfaceHit nearest(const Point& point) const { return surface_.closest(point); }
@@ -53,7 +43,8 @@ public:
 private:
     const Mesh& mesh_;
     SurfaceSearch surface_;
-    VertexSearch vertices_;
+    std::vector<Index> vertices_;  ///< that have a face
+    PointTree points_;             ///< of those
     std::unique_ptr<PathSearch> paths_;
 };
 

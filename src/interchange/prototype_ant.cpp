@@ -17,8 +17,7 @@ namespace {
 using namespace interchange;
 
 std::string in_words(const Descriptor& descriptor) {
-    std::string text;
-    for (const double value : descriptor.values) text += (text.empty() ? "" : " ") + digits(value);
+    std::string text = joined_numbers(descriptor.values);
     if (!descriptor.file.empty()) text += descriptor.file;
     return descriptor.unit.empty() ? text : text + " " + descriptor.unit;
 }
@@ -35,16 +34,16 @@ std::string prototype_annotations(const Mesh& mesh, const AnnotationSet& set, st
     for (std::size_t i = 0; i < set.annotations.size(); ++i) {
         const Annotation& annotation = set.annotations[i];
         const JsonValue& source = native["annotations"][static_cast<rapidjson::SizeType>(i)];
-        JsonValue entry(rapidjson::kObjectType);
         renamed += annotation.id < 0 ? 1 : 0;
         remarks += annotation.note.empty() ? 0 : 1;
-        add_members(entry, a, "id", annotation.id < 0 ? ids.next() : annotation.id, "tag", annotation.tag, "color",
-                    JsonValue(source["colour"], a));
         const bool point = annotation.type == AnnotationType::point, line = annotation.type == AnnotationType::line;
-        add_member(entry, "type", point ? "Point" : line ? "Line" : "Area", a);
+        JsonValue entry = json_object(a, "id", annotation.id < 0 ? ids.next() : annotation.id, "tag", annotation.tag, "color",
+                                      source["colour"], "type",
+                                      point  ? "Point"
+                                      : line ? "Line"
+                                             : "Area");
         if (point || line) {
-            const char* member = point ? "points" : "polylines";
-            add_member(entry, member, JsonValue(source[member], a), a);
+            copy_members(entry, a, source, {"points", "polylines"});
         } else {
             // The prototype's outlines end where they begin.
             JsonValue boundaries(source["boundaries"], a);
@@ -53,26 +52,21 @@ std::string prototype_annotations(const Mesh& mesh, const AnnotationSet& set, st
             unbounded +=
                 find_member(source, "seeds") != nullptr || find_member(source, "faces") != nullptr || annotation.all ? 1 : 0;
             // Additions that the prototype skips and our reader takes.
-            for (const char* member : {"seeds", "faces", "all"})
-                if (const JsonValue* value = find_member(source, member)) add_member(entry, member, JsonValue(*value, a), a);
+            copy_members(entry, a, source, {"seeds", "faces", "all"});
         }
         JsonValue attributes(rapidjson::kArrayType);
         for (const Attribute& attribute : annotation.attributes) {
             JsonValue flat = json_object(a, "id", attribute.id, "name", attribute.name);
             if (attribute.type == AttributeType::measure) {
                 const Measure& measure = attribute.measure;
-                add_member(flat, "type", "Geometric", a);
                 double value = measure.value.value_or(0);
                 try {
                     if (!measure.value) value = evaluate(mesh, annotation, measure);
                 } catch (const Error&) {
                     ++untaken;
                 }
-                add_member(flat, "value", JsonValue(value), a);
-                JsonValue points(rapidjson::kArrayType);
-                for (const Index index : measure.points) points.PushBack(index, a);
-                add_members(flat, a, "points", std::move(points), "tool", measure.tool);
-                if (measure.direction) add_member(flat, "direction", triple_json(*measure.direction, a), a);
+                add_members(flat, a, "type", "Geometric", "value", value, "points", measure.points, "tool", measure.tool);
+                add_given(flat, a, "direction", measure.direction);
             } else {
                 const bool semantic = attribute.type == AttributeType::semantic;
                 descriptors += semantic ? 0 : 1;

@@ -7,6 +7,7 @@
 #include "ostraka/annotation/label_file.h"
 #include "ostraka/annotation/outline.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/flood.h"
 
 #include <algorithm>
 
@@ -24,12 +25,6 @@ std::string facet_type(const Annotation& annotation) {
             is_facet_type(attribute.note))
             return attribute.note;
     return "external";
-}
-
-std::string joined(const std::vector<Index>& indices) {
-    std::string text;
-    for (const Index index : indices) text += (text.empty() ? "" : " ") + std::to_string(index);
-    return text;
 }
 
 class FctReader {
@@ -54,9 +49,7 @@ private:
     /// The next line into `line_`; false at the end.
     bool next_line() {
         if (position_ >= bytes_.size()) return false;
-        const std::size_t end = std::min(bytes_.find('\n', position_), bytes_.size());
-        line_ = trimmed(std::string_view(bytes_).substr(position_, end - position_));
-        position_ = end + 1;
+        line_ = trimmed(line_at(bytes_, position_));
         ++number_;
         return true;
     }
@@ -74,11 +67,7 @@ private:
 
     std::vector<Index> indices() const {
         std::vector<Index> list;
-        for (std::size_t from = 0; from < line_.size();) {
-            const std::size_t begin = line_.find_first_not_of(" \t,;[]", from);
-            if (begin == std::string_view::npos) break;
-            from = std::min(line_.find_first_of(" \t,;[]", begin), line_.size());
-            const std::string_view word = line_.substr(begin, from - begin);
+        for (const std::string_view word : words_of(line_, " \t,;[]")) {
             const auto value = whole_of(word);
             if (!value) fail("'" + one_line(word.substr(0, 40)) + "' is not a vertex", "give vertex indices");
             if (*value < 0 || static_cast<std::size_t>(*value) >= mesh_.number_of_vertices())
@@ -152,18 +141,8 @@ private:
             if (!h.is_valid()) continue;
             const Face start = mesh_.is_border(h) ? mesh_.face(mesh_.opposite(h)) : mesh_.face(h);
             if (selected[start] || seen[start]) continue;
-            std::vector<Face> part{start};
-            seen[start] = true;
-            bool untouched = true;
-            for (std::size_t i = 0; i < part.size(); ++i)
-                for (const Halfedge edge : mesh_.halfedges_around_face(mesh_.halfedge(part[i]))) {
-                    const Face next = mesh_.face(mesh_.opposite(edge));
-                    if (next == Mesh::null_face() || seen[next]) continue;
-                    untouched = untouched && !selected[next];
-                    seen[next] = true;
-                    part.push_back(next);
-                }
-            if (!untouched) continue;
+            const std::vector<Face> part = flood_faces(mesh_, start, seen);
+            if (std::any_of(part.begin(), part.end(), [&](Face face) { return selected[face]; })) continue;
             for (const Face face : part) selected[face] = true;
         }
         return selected;
@@ -199,11 +178,11 @@ std::string prototype_facets(const Mesh& mesh, const AnnotationSet& set, const s
         for (Outline outline : extract_outlines(mesh, annotation.faces)) {
             for (const Index vertex : outline) on_border[vertex] = true;
             outline.push_back(outline.front());
-            body += joined(outline) + "\n";
+            body += joined_numbers(outline) + "\n";
         }
         std::vector<Index> inner = touched_vertices(mesh, annotation);
         std::erase_if(inner, [&](Index vertex) { return on_border[vertex]; });
-        body += "Vertices:\n" + joined(inner) + "\n\n";
+        body += "Vertices:\n" + joined_numbers(inner) + "\n\n";
     }
     if (others > 0) notes.push_back(counted(others, "annotation") + " left out: the format holds regions with a border only");
     if (attributes > 0) notes.push_back(counted(attributes, "attribute") + " left out, but for the facet's type");

@@ -2,7 +2,6 @@
 #include "ostraka/interchange/web_annotation.h"
 
 #include "landmark_formats.h"
-#include "place_region.h"
 #include "placing.h"
 #include "text.h"
 #include "web_terms.h"
@@ -13,6 +12,7 @@
 #include "ostraka/measure/measure.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <set>
 
@@ -25,7 +25,7 @@ using namespace interchange;
 /// Is `text` one of the strings that a JSON-LD member holds, alone or in a list?
 bool holds(const JsonValue* value, std::string_view text) {
     if (value == nullptr) return false;
-    if (value->IsString()) return text == std::string_view(value->GetString(), value->GetStringLength());
+    if (value->IsString()) return text == text_of(*value);
     if (!value->IsArray()) return false;
     return std::any_of(value->Begin(), value->End(), [&](const JsonValue& entry) { return holds(&entry, text); });
 }
@@ -43,6 +43,45 @@ std::vector<const JsonValue*> listed(const JsonValue* value) {
 bool is_selector(const JsonValue& value, const std::string& name) {
     const JsonValue* type = find_member(value, "type");
     return holds(type, name) || holds(type, web::terms + name.substr(name.find(':') + 1));
+}
+
+/// What of a region lies on one connected component of its own mesh.
+struct RegionPart {
+    double area = 0;
+    Point inside{0, 0, 0};
+    std::vector<std::vector<Index>>
+        outlines;  ///< vertices of the mesh at hand nearest to the outline's; none: the whole component
+};
+
+/// The faces of the region, ascending. Outlines are joined along edges and filled by winding number; `remarks` says where the
+/// area changed by more than a twentieth or nothing was left.
+std::vector<Index> region_of(Placer& placer, const std::vector<RegionPart>& parts, const std::string& where,
+                             std::vector<std::string>& remarks) {
+    const Mesh& mesh = placer.mesh();
+    std::vector<bool> selected(mesh.number_of_faces(), false);
+    for (const RegionPart& part : parts) {
+        std::vector<bool> flags;
+        if (part.outlines.empty()) {
+            flags = placer.component(placer.nearest(part.inside).face);
+        } else {
+            std::vector<std::vector<Index>> vertex_paths;
+            for (const auto& outline : part.outlines) {
+                std::vector<Index> vertex_path = placer.vertex_path(outline, true, where);
+                if (vertex_path.size() > 3) vertex_paths.push_back(std::move(vertex_path));
+            }
+            flags = placer.fill(vertex_paths, part.area);
+        }
+        double area = 0;
+        for (std::size_t f = 0; f < flags.size(); ++f)
+            if (flags[f]) {
+                area += face_area(mesh, Face(static_cast<Index>(f)));
+                selected[f] = true;
+            }
+        if (area == 0) remarks.emplace_back("a part of the region shrank to nothing on this mesh");
+        else if (std::abs(area - part.area) > part.area / 20)
+            remarks.push_back("a part's area of " + digits(part.area) + " became " + digits(area) + " on this mesh");
+    }
+    return flagged(selected);
 }
 
 class WebReader {
@@ -110,11 +149,10 @@ private:
     Json data_of(const JsonValue& item, const std::string& pointer) {
         Json data(rapidjson::kObjectType);
         std::vector<std::string> tags, descriptions;
-        const JsonValue* body_value = find_member(item, "bodyValue");
-        if (body_value != nullptr) descriptions.emplace_back(body_value->GetString(), body_value->GetStringLength());
+        if (const JsonValue* body_value = find_member(item, "bodyValue")) descriptions.push_back(text_of(*body_value));
         for (const JsonValue* body : listed(find_member(item, "body"))) {
             if (!body->IsObject()) continue;
-            const std::string value = text_member(*body, "value");
+            const std::string value = text_in(*body, "value");
             if (holds(find_member(*body, "format"), "application/json")) {
                 Json parsed = parse_json(value, where_ + ", in " + pointer + "/body");
                 if (parsed.IsObject() && find_member(parsed, "id") != nullptr && find_member(parsed, "tag") != nullptr)
@@ -154,23 +192,19 @@ private:
             if (by_place == nullptr && is_selector(*selector, web::place_selector)) by_place = find_member(*selector, "places");
         }
         Json data = data_of(item, pointer);
-        const std::string tag = text_member(data, "tag");
+        const std::string tag = text_in(data, "tag");
         JsonValue result(rapidjson::kObjectType);
         const int id = id_of(data, tag);
-        add_member(result, "id", JsonValue(id), a());
-        for (const char* name : {"tag", "colour", "note"})
-            if (const JsonValue* value = find_member(data, name)) add_member(result, name, JsonValue(*value, a()), a());
+        add_members(result, a(), "id", id);
+        copy_members(result, a(), data, {"tag", "colour", "note"});
         JsonValue attributes(rapidjson::kArrayType);
         if (const JsonValue* value = find_member(data, "attributes")) attributes.CopyFrom(*value, a());
         PlacedAnnotation placement{id, tag, 0, 0, 0, "indices"};
 
-        const bool same_mesh = source != nullptr && text_member(*source, "sha256") == checksum_;
+        const bool same_mesh = source != nullptr && text_in(*source, "sha256") == checksum_;
         if (by_index != nullptr && same_mesh) {
-            for (const auto& member : by_index->GetObject())
-                add_member(result, std::string_view(member.name.GetString(), member.name.GetStringLength()),
-                           JsonValue(member.value, a()), a());
-            const std::string type = text_member(data, "type");
-            add_member(result, "type", type, a());
+            for (const auto& member : by_index->GetObject()) add_members(result, a(), text_of(member.name), member.value);
+            add_members(result, a(), "type", text_in(data, "type"));
         } else if (by_place != nullptr) {
             by_place_ = true;
             if (!place(*by_place, result, attributes, placement, pointer)) {
@@ -239,32 +273,26 @@ private:
         return list;
     }
 
-    JsonValue json_of(const std::vector<Index>& indices) {
-        JsonValue list(rapidjson::kArrayType);
-        for (const Index index : indices) list.PushBack(index, a());
-        return list;
-    }
-
     bool place(const JsonValue& places, JsonValue& result, JsonValue& attributes, PlacedAnnotation& placement,
                const std::string& pointer) {
         placement.how = "places";
         if (const JsonValue* points = find_member(places, "points")) {
             const auto found = placed(*points, placement, pointer);
             if (!found) return false;
-            add_members(result, a(), "type", "point", "points", json_of(vertices(*found)));
+            add_members(result, a(), "type", "point", "points", vertices(*found));
         } else if (const JsonValue* polylines = find_member(places, "polylines")) {
-            JsonValue list(rapidjson::kArrayType);
+            std::vector<std::vector<Index>> list;
             for (const auto& polyline : polylines->GetArray()) {
                 const auto found = placed(polyline["points"], placement, pointer);
                 if (!found) return false;
-                const std::vector<Index> vertex_path =
+                std::vector<Index> vertex_path =
                     placer().vertex_path(vertices(*found), polyline["closed"].GetBool(), where_ + ", in " + pointer);
-                if (vertex_path.size() > 1) list.PushBack(json_of(vertex_path), a());
+                if (vertex_path.size() > 1) list.push_back(std::move(vertex_path));
                 else note(pointer, "a poly-line shrank to a point on this mesh and was left out");
             }
-            if (list.Empty()) return false;
-            add_members(result, a(), "type", "line", "polylines", std::move(list));
-        } else if (const JsonValue* all = find_member(places, "all"); all != nullptr && all->GetBool()) {
+            if (list.empty()) return false;
+            add_members(result, a(), "type", "line", "polylines", list);
+        } else if (flag_in(places, "all")) {
             add_members(result, a(), "type", "region", "all", true);
         } else if (const JsonValue* parts = find_member(places, "parts")) {
             std::vector<RegionPart> wanted;
@@ -285,7 +313,7 @@ private:
             const std::vector<Index> faces = region_of(placer(), wanted, where_ + ", in " + pointer, remarks);
             for (const auto& remark : remarks) note(pointer, remark);
             if (faces.empty()) return false;
-            add_members(result, a(), "type", "region", "faces", json_of(faces));
+            add_members(result, a(), "type", "region", "faces", faces);
         } else {
             note(pointer, "a selector without places, left out");
             return false;
@@ -299,7 +327,7 @@ private:
     void place_pins(const JsonValue& pins, const JsonValue* repeats, JsonValue& attributes, const std::string& pointer) {
         if (!attributes.IsArray()) return;
         for (auto& attribute : attributes.GetArray()) {
-            if (!attribute.IsObject() || text_member(attribute, "type") != "measure") continue;
+            if (!attribute.IsObject() || text_in(attribute, "type") != "measure") continue;
             const JsonValue* id = find_member(attribute, "id");
             const JsonValue* list = id != nullptr && id->IsInt() ? find_member(pins, std::to_string(id->GetInt())) : nullptr;
             if (list == nullptr || !attribute.HasMember("measure") || !attribute["measure"].IsObject()) continue;
@@ -307,28 +335,24 @@ private:
             const auto found = placed(*list, pinned, pointer);
             JsonValue& measure = attribute["measure"];
             if (!found) continue;
-            measure.RemoveMember("points");
-            measure.RemoveMember("locations");
-            measure.RemoveMember("stale");
-            add_member(measure, "points", json_of(vertices(*found)), a());
+            for (const char* name : {"points", "locations", "stale", "repeats"}) measure.RemoveMember(name);
             JsonValue locations(rapidjson::kArrayType);
             bool inside = false;
             for (rapidjson::SizeType i = 0; i < list->Size(); ++i) {
                 const auto p = triple(&(*list)[i]);
                 const SurfaceHit hit = placer().nearest(Point((*p)[0], (*p)[1], (*p)[2]));
-                JsonValue location = json_object(a(), "face", hit.face, "barycentric", triple_json(hit.barycentric, a()));
+                JsonValue location = json_object(a(), "face", hit.face, "barycentric", hit.barycentric);
                 locations.PushBack(location, a());
                 inside = inside || (*found)[i].to_vertex > 1e-9 * placer().diagonal();
             }
+            add_members(measure, a(), "points", vertices(*found));
             if (inside) add_member(measure, "locations", std::move(locations), a());
-            add_member(measure, "stale", JsonValue(true), a());
-            measure.RemoveMember("repeats");
-            const JsonValue* pickings = repeats == nullptr ? nullptr : find_member(*repeats, std::to_string(id->GetInt()));
-            if (pickings == nullptr) continue;
-            JsonValue again(rapidjson::kArrayType);
-            for (const auto& picked : pickings->GetArray())
-                if (const auto places = placed(picked, pinned, pointer)) again.PushBack(json_of(vertices(*places)), a());
-            if (!again.Empty()) add_member(measure, "repeats", std::move(again), a());
+            add_members(measure, a(), "stale", true);
+            if (repeats == nullptr) continue;
+            std::vector<std::vector<Index>> again;
+            for (const auto& picked : list_in(*repeats, std::to_string(id->GetInt())))
+                if (const auto places = placed(picked, pinned, pointer)) again.push_back(vertices(*places));
+            add_given(measure, a(), "repeats", again);
         }
     }
 

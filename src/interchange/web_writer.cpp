@@ -6,9 +6,9 @@
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/annotation/outline.h"
+#include "ostraka/core/flood.h"
 #include "ostraka/core/json_build.h"
 
-#include <algorithm>
 #include <map>
 
 namespace ostraka {
@@ -26,26 +26,14 @@ std::string uuid_of(const std::string& content) {
            hex.substr(20);
 }
 
-/// A file name as a relative IRI (RFC 3986): everything but unreserved characters as percent codes.
-std::string iri_of(const std::string& name) {
-    std::string iri;
-    for (const char c : name) {
-        const auto byte = static_cast<unsigned char>(c);
-        const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '.' ||
-                           c == '_' || c == '~';
-        if (plain) iri += c;
-        else iri += std::string("%") + "0123456789ABCDEF"[byte >> 4] + "0123456789ABCDEF"[byte & 15];
-    }
-    return iri.empty() ? "mesh" : iri;
-}
-
 class WebWriter {
 public:
     WebWriter(const Mesh& mesh, const AnnotationSet& set, const std::string& mesh_file, const Provenance& provenance)
         : mesh_(mesh), set_(set), native_(annotations_to_json(set, mesh, mesh_file, provenance)), number_(components()) {
         document_.SetObject();
-        checksum_ = text_member(native_["mesh"], "sha256");
-        source_ = iri_of(Path(mesh_file).filename().string());
+        checksum_ = text_in(native_["mesh"], "sha256");
+        source_ = percent_encoded(Path(mesh_file).filename().string());  // a relative IRI
+        if (source_.empty()) source_ = "mesh";
     }
 
     std::string write() {
@@ -54,7 +42,7 @@ public:
         const JsonValue& list = native_["annotations"];
         for (rapidjson::SizeType i = 0; i < list.Size(); ++i) {
             JsonValue item = annotation(list[i], set_.annotations[i]);
-            all += text_member(item, "id");
+            all += text_in(item, "id");
             items.PushBack(item, a());
         }
         const std::string collection = uuid_of(all);
@@ -63,9 +51,8 @@ public:
         JsonValue generator = json_object(a(), "id", "urn:x-ostraka:tool", "type", "Software", "name", "ostraka " + version());
         add_members(document_, a(), "generator", std::move(generator), "total", items.Size());
         JsonValue about(rapidjson::kObjectType);
-        for (const char* name : {"class", "unit", "up", "provenance"})
-            if (const JsonValue* value = find_member(native_, name)) add_member(about, name, JsonValue(*value, a()), a());
-        add_member(document_, "about", std::move(about), a());
+        copy_members(about, a(), native_, {"class", "unit", "up", "provenance"});
+        add_members(document_, a(), "about", std::move(about));
         JsonValue page = json_object(a(), "id", uuid_of(all + "page"), "type", "AnnotationPage", "partOf", collection,
                                      "startIndex", 0, "items", std::move(items));
         add_member(document_, "first", std::move(page), a());
@@ -76,40 +63,32 @@ private:
     JsonAllocator& a() { return document_.GetAllocator(); }
 
     JsonValue context() {
-        JsonValue terms(rapidjson::kObjectType), list(rapidjson::kArrayType);
-        add_members(terms, a(), "@version", 1.1, "ostraka", web::terms);
+        JsonValue terms = json_object(a(), "@version", 1.1, "ostraka", web::terms);
         for (const char* name : {"sha256", "vertices", "faces"}) add_member(terms, name, std::string("ostraka:") + name, a());
-        for (const char* name : {"indices", "places", "about"}) {
-            JsonValue term = json_object(a(), "@id", std::string("ostraka:") + name, "@type", "@json");
-            add_member(terms, name, std::move(term), a());
-        }
-        list.PushBack(json_string(web::context, a()), a());
+        for (const char* name : {"indices", "places", "about"})
+            add_members(terms, a(), name, json_object(a(), "@id", std::string("ostraka:") + name, "@type", "@json"));
+        JsonValue list = json_value(std::array{web::context}, a());
         list.PushBack(terms, a());
         return list;
     }
 
     JsonValue body(const char* purpose, const char* format, const std::string& value) {
-        JsonValue result = json_object(a(), "type", "TextualBody", "purpose", purpose, "format", format, "value", value);
-        return result;
+        return json_object(a(), "type", "TextualBody", "purpose", purpose, "format", format, "value", value);
     }
 
     static std::string in_words(const Attribute& attribute) {
         if (attribute.type == AttributeType::semantic) return attribute.name + ": " + attribute.note;
-        const bool measured = attribute.type == AttributeType::measure;
+        const auto [values, unit, stale] = figures_of(attribute);
         std::string text = attribute.name + ":";
-        if (measured && attribute.measure.value) text += " " + digits(*attribute.measure.value);
-        for (std::size_t i = 0; !measured && i < attribute.descriptor.values.size() && i < 8; ++i)
-            text += " " + digits(attribute.descriptor.values[i]);
-        const std::string& unit = measured ? attribute.measure.unit : attribute.descriptor.unit;
-        if (!unit.empty()) text += " " + unit;
-        return text + ((measured ? attribute.measure.stale : attribute.descriptor.stale) ? " (stale)" : "");
+        for (std::size_t i = 0; i < values.size() && i < 8; ++i) text += " " + digits(values[i]);
+        return text + (unit.empty() ? "" : " " + unit) + (stale ? " (stale)" : "");
     }
 
     JsonValue annotation(const JsonValue& native, const Annotation& annotation) {
         Json data(rapidjson::kObjectType);
         JsonValue indices(rapidjson::kObjectType);
         for (const auto& member : native.GetObject()) {
-            const std::string name(member.name.GetString(), member.name.GetStringLength());
+            const std::string name = text_of(member.name);
             if (name == "id" || name == "tag" || name == "colour" || name == "type" || name == "note" || name == "attributes")
                 add_member(data, name, JsonValue(member.value, data.GetAllocator()), data.GetAllocator());
             else add_member(indices, name, JsonValue(member.value, a()), a());
@@ -121,48 +100,31 @@ private:
             bodies.PushBack(body("describing", "text/plain", in_words(attribute)), a());
         bodies.PushBack(body("describing", "application/json", data_text), a());
 
-        JsonValue by_index(rapidjson::kObjectType), by_place(rapidjson::kObjectType), selectors(rapidjson::kArrayType);
-        add_members(by_index, a(), "type", web::index_selector, "indices", std::move(indices));
-        add_members(by_place, a(), "type", web::place_selector, "places", places(annotation));
-        selectors.PushBack(by_index, a());
-        selectors.PushBack(by_place, a());
-        JsonValue source(rapidjson::kObjectType), target(rapidjson::kObjectType), result(rapidjson::kObjectType);
-        add_members(source, a(), "id", source_, "type", "Dataset");
-        for (const char* name : {"vertices", "faces", "sha256"})
-            add_member(source, name, JsonValue(native_["mesh"][name], a()), a());
-        add_members(target, a(), "type", "SpecificResource", "source", std::move(source), "selector", std::move(selectors));
-        add_members(result, a(), "id", uuid_of(checksum_ + to_text(native)), "type", "Annotation", "motivation", "describing",
-                    "body", std::move(bodies), "target", std::move(target));
-        return result;
+        JsonValue selectors = json_list_of(json_object(a(), "type", web::index_selector, "indices", std::move(indices)), a());
+        selectors.PushBack(json_object(a(), "type", web::place_selector, "places", places(annotation)), a());
+        JsonValue source = json_object(a(), "id", source_, "type", "Dataset");
+        copy_members(source, a(), native_["mesh"], {"vertices", "faces", "sha256"});
+        JsonValue target =
+            json_object(a(), "type", "SpecificResource", "source", std::move(source), "selector", std::move(selectors));
+        return json_object(a(), "id", uuid_of(checksum_ + to_text(native)), "type", "Annotation", "motivation", "describing",
+                           "body", std::move(bodies), "target", std::move(target));
     }
 
-    JsonValue place(const Point& p) { return triple_json({p.x(), p.y(), p.z()}, a()); }
+    JsonValue place(const Point& p) { return json_value(std::array{p.x(), p.y(), p.z()}, a()); }
     JsonValue place(Index vertex) { return place(mesh_.point(Vertex(vertex))); }
 
     JsonValue vertex_list(const std::vector<Index>& vertices) {
-        JsonValue list(rapidjson::kArrayType);
-        for (const Index vertex : vertices) list.PushBack(place(vertex), a());
-        return list;
+        return json_list(vertices, a(), [&](Index vertex) { return place(vertex); });
     }
 
     /// The number of its connected component for each face.
     [[nodiscard]] std::vector<Index> components() const {
-        std::vector<Index> number(mesh_.number_of_faces(), no_index);
+        std::vector<Index> number(mesh_.number_of_faces());
+        std::vector<bool> seen(number.size(), false);
         Index count = 0;
         for (const Face start : mesh_.faces()) {
-            if (number[start] != no_index) continue;
-            std::vector<Face> stack{start};
-            number[start] = count;
-            while (!stack.empty()) {
-                const Halfedge first = mesh_.halfedge(stack.back());
-                stack.pop_back();
-                for (const Halfedge h : mesh_.halfedges_around_face(first)) {
-                    const Face next = mesh_.face(mesh_.opposite(h));
-                    if (next == Mesh::null_face() || number[next] != no_index) continue;
-                    number[next] = count;
-                    stack.push_back(next);
-                }
-            }
+            if (seen[start]) continue;
+            for (const Face face : flood_faces(mesh_, start, seen)) number[face] = count;
             ++count;
         }
         return number;
@@ -190,58 +152,35 @@ private:
             const Halfedge first = find_halfedge(mesh_, Vertex(outline[0]), Vertex(outline[1]));
             found[number_[mesh_.face(first)]].outlines.push_back(std::move(outline));
         }
-        JsonValue list(rapidjson::kArrayType);
-        for (const auto& [component, part] : found) {
-            JsonValue entry(rapidjson::kObjectType), outlines(rapidjson::kArrayType);
-            for (const Outline& outline : part.outlines) outlines.PushBack(vertex_list(outline), a());
-            add_members(entry, a(), "area", part.area, "inside", place(centroid(mesh_, Face(part.largest))), "outlines",
-                        std::move(outlines));
-            list.PushBack(entry, a());
-        }
-        return list;
+        return json_list(found, a(), [&](const auto& entry) {
+            const Part& part = entry.second;
+            return json_object(a(), "area", part.area, "inside", place(centroid(mesh_, Face(part.largest))), "outlines",
+                               json_list(part.outlines, a(), [&](const Outline& outline) { return vertex_list(outline); }));
+        });
     }
 
     JsonValue places(const Annotation& annotation) {
         JsonValue result(rapidjson::kObjectType);
-        switch (annotation.type) {
-            case AnnotationType::point:
-                add_member(result, "points", vertex_list(annotation.points), a());
-                break;
-            case AnnotationType::line: {
-                JsonValue list(rapidjson::kArrayType);
-                for (std::vector<Index> polyline : annotation.polylines) {
-                    const bool closed = polyline.size() > 3 && polyline.front() == polyline.back();
-                    if (closed) polyline.pop_back();
-                    JsonValue entry = json_object(a(), "closed", closed, "points", vertex_list(polyline));
-                    list.PushBack(entry, a());
-                }
-                add_member(result, "polylines", std::move(list), a());
-                break;
-            }
-            case AnnotationType::region:
-                if (annotation.all) add_member(result, "all", JsonValue(true), a());
-                else add_member(result, "parts", parts(annotation), a());
-                break;
-        }
+        if (annotation.type == AnnotationType::point) add_members(result, a(), "points", vertex_list(annotation.points));
+        else if (annotation.type == AnnotationType::line)
+            add_members(result, a(), "polylines", json_list(annotation.polylines, a(), [&](std::vector<Index> polyline) {
+                            const bool closed = polyline.size() > 3 && polyline.front() == polyline.back();
+                            if (closed) polyline.pop_back();
+                            return json_object(a(), "closed", closed, "points", vertex_list(polyline));
+                        }));
+        else if (annotation.all) add_members(result, a(), "all", true);
+        else add_members(result, a(), "parts", parts(annotation));
         JsonValue pins(rapidjson::kObjectType), repeats(rapidjson::kObjectType);
         for (const Attribute& attribute : annotation.attributes) {
             if (attribute.type != AttributeType::measure) continue;
             const Measure& measure = attribute.measure;
-            JsonValue list(rapidjson::kArrayType);
-            for (std::size_t i = 0; i < measure.points.size(); ++i)
-                list.PushBack(measure.locations.empty() ? place(measure.points[i]) : place(at(measure.locations[i])), a());
-            add_member(pins, std::to_string(attribute.id), std::move(list), a());
-            if (measure.repeats.empty()) continue;
-            JsonValue pickings(rapidjson::kArrayType);
-            for (const auto& picked : measure.repeats) {
-                JsonValue again(rapidjson::kArrayType);
-                for (const Index vertex : picked) again.PushBack(place(vertex), a());
-                pickings.PushBack(again, a());
-            }
-            add_member(repeats, std::to_string(attribute.id), std::move(pickings), a());
+            const auto pin = [&](const Location& location) { return place(at(location)); };
+            add_members(pins, a(), std::to_string(attribute.id),
+                        measure.locations.empty() ? vertex_list(measure.points) : json_list(measure.locations, a(), pin));
+            const auto picking = [&](const std::vector<Index>& picked) { return vertex_list(picked); };
+            add_given(repeats, a(), std::to_string(attribute.id), json_list(measure.repeats, a(), picking));
         }
-        if (pins.MemberCount() > 0) add_member(result, "pins", std::move(pins), a());
-        if (repeats.MemberCount() > 0) add_member(result, "repeats", std::move(repeats), a());
+        add_given(result, a(), "pins", std::move(pins), "repeats", std::move(repeats));
         return result;
     }
 

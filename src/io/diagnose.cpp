@@ -1,6 +1,5 @@
 #include "ostraka/io/diagnose.h"
 
-#include "ostraka/core/error.h"
 #include "soup_edges.h"
 #include "soup_geometry.h"
 

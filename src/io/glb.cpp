@@ -1,13 +1,12 @@
 #include "ostraka/io/glb.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/json_build.h"
 #include "ostraka/core/markup.h"
 #include "ostraka/core/provenance.h"
 #include "ostraka/core/text.h"
 
-#include <rapidjson/stringbuffer.h>
-#include <rapidjson/writer.h>
-
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -19,22 +18,6 @@ namespace {
 
 constexpr std::uint32_t magic = 0x46546C67, json_chunk = 0x4E4F534A, binary_chunk = 0x004E4942;
 
-std::size_t size_of(int component) {
-    switch (component) {
-        case signed_byte:
-        case byte:
-            return 1;
-        case signed_short:
-        case short_word:
-            return 2;
-        case word:
-        case single:
-            return 4;
-        default:
-            return 0;
-    }
-}
-
 template <class T>
 T value_at(std::string_view bytes, std::size_t offset) {
     T value;
@@ -42,22 +25,19 @@ T value_at(std::string_view bytes, std::size_t offset) {
     return value;
 }
 
-double number_at(std::string_view bytes, std::size_t offset, int component) {
-    switch (component) {
-        case signed_byte:
-            return value_at<std::int8_t>(bytes, offset);
-        case byte:
-            return value_at<std::uint8_t>(bytes, offset);
-        case signed_short:
-            return value_at<std::int16_t>(bytes, offset);
-        case short_word:
-            return value_at<std::uint16_t>(bytes, offset);
-        case word:
-            return value_at<std::uint32_t>(bytes, offset);
-        default:
-            return static_cast<double>(value_at<float>(bytes, offset));
-    }
+/// A kind of numbers that accessors hold.
+struct Component {
+    std::size_t kind, size;
+    double (*number_at)(std::string_view bytes, std::size_t offset);
+};
+template <class T>
+constexpr Component component(int kind) {
+    return {static_cast<std::size_t>(kind), sizeof(T),
+            [](std::string_view bytes, std::size_t offset) { return static_cast<double>(value_at<T>(bytes, offset)); }};
 }
+constexpr std::array components{component<std::int8_t>(signed_byte),   component<std::uint8_t>(byte),
+                                component<std::int16_t>(signed_short), component<std::uint16_t>(short_word),
+                                component<std::uint32_t>(word),        component<float>(single)};
 
 }  // namespace
 
@@ -76,36 +56,25 @@ std::uint16_t linear_channel(std::size_t value) {
 
 void check_size(std::size_t bytes, const std::string& where, const std::string& remedy) {
     if (bytes > std::numeric_limits<std::uint32_t>::max())
-        throw Error(ErrorKind::failure, where, "would exceed the four gigabytes of a GLB file", remedy);
+        fail_work(where, "would exceed the four gigabytes of a GLB file", remedy);
 }
 
 Builder::Builder(std::size_t alignment, bool escapes) : alignment_(alignment), escapes_(escapes) {
     document_.SetObject();
-    JsonValue asset(rapidjson::kObjectType);
-    add_member(asset, "version", "2.0", allocator());
-    add_member(asset, "generator", "ostraka " + version(), allocator());
-    add_member(document_, "asset", std::move(asset), allocator());
+    add_members(document_, allocator(), "asset", json_object(allocator(), "version", "2.0", "generator", "ostraka " + version()));
 }
 
 int Builder::view(std::size_t size, int target, int stride) {
     size_ = (size_ + alignment_ - 1) / alignment_ * alignment_;
-    JsonValue entry(rapidjson::kObjectType);
-    add_member(entry, "buffer", JsonValue(0), allocator());
-    add_member(entry, "byteOffset", JsonValue(static_cast<std::uint64_t>(size_)), allocator());
-    add_member(entry, "byteLength", JsonValue(static_cast<std::uint64_t>(size)), allocator());
-    if (stride > 0) add_member(entry, "byteStride", JsonValue(stride), allocator());
-    if (target > 0) add_member(entry, "target", JsonValue(target), allocator());
+    JsonValue entry = json_object(allocator(), "buffer", 0, "byteOffset", size_, "byteLength", size);
+    add_given(entry, allocator(), "byteStride", stride, "target", target);
     size_ += size;
     views_.PushBack(entry, allocator());
     return static_cast<int>(views_.Size()) - 1;
 }
 
 int Builder::accessor(int view, int component, std::size_t count, const char* type, JsonValue* min, JsonValue* max) {
-    JsonValue entry(rapidjson::kObjectType);
-    add_member(entry, "bufferView", JsonValue(view), allocator());
-    add_member(entry, "componentType", JsonValue(component), allocator());
-    add_member(entry, "count", JsonValue(static_cast<std::uint64_t>(count)), allocator());
-    add_member(entry, "type", type, allocator());
+    JsonValue entry = json_object(allocator(), "bufferView", view, "componentType", component, "count", count, "type", type);
     if (min != nullptr) add_member(entry, "min", std::move(*min), allocator());
     if (max != nullptr) add_member(entry, "max", std::move(*max), allocator());
     accessors_.PushBack(entry, allocator());
@@ -130,22 +99,15 @@ int Builder::announce_accessor(std::size_t size, int target, int component, std:
 }
 
 void Builder::mark_normalised(int accessor) {
-    add_member(accessors_[static_cast<rapidjson::SizeType>(accessor)], "normalized", JsonValue(true), allocator());
+    add_members(accessors_[static_cast<rapidjson::SizeType>(accessor)], allocator(), "normalized", true);
 }
 
 std::string Builder::head(const std::string& where, const std::string& remedy) {
     size_ = (size_ + alignment_ - 1) / alignment_ * alignment_;
     if (!binary_.empty()) binary_.resize(size_, '\0');
-    JsonValue buffers(rapidjson::kArrayType), buffer(rapidjson::kObjectType);
-    add_member(buffer, "byteLength", JsonValue(static_cast<std::uint64_t>(size_)), allocator());
-    buffers.PushBack(buffer, allocator());
-    add_member(document_, "accessors", std::move(accessors_), allocator());
-    add_member(document_, "bufferViews", std::move(views_), allocator());
-    add_member(document_, "buffers", std::move(buffers), allocator());
-    rapidjson::StringBuffer text;
-    rapidjson::Writer<rapidjson::StringBuffer> writer(text);
-    document_.Accept(writer);
-    std::string json(text.GetString(), text.GetSize());
+    add_members(document_, allocator(), "accessors", std::move(accessors_), "bufferViews", std::move(views_), "buffers",
+                json_list_of(json_object(allocator(), "byteLength", size_), allocator()));
+    std::string json = to_compact_text(document_);
     if (escapes_) json = with_markup_escaped(json);
     while ((12 + 8 + json.size() + 8) % alignment_ != 0) json += ' ';
     const std::size_t total = 12 + 8 + json.size() + 8 + size_;
@@ -216,18 +178,18 @@ std::vector<double> Reader::accessor(std::size_t index, std::size_t width, const
     const JsonValue& entry = element("accessors", index, pointer);
     const std::string here = "/accessors/" + std::to_string(index);
     if (find_member(entry, "sparse") != nullptr) fail(here + "/sparse", "sparse accessors are not read");
-    const JsonValue* stated_type = find_member(entry, "type");
-    const std::string type = stated_type != nullptr && stated_type->IsString() ? stated_type->GetString() : "";
+    const std::string type = text_in(entry, "type");
     const std::size_t stated = type == "SCALAR" ? 1 : type == "VEC2" ? 2 : type == "VEC3" ? 3 : type == "VEC4" ? 4 : 0;
     if (stated != width)
         fail(here + "/type", "'" + without_controls(type, " ").substr(0, 20) + "' is not what is asked for here");
     const std::size_t kind = number(entry, "componentType", here, 0);
-    const std::size_t size = kind > 10000 ? 0 : size_of(static_cast<int>(kind));
-    if (size == 0) fail(here + "/componentType", "is not known");
+    const auto* const held =
+        std::find_if(components.begin(), components.end(), [&](const Component& one) { return one.kind == kind; });
+    if (held == components.end()) fail(here + "/componentType", "is not known");
     const std::size_t which = number(entry, "bufferView", here, static_cast<std::size_t>(-1));
     if (which == static_cast<std::size_t>(-1)) fail(here, "has no bufferView");
     const std::string_view bytes = view(which, here);
-    const std::size_t element_size = size * width;
+    const std::size_t element_size = held->size * width;
     const std::size_t stride =
         number(element("bufferViews", which, here), "byteStride", "/bufferViews/" + std::to_string(which), element_size);
     const std::size_t offset = number(entry, "byteOffset", here, 0), count = number(entry, "count", here, 0);
@@ -239,8 +201,7 @@ std::vector<double> Reader::accessor(std::size_t index, std::size_t width, const
     std::vector<double> values;
     values.reserve(count * width);
     for (std::size_t i = 0; i < count; ++i)
-        for (std::size_t k = 0; k < width; ++k)
-            values.push_back(number_at(bytes, offset + i * stride + k * size, static_cast<int>(kind)));
+        for (std::size_t k = 0; k < width; ++k) values.push_back(held->number_at(bytes, offset + i * stride + k * held->size));
     return values;
 }
 

@@ -11,7 +11,7 @@ namespace io {
 
 void close_polygon(PolygonSoup& soup, const std::string& file) {
     if (soup.corners.size() >= no_index || soup.polygon_begin.size() >= no_index)
-        throw Error(ErrorKind::failure, file, "has more than four thousand million face corners", "split it");
+        fail_work(file, "has more than four thousand million face corners", "split it");
     soup.polygon_begin.push_back(static_cast<Index>(soup.corners.size()));
 }
 
@@ -81,23 +81,11 @@ PolygonSoup read_polygons(const Path& file) {
     const std::string name = file.string();
     if (bytes.empty()) fail_input(name, "is empty", "export it again");
     const Format format = format_of_content(named, bytes);
-    PolygonSoup soup;
-    switch (format) {
-        case Format::obj:
-            soup = read_obj(bytes, name);
-            break;
-        case Format::off:
-            soup = read_off(bytes, name);
-            break;
-        case Format::ply:
-            soup = read_ply(bytes, name);
-            break;
-        case Format::stl:
-            soup = read_stl(bytes, name);
-            break;
-    }
-    if (soup.points.size() >= no_index)
-        throw Error(ErrorKind::failure, name, "has more than four thousand million vertices", "split it");
+    PolygonSoup soup = format == Format::obj   ? read_obj(bytes, name)
+                       : format == Format::off ? read_off(bytes, name)
+                       : format == Format::ply ? read_ply(bytes, name)
+                                               : read_stl(bytes, name);
+    if (soup.points.size() >= no_index) fail_work(name, "has more than four thousand million vertices", "split it");
     if (format != named)
         soup.notes.push_back("named " + extension(file) + " but holds " + name_of(format) + ", and was read as such");
     return soup;

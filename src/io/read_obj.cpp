@@ -1,10 +1,9 @@
 #include "formats.h"
-#include "ostraka/core/error.h"
+#include "ostraka/core/words.h"
 #include "text_reader.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 
 namespace ostraka::io {
@@ -49,11 +48,7 @@ public:
         check_forward_references();
         finish_colours();
         finish_texture();
-        if (!ignored_.empty()) {
-            std::string list;
-            for (const auto word : ignored_) list += (list.empty() ? "" : ", ") + std::string(word);
-            soup_.notes.push_back("statements not kept: " + list);
-        }
+        if (!ignored_.empty()) soup_.notes.push_back("statements not kept: " + joined(ignored_));
         if (weights_ > 0) soup_.notes.push_back(std::to_string(weights_) + " vertices have a weight, which is not kept");
         return std::move(soup_);
     }

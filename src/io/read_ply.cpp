@@ -1,12 +1,13 @@
 #include "formats.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/text.h"
+#include "ostraka/core/words.h"
 #include "ostraka/io/ply.h"
 #include "ply_rows.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 
 namespace ostraka::io {
 
@@ -34,8 +35,7 @@ Role common_role(const PlyProperty& property) {
     if (name == "green" || name == "diffuse_green") return Role::green;
     if (name == "blue" || name == "diffuse_blue") return Role::blue;
     if (name == "alpha" || name == "diffuse_alpha") return Role::alpha;
-    std::string lower = name;
-    std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string lower = lower_case(name);
     if (!is_real(property.type) && (lower.find("label") != std::string::npos || lower.starts_with("segment"))) return Role::label;
     return Role::none;
 }
@@ -165,9 +165,7 @@ private:
 
     void note_unused(const PlyElement& element, const Plan& plan) {
         if (element.count == 0 || plan.unused.empty()) return;
-        std::string list;
-        for (const auto& name : plan.unused) list += (list.empty() ? "" : ", ") + name;
-        soup_.notes.push_back(element.name + " properties not kept: " + list);
+        soup_.notes.push_back(element.name + " properties not kept: " + joined(plan.unused));
     }
 
     Colour colour(const std::array<double, role_count>& row, const Plan& plan) {

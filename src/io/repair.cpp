@@ -174,8 +174,7 @@ RepairResult repair(const TriangleSoup& original, const MeshExtras& extras, cons
         result.face_map = inverted(work.face_source, work.duplicate_of);
     }
     if (try_build_mesh(work.soup, result.mesh).any())
-        throw Error(ErrorKind::failure, "mesh", "could not be made an oriented manifold",
-                    "try --wrap, and please report the file");
+        fail_work("mesh", "could not be made an oriented manifold", "try --wrap, and please report the file");
     result.extras = carry_extras(extras, work);
     result.vertex_source = std::move(work.vertex_source);
     result.face_source = std::move(work.face_source);

@@ -219,11 +219,7 @@ Counts fill_once(Worksoup& work, const HoleLimits& limits, const std::vector<Ind
     const std::vector<Index> opposite = pair_manifold(soup);
     const std::vector<Index> place = same_place(soup.points);
     const std::vector<Hole> holes = find_holes(soup, opposite, place);
-    DisjointSets sets(soup.points.size());
-    for (const auto& t : soup.triangles) {
-        sets.unite(t[0], t[1]);
-        sets.unite(t[0], t[2]);
-    }
+    DisjointSets sets = joined_vertices(soup);
     std::vector<CGAL::Bbox_3> boxes(holes.empty() ? 0 : soup.points.size());
     for (Index v = 0; v < boxes.size(); ++v) boxes[sets.find(v)] += point(soup, v).bbox();
 

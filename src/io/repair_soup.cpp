@@ -1,10 +1,8 @@
 // The soup under repair: bookkeeping, merging of points, triangles that cannot stay, components.
-#include "ostraka/core/error.h"
 #include "ostraka/geom/point_tree.h"
 #include "repair_steps.h"
 #include "soup_geometry.h"
 
-#include <cmath>
 #include <numeric>
 
 namespace ostraka::detail {
@@ -46,22 +44,24 @@ void Worksoup::flip(Index t) {
     flipped[t] ^= 1;
 }
 
+namespace {
+
+/// Drops the elements of lists whose flag is zero.
+template <class... Lists>
+void keep_flagged(const std::vector<std::uint8_t>& keep, Lists&... lists) {
+    const auto compact = [&](auto& list) {
+        std::size_t next = 0;
+        for (std::size_t i = 0; i < list.size(); ++i)
+            if (keep[i] != 0) list[next++] = list[i];
+        list.resize(next);
+    };
+    (compact(lists), ...);
+}
+
+}  // namespace
+
 void Worksoup::keep_triangles(const std::vector<std::uint8_t>& keep) {
-    std::size_t next = 0;
-    for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
-        if (keep[t] == 0) continue;
-        soup.triangles[next] = soup.triangles[t];
-        face_source[next] = face_source[t];
-        face_like[next] = face_like[t];
-        corner_like[next] = corner_like[t];
-        flipped[next] = flipped[t];
-        ++next;
-    }
-    soup.triangles.resize(next);
-    face_source.resize(next);
-    face_like.resize(next);
-    corner_like.resize(next);
-    flipped.resize(next);
+    keep_flagged(keep, soup.triangles, face_source, face_like, corner_like, flipped);
 }
 
 std::size_t Worksoup::drop_isolated(bool keep_original) {
@@ -79,23 +79,12 @@ std::size_t Worksoup::drop_isolated(bool keep_original) {
     }
     std::vector<Index> renumbered(soup.points.size(), no_index);
     Index next = 0;
-    for (std::size_t v = 0; v < keep.size(); ++v) {
-        if (keep[v] == 0) continue;
-        renumbered[v] = next;
-        soup.points[next] = soup.points[v];
-        vertex_source[next] = vertex_source[v];
-        vertex_like[next] = vertex_like[v];
-        touched[next] = touched[v];
-        ++next;
-    }
-    const std::size_t dropped = keep.size() - next;
-    soup.points.resize(next);
-    vertex_source.resize(next);
-    vertex_like.resize(next);
-    touched.resize(next);
+    for (std::size_t v = 0; v < keep.size(); ++v)
+        if (keep[v] != 0) renumbered[v] = next++;
+    keep_flagged(keep, soup.points, vertex_source, vertex_like, touched);
     for (auto& t : soup.triangles)
         for (Index& v : t) v = renumbered[v];
-    return dropped;
+    return keep.size() - next;
 }
 
 std::vector<Index> pair_manifold(const TriangleSoup& soup) {
@@ -114,11 +103,7 @@ namespace {
 
 /// Vertices of components that are not closed: those may have to be joined to others.
 std::vector<std::uint8_t> vertices_of_open_components(const TriangleSoup& soup) {
-    DisjointSets sets(soup.points.size());
-    for (const auto& t : soup.triangles) {
-        sets.unite(t[0], t[1]);
-        sets.unite(t[0], t[2]);
-    }
+    DisjointSets sets = joined_vertices(soup);
     std::vector<std::uint8_t> open(soup.points.size(), 0);
     const SoupEdges edges = group_edges(soup);
     for (std::size_t e = 0; e < edges.count(); ++e)
@@ -249,20 +234,16 @@ Counts drop_bad_triangles(Worksoup& work) {
 
 Counts drop_components(Worksoup& work, bool only_largest, double smallest_share) {
     auto& soup = work.soup;
-    DisjointSets sets(soup.points.size());
-    for (const auto& t : soup.triangles) {
-        sets.unite(t[0], t[1]);
-        sets.unite(t[0], t[2]);
-    }
+    DisjointSets sets = joined_vertices(soup);
     std::vector<double> share(soup.points.size(), 0);
+    std::vector<std::uint8_t> has_triangle(soup.points.size(), 0);
     double total = 0;
     for (const auto& t : soup.triangles) {
         const double a = area(soup, t);
         share[sets.find(t[0])] += a;
+        has_triangle[sets.find(t[0])] = 1;
         total += a;
     }
-    std::vector<std::uint8_t> has_triangle(soup.points.size(), 0);
-    for (const auto& t : soup.triangles) has_triangle[sets.find(t[0])] = 1;
     Index largest = no_index;
     std::size_t count = 0, dropped = 0;
     for (Index v = 0; v < share.size(); ++v)

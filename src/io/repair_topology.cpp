@@ -3,7 +3,6 @@
 #include "soup_geometry.h"
 
 #include <cmath>
-#include <numeric>
 
 namespace ostraka::detail {
 
@@ -53,15 +52,17 @@ Counts orient_patches(Worksoup& work) {
 
 namespace {
 
+void join_halfedges(std::vector<Index>& opposite, Index h, Index o) {
+    opposite[h] = o;
+    if (o != no_index) opposite[o] = h;
+}
+
 /// A triangle soup whose joints are written down rather than read off the indices.
 struct Joints {
     Worksoup& work;
     std::vector<Index> opposite;
 
-    void join(Index h, Index o) {
-        opposite[h] = o;
-        if (o != no_index) opposite[o] = h;
-    }
+    void join(Index h, Index o) { join_halfedges(opposite, h, o); }
 
     /// Puts vertex m at the start of halfedge h = a -> b of triangle (a, b, c), which becomes (m, b, c), and adds (a, m, c).
     /// Returns the added triangle; its halfedges are a -> m, m -> c, c -> a.
@@ -231,11 +232,7 @@ Counts take_apart(Worksoup& work) {
 Counts turn_outwards(Worksoup& work) {
     auto& soup = work.soup;
     const std::vector<Index> opposite = pair_manifold(soup);
-    DisjointSets sets(soup.points.size());
-    for (const auto& t : soup.triangles) {
-        sets.unite(t[0], t[1]);
-        sets.unite(t[0], t[2]);
-    }
+    DisjointSets sets = joined_vertices(soup);
     std::vector<Index> number(soup.points.size(), no_index), component(soup.triangles.size());
     std::vector<bool> closed;
     std::vector<std::uint8_t> as_read;
@@ -302,10 +299,7 @@ Counts flip_degenerate(Worksoup& work) {
     std::vector<std::uint8_t> keep(soup.triangles.size(), 1);
     std::size_t flipped = 0, dropped = 0;
     const std::size_t maximum = 20 * queue.size();
-    const auto join = [&](Index h, Index o) {
-        opposite[h] = o;
-        if (o != no_index) opposite[o] = h;
-    };
+    const auto join = [&](Index h, Index o) { join_halfedges(opposite, h, o); };
     for (std::size_t i = 0; i < queue.size() && i < maximum; ++i) {
         const Index t = queue[i];
         if (keep[t] == 0 || !has_no_area(soup, soup.triangles[t])) continue;

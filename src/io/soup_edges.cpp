@@ -5,10 +5,18 @@
 
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <numeric>
 
 namespace ostraka::detail {
+
+DisjointSets joined_vertices(const TriangleSoup& soup) {
+    DisjointSets sets(soup.points.size());
+    for (const auto& t : soup.triangles) {
+        sets.unite(t[0], t[1]);
+        sets.unite(t[0], t[2]);
+    }
+    return sets;
+}
 
 SoupEdges group_edges(const TriangleSoup& soup) {
     const auto count = static_cast<Index>(3 * soup.triangles.size());
@@ -62,7 +70,7 @@ std::vector<Index> same_place(const std::vector<std::array<double, 3>>& points) 
 
 void check_soup(const TriangleSoup& soup) {
     if (soup.points.size() >= no_index / 8 || soup.triangles.size() >= no_index / 8)
-        throw Error(ErrorKind::failure, "mesh", "has more than 536 million vertices or triangles", "split it");
+        fail_work("mesh", "has more than 536 million vertices or triangles", "split it");
     for (std::size_t t = 0; t < soup.triangles.size(); ++t)
         for (const Index v : soup.triangles[t])
             if (v >= soup.points.size())

@@ -26,6 +26,9 @@ inline Index target(const TriangleSoup& soup, Index h) { return soup.triangles[h
 inline Index apex(const TriangleSoup& soup, Index h) { return soup.triangles[h / 3][(h + 2) % 3]; }
 inline bool repeats_corner(const std::array<Index, 3>& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
 
+/// Sets of vertices that triangles join.
+DisjointSets joined_vertices(const TriangleSoup& soup);
+
 /// Linear but for the sorting of about six halfedges a vertex.
 SoupEdges group_edges(const TriangleSoup& soup);
 

@@ -4,7 +4,6 @@
 #include "ostraka/core/file.h"
 
 #include <charconv>
-#include <cstring>
 #include <string>
 
 namespace ostraka::io {

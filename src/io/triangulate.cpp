@@ -1,8 +1,6 @@
 #include "ostraka/io/mesh_file.h"
 #include "polygon_cutter.h"
 
-#include "ostraka/core/error.h"
-
 namespace ostraka {
 
 namespace {
@@ -33,8 +31,6 @@ bool all_are_triangles(const PolygonSoup& polygons) {
     }
     return true;
 }
-
-std::string counted(std::size_t count, const std::string& what) { return std::to_string(count) + " " + what; }
 
 }  // namespace
 
@@ -71,11 +67,12 @@ TriangulatedSoup triangulate(PolygonSoup&& given) {
         }
     }
     if (without > 0)
-        result.notes.push_back(counted(without, "faces have fewer than three distinct corners and give no triangle"));
-    if (crossing > 0) result.notes.push_back(counted(crossing, "faces cross or touch themselves; their triangles may overlap"));
+        result.notes.push_back(std::to_string(without) + " faces have fewer than three distinct corners and give no triangle");
+    if (crossing > 0)
+        result.notes.push_back(std::to_string(crossing) + " faces cross or touch themselves; their triangles may overlap");
     if (gave_up > 0)
-        result.notes.push_back(
-            counted(gave_up, "faces are too large and intricate to be cut cleanly; their triangles may overlap"));
+        result.notes.push_back(std::to_string(gave_up) +
+                               " faces are too large and intricate to be cut cleanly; their triangles may overlap");
     result.extras = follow(std::move(polygons.extras), result.triangle_polygon, triangle_corner);
     return result;
 }

@@ -14,8 +14,7 @@ TriangleSoup wrap_soup(const TriangleSoup& soup, double alpha, double offset) {
     Mesh mesh;
     CGAL::alpha_wrap_3(points, triangles, alpha, offset, mesh);
     mesh.collect_garbage();
-    if (mesh.number_of_faces() == 0)
-        throw Error(ErrorKind::failure, "mesh", "could not be wrapped", "use another alpha and offset");
+    if (mesh.number_of_faces() == 0) fail_work("mesh", "could not be wrapped", "use another alpha and offset");
     return to_soup(mesh);
 }
 

@@ -1,5 +1,6 @@
 #include "formats.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/json_build.h"
 #include "ostraka/io/glb.h"
 #include "text_writer.h"
 
@@ -10,8 +11,7 @@
 namespace ostraka::io {
 
 Notes write_glb(const Path& file, const TriangleSoup& soup, const MeshExtras& extras, const WriteOptions& options) {
-    if (soup.triangles.empty())
-        throw Error(ErrorKind::failure, file.string(), "glTF does not hold a mesh without triangles", "write PLY, OBJ or OFF");
+    if (soup.triangles.empty()) fail_work(file.string(), "glTF does not hold a mesh without triangles", "write PLY, OBJ or OFF");
     const bool corner_texture = extras.vertex_texture.empty() && !extras.corner_texture.empty();
     const bool textured = corner_texture || !extras.vertex_texture.empty();
     const bool face_coloured = extras.vertex_colours.empty() && !extras.face_colours.empty();
@@ -33,8 +33,8 @@ Notes write_glb(const Path& file, const TriangleSoup& soup, const MeshExtras& ex
         for (std::size_t k = 0; k < 3; ++k) {
             const double x = soup.points[vertex_of(i)][k];
             if (std::fabs(x) > static_cast<double>(std::numeric_limits<float>::max()))
-                throw Error(ErrorKind::failure, file.string(), "a coordinate does not fit the single precision of glTF",
-                            "write PLY, OBJ or OFF, or rescale the mesh");
+                fail_work(file.string(), "a coordinate does not fit the single precision of glTF",
+                          "write PLY, OBJ or OFF, or rescale the mesh");
             const auto narrow = static_cast<float>(x);
             rounded = rounded || static_cast<double>(narrow) != x;
             low[k] = std::min(low[k], narrow);
@@ -46,53 +46,31 @@ Notes write_glb(const Path& file, const TriangleSoup& soup, const MeshExtras& ex
     glb::Builder builder;
     auto& allocator = builder.allocator();
     Json& root = builder.document();
-    const auto in_list = [&](JsonValue value) {
-        JsonValue list(rapidjson::kArrayType);
-        list.PushBack(value, allocator);
-        return list;
-    };
-    if (!options.comment.empty()) {
-        JsonValue extras_of_asset(rapidjson::kObjectType);
-        add_member(extras_of_asset, "provenance", one_line(options.comment), allocator);
-        add_member(root["asset"], "extras", std::move(extras_of_asset), allocator);
-    }
-    JsonValue attributes(rapidjson::kObjectType), primitive(rapidjson::kObjectType), mesh(rapidjson::kObjectType),
-        node(rapidjson::kObjectType), scene(rapidjson::kObjectType), surface(rapidjson::kObjectType),
-        material(rapidjson::kObjectType), minimum(rapidjson::kArrayType), maximum(rapidjson::kArrayType);
-    for (const float x : low) minimum.PushBack(static_cast<double>(x), allocator);
-    for (const float x : high) maximum.PushBack(static_cast<double>(x), allocator);
-    add_member(
-        attributes, "POSITION",
-        JsonValue(builder.announce_accessor(12 * count, glb::array_buffer, glb::single, count, "VEC3", &minimum, &maximum)),
-        allocator);
+    const auto in_list = [&](JsonValue value) { return json_list_of(std::move(value), allocator); };
+    if (!options.comment.empty())
+        add_members(root["asset"], allocator, "extras", json_object(allocator, "provenance", one_line(options.comment)));
+    JsonValue minimum = json_value(low, allocator), maximum = json_value(high, allocator);
+    JsonValue attributes =
+        json_object(allocator, "POSITION",
+                    builder.announce_accessor(12 * count, glb::array_buffer, glb::single, count, "VEC3", &minimum, &maximum));
     if (coloured) {
         const int colours = builder.announce_accessor(8 * count, glb::array_buffer, glb::short_word, count, "VEC4");
         builder.mark_normalised(colours);
-        add_member(attributes, "COLOR_0", JsonValue(colours), allocator);
+        add_members(attributes, allocator, "COLOR_0", colours);
     }
     if (textured)
-        add_member(attributes, "TEXCOORD_0",
-                   JsonValue(builder.announce_accessor(8 * count, glb::array_buffer, glb::single, count, "VEC2")), allocator);
-    add_member(primitive, "attributes", std::move(attributes), allocator);
-    add_member(
-        primitive, "indices",
-        JsonValue(builder.announce_accessor(4 * corner_count, glb::element_array_buffer, glb::word, corner_count, "SCALAR")),
-        allocator);
-    add_member(primitive, "mode", JsonValue(glb::triangles_mode), allocator);
-    add_member(primitive, "material", JsonValue(0), allocator);
-    add_member(mesh, "primitives", in_list(std::move(primitive)), allocator);
-    add_member(node, "mesh", JsonValue(0), allocator);
-    add_member(scene, "nodes", in_list(JsonValue(0)), allocator);
-    add_member(surface, "metallicFactor", JsonValue(0), allocator);
-    add_member(surface, "roughnessFactor", JsonValue(1), allocator);
-    add_member(material, "pbrMetallicRoughness", std::move(surface), allocator);
-    if (translucent) add_member(material, "alphaMode", "BLEND", allocator);
-    add_member(material, "doubleSided", JsonValue(true), allocator);
-    add_member(root, "scene", JsonValue(0), allocator);
-    add_member(root, "scenes", in_list(std::move(scene)), allocator);
-    add_member(root, "nodes", in_list(std::move(node)), allocator);
-    add_member(root, "meshes", in_list(std::move(mesh)), allocator);
-    add_member(root, "materials", in_list(std::move(material)), allocator);
+        add_members(attributes, allocator, "TEXCOORD_0",
+                    builder.announce_accessor(8 * count, glb::array_buffer, glb::single, count, "VEC2"));
+    const int indices = builder.announce_accessor(4 * corner_count, glb::element_array_buffer, glb::word, corner_count, "SCALAR");
+    JsonValue primitive = json_object(allocator, "attributes", std::move(attributes), "indices", indices, "mode",
+                                      glb::triangles_mode, "material", 0);
+    JsonValue mesh = json_object(allocator, "primitives", in_list(std::move(primitive)));
+    JsonValue material =
+        json_object(allocator, "pbrMetallicRoughness", json_object(allocator, "metallicFactor", 0, "roughnessFactor", 1));
+    add_given(material, allocator, "alphaMode", std::string(translucent ? "BLEND" : ""), "doubleSided", true);
+    add_members(root, allocator, "scene", 0, "scenes", in_list(json_object(allocator, "nodes", std::array{0})), "nodes",
+                in_list(json_object(allocator, "mesh", 0)), "meshes", in_list(std::move(mesh)), "materials",
+                in_list(std::move(material)));
     const std::string head = builder.head(file.string(), too_large);
 
     TextWriter writer(file);

@@ -28,14 +28,12 @@ void check_soup(const Path& file, const TriangleSoup& soup) {
     for (std::size_t v = 0; v < soup.points.size(); ++v)
         for (const double x : soup.points[v])
             if (!std::isfinite(x))
-                throw Error(ErrorKind::failure, file.string(),
-                            "vertex " + std::to_string(v) + " has a coordinate that is not finite");
+                fail_work(file.string(), "vertex " + std::to_string(v) + " has a coordinate that is not finite");
     for (std::size_t t = 0; t < soup.triangles.size(); ++t)
         for (const Index v : soup.triangles[t])
             if (v >= soup.points.size())
-                throw Error(ErrorKind::failure, file.string(),
-                            "triangle " + std::to_string(t) + " names vertex " + std::to_string(v) + " of " +
-                                std::to_string(soup.points.size()));
+                fail_work(file.string(), "triangle " + std::to_string(t) + " names vertex " + std::to_string(v) + " of " +
+                                             std::to_string(soup.points.size()));
 }
 
 }  // namespace

@@ -46,13 +46,13 @@ bool order_survives(const TriangleSoup& soup) {
 
 Notes write_stl(const Path& file, const TriangleSoup& soup, const MeshExtras& extras, const WriteOptions& options) {
     if (soup.triangles.size() > std::numeric_limits<std::uint32_t>::max())
-        throw Error(ErrorKind::failure, file.string(), "STL does not hold so many triangles", "write PLY");
+        fail_work(file.string(), "STL does not hold so many triangles", "write PLY");
     bool rounded = false;
     for (const auto& point : soup.points)
         for (const double x : point) {
             if (std::fabs(x) > static_cast<double>(std::numeric_limits<float>::max()))
-                throw Error(ErrorKind::failure, file.string(), "a coordinate does not fit the single precision of STL",
-                            "write PLY, OBJ or OFF, or rescale the mesh");
+                fail_work(file.string(), "a coordinate does not fit the single precision of STL",
+                          "write PLY, OBJ or OFF, or rescale the mesh");
             rounded = rounded || static_cast<double>(static_cast<float>(x)) != x;
         }
     TextWriter writer(file);

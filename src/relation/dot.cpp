@@ -23,16 +23,10 @@ std::string quoted(const std::string& text) {
     return out + '"';
 }
 
-std::string short_number(double value) {
-    char buffer[32];
-    std::snprintf(buffer, sizeof buffer, "%.4g", value);
-    return buffer;
-}
-
 std::string label_of(const Relationship& relationship) {
     std::string label = relationship.type;
     if (!relationship.parameters.attribute.empty()) label += ": " + relationship.parameters.attribute;
-    if (relationship.is_constraint) label += " (weight " + short_number(relationship.weight) + ")";
+    if (relationship.is_constraint) label += " (weight " + digits(relationship.weight, 4) + ")";
     return label;
 }
 

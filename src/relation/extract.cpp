@@ -98,13 +98,7 @@ private:
     [[nodiscard]] bool wanted(GeometricRelation kind) const { return is_wanted(kind, types_); }
 
     bool consider(GeometricRelation kind, std::vector<int> members, const std::string& attribute = {}) {
-        const RelationType& type = relation_type(kind);
-        Relationship relationship;
-        relationship.id = first_id_ + static_cast<int>(found_.size());
-        relationship.type = type.name;
-        relationship.directed = type.directed;
-        relationship.annotations = std::move(members);
-        relationship.origin = "extracted";
+        Relationship relationship = extracted_relationship(kind, first_id_ + static_cast<int>(found_.size()), std::move(members));
         relationship.parameters.attribute = attribute;
         const RelationCheck check = meter_.measure(relationship);
         if (check.verdict != Verdict::holds) return false;

@@ -4,6 +4,8 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/ids.h"
 #include "ostraka/core/nearest_name.h"
+#include "ostraka/core/text.h"
+#include "ostraka/core/words.h"
 
 #include <cmath>
 #include <limits>
@@ -75,12 +77,6 @@ const RelationType& relation_type(GeometricRelation kind) { return relation_type
 
 namespace {
 
-std::string lower(std::string text) {
-    for (char& c : text)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return text;
-}
-
 bool finite(const std::array<double, 3>& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
 
 void check_direction(const std::array<double, 3>& v, const char* what, const std::string& place) {
@@ -103,8 +99,7 @@ void check_members(const Relationship& relationship, const AnnotationSet& set, c
     const std::size_t count = relationship.annotations.size();
     if (count < type->minimum || (type->maximum > 0 && count > type->maximum)) {
         const std::string minimum = std::to_string(type->minimum), maximum = std::to_string(type->maximum);
-        fail_input(place,
-                   "'" + type->name + "' is said of " + std::to_string(count) + (count == 1 ? " annotation" : " annotations"),
+        fail_input(place, "'" + type->name + "' is said of " + counted(count, "annotation"),
                    "name " + (type->maximum == 0               ? minimum + " or more"
                               : type->minimum == type->maximum ? minimum
                                                                : minimum + " to " + maximum));
@@ -127,14 +122,14 @@ Statement statement(const Relationship& relationship) {
 }  // namespace
 
 const RelationType* find_relation_type(const std::string& name) {
-    const std::string wanted = lower(name);
+    const std::string wanted = lower_case(name);
     for (const auto& type : relation_types())
         if (type.name == wanted) return &type;
     return nullptr;
 }
 
 std::string nearest_relation_type(const std::string& name) {
-    const std::string wanted = lower(name).substr(0, 100);
+    const std::string wanted = lower_case(name).substr(0, 100);
     const RelationType* best = nullptr;
     std::size_t minimum = std::numeric_limits<std::size_t>::max();
     for (const auto& type : relation_types()) {
@@ -142,6 +137,16 @@ std::string nearest_relation_type(const std::string& name) {
         if (distance < minimum) minimum = distance, best = &type;
     }
     return best->name;
+}
+
+Relationship extracted_relationship(GeometricRelation kind, int id, std::vector<int> annotations) {
+    Relationship relationship;
+    relationship.id = id;
+    relationship.type = relation_type(kind).name;
+    relationship.directed = relation_type(kind).directed;
+    relationship.annotations = std::move(annotations);
+    relationship.origin = "extracted";
+    return relationship;
 }
 
 int free_id(const RelationGraph& graph) { return next_free_id(graph.relationships); }

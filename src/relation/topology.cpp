@@ -196,7 +196,7 @@ ContainmentOrder order_of(const Mesh& mesh, const AnnotationSet& set, Containmen
     std::vector<double> area(n, 0);
     for (std::size_t a = 0; a < n; ++a) {
         if (!containments.empty[a]) contains.clear(a, a);
-        for (const Index face : set.annotations[a].faces) area[a] += face_area(mesh, Face(face));
+        area[a] = area_of(mesh, set.annotations[a].faces);
     }
 
     BitTable farther(n, n);
@@ -250,25 +250,18 @@ Topology topology(const Mesh& mesh, const AnnotationSet& set) {
 std::vector<Relationship> relationships_of(const Topology& topology, const AnnotationSet& set, int first_id) {
     std::vector<Relationship> list;
     const auto id_of = [&](std::size_t a) { return set.annotations[a].id; };
-    const auto add = [&](const char* type, bool directed, std::vector<int> members) -> Relationship& {
-        Relationship relationship;
-        relationship.id = first_id + static_cast<int>(list.size());
-        relationship.type = type;
-        relationship.directed = directed;
-        relationship.annotations = std::move(members);
-        relationship.origin = "extracted";
-        list.push_back(std::move(relationship));
-        return list.back();
+    const auto add = [&](GeometricRelation kind, std::vector<int> members) -> Relationship& {
+        return list.emplace_back(extracted_relationship(kind, first_id + static_cast<int>(list.size()), std::move(members)));
     };
     for (std::size_t a = 0; a < topology.order.direct.size(); ++a)
-        for (const std::size_t b : topology.order.direct[a]) add("containment", true, {id_of(b), id_of(a)});
+        for (const std::size_t b : topology.order.direct[a]) add(GeometricRelation::containment, {id_of(b), id_of(a)});
     for (const auto& group : topology.order.equal) {
         std::vector<int> members;
         for (const std::size_t a : group) members.push_back(id_of(a));
-        add("equal selections", false, std::move(members));
+        add(GeometricRelation::equal_selections, std::move(members));
     }
     for (const auto& pair : topology.adjacent)
-        add("adjacency", false, {id_of(pair.a), id_of(pair.b)})
+        add(GeometricRelation::adjacency, {id_of(pair.a), id_of(pair.b)})
             .parameters.deviations.push_back({"shared length", pair.length, {}, set.unit});
     return list;
 }

@@ -78,13 +78,11 @@ ScreenCamera read_camera(const JsonValue& value, const Mesh& mesh, const std::ar
     if (plan.pane.left >= width || plan.pane.top >= height || plan.pane.left + plan.pane.width <= 0 ||
         plan.pane.top + plan.pane.height <= 0)
         fail_input(where, "the pane lies outside the picture", "give [left, top, width, height] in the picture's pixels");
-    Vector up(default_up[0], default_up[1], default_up[2]);
-    if (const JsonValue* own = find_member(value, "up"))
-        up = Vector((*own)[0].GetDouble(), (*own)[1].GetDouble(), (*own)[2].GetDouble());
-    up = unit_vector(up);
+    const JsonValue* own = find_member(value, "up");
+    const auto [x, y, z] = own == nullptr ? default_up : triple_of(*own);
+    const Vector up = unit_vector({x, y, z});
     if (up == CGAL::NULL_VECTOR) fail_input(where, "\"up\" has no length", "give a vector that is not zero");
-    const JsonValue* projection = find_member(value, "projection");
-    plan.perspective = projection != nullptr && std::string(projection->GetString()) == "perspective";
+    plan.perspective = text_in(value, "projection") == "perspective";
     const bool has_eye = find_member(value, "eye") != nullptr;
     for (const char* name : {"target", "angle", "pixelsPerUnit"})
         if (!has_eye && find_member(value, name) != nullptr)
@@ -99,7 +97,7 @@ ScreenCamera read_camera(const JsonValue& value, const Mesh& mesh, const std::ar
     }
     const JsonValue* view = find_member(value, "view");
     try {
-        plan.view = parse_view(view == nullptr ? "30,20" : view->GetString());
+        plan.view = parse_view(view == nullptr ? "30,20" : text_of(*view));
     } catch (const Error& error) {
         fail_input(where, error.problem(), error.remedy());
     }

@@ -2,6 +2,7 @@
 
 #include "ostraka/annotation/outline.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/text.h"
 #include "ostraka/fields/curvature.h"
 #include "ostraka/fields/statistics.h"
 #include "ostraka/measure/descriptors.h"
@@ -11,7 +12,6 @@
 #include <limits>
 #include <queue>
 #include <set>
-#include <sstream>
 
 namespace ostraka {
 
@@ -33,12 +33,7 @@ double robust_deviation(const Mesh& mesh, const std::vector<double>& values) {
     return 1.4826 * quantile(sizes, areas, 0.5, "creases");
 }
 
-std::string text(double value) {
-    std::ostringstream stream;
-    stream.precision(3);
-    stream << value;
-    return stream.str();
-}
+std::string text(double value) { return digits(value, 3); }
 
 void check(const Mesh& mesh, const CreaseOptions& options) {
     check_options(options, "creases");
@@ -256,8 +251,6 @@ double rival(const Mesh& mesh, const std::vector<double>& strength, Index top, d
 
 }  // namespace
 
-std::vector<double> crease_response(const Mesh& mesh, const CreaseOptions& options) { return respond(mesh, options).values; }
-
 std::vector<Crease> find_creases(const Mesh& mesh, const CreaseOptions& options) {
     const Response response = respond(mesh, options);
     if (mesh.number_of_faces() == 0) return {};
@@ -292,9 +285,7 @@ std::vector<Crease> find_creases(const Mesh& mesh, const CreaseOptions& options)
             crease.length = ground.length_of(crease.line);
             if (crease.faces.empty() || !(crease.length >= options.shortest * diagonal)) continue;
             crease.closed = crease.line.front() == crease.line.back();
-            double area = 0;
-            for (const Index f : crease.faces) area += face_area(mesh, Face(f));
-            crease.width = area / crease.length;
+            crease.width = area_of(mesh, crease.faces) / crease.length;
             for (const Index v : crease.line) {
                 crease.mean_curvature += response.curvature[v] / double(crease.line.size());
                 crease.strength += strength[v] / double(crease.line.size());

@@ -29,15 +29,15 @@ bool visible_only(const JsonValue& value) {
 }
 
 PathMetric metric_of(const JsonValue& value) {
-    const JsonValue* metric = find_member(value, "metric");
-    return path_metric(metric == nullptr ? "euclidean" : metric->GetString());
+    const std::string metric = text_in(value, "metric");
+    return path_metric(metric.empty() ? "euclidean" : metric);
 }
 
 }  // namespace
 
 std::pair<std::string, const JsonValue*> kind_of(const JsonValue& expression) {
     for (const auto& member : expression.GetObject()) {
-        const std::string name(member.name.GetString(), member.name.GetStringLength());
+        const std::string name = text_of(member.name);
         if (name != "frame") return {name, &member.value};
     }
     return {"", nullptr};
@@ -55,7 +55,7 @@ std::pair<std::string, const JsonValue*> ExpressionEvaluator::only_kind(const Js
                                                                         const std::string& at) const {
     const auto found = kind_of(expression);
     for (const auto& member : expression.GetObject()) {
-        const std::string name(member.name.GetString(), member.name.GetStringLength());
+        const std::string name = text_of(member.name);
         if (name != "frame" && name != found.first)
             fail(at, "selects by two kinds, " + found.first + " and " + name, "join them by union, intersection or difference");
     }
@@ -63,12 +63,12 @@ std::pair<std::string, const JsonValue*> ExpressionEvaluator::only_kind(const Js
 }
 
 PlaceFrame ExpressionEvaluator::frame_of(const JsonValue& object, PlaceFrame around) {
-    const JsonValue* frame = find_member(object, "frame");
-    return frame == nullptr ? around : PlaceFrame{std::string(frame->GetString()) == "box"};
+    const std::string frame = text_in(object, "frame");
+    return frame.empty() ? around : PlaceFrame{frame == "box"};
 }
 
 Point ExpressionEvaluator::point(const JsonValue& list, PlaceFrame frame, const std::string& at) const {
-    const double x = list[0].GetDouble(), y = list[1].GetDouble(), z = list[2].GetDouble();
+    const auto [x, y, z] = triple_of(list);
     const Point place = frame.box ? Point(bounds_.xmin() + x * (bounds_.xmax() - bounds_.xmin()),
                                           bounds_.ymin() + y * (bounds_.ymax() - bounds_.ymin()),
                                           bounds_.zmin() + z * (bounds_.zmax() - bounds_.zmin()))
@@ -122,8 +122,8 @@ std::function<bool(const Point&)> ExpressionEvaluator::volume(const std::string&
                                        : 1;
         return sphere_volume(point(value["centre"], frame, at + "/sphere/centre"), scale * value["radius"].GetDouble());
     }
-    const JsonValue& n = value["normal"];
-    const Vector normal(n[0].GetDouble(), n[1].GetDouble(), n[2].GetDouble());
+    const auto [x, y, z] = triple_of(value["normal"]);
+    const Vector normal(x, y, z);
     if (unit_vector(normal) == CGAL::NULL_VECTOR)
         fail(at + "/halfspace/normal", "the normal has no length", "give a vector that is not zero");
     return halfspace_volume(point(value["point"], frame, at + "/halfspace/point"), normal);
@@ -251,8 +251,7 @@ std::vector<std::vector<Index>> ExpressionEvaluator::polylines(const JsonValue& 
     const PlaceFrame frame = frame_of(expression, around);
     const auto [kind, value] = only_kind(expression, at);
     if (kind == "path") {
-        const JsonValue* closed = find_member(*value, "closed");
-        return {path_through(mesh_, picks((*value)["points"], frame, at + "/path/points"), closed != nullptr && closed->GetBool(),
+        return {path_through(mesh_, picks((*value)["points"], frame, at + "/path/points"), flag_in(*value, "closed"),
                              metric_of(*value), where_ + ", at " + at + "/path")};
     }
     if (kind == "vertices") return {picks(*value, frame, at + "/vertices")};

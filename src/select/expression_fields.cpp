@@ -3,6 +3,7 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/inside.h"
+#include "ostraka/core/text.h"
 #include "ostraka/fields/curvature.h"
 #include "ostraka/fields/thickness.h"
 #include "ostraka/render/values.h"
@@ -10,7 +11,6 @@
 #include "ostraka/select/selections.h"
 
 #include <algorithm>
-#include <sstream>
 
 namespace ostraka {
 
@@ -18,12 +18,7 @@ namespace {
 
 using std::to_string;
 
-std::string key_of(const char* name, double a, double b = 0) {
-    std::ostringstream text;
-    text.precision(17);
-    text << name << ' ' << a << ' ' << b;
-    return text.str();
-}
+std::string key_of(const char* name, double a, double b = 0) { return std::string(name) + ' ' + digits(a) + ' ' + digits(b); }
 
 }  // namespace
 
@@ -41,8 +36,7 @@ std::vector<Index> ExpressionEvaluator::surface_picks(const JsonValue& list, Pla
 
 std::vector<Index> ExpressionEvaluator::brush_centres(const JsonValue& value, PlaceFrame frame, const std::string& at) const {
     const std::vector<Index> centres = surface_picks(value["points"], frame, at + "/points");
-    const JsonValue* stroke = find_member(value, "stroke");
-    if (stroke == nullptr || !stroke->GetBool() || centres.size() < 2) return centres;
+    if (!flag_in(value, "stroke") || centres.size() < 2) return centres;
     return path_through(mesh_, centres, false, PathMetric::combined, where_ + ", at " + at);
 }
 
@@ -57,22 +51,23 @@ ScalarMap ExpressionEvaluator::scalar(const JsonValue& value, PlaceFrame frame, 
     const std::string here = at + '/' + chosen;
     const JsonValue& of = value[chosen.c_str()];
     if (mesh_.number_of_faces() == 0) fail(at, "the mesh has no faces", "give another mesh");
-    if (chosen == "coordinate")
-        return coordinate_map(mesh_, Vector(of[0].GetDouble(), of[1].GetDouble(), of[2].GetDouble()), frame.box,
-                              where_ + ", at " + here);
+    if (chosen == "coordinate") {
+        const auto [x, y, z] = triple_of(of);
+        return coordinate_map(mesh_, Vector(x, y, z), frame.box, where_ + ", at " + here);
+    }
     const double unit = length(1, frame);
     ScalarMap map;
     if (chosen == "distance") {
         const double limit = number_or(value, "below", std::numeric_limits<double>::infinity());
-        const bool quantiles = find_member(value, "quantiles") != nullptr && value["quantiles"].GetBool();
+        const bool quantiles = flag_in(value, "quantiles");
         map.values = distances_within(mesh_, surface_picks(of, frame, here),
                                       quantiles ? std::numeric_limits<double>::infinity() : unit * std::max(0.0, limit));
         for (double& x : map.values) x /= unit;
         return map;
     }
     if (chosen == "map") {
-        const Path file = file_inside(std::string(of.GetString(), of.GetStringLength()), surroundings_.folder, where_, here,
-                                      "the recipe's folder", "move the map beside the recipe");
+        const Path file =
+            file_inside(text_of(of), surroundings_.folder, where_, here, "the recipe's folder", "move the map beside the recipe");
         map.values = read_values(file);
         const JsonValue* on = find_member(value, "on");
         const bool vertices = map.values.size() == mesh_.number_of_vertices(),
@@ -122,12 +117,9 @@ ScalarRange ExpressionEvaluator::interval(const JsonValue& value, const ScalarMa
     ScalarRange result;
     if (find_member(value, "above") == nullptr && find_member(value, "below") == nullptr)
         fail(at, "a threshold with neither above nor below", "give one of them, or both");
-    const JsonValue* quantiles = find_member(value, "quantiles");
     const auto bound = [&](const char* name, double otherwise) {
-        const JsonValue* given = find_member(value, name);
-        if (given == nullptr) return otherwise;
-        const double x = given->GetDouble();
-        if (quantiles == nullptr || !quantiles->GetBool()) return x;
+        const double x = number_or(value, name, otherwise);
+        if (find_member(value, name) == nullptr || !flag_in(value, "quantiles")) return x;
         if (x < 0 || x > 1) fail(at + '/' + name, "a quantile of " + to_string(x), "give a share of the area from 0 to 1");
         return quantile_of(mesh_, map, x, where_ + ", at " + at);
     };

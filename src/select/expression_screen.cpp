@@ -1,8 +1,9 @@
 // Expressions and picks that look through a camera.
 #include "expression.h"
 
+#include "ostraka/core/text.h"
+
 #include <algorithm>
-#include <sstream>
 
 namespace ostraka {
 
@@ -10,21 +11,13 @@ namespace {
 
 Pixel pixel_of(const JsonValue& list) { return {list[0].GetDouble(), list[1].GetDouble()}; }
 
-std::string text(const Pixel& pixel) {
-    std::ostringstream out;
-    out << "(" << pixel[0] << ", " << pixel[1] << ")";
-    return out.str();
-}
+std::string text(const Pixel& pixel) { return "(" + digits(pixel[0], 6) + ", " + digits(pixel[1], 6) + ")"; }
 
 bool within(const Pixel& pixel, const ScreenCamera& camera) {
     return 0 <= pixel[0] && pixel[0] <= camera.width && 0 <= pixel[1] && pixel[1] <= camera.height;
 }
 
-std::string size_of(const ScreenCamera& camera) {
-    std::ostringstream out;
-    out << camera.width << " x " << camera.height;
-    return out.str();
-}
+std::string size_of(const ScreenCamera& camera) { return digits(camera.width, 6) + " x " + digits(camera.height, 6); }
 
 }  // namespace
 
@@ -43,7 +36,7 @@ ScreenCamera ExpressionEvaluator::camera(const JsonValue& owner, PlaceFrame fram
     };
     const JsonValue& value = owner["camera"];
     if (!value.IsString()) return read(value, frame, at + "/camera");
-    const std::string name(value.GetString(), value.GetStringLength());
+    const std::string name = text_of(value);
     const JsonValue* named = surroundings_.cameras == nullptr ? nullptr : find_member(*surroundings_.cameras, name);
     if (named == nullptr)
         fail(at + "/camera", "no camera has the name '" + name + "'", "define it under \"cameras\" of the recipe");

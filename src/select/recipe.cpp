@@ -17,8 +17,6 @@ namespace {
 
 using std::to_string;
 
-std::array<double, 3> vector_of(const JsonValue& list) { return {list[0].GetDouble(), list[1].GetDouble(), list[2].GetDouble()}; }
-
 AnnotationType type_of(const std::string& name) {
     return name == "point" ? AnnotationType::point : name == "line" ? AnnotationType::line : AnnotationType::region;
 }
@@ -37,7 +35,7 @@ public:
     AnnotationSet follow(const JsonValue& recipe) {
         if (const JsonValue* name = find_member(recipe, "class")) set_.object_class = name->GetString();
         if (const JsonValue* unit = find_member(recipe, "unit")) set_.unit = unit->GetString();
-        if (const JsonValue* up = find_member(recipe, "up")) set_.up = vector_of(*up);
+        if (const JsonValue* up = find_member(recipe, "up")) set_.up = triple_of(*up);
         const PlaceFrame frame = ExpressionEvaluator::frame_of(recipe, PlaceFrame{});
         evaluator_.look_from({find_member(recipe, "cameras"), frame, set_.up.value_or(std::array<double, 3>{0, 0, 1}), folder_});
         const JsonValue& steps = recipe["annotations"];
@@ -56,9 +54,8 @@ private:
 
     void step(const JsonValue& step, PlaceFrame around, const std::string& at) {
         const PlaceFrame frame = ExpressionEvaluator::frame_of(step, around);
-        const JsonValue* given = find_member(step, "action");
-        const std::string action = given == nullptr ? "make" : given->GetString();
-        if (action == "make") make(step, frame, at);
+        const std::string action = text_in(step, "action");
+        if (action.empty() || action == "make") make(step, frame, at);
         else edit(action, step, frame, at);
     }
 
@@ -82,8 +79,7 @@ private:
     }
 
     void set_looks(Annotation& annotation, const JsonValue& step) const {
-        if (const JsonValue* tag = find_member(step, "tag"))
-            annotation.tag = std::string(tag->GetString(), tag->GetStringLength());
+        if (const JsonValue* tag = find_member(step, "tag")) annotation.tag = text_of(*tag);
         if (const JsonValue* colour = find_member(step, "colour"))
             for (rapidjson::SizeType k = 0; k < 3; ++k) annotation.colour[k] = (*colour)[k].GetInt();
     }
@@ -228,7 +224,7 @@ private:
                 if (direction == nullptr)
                     fail(here, "a measure with neither points nor a direction",
                          "give its pins, or the direction of a bounding measure");
-                for (const Index pin : extremes(mesh_, annotation, vector_of(*direction)))
+                for (const Index pin : extremes(mesh_, annotation, triple_of(*direction)))
                     pins.PushBack(pin, list.GetAllocator());
             }
             measure->value.RemoveMember("points");
@@ -266,8 +262,8 @@ void collect_maps(const JsonValue& value, const Path& folder, std::vector<Path>&
     for (const auto& member : value.GetObject()) {
         if (std::string(member.name.GetString()) == "threshold" && member.value.IsObject())
             if (const JsonValue* map = find_member(member.value, "map"); map != nullptr && map->IsString()) {
-                const Path file = file_inside(std::string(map->GetString(), map->GetStringLength()), folder, "", "threshold/map",
-                                              "the recipe's folder", "move the map beside the recipe");
+                const Path file = file_inside(text_of(*map), folder, "", "threshold/map", "the recipe's folder",
+                                              "move the map beside the recipe");
                 if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
             }
         collect_maps(member.value, folder, files);
@@ -283,10 +279,7 @@ std::vector<Path> files_named_by(const JsonValue& recipe, const Path& folder) {
 }
 
 AnnotationSet follow_recipe(const JsonValue& recipe, const Mesh& mesh, RecipeStart start, const std::string& where) {
-    if (const JsonValue* format = recipe.IsObject() ? find_member(recipe, "format") : nullptr;
-        format != nullptr && format->IsString() && std::string(format->GetString()) != "ostraka-recipe")
-        fail_input(where, std::string("at /format: the format is '") + format->GetString() + "'",
-                   "give a recipe ('ostraka-recipe')");
+    check_format(recipe, "ostraka-recipe", where, "give a recipe ('ostraka-recipe')");
     validate(recipe, "recipe", where);
     return RecipeRunner(mesh, std::move(start), where).follow(recipe);
 }

@@ -3,10 +3,10 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/core/text.h"
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 namespace ostraka {
 
@@ -94,10 +94,10 @@ ScreenArea screen_polygon(const std::vector<Pixel>& drawn, const std::string& wh
                           (before[0] - shared[0]) * (after[0] - shared[0]) + (before[1] - shared[1]) * (after[1] - shared[1]) > 0;
             if (!crossing) continue;
             const Pixel at = neighbours ? shared : meeting_place(a, b, c, d);
-            std::ostringstream text;
-            text << "the polygon crosses itself: the sides after points " << i << " and " << j << " meet at pixel (" << at[0]
-                 << ", " << at[1] << ")";
-            fail_input(where, text.str(), "draw a line around the part that does not cross itself");
+            fail_input(where,
+                       "the polygon crosses itself: the sides after points " + std::to_string(i) + " and " + std::to_string(j) +
+                           " meet at pixel (" + digits(at[0], 6) + ", " + digits(at[1], 6) + ")",
+                       "draw a line around the part that does not cross itself");
         }
     if (area == 0) fail_input(where, "the polygon has no area", "draw a line around the part");
     return [points](const Pixel& p) { return inside(points, p); };

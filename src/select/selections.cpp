@@ -1,12 +1,10 @@
 #include "ostraka/select/selections.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/flood.h"
 #include "ostraka/core/limits.h"
 #include "ostraka/geom/surface_search.h"
 
-#include "crossing.h"
-
-#include <algorithm>
 #include <limits>
 #include <sstream>
 
@@ -24,23 +22,12 @@ struct Flood {
 Flood flood(const Mesh& mesh, Index seed, const std::vector<bool>& wall) {
     Flood result;
     result.reached.assign(mesh.number_of_faces(), false);
-    result.reached[seed] = true;
-    std::vector<Index> front{seed};
-    while (!front.empty()) {
-        const Face face(front.back());
-        front.pop_back();
-        ++result.count;
-        for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(face))) {
-            if (!wall.empty() && wall[mesh.edge(h)]) {
-                ++result.walls;
-                continue;
-            }
-            const Face next = mesh.face(mesh.opposite(h));
-            if (next == Mesh::null_face() || result.reached[next]) continue;
-            result.reached[next] = true;
-            front.push_back(next);
-        }
-    }
+    const auto is_open = [&](Halfedge h) {
+        const bool closed = !wall.empty() && wall[mesh.edge(h)];
+        result.walls += closed ? 1 : 0;
+        return !closed;
+    };
+    result.count = flood_faces(mesh, Face(seed), result.reached, is_open).size();
     return result;
 }
 
@@ -61,7 +48,8 @@ std::vector<Index> distinct(const std::vector<Index>& picks, bool closed) {
     return result;
 }
 
-using Legs = std::vector<std::vector<Index>>;
+using Leg = std::vector<Index>;
+using Legs = std::vector<Leg>;
 
 /// Paths from pick to pick; with `avoid` a leg keeps off the vertices of earlier legs if it can.
 Legs trace(const Mesh& mesh, const std::vector<Index>& picks, bool closed, PathMetric metric, bool avoid,
@@ -96,6 +84,86 @@ std::vector<Index> joined(const Legs& legs) {
     std::vector<Index> path{legs.front().front()};
     for (const auto& leg : legs) path.insert(path.end(), leg.begin() + 1, leg.end());
     return path;
+}
+
+/// True if, going round vertex `at` from `to` in the mesh's sense of rotation, `x` comes before `from`.
+bool on_one_side(const Mesh& mesh, Index at, Index from, Index to, Index x) {
+    const Halfedge start = find_halfedge(mesh, Vertex(to), Vertex(at));
+    Halfedge h = start;
+    do {
+        h = mesh.opposite(mesh.next(h));
+        const Index around = mesh.source(h);
+        if (around == from) return false;
+        if (around == x) return true;
+    } while (h != start);
+    return false;
+}
+
+/// Where `b` changes the side of `a` for an odd number of times in all: the first such place.
+std::optional<Index> crossing_of(const Mesh& mesh, const Leg& a, const Leg& b) {
+    std::unordered_map<Index, std::size_t> place;
+    for (std::size_t i = 0; i < a.size(); ++i) place.emplace(a[i], i);
+    std::size_t changes = 0;
+    Index first = no_index;
+    for (std::size_t k = 0; k < b.size(); ++k) {
+        const auto met = place.find(b[k]);
+        if (met == place.end()) continue;
+        // The stretch that both legs share, along a in the direction of b.
+        const std::size_t begin = k, from = met->second;
+        std::size_t to = from;
+        int direction = 0;
+        while (k + 1 < b.size()) {
+            const auto next = place.find(b[k + 1]);
+            if (next == place.end()) break;
+            const int step = next->second == to + 1 ? 1 : next->second + 1 == to ? -1 : 0;
+            if (step == 0 || (direction != 0 && step != direction)) break;
+            direction = step;
+            to = next->second;
+            ++k;
+        }
+        if (direction == 0) direction = 1;
+        const auto inner = [&](std::size_t i) { return i > 0 && i + 1 < a.size(); };
+        if (begin == 0 || k + 1 == b.size() || !inner(from) || !inner(to)) continue;
+        const auto along = [&](std::size_t i, int by) { return a[by > 0 ? i + 1 : i - 1]; };
+        const bool before = on_one_side(mesh, b[begin], along(from, -direction), along(from, direction), b[begin - 1]);
+        const bool after = on_one_side(mesh, b[k], along(to, -direction), along(to, direction), b[k + 1]);
+        if (before == after) continue;
+        if (++changes == 1) first = b[begin];
+    }
+    if (changes % 2 == 0) return std::nullopt;
+    return first;
+}
+
+struct Crossing {
+    std::size_t one = 0, other = 0;  ///< legs
+    Index vertex = no_index;         ///< where they meet
+};
+
+/// The first pair of legs of which one ends up on the other side of the other: legs that only touch, or that run together for a
+/// while and part to the side they came from, do not cross, nor do legs that meet at the end of one of them. Each leg is a path
+/// of vertices that visits none twice. Linear in the length of all legs, but for pairs that share vertices.
+std::optional<Crossing> find_crossing(const Mesh& mesh, const Legs& legs) {
+    std::unordered_map<Index, std::vector<std::size_t>> legs_at;
+    std::set<std::pair<std::size_t, std::size_t>> meeting;
+    for (std::size_t i = 0; i < legs.size(); ++i)
+        for (const Index v : legs[i]) {
+            auto& here = legs_at[v];
+            for (const std::size_t j : here)
+                if (j != i) meeting.emplace(j, i);
+            here.push_back(i);
+        }
+    for (const auto& [one, other] : meeting)
+        if (const auto vertex = crossing_of(mesh, legs[one], legs[other])) return Crossing{one, other, *vertex};
+    return std::nullopt;
+}
+
+/// True if two legs share a vertex that is not where one ends and the next begins.
+bool touch(const Legs& legs) {
+    std::set<Index> seen;
+    for (const Leg& leg : legs)
+        for (std::size_t i = 0; i + 1 < leg.size(); ++i)
+            if (!seen.insert(leg[i]).second) return true;
+    return false;
 }
 
 /// The closed path of a lasso. Legs that meet are searched again so that they avoid one another.

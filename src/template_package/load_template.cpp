@@ -4,6 +4,8 @@
 #include "ostraka/core/inside.h"
 #include "ostraka/core/limits.h"
 #include "ostraka/core/npy.h"
+#include "ostraka/core/text.h"
+#include "ostraka/core/words.h"
 #include "ostraka/relation/rules.h"
 #include "ostraka/template_package/template.h"
 
@@ -16,10 +18,6 @@ namespace ostraka {
 namespace {
 
 using std::to_string;
-
-std::string counted(std::size_t count, const std::string& one, const std::string& many) {
-    return to_string(count) + " " + (count == 1 ? one : many);
-}
 
 class Loader {
 public:
@@ -71,11 +69,11 @@ private:
         if (part.role == "landmarks") return read_landmarks(part);
         if (part.role == "vocabulary") {
             result_.vocabulary = read_vocabulary(part.file);
-            return counted(result_.vocabulary->concepts.size(), "concept", "concepts");
+            return counted(result_.vocabulary->concepts.size(), "concept");
         }
         if (part.role == "rules") {
             result_.rules = read_class_rules(part.file);
-            return counted(result_.rules->rules.size(), "rule", "rules");
+            return counted(result_.rules->rules.size(), "rule");
         }
         (void)read_json(part.file);
         return "JSON";
@@ -92,9 +90,7 @@ private:
 
     std::string read_annotation_part(const PackagedFile& part) {
         if (!result_.mesh) return "not looked at: there is no mesh to hold them against";
-        ReadAnnotationsOptions reading;
-        reading.force_mesh = options_.force_mesh;
-        result_.annotations = read_annotations(part.file, result_.mesh->mesh, reading);
+        result_.annotations = read_annotations(part.file, result_.mesh->mesh, {options_.force_mesh});
         for (const auto& note : result_.annotations->notes) remark(part.name, note);
         for (const Annotation& annotation : result_.annotations->annotations)
             for (const Attribute& attribute : annotation.attributes) {
@@ -111,7 +107,7 @@ private:
                 if (!file_exists(part.file.parent_path() / array))
                     remark(part.name, "the array '" + array + "' of the attribute '" + attribute.name + "' is not there");
             }
-        return counted(result_.annotations->annotations.size(), "annotation", "annotations");
+        return counted(result_.annotations->annotations.size(), "annotation");
     }
 
     std::string read_graph_part(const PackagedFile& part) {
@@ -119,8 +115,8 @@ private:
         result_.graph = read_graph(part.file, *result_.annotations);
         const auto constraints = std::count_if(result_.graph->relationships.begin(), result_.graph->relationships.end(),
                                                [](const Relationship& relationship) { return relationship.is_constraint; });
-        return counted(result_.graph->relationships.size(), "relationship", "relationships") + ", " +
-               counted(static_cast<std::size_t>(constraints), "constraint", "constraints");
+        return counted(result_.graph->relationships.size(), "relationship") + ", " +
+               counted(static_cast<std::size_t>(constraints), "constraint");
     }
 
     std::string read_cage(const PackagedFile& part) {
@@ -142,8 +138,8 @@ private:
                 text += ", encloses the mesh";
             }
             if (!found.intersections.empty())
-                remark(part.name, "the cage intersects itself, at " + counted(found.intersections.size(), "pair", "pairs") +
-                                      " of its faces");
+                remark(part.name,
+                       "the cage intersects itself, at " + counted(found.intersections.size(), "pair") + " of its faces");
         }
         result_.cages.back() = std::move(file.mesh);
         return text;
@@ -207,13 +203,11 @@ private:
             return "not looked into";
         }
         if (!result_.mesh) return "not looked at: there is no mesh to hold them against";
-        ReadAnnotationsOptions reading;
-        reading.force_mesh = options_.force_mesh;
-        const AnnotationSet set = read_annotations(part.file, result_.mesh->mesh, reading);
+        const AnnotationSet set = read_annotations(part.file, result_.mesh->mesh, {options_.force_mesh});
         std::size_t points = 0;
         for (const Annotation& annotation : set.annotations) points += annotation.type == AnnotationType::point;
         if (points == 0) defect(part.name, "holds no annotation of points");
-        return counted(points, "landmark", "landmarks");
+        return counted(points, "landmark");
     }
 
     /// The template wins; both are named. Two units are a defect: measures would be taken for others.
@@ -240,13 +234,7 @@ private:
         if (file.up) set.up = file.up;
     }
     static std::string text_of(const std::array<double, 3>& v) {
-        std::string text = "(";
-        for (std::size_t k = 0; k < 3; ++k) {
-            char buffer[32];
-            std::snprintf(buffer, sizeof buffer, "%.6g", v[k]);
-            text += (k == 0 ? "" : ", ") + std::string(buffer);
-        }
-        return text + ")";
+        return "(" + joined(std::array{digits(v[0], 6), digits(v[1], 6), digits(v[2], 6)}) + ")";
     }
 
     void words() {

@@ -5,16 +5,12 @@
 #include "ostraka/template_package/template.h"
 
 #include <algorithm>
-#include <cmath>
-#include <map>
 
 namespace ostraka {
 
 namespace {
 
 using std::to_string;
-
-std::string text_of(const JsonValue& value) { return {value.GetString(), value.GetStringLength()}; }
 
 /// Where a name leads.
 Path locate(const std::string& name, const Path& folder, bool allow_outside, const std::string& where, const std::string& at) {
@@ -42,15 +38,13 @@ std::vector<const PackagedFile*> TemplateFile::of(const std::string& role) const
 
 TemplateFile template_from_json(const JsonValue& document, const Path& folder, const std::string& where,
                                 const TemplateOptions& options) {
-    if (const JsonValue* format = find_member(document, "format");
-        format != nullptr && format->IsString() && text_of(*format) != "ostraka-template")
-        fail_input(where, "at /format: the format is '" + text_of(*format) + "'", "give a template ('ostraka-template')");
+    check_format(document, "ostraka-template", where, "give a template ('ostraka-template')");
     validate(document, "template", where);
     TemplateFile result;
-    if (const JsonValue* name = find_member(document, "class")) result.object_class = text_of(*name);
-    if (const JsonValue* unit = find_member(document, "unit")) result.unit = text_of(*unit);
+    result.object_class = text_in(document, "class");
+    result.unit = text_in(document, "unit");
     if (const JsonValue* up = find_member(document, "up")) {
-        result.up = {(*up)[0].GetDouble(), (*up)[1].GetDouble(), (*up)[2].GetDouble()};
+        result.up = triple_of(*up);
         if (result.up == std::array<double, 3>{0, 0, 0})
             fail_input(where, "at /up: the upward direction is zero", "give a direction such as [0, 0, 1]");
     }
@@ -82,35 +76,25 @@ TemplateFile read_template(const Path& file, const TemplateOptions& options) {
 }
 
 Json template_to_json(const TemplateFile& file, const Provenance& provenance) {
-    Json document(rapidjson::kObjectType);
+    Json document = json_document("template");
     auto& allocator = document.GetAllocator();
-    add_members(document, allocator, "format", "ostraka-template", "version", 1);
-    if (!file.object_class.empty()) add_member(document, "class", file.object_class, allocator);
-    if (!file.unit.empty()) add_member(document, "unit", file.unit, allocator);
-    if (file.up) {
-        JsonValue up(rapidjson::kArrayType);
-        for (const double x : *file.up) up.PushBack(x, allocator);
-        add_member(document, "up", std::move(up), allocator);
-    }
+    add_given(document, allocator, "class", file.object_class, "unit", file.unit, "up", file.up);
     JsonValue checksums(rapidjson::kObjectType);
-    std::map<std::string, std::string> sums;
     for (const std::string& role : template_roles()) {
         const auto parts = file.of(role);
-        if (parts.empty()) continue;
-        if (parts.size() == 1) {
-            add_member(document, role, parts.front()->name, allocator);
-        } else {
-            JsonValue list(rapidjson::kArrayType);
-            for (const PackagedFile* part : parts) list.PushBack(json_string(part->name, allocator), allocator);
-            add_member(document, role, std::move(list), allocator);
-        }
+        if (parts.size() == 1) add_member(document, role, parts.front()->name, allocator);
+        else add_given(document, allocator, role, json_list(parts, allocator, [](const auto* part) { return part->name; }));
         for (const PackagedFile* part : parts)
-            if (!part->sha256.empty() && sums.emplace(part->name, part->sha256).second)
-                add_member(checksums, part->name, part->sha256, allocator);
+            if (find_member(checksums, part->name) == nullptr) add_given(checksums, allocator, part->name, part->sha256);
     }
-    if (!sums.empty()) add_member(document, "checksums", std::move(checksums), allocator);
-    add_member(document, "provenance", provenance.to_json(allocator), allocator);
+    add_given(document, allocator, "checksums", std::move(checksums));
+    add_members(document, allocator, "provenance", provenance.to_json(allocator));
     return document;
+}
+
+void TemplateOptions::describe(OptionList& visit) {
+    visit("allow-outside", allow_outside, "parts may stand outside the folder of the template", Anything{});
+    visit("force-mesh", force_mesh, "take annotations made for another mesh if their indices and edges fit", Anything{});
 }
 
 std::string part_name(const Path& folder, const Path& part) {

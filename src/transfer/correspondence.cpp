@@ -2,6 +2,7 @@
 #include "ostraka/core/dense.h"
 
 #include "ostraka/core/parallel.h"
+#include "ostraka/core/text.h"
 
 #include <Eigen/Geometry>
 
@@ -136,12 +137,6 @@ Moments moments(const Mesh& mesh) {
     return m;
 }
 
-std::string percent(double share) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g %%", 100 * share);
-    return text;
-}
-
 std::string known_ratio(double scale) {
     const struct {
         double ratio;
@@ -166,13 +161,9 @@ Agreement compare_alignment(const Mesh& source, const Mesh& target) {
         return result;
     }
     result.scale = target_size / source_size;
-    char text[256];
     if (result.scale < 0.9 || result.scale > 1 / 0.9) {
-        std::snprintf(
-            text, sizeof text,
-            "the meshes differ in size: the target is %.6g times as large as the source%s; bring them to one unit first",
-            result.scale, known_ratio(result.scale).c_str());
-        result.problem = text;
+        result.problem = "the meshes differ in size: the target is " + digits(result.scale, 6) + " times as large as the source" +
+                         known_ratio(result.scale) + "; bring them to one unit first";
         return result;
     }
     const Moments s = moments(source), t = moments(target);
@@ -190,25 +181,20 @@ Agreement compare_alignment(const Mesh& source, const Mesh& target) {
         result.rotation = std::max(result.rotation, std::acos(cosine) * 180 / CGAL_PI);
     }
     if (result.rotation > 5) {
-        std::snprintf(text, sizeof text,
-                      "the meshes are not aligned: their principal axes differ by %.3g degrees; register them first",
-                      result.rotation);
-        result.problem = text;
+        result.problem = "the meshes are not aligned: their principal axes differ by " + digits(result.rotation, 3) +
+                         " degrees; register them first";
     } else if (result.offset > 0.02) {
         const Eigen::Vector3d d = t.centre - s.centre;
-        std::snprintf(text, sizeof text,
-                      "the meshes are not aligned: the target's centre lies %s of the diagonal away (%.6g, %.6g, %.6g); move it "
-                      "there first",
-                      percent(result.offset).c_str(), d.x(), d.y(), d.z());
-        result.problem = text;
+        result.problem = "the meshes are not aligned: the target's centre lies " + digits(100 * result.offset, 3) +
+                         " % of the diagonal away (" + digits(d.x(), 6) + ", " + digits(d.y(), 6) + ", " + digits(d.z(), 6) +
+                         "); move it there first";
     } else if (std::min(std::abs(s.volume), std::abs(t.volume)) > 1e-3 && s.volume * t.volume < 0) {
         result.problem = "one of the meshes is inside out; run: ostraka mesh repair";
     } else {
         for (int i = 0; i < 3; ++i) {
             if (std::min(std::abs(s.skewness[i]), std::abs(t.skewness[i])) < 0.15 || s.skewness[i] * t.skewness[i] > 0) continue;
-            std::snprintf(text, sizeof text,
-                          "the meshes are not aligned: along %c one is turned round or mirrored; register them first", "xyz"[i]);
-            result.problem = text;
+            result.problem = std::string("the meshes are not aligned: along ") + "xyz"[i] +
+                             " one is turned round or mirrored; register them first";
             break;
         }
     }

@@ -3,11 +3,17 @@
 
 #include "ostraka/annotation/annotation.h"
 #include "path_tracer.h"
-#include "rounding.h"
 
 #include <vector>
 
 namespace ostraka {
+
+/// A face near an outline that several regions share, and which share of it lies inside one of them.
+struct SharedFace {
+    Index face;
+    std::size_t region;
+    double share;
+};
 
 class OutlineRounding {
 public:
@@ -19,9 +25,7 @@ public:
     /// edge length of the target.
     void round(std::size_t region, std::vector<bool>& selected, double edge, bool balance);
     /// Rounds what was put aside, for all regions in one move.
-    void round_shared_outlines(std::vector<std::vector<bool>>& selected) {
-        round_shared(target_, selected, std::move(put_aside_));
-    }
+    void round_shared_outlines(std::vector<std::vector<bool>>& selected);
 
 private:
     const Mesh& source_;

@@ -1,6 +1,7 @@
 #include "region_transfer.h"
 
 #include "ostraka/annotation/outline.h"
+#include "ostraka/core/flood.h"
 #include "scores.h"
 
 #include <algorithm>
@@ -12,8 +13,6 @@ namespace ostraka {
 
 std::vector<SourcePath> region_paths(const Mesh& mesh, const std::vector<Index>& faces) {
     std::vector<SourcePath> vertex_paths;
-    std::vector<bool> selected(mesh.number_of_faces(), false);
-    for (const Index f : faces) selected[f] = true;
     for (const Outline& outline : extract_outlines(mesh, faces)) {
         const std::size_t n = outline.size();
         // Edge i runs from vertex i to vertex i + 1; one on the border has no face on its right.
@@ -89,50 +88,32 @@ struct Patch {
     bool bounded = false;
 };
 std::vector<Patch> patches_of(const Mesh& mesh, const std::vector<Index>& faces) {
-    std::vector<std::uint8_t> state(mesh.number_of_faces(), 0);  // 1 selected, 2 visited
-    for (const Index f : faces) state[f] = 1;
+    const std::vector<bool> selected = face_flags(mesh, faces);
+    std::vector<bool> seen(selected.size(), false);
     std::vector<Patch> patches;
-    std::vector<Face> stack;
     for (const Index start : faces) {
-        if (state[start] != 1) continue;
-        patches.push_back({start, false});
-        state[start] = 2;
-        stack.emplace_back(start);
-        while (!stack.empty()) {
-            const Face f = stack.back();
-            stack.pop_back();
-            for (const Halfedge h : CGAL::halfedges_around_face(mesh.halfedge(f), mesh)) {
-                if (mesh.is_border(mesh.opposite(h))) continue;
-                const Face g = mesh.face(mesh.opposite(h));
-                if (state[g] == 0) patches.back().bounded = true;
-                else if (state[g] == 1) {
-                    state[g] = 2;
-                    stack.push_back(g);
-                }
-            }
-        }
+        if (seen[start]) continue;
+        Patch& patch = patches.emplace_back(Patch{start});
+        flood_faces(mesh, Face(start), seen, [&](Halfedge h) {
+            const bool stays = mesh.is_border(mesh.opposite(h)) || selected[mesh.face(mesh.opposite(h))];
+            patch.bounded = patch.bounded || !stays;
+            return stays;
+        });
     }
     return patches;
 }
 
 /// Where all outlines vanished, a patch that is most of its component has lost its holes, not its area: it counts as unbounded.
 void free_large_patches(const Mesh& mesh, const std::vector<Index>& region, std::vector<Patch>& patches) {
-    std::vector<bool> selected(mesh.number_of_faces(), false), seen(mesh.number_of_faces(), false);
-    for (const Index f : region) selected[f] = true;
+    const std::vector<bool> selected = face_flags(mesh, region);
+    std::vector<bool> seen(selected.size(), false);
     for (Patch& patch : patches) {
         if (seen[patch.face] || !patch.bounded) continue;
-        std::vector<Face> component{Face(patch.face)};
-        seen[patch.face] = true;
         double inside = 0, all = 0;
-        for (std::size_t i = 0; i < component.size(); ++i) {
-            const double area = face_area(mesh, component[i]);
+        for (const Face face : flood_faces(mesh, Face(patch.face), seen)) {
+            const double area = face_area(mesh, face);
             all += area;
-            if (selected[component[i]]) inside += area;
-            for (const Halfedge h : CGAL::halfedges_around_face(mesh.halfedge(component[i]), mesh)) {
-                if (mesh.is_border(mesh.opposite(h)) || seen[mesh.face(mesh.opposite(h))]) continue;
-                seen[mesh.face(mesh.opposite(h))] = true;
-                component.push_back(mesh.face(mesh.opposite(h)));
-            }
+            if (selected[face]) inside += area;
         }
         if (inside > all / 2) patch.bounded = false;
     }
@@ -143,8 +124,7 @@ void free_large_patches(const Mesh& mesh, const std::vector<Index>& region, std:
 std::vector<bool> RegionTransfer::fill(const std::vector<Index>& region, const std::vector<TracedPath>& traced,
                                        const std::vector<SourcePath>& vertex_paths, const Mesh& mesh,
                                        const std::vector<Index>* origin, TransferScore& score) {
-    double source_area = 0;
-    for (const Index f : region) source_area += face_area(source_, Face(f));
+    const double source_area = area_of(source_, region);
     std::vector<Halfedge> edges;
     std::size_t vanished = 0;
     double length = 0;
@@ -185,17 +165,7 @@ std::vector<bool> RegionTransfer::fill(const std::vector<Index>& region, const s
         Index start = hit->face;
         if (origin != nullptr)
             start = static_cast<Index>(std::lower_bound(origin->begin(), origin->end(), hit->face) - origin->begin());
-        std::vector<Face> stack{Face(start)};
-        filling.selected[start] = true;
-        while (!stack.empty()) {
-            const Face f = stack.back();
-            stack.pop_back();
-            for (const Halfedge h : CGAL::halfedges_around_face(mesh.halfedge(f), mesh)) {
-                if (mesh.is_border(mesh.opposite(h)) || filling.selected[mesh.face(mesh.opposite(h))]) continue;
-                filling.selected[mesh.face(mesh.opposite(h))] = true;
-                stack.push_back(mesh.face(mesh.opposite(h)));
-            }
-        }
+        flood_faces(mesh, Face(start), filling.selected);
     }
     std::vector<bool> selected = std::move(filling.selected);
     if (!unbounded && (filling.conflicts > 0 || !plausible(selected_area(mesh, selected)))) {
@@ -238,19 +208,9 @@ void RegionTransfer::cover(std::vector<bool>& selected, const std::vector<Source
     std::vector<bool> seen = crossed;
     for (const Face start : mesh.faces()) {
         if (seen[start]) continue;
-        std::vector<Face> piece{start};
-        seen[start] = true;
+        const std::vector<Face> piece = flood_faces(mesh, start, seen, [&](Halfedge h) { return !wall[mesh.edge(h)]; });
         double inside = 0, outside = 0;
-        for (std::size_t i = 0; i < piece.size(); ++i) {
-            (selected[piece[i]] ? inside : outside) += face_area(mesh, piece[i]);
-            for (const Halfedge h : CGAL::halfedges_around_face(mesh.halfedge(piece[i]), mesh)) {
-                if (mesh.is_border(mesh.opposite(h)) || wall[mesh.edge(h)]) continue;
-                const Face g = mesh.face(mesh.opposite(h));
-                if (seen[g]) continue;
-                seen[g] = true;
-                piece.push_back(g);
-            }
-        }
+        for (const Face f : piece) (selected[f] ? inside : outside) += face_area(mesh, f);
         for (const Face f : piece) selected[f] = inside > outside;
     }
     for (std::size_t f = 0; f < crossed.size(); ++f)
@@ -259,8 +219,7 @@ void RegionTransfer::cover(std::vector<bool>& selected, const std::vector<Source
 
 std::function<bool(const SurfaceHit&)> RegionTransfer::membership(const std::vector<Index>& faces, const Mesh& mesh,
                                                                   const std::vector<Index>* origin) {
-    auto selected = std::make_shared<std::vector<bool>>(mesh.number_of_faces(), false);
-    for (const Index f : faces) (*selected)[f] = true;
+    const auto selected = std::make_shared<std::vector<bool>>(face_flags(mesh, faces));
     if (origin == nullptr) return [selected](const SurfaceHit& hit) { return static_cast<bool>((*selected)[hit.face]); };
     return [selected, origin, &mesh](const SurfaceHit& hit) {
         // New faces stand in the order of their old ones.

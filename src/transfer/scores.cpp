@@ -154,10 +154,4 @@ double length_of(const Segments& segments) {
     return sum;
 }
 
-double area_of(const Mesh& mesh, const std::vector<Index>& faces) {
-    double sum = 0;
-    for (const Index f : faces) sum += face_area(mesh, Face(f));
-    return sum;
-}
-
 }  // namespace ostraka

@@ -34,6 +34,5 @@ std::vector<bool> region_by_vote(const Mesh& source, const SurfaceSearch& source
 using Segments = std::vector<std::pair<Point, Point>>;
 Segments segments_of(const Mesh& mesh, const Annotation& annotation);
 double length_of(const Segments& segments);
-double area_of(const Mesh& mesh, const std::vector<Index>& faces);
 
 }  // namespace ostraka

@@ -1,6 +1,7 @@
 #include "ostraka/transfer/survival.h"
 
 #include "ostraka/core/progress.h"
+#include "ostraka/core/text.h"
 #include "ostraka/remesh/simplify.h"
 
 #include <cmath>
@@ -36,13 +37,10 @@ std::vector<Survival> smallest_resolutions(const Mesh& mesh, const AnnotationSet
         for (std::size_t i = 0; i < survivals.size(); ++i) {
             if (!survivals[i].end.empty()) continue;
             const TransferScore& score = result.scores[i];
-            char text[64];
             if (score.outcome != TransferOutcome::kept) survivals[i].end = to_string(score.outcome);
             else if (!score.note.empty()) survivals[i].end = score.note;
-            else if (score.source_type == AnnotationType::region && distortions(score).area > options.area_error) {
-                std::snprintf(text, sizeof text, "area off by %.3g %%", 100 * distortions(score).area);
-                survivals[i].end = text;
-            }
+            else if (score.source_type == AnnotationType::region && distortions(score).area > options.area_error)
+                survivals[i].end = "area off by " + digits(100 * distortions(score).area, 3) + " %";
             if (survivals[i].end.empty()) survivals[i].vertices = coarse.number_of_vertices();
             else --alive;
         }

@@ -32,13 +32,6 @@ private:
     std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-std::vector<Index> faces_of(const std::vector<bool>& selected) {
-    std::vector<Index> faces;
-    for (std::size_t f = 0; f < selected.size(); ++f)
-        if (selected[f]) faces.push_back(static_cast<Index>(f));
-    return faces;
-}
-
 void add_note(std::string& note, const std::string& text) { note += (note.empty() ? "" : "; ") + text; }
 
 void check_annotations(const Mesh& source, const AnnotationSet& set) {
@@ -278,7 +271,7 @@ private:
             for (Index f = 0; f < on().number_of_faces(); ++f) to.faces.push_back(f);
             return;
         }
-        to.faces = faces_of(selected);
+        to.faces = flagged(selected);
         if (!to.faces.empty()) return;
         // Nothing but a trace is left: the longest one stands for the region.
         std::vector<Index> line;

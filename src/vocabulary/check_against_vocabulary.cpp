@@ -1,6 +1,7 @@
 // Annotations against a vocabulary, and a vocabulary against itself.
 #include "ostraka/core/error.h"
 #include "ostraka/core/text.h"
+#include "ostraka/core/words.h"
 #include "ostraka/vocabulary/infer.h"
 #include "ostraka/vocabulary/text_match.h"
 #include "ostraka/vocabulary/vocabulary.h"
@@ -8,7 +9,6 @@
 #include <algorithm>
 #include <limits>
 #include <set>
-#include <sstream>
 
 namespace ostraka {
 
@@ -16,11 +16,7 @@ namespace {
 
 using std::to_string;
 
-std::string quoted(const std::vector<std::string>& names) {
-    std::string text;
-    for (const auto& name : names) text += (text.empty() ? "'" : ", '") + name + "'";
-    return text;
-}
+std::string quoted(const std::vector<std::string>& names) { return "'" + joined(names, "', '") + "'"; }
 
 std::string range_text(const AllowedAttribute& attribute) {
     const std::string unit = attribute.unit.empty() ? "" : " " + attribute.unit;
@@ -93,11 +89,8 @@ private:
 
     void quantity(const AllowedAttribute& allowed, const Attribute& attribute, const std::string& at) {
         if (!allowed.quantitative()) return;
-        const bool measured = attribute.type == AttributeType::measure;
-        const std::string& unit = measured ? attribute.measure.unit : attribute.descriptor.unit;
-        std::vector<double> values = attribute.descriptor.values;
-        if (measured) values = attribute.measure.value ? std::vector<double>{*attribute.measure.value} : std::vector<double>{};
-        if (measured ? attribute.measure.stale : attribute.descriptor.stale) {
+        const auto [values, unit, stale] = figures_of(attribute);
+        if (stale) {
             remark(at, "the value of '" + attribute.name + "' is stale: its range was not looked at");
             return;
         }
@@ -266,10 +259,11 @@ std::vector<Finding> examine(const Vocabulary& vocabulary) {
         const Concept& entry = vocabulary.concepts[i];
         const std::string at = "/concepts/" + to_string(i);
         if (entry.labels.empty()) findings.push_back({false, at, "the concept '" + entry.id + "' has no label"});
-        std::string missing;
+        std::vector<std::string> missing;
         for (const auto& [language, count] : languages)
-            if (!entry.labels.empty() && !entry.labels.contains(language)) missing += (missing.empty() ? "" : ", ") + language;
-        if (!missing.empty()) findings.push_back({false, at, "the concept '" + entry.id + "' has no label in " + missing});
+            if (!entry.labels.empty() && !entry.labels.contains(language)) missing.push_back(language);
+        if (!missing.empty())
+            findings.push_back({false, at, "the concept '" + entry.id + "' has no label in " + joined(missing)});
         // Of concepts that share a label, the last one names the others.
         std::set<std::string> reported;
         const auto look = [&](const std::string& label) {

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <map>
 #include <set>
-#include <sstream>
 
 namespace ostraka {
 
@@ -17,13 +16,6 @@ using namespace detail;
 namespace {
 
 using std::to_string;
-
-std::string alternatives(const std::vector<std::string>& list) {
-    std::string text;
-    for (std::size_t i = 0; i < list.size(); ++i)
-        text += (i == 0 ? "" : i + 1 == list.size() ? " or " : ", ") + in_quotes(list[i]);
-    return text;
-}
 
 Subject subject_of(const JsonValue& value) {
     if (value.IsString()) return {text_of(value), std::nullopt};
@@ -35,25 +27,17 @@ Subject subject_of(const JsonValue& value) {
     return subject;
 }
 
-std::vector<std::string> names_of(const JsonValue& value) {
-    if (value.IsString()) return {text_of(value)};
-    std::vector<std::string> names;
-    for (const auto& name : value.GetArray()) names.push_back(text_of(name));
-    return names;
-}
-
-template <class Number>
-std::optional<Number> number_of(const JsonValue& object, const char* name) {
+std::optional<int> whole_in(const JsonValue& object, const char* name) {
     const JsonValue* value = find_member(object, name);
-    return value == nullptr ? std::nullopt : std::optional<Number>(value->Get<Number>());
+    return value == nullptr ? std::nullopt : std::optional(value->GetInt());
 }
 
 ClassRule class_rule_of(const JsonValue& object, const std::string& where, const std::string& at) {
     ClassRule rule;
     rule.id = text_of(object["id"]);
-    if (const JsonValue* note = find_member(object, "note")) rule.note = text_of(*note);
+    rule.note = text_in(object, "note");
     if (const JsonValue* count = find_member(object, "count")) {
-        rule.count = CountRule{subject_of((*count)["of"]), number_of<int>(*count, "min"), number_of<int>(*count, "max")};
+        rule.count = CountRule{subject_of((*count)["of"]), whole_in(*count, "min"), whole_in(*count, "max")};
         const auto& [subject, min, max] = *rule.count;
         if (!min && !max) fail_input(where, "at " + at + "/count: a count without bounds", "give min, max or both");
         if (min && max && *min > *max) fail_input(where, "at " + at + "/count: min is above max", "swap them");
@@ -62,10 +46,10 @@ ClassRule class_rule_of(const JsonValue& object, const std::string& where, const
         AttributeRule wanted;
         wanted.subject = subject_of((*attribute)["of"]);
         wanted.name = text_of((*attribute)["name"]);
-        if (const JsonValue* is = find_member(*attribute, "is")) wanted.values = names_of(*is);
-        wanted.min = number_of<double>(*attribute, "min");
-        wanted.max = number_of<double>(*attribute, "max");
-        if (const JsonValue* unit = find_member(*attribute, "unit")) wanted.unit = text_of(*unit);
+        wanted.values = names_in(*attribute, "is");
+        wanted.min = number_in(*attribute, "min");
+        wanted.max = number_in(*attribute, "max");
+        wanted.unit = text_in(*attribute, "unit");
         if (!wanted.values.empty() && (wanted.min || wanted.max || !wanted.unit.empty()))
             fail_input(where, "at " + at + "/attribute: words and bounds",
                        "give 'is' for a word, min, max and unit for a number");
@@ -74,11 +58,11 @@ ClassRule class_rule_of(const JsonValue& object, const std::string& where, const
         rule.attribute = std::move(wanted);
     }
     if (const JsonValue* relation = find_member(object, "relation")) {
-        RelationRule wanted{subject_of((*relation)["of"]), names_of((*relation)["is"]), subject_of((*relation)["to"]), {}};
-        if (const JsonValue* place = find_member(*relation, "place"))
-            wanted.place = text_of(*place) == "first"    ? RelationRule::Place::first
-                           : text_of(*place) == "second" ? RelationRule::Place::second
-                                                         : RelationRule::Place::any;
+        RelationRule wanted{subject_of((*relation)["of"]), names_in(*relation, "is"), subject_of((*relation)["to"]), {}};
+        const std::string place = text_in(*relation, "place");
+        wanted.place = place == "first"    ? RelationRule::Place::first
+                       : place == "second" ? RelationRule::Place::second
+                                           : RelationRule::Place::any;
         rule.relation = std::move(wanted);
     }
     if (rule.count.has_value() + rule.attribute.has_value() + rule.relation.has_value() != 1)
@@ -110,9 +94,6 @@ public:
 private:
     void report(std::optional<int> annotation, const std::string& text) {
         broken.push_back({rule_->id, annotation, text + (rule_->note.empty() ? "" : " (" + rule_->note + ")")});
-    }
-    static std::string whose(const Annotation& annotation) {
-        return in_quotes(annotation.tag) + " (id " + to_string(annotation.id) + ")";
     }
     static std::string name_of(const Subject& subject) {
         const std::string kind = subject.type ? ostraka::to_string(*subject.type) : "annotation";
@@ -164,9 +145,7 @@ private:
     /// Without a vocabulary: by the letters, a number at the end of the annotation's tag aside.
     static bool same_tag(const std::string& tag, const std::string& wanted) {
         const std::string text = folded(tag), other = folded(wanted);
-        if (text == other) return true;
-        const std::size_t last = text.find_last_not_of("0123456789");
-        return last != std::string::npos && last + 1 < text.size() && text[last] == ' ' && text.substr(0, last) == other;
+        return text == other || without_number(text) == other;
     }
 
     void count(const CountRule& rule) {
@@ -215,25 +194,17 @@ private:
 
     static bool satisfies(const AttributeRule& rule, const AllowedAttribute* allowed, const Attribute& attribute,
                           std::string& text) {
-        const bool measured = attribute.type == AttributeType::measure;
         if (attribute.type == AttributeType::semantic) {
             text = in_quotes(attribute.note);
             if (rule.min || rule.max || !rule.unit.empty()) return false;
-            if (rule.values.empty()) return true;
-            return std::any_of(rule.values.begin(), rule.values.end(), [&](const std::string& value) {
-                if (folded(value) == folded(attribute.note)) return true;
-                const Term* term = allowed == nullptr ? nullptr : term_of(*allowed, value);
-                return term != nullptr && term == term_of(*allowed, attribute.note);
-            });
+            return rule.values.empty() || is_one_of(attribute.note, rule.values, allowed);
         }
-        const std::string& unit = measured ? attribute.measure.unit : attribute.descriptor.unit;
-        std::vector<double> values = attribute.descriptor.values;
-        if (measured) values = attribute.measure.value ? std::vector<double>{*attribute.measure.value} : std::vector<double>{};
+        const auto [values, unit, stale] = figures_of(attribute);
         text = values.empty() ? "without a value" : text_of(values.front()) + (unit.empty() ? "" : " " + unit);
-        if (measured ? attribute.measure.stale : attribute.descriptor.stale) text += " (stale)";
+        if (stale) text += " (stale)";
         if (!rule.values.empty()) return false;
         if (!rule.min && !rule.max && rule.unit.empty()) return true;
-        if (values.empty() || (measured ? attribute.measure.stale : attribute.descriptor.stale)) return false;
+        if (values.empty() || stale) return false;
         for (const double value : values) {
             const auto number = rule.unit.empty() ? std::optional<double>(value) : converted(value, unit, rule.unit);
             if (!number || (rule.min && *number < *rule.min) || (rule.max && *number > *rule.max)) return false;
@@ -290,12 +261,10 @@ bool ClassRules::about_relations() const {
 }
 
 ClassRules class_rules_from_json(const JsonValue& document, const std::string& where) {
-    if (const JsonValue* format = find_member(document, "format");
-        format != nullptr && format->IsString() && text_of(*format) != "ostraka-rules")
-        fail_input(where, "at /format: the format is '" + text_of(*format) + "'", "give rules of a class ('ostraka-rules')");
+    check_format(document, "ostraka-rules", where, "give rules of a class ('ostraka-rules')");
     validate(document, "rules", where);
     ClassRules result;
-    if (const JsonValue* name = find_member(document, "class")) result.object_class = text_of(*name);
+    result.object_class = text_in(document, "class");
     const JsonValue& rules = document["rules"];
     std::set<std::string> ids;
     for (rapidjson::SizeType i = 0; i < rules.Size(); ++i) {

@@ -7,10 +7,8 @@
 #include "words.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <set>
-#include <sstream>
 
 namespace ostraka {
 
@@ -36,13 +34,7 @@ struct Judgement {
 class Reasoner {
 public:
     Reasoner(const AnnotationSet& set, const Vocabulary& vocabulary) : search_(vocabulary) {
-        result_.annotations.object_class = set.object_class;
-        result_.annotations.unit = set.unit;
-        result_.annotations.up = set.up;
-        result_.annotations.notes = set.notes;
-        if (!set.provenance.IsNull())
-            result_.annotations.provenance.CopyFrom(set.provenance, result_.annotations.provenance.GetAllocator());
-        result_.annotations.annotations = set.annotations;
+        result_.annotations = set;
         for (Annotation& annotation : result_.annotations.annotations) {
             std::erase_if(annotation.attributes, [](const Attribute& attribute) { return inferred(attribute); });
             concepts_.push_back(search_.concept_of(annotation.tag));
@@ -168,16 +160,15 @@ private:
             return value;
         }
         const Attribute& attribute = *found.front();
-        const bool measured = attribute.type == AttributeType::measure;
         if (attribute.type == AttributeType::semantic) {
             value.word = attribute.note;
             return value;
         }
-        value.unit = measured ? attribute.measure.unit : attribute.descriptor.unit;
-        if (measured ? attribute.measure.stale : attribute.descriptor.stale) value.missing = name + " is stale";
-        else if (measured && attribute.measure.value) value.number = attribute.measure.value;
-        else if (!measured && attribute.descriptor.values.size() == 1) value.number = attribute.descriptor.values.front();
-        else value.missing = name + (measured || attribute.descriptor.values.empty() ? " has no value" : " is a list of numbers");
+        const Figures figures = figures_of(attribute);
+        value.unit = figures.unit;
+        if (figures.stale) value.missing = name + " is stale";
+        else if (figures.values.size() == 1) value.number = figures.values.front();
+        else value.missing = name + (figures.values.empty() ? " has no value" : " is a list of numbers");
         return value;
     }
 
@@ -192,11 +183,7 @@ private:
             if (value.number) return {Verdict::unknown, {}, in_quotes(c.operand.attribute) + " is a number"};
             const AllowedAttribute* allowed =
                 concepts_[i] && c.operand.concept_id.empty() ? search_.attribute_of(*concepts_[i], c.operand.attribute) : nullptr;
-            const bool holds = std::any_of(c.is.begin(), c.is.end(), [&](const std::string& word) {
-                if (folded(word) == folded(value.word)) return true;
-                const Term* term = allowed == nullptr ? nullptr : term_of(*allowed, word);
-                return term != nullptr && term == term_of(*allowed, value.word);
-            });
+            const bool holds = is_one_of(value.word, c.is, allowed);
             return {holds ? Verdict::holds : Verdict::fails, name_of(c.operand) + " is " + value.word, {}};
         }
         if (!value.number) return {Verdict::unknown, {}, in_quotes(c.operand.attribute) + " is a word"};
@@ -274,7 +261,7 @@ private:
         const Term* term = term_of(allowed, rule.value);
         const std::string value = term == nullptr ? rule.value : term->name;
         const auto stands = attributes_named(key.first, allowed.name);
-        const std::string whose = in_quotes(annotation.tag) + " (id " + std::to_string(annotation.id) + "): ";
+        const std::string whose = detail::whose(annotation) + ": ";
         const std::string says = "the rule " + in_quotes(rule.id) + " says " + in_quotes(value) + ", since " + why;
         for (const Attribute* other : stands) {
             if (other->type == AttributeType::semantic) {
@@ -305,8 +292,8 @@ private:
             for (const auto& [rule, allowed] : rules_of(i)) {
                 const Judgement judgement = judge(*rule, i);
                 if (judgement.verdict == Verdict::unknown)
-                    result_.missing.push_back(in_quotes(annotations()[i].tag) + " (id " + std::to_string(annotations()[i].id) +
-                                              "): the rule " + in_quotes(rule->id) + " cannot be judged: " + judgement.missing);
+                    result_.missing.push_back(detail::whose(annotations()[i]) + ": the rule " + in_quotes(rule->id) +
+                                              " cannot be judged: " + judgement.missing);
             }
     }
 

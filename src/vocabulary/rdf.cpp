@@ -34,7 +34,7 @@ std::mutex& library_mutex() {
 
 const unsigned char* bytes(const std::string& text) { return reinterpret_cast<const unsigned char*>(text.c_str()); }
 
-[[noreturn]] void no_memory() { throw Error(ErrorKind::failure, "RDF", "the library cannot be used: out of memory"); }
+[[noreturn]] void no_memory() { fail_work("RDF", "the library cannot be used: out of memory"); }
 
 /// What the library says of errors; the first one counts.
 struct Log {
@@ -283,7 +283,7 @@ std::string serialise_rdf(const std::vector<RdfStatement>& statements, RdfSyntax
     std::string text(static_cast<const char*>(memory), memory == nullptr ? 0 : length);
     if (memory != nullptr) raptor_free_memory(memory);
     if (result != 0 || !log.text.empty() || text.empty())
-        throw Error(ErrorKind::failure, where, "cannot be written: " + (log.text.empty() ? "unknown reason" : log.text));
+        fail_work(where, "cannot be written: " + (log.text.empty() ? "unknown reason" : log.text));
     return text;
 }
 

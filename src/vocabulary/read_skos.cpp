@@ -153,7 +153,7 @@ private:
             ids_[text] = id;
             Concept entry;
             entry.id = id;
-            if (prefix + skos::percent_encoded(id) != text) entry.uri = text;
+            if (prefix + percent_encoded(id) != text) entry.uri = text;
             vocabulary_.concepts.push_back(std::move(entry));
             index_[text] = i;
         }
@@ -299,16 +299,11 @@ private:
     Vocabulary vocabulary_;
 };
 
-bool is_xml(const Path& file) {
-    const std::string ending = extension(file);
-    return ending == ".rdf" || ending == ".owl" || ending == ".xml";
-}
-
 }  // namespace
 
 bool is_skos(const Path& file) {
     const std::string ending = extension(file);
-    return is_xml(file) || ending == ".ttl" || ending == ".turtle" || ending == ".nt";
+    return skos::is_rdf_xml(file) || ending == ".ttl" || ending == ".turtle" || ending == ".nt";
 }
 
 Vocabulary vocabulary_from_skos(const std::string& text, bool rdf_xml, const std::string& where, const std::string& scheme) {
@@ -318,7 +313,7 @@ Vocabulary vocabulary_from_skos(const std::string& text, bool rdf_xml, const std
 }
 
 Vocabulary read_skos(const Path& file, const std::string& scheme) {
-    return vocabulary_from_skos(read_file(file), is_xml(file), file.string(), scheme);
+    return vocabulary_from_skos(read_file(file), skos::is_rdf_xml(file), file.string(), scheme);
 }
 
 }  // namespace ostraka

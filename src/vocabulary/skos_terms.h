@@ -1,6 +1,9 @@
 // The names that SKOS files are made of.
 #pragma once
 
+#include "ostraka/core/file.h"
+#include "ostraka/core/text.h"
+
 #include <string>
 
 namespace ostraka::skos {
@@ -15,23 +18,15 @@ inline const std::string own = "urn:ostraka:ns#";
 /// The URI of a vocabulary that has none.
 inline const std::string default_scheme = "urn:ostraka:vocabulary";
 
+inline bool is_rdf_xml(const Path& file) {
+    const std::string ending = extension(file);
+    return ending == ".rdf" || ending == ".owl" || ending == ".xml";
+}
+
 /// What stands before the id in the URI of a concept.
 inline std::string namespace_of(const std::string& scheme) {
     const std::string uri = scheme.empty() ? default_scheme : scheme;
     return uri.ends_with('#') || uri.ends_with('/') ? uri : uri + "#";
-}
-
-/// Every byte but letters, digits and -._~ as %XX.
-inline std::string percent_encoded(const std::string& text) {
-    std::string result;
-    for (const char c : text) {
-        const auto byte = static_cast<unsigned char>(c);
-        const bool plain = (byte >= 'a' && byte <= 'z') || (byte >= 'A' && byte <= 'Z') || (byte >= '0' && byte <= '9') ||
-                           c == '-' || c == '.' || c == '_' || c == '~';
-        if (plain) result += c;
-        else result += {'%', "0123456789ABCDEF"[byte >> 4], "0123456789ABCDEF"[byte & 15]};
-    }
-    return result;
 }
 
 inline std::string percent_decoded(const std::string& text) {

@@ -1,57 +1,26 @@
 #include "ostraka/vocabulary/text_match.h"
 #include "ostraka/core/angles.h"
 #include "ostraka/core/nearest_name.h"
+#include "ostraka/core/text.h"
+
+#include <rapidjson/encodings.h>
+#include <rapidjson/stringbuffer.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <map>
 
 namespace ostraka {
 
 namespace {
 
-/// Code points; a byte that is not UTF-8 stands for itself, beyond all of them.
-std::u32string decoded(std::string_view text) {
-    std::u32string points;
-    for (std::size_t i = 0; i < text.size();) {
-        const auto byte = static_cast<unsigned char>(text[i]);
-        const std::size_t length = byte < 0x80 ? 1 : byte >= 0xF0 ? 4 : byte >= 0xE0 ? 3 : byte >= 0xC0 ? 2 : 0;
-        bool good = length > 0 && i + length <= text.size();
-        char32_t point = length == 1 ? byte : length == 2 ? byte & 0x1FU : length == 3 ? byte & 0x0FU : byte & 0x07U;
-        for (std::size_t k = 1; good && k < length; ++k) {
-            const auto next = static_cast<unsigned char>(text[i + k]);
-            good = (next & 0xC0U) == 0x80;
-            point = point << 6 | (next & 0x3FU);
-        }
-        points += good ? point : 0x110000U + byte;
-        i += good ? length : 1;
-    }
-    return points;
-}
-
 std::string encoded(const std::u32string& points) {
-    std::string text;
+    rapidjson::StringBuffer text;
     for (const char32_t p : points) {
-        if (p >= 0x110000) {
-            text += static_cast<char>(p - 0x110000);
-        } else if (p < 0x80) {
-            text += static_cast<char>(p);
-        } else if (p < 0x800) {
-            text += static_cast<char>(0xC0 | p >> 6);
-            text += static_cast<char>(0x80 | (p & 0x3F));
-        } else if (p < 0x10000) {
-            text += static_cast<char>(0xE0 | p >> 12);
-            text += static_cast<char>(0x80 | (p >> 6 & 0x3F));
-            text += static_cast<char>(0x80 | (p & 0x3F));
-        } else {
-            text += static_cast<char>(0xF0 | p >> 18);
-            text += static_cast<char>(0x80 | (p >> 12 & 0x3F));
-            text += static_cast<char>(0x80 | (p >> 6 & 0x3F));
-            text += static_cast<char>(0x80 | (p & 0x3F));
-        }
+        if (p >= not_utf8) text.Put(static_cast<char>(p - not_utf8));
+        else rapidjson::UTF8<>::Encode(text, p);
     }
-    return text;
+    return {text.GetString(), text.GetSize()};
 }
 
 char32_t lower(char32_t c) {
@@ -102,7 +71,7 @@ std::optional<Unit> unit_of(std::string text) {
 
 std::string folded(std::string_view text) {
     std::u32string result;
-    for (const char32_t c : decoded(text)) {
+    for (const char32_t c : characters(text)) {
         if (!blank(c)) result += lower(c);
         else if (!result.empty() && result.back() != U' ') result += U' ';
     }
@@ -131,11 +100,19 @@ std::vector<std::string> near_misses(const std::string& text, const std::vector<
 }
 
 std::string did_you_mean(const std::vector<std::string>& suggestions) {
-    if (suggestions.empty()) return {};
-    std::string text = ": did you mean ";
-    for (std::size_t i = 0; i < suggestions.size(); ++i)
-        text += (i == 0 ? "'" : i + 1 == suggestions.size() ? " or '" : ", '") + suggestions[i] + "'";
-    return text + "?";
+    return suggestions.empty() ? "" : ": did you mean " + alternatives(suggestions) + "?";
+}
+
+std::string alternatives(const std::vector<std::string>& list) {
+    std::string text;
+    for (std::size_t i = 0; i < list.size(); ++i) text += (i == 0 ? "'" : i + 1 == list.size() ? " or '" : ", '") + list[i] + "'";
+    return text;
+}
+
+std::string without_number(const std::string& folded_text) {
+    const std::size_t last = folded_text.find_last_not_of("0123456789");
+    const bool numbered = last != std::string::npos && last + 1 < folded_text.size() && folded_text[last] == ' ';
+    return numbered ? folded_text.substr(0, last) : folded_text;
 }
 
 std::optional<double> converted(double value, const std::string& from, const std::string& to) {

@@ -34,7 +34,7 @@ public:
                 fail(at + "/id", "the id '" + entry.id + "' is that of /concepts/" + to_string(first->second) + " as well",
                      "give each concept an id of its own");
             const std::string uri =
-                entry.uri.empty() ? skos::namespace_of(vocabulary_.uri) + skos::percent_encoded(entry.id) : entry.uri;
+                entry.uri.empty() ? skos::namespace_of(vocabulary_.uri) + percent_encoded(entry.id) : entry.uri;
             if (!uris.insert(uri).second)
                 fail(at + "/uri", "another concept has the URI <" + uri + "> as well", "give each concept its own");
             attributes(entry.attributes, at);
@@ -261,13 +261,10 @@ std::optional<std::size_t> VocabularySearch::find(const std::string& id) const {
 
 std::vector<std::size_t> VocabularySearch::concepts_of(const std::string& tag) const {
     if (const auto exact = find(tag)) return {*exact};
-    std::string text = folded(tag);
-    if (text.empty()) return {};
-    if (const auto found = labels_.find(text); found != labels_.end()) return found->second;
-    const std::size_t digits = text.find_last_not_of("0123456789");
-    if (digits == std::string::npos || digits + 1 == text.size() || text[digits] != ' ') return {};
-    const auto found = labels_.find(text.substr(0, digits));
-    return found == labels_.end() ? std::vector<std::size_t>() : found->second;
+    const std::string text = folded(tag);
+    for (const std::string& wanted : {text, without_number(text)})
+        if (const auto found = labels_.find(wanted); found != labels_.end() && !text.empty()) return found->second;
+    return {};
 }
 
 std::optional<std::size_t> VocabularySearch::concept_of(const std::string& tag) const {

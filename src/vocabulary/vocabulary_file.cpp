@@ -9,7 +9,6 @@
 #include "words.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace ostraka {
 
@@ -18,16 +17,6 @@ using namespace detail;
 namespace {
 
 using std::to_string;
-
-std::string text_in(const JsonValue& object, const char* name) {
-    const JsonValue* value = find_member(object, name);
-    return value == nullptr ? std::string() : text_of(*value);
-}
-
-std::optional<double> number_of(const JsonValue& object, const char* name) {
-    const JsonValue* value = find_member(object, name);
-    return value == nullptr ? std::nullopt : std::optional<double>(value->GetDouble());
-}
 
 Labels labels_of(const JsonValue& object, const char* name) {
     Labels labels;
@@ -38,34 +27,23 @@ Labels labels_of(const JsonValue& object, const char* name) {
     return labels;
 }
 
-std::vector<std::string> names_of(const JsonValue& object, const char* name) {
-    std::vector<std::string> names;
-    const JsonValue* value = find_member(object, name);
-    if (value == nullptr) return names;
-    if (value->IsString()) return {text_of(*value)};
-    for (const auto& element : value->GetArray()) names.push_back(text_of(element));
-    return names;
-}
-
 AllowedAttribute attribute_of(const JsonValue& object) {
     AllowedAttribute attribute;
     attribute.name = text_in(object, "name");
     attribute.labels = labels_of(object, "label");
     attribute.definition = labels_of(object, "definition");
-    if (const JsonValue* values = find_member(object, "values"))
-        for (const auto& value : values->GetArray())
-            attribute.values.push_back(value.IsString() ? Term{text_of(value), {}}
-                                                        : Term{text_in(value, "name"), labels_of(value, "label")});
-    attribute.min = number_of(object, "min");
-    attribute.max = number_of(object, "max");
+    for (const auto& value : list_in(object, "values"))
+        attribute.values.push_back(value.IsString() ? Term{text_of(value), {}}
+                                                    : Term{text_in(value, "name"), labels_of(value, "label")});
+    attribute.min = number_in(object, "min");
+    attribute.max = number_in(object, "max");
     attribute.unit = text_in(object, "unit");
     return attribute;
 }
 
 std::vector<AllowedAttribute> attributes_of(const JsonValue& object) {
     std::vector<AllowedAttribute> list;
-    if (const JsonValue* attributes = find_member(object, "attributes"))
-        for (const auto& attribute : attributes->GetArray()) list.push_back(attribute_of(attribute));
+    for (const auto& attribute : list_in(object, "attributes")) list.push_back(attribute_of(attribute));
     return list;
 }
 
@@ -79,24 +57,20 @@ std::vector<T> canonical(std::vector<T> list) {
 
 std::vector<ForeignStatement> statements_of(const JsonValue& object, const std::string& where, const std::string& at) {
     std::vector<ForeignStatement> list;
-    const JsonValue* statements = find_member(object, "other");
-    if (statements == nullptr) return list;
-    for (const auto& entry : statements->GetArray()) {
+    for (const auto& entry : list_in(object, "other")) {
         ForeignStatement statement;
+        const std::string here = "at " + at + "/other/" + to_string(list.size());
         statement.property = text_in(entry, "property");
         statement.is_uri = find_member(entry, "uri") != nullptr;
         if (statement.is_uri == (find_member(entry, "value") != nullptr))
-            fail_input(where, "at " + at + "/other/" + to_string(list.size()) + ": a statement has a value or a uri",
-                       "give one of the two");
+            fail_input(where, here + ": a statement has a value or a uri", "give one of the two");
         statement.value = text_in(entry, statement.is_uri ? "uri" : "value");
         statement.language = text_in(entry, "language");
         statement.datatype = text_in(entry, "datatype");
         if (statement.datatype == skos::xsd + "string") statement.datatype.clear();  // as texts are without one
         if ((!statement.language.empty() && !statement.datatype.empty()) ||
             (statement.is_uri && (!statement.language.empty() || !statement.datatype.empty())))
-            fail_input(where,
-                       "at " + at + "/other/" + to_string(list.size()) + ": a URI has neither language nor datatype, a text one",
-                       "take one away");
+            fail_input(where, here + ": a URI has neither language nor datatype, a text one", "take one away");
         list.push_back(std::move(statement));
     }
     return canonical(std::move(list));
@@ -111,7 +85,7 @@ Concept concept_of(const JsonValue& object, const std::string& where, const std:
         for (const auto& member : alternatives->GetObject())
             for (const auto& label : member.value.GetArray()) result.alternatives[text_of(member.name)].push_back(text_of(label));
     for (auto& [language, labels] : result.alternatives) labels = canonical(std::move(labels));
-    result.broader = names_of(object, "broader");
+    result.broader = names_in(object, "broader");
     std::sort(result.broader.begin(), result.broader.end());
     result.definition = labels_of(object, "definition");
     result.attributes = attributes_of(object);
@@ -138,12 +112,12 @@ Condition condition_of(const JsonValue& object, const std::string& where, const 
     } else {
         condition.operand = {text_in(object, "attribute"), text_in(object, "concept")};
     }
-    condition.min = number_of(object, "min");
-    condition.max = number_of(object, "max");
-    condition.above = number_of(object, "above");
-    condition.below = number_of(object, "below");
+    condition.min = number_in(object, "min");
+    condition.max = number_in(object, "max");
+    condition.above = number_in(object, "above");
+    condition.below = number_in(object, "below");
     condition.unit = text_in(object, "unit");
-    condition.is = names_of(object, "is");
+    condition.is = names_in(object, "is");
     return condition;
 }
 
@@ -163,34 +137,26 @@ InferenceRule inference_rule_of(const JsonValue& object, const std::string& wher
 /// Members that are empty are left out.
 class Writer {
 public:
-    Json document{rapidjson::kObjectType};
+    Json document = json_document("vocabulary");
 
     explicit Writer(const Vocabulary& vocabulary) {
-        add_members(document, allocator_, "format", "ostraka-vocabulary", "version", 1);
-        text(document, "uri", vocabulary.uri);
+        add_given(document, allocator_, "uri", vocabulary.uri);
         labels(document, "title", vocabulary.title);
         attributes(document, vocabulary.attributes);
-        JsonValue concepts(rapidjson::kArrayType);
-        for (const Concept& entry : vocabulary.concepts) concepts.PushBack(json_of(entry), allocator_);
-        add_member(document, "concepts", std::move(concepts), allocator_);
-        if (!vocabulary.rules.empty()) {
-            JsonValue rules(rapidjson::kArrayType);
-            for (const InferenceRule& rule : vocabulary.rules) rules.PushBack(json_of(rule), allocator_);
-            add_member(document, "rules", std::move(rules), allocator_);
-        }
+        add_members(document, allocator_, "concepts", list_of(vocabulary.concepts));
+        add_given(document, allocator_, "rules", list_of(vocabulary.rules));
         statements(document, vocabulary.others);
     }
 
 private:
     JsonAllocator& allocator_ = document.GetAllocator();
 
-    void text(JsonValue& object, const char* name, const std::string& value) {
-        if (!value.empty()) add_member(object, name, value, allocator_);
+    template <class Entry>
+    JsonValue list_of(const std::vector<Entry>& entries) {
+        return json_list(entries, allocator_, [&](const Entry& entry) { return json_of(entry); });
     }
     void number(JsonValue& object, const char* name, const std::optional<double>& value) {
-        if (!value) return;
-        const bool whole = std::abs(*value) < 1e9 && *value == std::floor(*value);
-        add_member(object, name, whole ? JsonValue(static_cast<int>(*value)) : JsonValue(*value), allocator_);
+        if (value) add_member(object, name, json_number(*value), allocator_);
     }
     void labels(JsonValue& object, const char* name, const Labels& value) {
         if (value.empty()) return;
@@ -202,67 +168,45 @@ private:
         for (const auto& [language, label] : value) add_member(list, language, label, allocator_);
         add_member(object, name, std::move(list), allocator_);
     }
-    JsonValue list_of(const std::vector<std::string>& value) {
-        JsonValue list(rapidjson::kArrayType);
-        for (const auto& element : value) list.PushBack(json_string(element, allocator_), allocator_);
-        return list;
-    }
     void names(JsonValue& object, const char* name, const std::vector<std::string>& value) {
         if (value.size() == 1) add_member(object, name, value.front(), allocator_);
-        else if (!value.empty()) add_member(object, name, list_of(value), allocator_);
+        else add_given(object, allocator_, name, value);
+    }
+    JsonValue json_of(const Term& term) {
+        if (term.labels.empty()) return json_string(term.name, allocator_);
+        JsonValue object = json_object(allocator_, "name", term.name);
+        labels(object, "label", term.labels);
+        return object;
+    }
+    JsonValue json_of(const AllowedAttribute& attribute) {
+        JsonValue entry = json_object(allocator_, "name", attribute.name);
+        labels(entry, "label", attribute.labels);
+        labels(entry, "definition", attribute.definition);
+        add_given(entry, allocator_, "values", list_of(attribute.values));
+        number(entry, "min", attribute.min);
+        number(entry, "max", attribute.max);
+        add_given(entry, allocator_, "unit", attribute.unit);
+        return entry;
     }
     void attributes(JsonValue& object, const std::vector<AllowedAttribute>& value) {
-        if (value.empty()) return;
-        JsonValue list(rapidjson::kArrayType);
-        for (const AllowedAttribute& attribute : value) {
-            JsonValue entry(rapidjson::kObjectType);
-            add_member(entry, "name", attribute.name, allocator_);
-            labels(entry, "label", attribute.labels);
-            labels(entry, "definition", attribute.definition);
-            if (!attribute.values.empty()) {
-                JsonValue terms(rapidjson::kArrayType);
-                for (const Term& term : attribute.values) {
-                    if (term.labels.empty()) {
-                        terms.PushBack(json_string(term.name, allocator_), allocator_);
-                        continue;
-                    }
-                    JsonValue object_of_term(rapidjson::kObjectType);
-                    add_member(object_of_term, "name", term.name, allocator_);
-                    labels(object_of_term, "label", term.labels);
-                    terms.PushBack(object_of_term, allocator_);
-                }
-                add_member(entry, "values", std::move(terms), allocator_);
-            }
-            number(entry, "min", attribute.min);
-            number(entry, "max", attribute.max);
-            text(entry, "unit", attribute.unit);
-            list.PushBack(entry, allocator_);
-        }
-        add_member(object, "attributes", std::move(list), allocator_);
+        add_given(object, allocator_, "attributes", list_of(value));
+    }
+    JsonValue json_of(const ForeignStatement& statement) {
+        JsonValue entry =
+            json_object(allocator_, "property", statement.property, statement.is_uri ? "uri" : "value", statement.value);
+        add_given(entry, allocator_, "language", statement.language, "datatype", statement.datatype);
+        return entry;
     }
     void statements(JsonValue& object, const std::vector<ForeignStatement>& value) {
-        if (value.empty()) return;
-        JsonValue list(rapidjson::kArrayType);
-        for (const ForeignStatement& statement : value) {
-            JsonValue entry =
-                json_object(allocator_, "property", statement.property, statement.is_uri ? "uri" : "value", statement.value);
-            text(entry, "language", statement.language);
-            text(entry, "datatype", statement.datatype);
-            list.PushBack(entry, allocator_);
-        }
-        add_member(object, "other", std::move(list), allocator_);
+        add_given(object, allocator_, "other", list_of(value));
     }
     JsonValue json_of(const Concept& entry) {
-        JsonValue object(rapidjson::kObjectType);
-        add_member(object, "id", entry.id, allocator_);
-        text(object, "uri", entry.uri);
+        JsonValue object = json_object(allocator_, "id", entry.id);
+        add_given(object, allocator_, "uri", entry.uri);
         labels(object, "label", entry.labels);
-        if (!entry.alternatives.empty()) {
-            JsonValue list(rapidjson::kObjectType);
-            for (const auto& [language, alternatives] : entry.alternatives)
-                add_member(list, language, list_of(alternatives), allocator_);
-            add_member(object, "alternatives", std::move(list), allocator_);
-        }
+        JsonValue alternatives(rapidjson::kObjectType);
+        for (const auto& [language, others] : entry.alternatives) add_members(alternatives, allocator_, language, others);
+        add_given(object, allocator_, "alternatives", std::move(alternatives));
         names(object, "broader", entry.broader);
         labels(object, "definition", entry.definition);
         attributes(object, entry.attributes);
@@ -271,35 +215,29 @@ private:
     }
     JsonValue json_of(const Operand& operand) {
         if (operand.concept_id.empty()) return json_string(operand.attribute, allocator_);
-        JsonValue object = json_object(allocator_, "attribute", operand.attribute, "concept", operand.concept_id);
-        return object;
+        return json_object(allocator_, "attribute", operand.attribute, "concept", operand.concept_id);
+    }
+    JsonValue json_of(const Condition& condition) {
+        JsonValue entry(rapidjson::kObjectType);
+        if (condition.divisor) {
+            add_members(entry, allocator_, "ratio", list_of(std::vector{condition.operand, *condition.divisor}));
+        } else {
+            add_members(entry, allocator_, "attribute", condition.operand.attribute);
+            add_given(entry, allocator_, "concept", condition.operand.concept_id);
+        }
+        number(entry, "min", condition.min);
+        number(entry, "max", condition.max);
+        number(entry, "above", condition.above);
+        number(entry, "below", condition.below);
+        add_given(entry, allocator_, "unit", condition.unit);
+        names(entry, "is", condition.is);
+        return entry;
     }
     JsonValue json_of(const InferenceRule& rule) {
-        JsonValue object(rapidjson::kObjectType), conditions(rapidjson::kArrayType), then(rapidjson::kObjectType);
-        add_member(object, "id", rule.id, allocator_);
-        text(object, "note", rule.note);
-        text(object, "concept", rule.concept_id);
-        for (const Condition& condition : rule.conditions) {
-            JsonValue entry(rapidjson::kObjectType);
-            if (condition.divisor) {
-                JsonValue ratio(rapidjson::kArrayType);
-                ratio.PushBack(json_of(condition.operand), allocator_).PushBack(json_of(*condition.divisor), allocator_);
-                add_member(entry, "ratio", std::move(ratio), allocator_);
-            } else {
-                add_member(entry, "attribute", condition.operand.attribute, allocator_);
-                text(entry, "concept", condition.operand.concept_id);
-            }
-            number(entry, "min", condition.min);
-            number(entry, "max", condition.max);
-            number(entry, "above", condition.above);
-            number(entry, "below", condition.below);
-            text(entry, "unit", condition.unit);
-            names(entry, "is", condition.is);
-            conditions.PushBack(entry, allocator_);
-        }
-        add_member(object, "if", std::move(conditions), allocator_);
-        add_members(then, allocator_, "attribute", rule.attribute, "value", rule.value);
-        add_member(object, "then", std::move(then), allocator_);
+        JsonValue object = json_object(allocator_, "id", rule.id);
+        add_given(object, allocator_, "note", rule.note, "concept", rule.concept_id);
+        add_members(object, allocator_, "if", list_of(rule.conditions), "then",
+                    json_object(allocator_, "attribute", rule.attribute, "value", rule.value));
         return object;
     }
 };
@@ -307,36 +245,29 @@ private:
 }  // namespace
 
 std::vector<InferenceRule> rules_from_json(const JsonValue& list, const std::string& where) {
-    Json document(rapidjson::kObjectType);
-    auto& allocator = document.GetAllocator();
-    add_members(document, allocator, "format", "ostraka-vocabulary", "version", 1, "concepts", JsonValue(rapidjson::kArrayType),
-                "rules", JsonValue(list, allocator));
+    Json document = json_document("vocabulary");
+    add_members(document, document.GetAllocator(), "concepts", JsonValue(rapidjson::kArrayType), "rules", list);
     validate(document, "vocabulary", where);
     std::vector<InferenceRule> rules;
-    for (rapidjson::SizeType i = 0; i < list.Size(); ++i)
-        rules.push_back(inference_rule_of(list[i], where, "/rules/" + to_string(i)));
+    for (const auto& rule : list.GetArray()) rules.push_back(inference_rule_of(rule, where, "/rules/" + to_string(rules.size())));
     return rules;
 }
 
 Vocabulary vocabulary_from_json(const JsonValue& document, const std::string& where) {
-    if (const JsonValue* format = find_member(document, "format");
-        format != nullptr && format->IsString() && text_of(*format) != "ostraka-vocabulary")
-        fail_input(where, "at /format: the format is '" + text_of(*format) + "'", "give a vocabulary ('ostraka-vocabulary')");
+    check_format(document, "ostraka-vocabulary", where, "give a vocabulary ('ostraka-vocabulary')");
     validate(document, "vocabulary", where);
     Vocabulary vocabulary;
     vocabulary.uri = text_in(document, "uri");
     vocabulary.title = labels_of(document, "title");
     vocabulary.attributes = attributes_of(document);
-    const JsonValue& concepts = document["concepts"];
-    for (rapidjson::SizeType i = 0; i < concepts.Size(); ++i)
-        vocabulary.concepts.push_back(concept_of(concepts[i], where, "/concepts/" + to_string(i)));
-    if (const JsonValue* rules = find_member(document, "rules"))
-        for (rapidjson::SizeType i = 0; i < rules->Size(); ++i)
-            vocabulary.rules.push_back(inference_rule_of((*rules)[i], where, "/rules/" + to_string(i)));
+    for (const auto& entry : list_in(document, "concepts"))
+        vocabulary.concepts.push_back(concept_of(entry, where, "/concepts/" + to_string(vocabulary.concepts.size())));
+    for (const auto& rule : list_in(document, "rules"))
+        vocabulary.rules.push_back(inference_rule_of(rule, where, "/rules/" + to_string(vocabulary.rules.size())));
     vocabulary.others = statements_of(document, where, "");
     if (vocabulary.uri == skos::default_scheme) vocabulary.uri.clear();
     for (Concept& entry : vocabulary.concepts)
-        if (entry.uri == skos::namespace_of(vocabulary.uri) + skos::percent_encoded(entry.id)) entry.uri.clear();
+        if (entry.uri == skos::namespace_of(vocabulary.uri) + percent_encoded(entry.id)) entry.uri.clear();
     check_vocabulary(vocabulary, where);
     return vocabulary;
 }

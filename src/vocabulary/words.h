@@ -1,17 +1,38 @@
 // Texts and numbers of rules and vocabularies, as messages show them.
 #pragma once
 
-#include "ostraka/core/json.h"
 #include "ostraka/core/text.h"
+#include "ostraka/vocabulary/text_match.h"
+#include "ostraka/vocabulary/vocabulary.h"
 
-#include <string>
+#include <algorithm>
 
 namespace ostraka::detail {
 
-inline std::string text_of(const JsonValue& value) { return {value.GetString(), value.GetStringLength()}; }
+/// A name or a list of them in a member.
+inline std::vector<std::string> names_in(const JsonValue& object, const char* member) {
+    const JsonValue* value = find_member(object, member);
+    if (value != nullptr && value->IsString()) return {ostraka::text_of(*value)};
+    std::vector<std::string> names;
+    for (const auto& name : list_in(object, member)) names.push_back(ostraka::text_of(name));
+    return names;
+}
 
 inline std::string text_of(double value) { return digits(value, 9); }
 
 inline std::string in_quotes(const std::string& text) { return "'" + text + "'"; }
+
+inline std::string whose(const Annotation& annotation) {
+    return in_quotes(annotation.tag) + " (id " + std::to_string(annotation.id) + ")";
+}
+
+/// Is a word one of several, or by `allowed`, which may be none, another name of the same term?
+inline bool is_one_of(const std::string& stated, const std::vector<std::string>& words, const AllowedAttribute* allowed) {
+    return std::any_of(words.begin(), words.end(), [&](const std::string& word) {
+        if (folded(word) == folded(stated)) return true;
+        const Term* term = allowed == nullptr ? nullptr : term_of(*allowed, word);
+        return term != nullptr && term == term_of(*allowed, stated);
+    });
+}
 
 }  // namespace ostraka::detail

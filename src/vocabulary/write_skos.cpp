@@ -2,7 +2,6 @@
 #include "rdf.h"
 #include "skos_terms.h"
 
-#include "ostraka/core/error.h"
 #include "ostraka/vocabulary/skos.h"
 
 #include <charconv>
@@ -34,8 +33,7 @@ public:
                 {Kind::text, to_text(vocabulary_to_json(vocabulary)["rules"]), {}, skos::rdf + "JSON"});
         std::map<std::string, RdfTerm> terms;
         for (const Concept& entry : vocabulary.concepts)
-            terms[entry.id] =
-                uri(entry.uri.empty() ? skos::namespace_of(vocabulary.uri) + skos::percent_encoded(entry.id) : entry.uri);
+            terms[entry.id] = uri(entry.uri.empty() ? skos::namespace_of(vocabulary.uri) + percent_encoded(entry.id) : entry.uri);
         for (std::size_t i = 0; i < vocabulary.concepts.size(); ++i) {
             const Concept& entry = vocabulary.concepts[i];
             const RdfTerm& term = terms.at(entry.id);
@@ -111,8 +109,7 @@ std::string vocabulary_to_skos(const Vocabulary& vocabulary, bool rdf_xml, const
 }
 
 void write_skos(const Path& file, const Vocabulary& vocabulary) {
-    const std::string ending = extension(file);
-    write_file(file, vocabulary_to_skos(vocabulary, ending == ".rdf" || ending == ".owl" || ending == ".xml", file.string()));
+    write_file(file, vocabulary_to_skos(vocabulary, skos::is_rdf_xml(file), file.string()));
 }
 
 }  // namespace ostraka

@@ -108,8 +108,18 @@ std::vector<Index> touched_vertices(const Mesh& mesh, const Annotation& annotati
 /// The vertices that a measure names: its points and those of its repeats.
 std::vector<Index> pins_of(const Measure& measure);
 
+/// What measures and descriptors have in common; nothing of a word.
+struct Figures {
+    std::vector<double> values;  ///< of a measure: one, or none
+    std::string unit;
+    bool stale = false;
+};
+Figures figures_of(const Attribute& attribute);
+
 /// One flag per face of a region.
 std::vector<bool> face_flags(const Mesh& mesh, const std::vector<Index>& faces);
+/// Of faces, in their order.
+double area_of(const Mesh& mesh, const std::vector<Index>& faces);
 /// The faces whose flag is set, ascending.
 std::vector<Index> flagged(const std::vector<bool>& flags);
 

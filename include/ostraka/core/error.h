@@ -32,6 +32,7 @@ private:
 
 /// Shorthands, so that a check stays on one line.
 [[noreturn]] void fail_input(const std::string& where, const std::string& what, const std::string& remedy = {});
+[[noreturn]] void fail_work(const std::string& where, const std::string& what, const std::string& remedy = {});
 [[noreturn]] void fail_usage(const std::string& what, const std::string& remedy = {});
 
 }  // namespace ostraka

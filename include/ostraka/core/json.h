@@ -5,6 +5,8 @@
 
 #include <rapidjson/document.h>
 
+#include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -22,6 +24,8 @@ Json read_json(const Path& file);
 /// members in the order of the document, a newline at the end. Refuses NaN and infinities (Error, failure).
 std::string to_text(const JsonValue& value);
 void write_json(const Path& file, const JsonValue& value);
+/// On one line, without blanks between the values.
+std::string to_compact_text(const JsonValue& value);
 
 /// Checks `value` against the schema `doc/schema/<name>.schema.json` (built into the library). Error (input) names
 /// the JSON pointer and what was expected. Throws std::logic_error for an unknown schema name.
@@ -35,11 +39,23 @@ JsonValue json_string(std::string_view text, JsonAllocator& allocator);
 void add_member(JsonValue& object, std::string_view name, JsonValue value, JsonAllocator& allocator);
 void add_member(JsonValue& object, std::string_view name, std::string_view text, JsonAllocator& allocator);
 
-/// The number in a member, or another where there is none.
-double number_or(const JsonValue& object, std::string_view name, double otherwise);
-
 /// Member or nullptr.
 const JsonValue* find_member(const JsonValue& object, std::string_view name);
+
+/// What stands in a member, of a number that which it must be. Where there is no such member: nothing, the other number, an empty
+/// text (also where it is no text), false, an empty list (also where it is no list).
+std::optional<double> number_in(const JsonValue& object, std::string_view name);
+double number_or(const JsonValue& object, std::string_view name, double otherwise);
+std::string text_in(const JsonValue& object, std::string_view name);
+bool flag_in(const JsonValue& object, std::string_view name);
+JsonValue::ConstArray list_in(const JsonValue& object, std::string_view name);
+
+/// The text of a value that is one, and the numbers of a list of three.
+std::string text_of(const JsonValue& value);
+std::array<double, 3> triple_of(const JsonValue& list);
+
+/// Throws Error (input) with `remedy` where a document says that it is of another format; it need not say one.
+void check_format(const JsonValue& document, const std::string& format, const std::string& where, const std::string& remedy);
 
 }  // namespace ostraka
 

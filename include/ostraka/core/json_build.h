@@ -22,16 +22,41 @@ JsonValue json_value(T&& value, JsonAllocator& allocator) {
     else if constexpr (requires { value.has_value(); }) return value ? json_value(*value, allocator) : JsonValue();
     else {
         JsonValue list(rapidjson::kArrayType);
+        if constexpr (requires { value.size(); }) list.Reserve(static_cast<rapidjson::SizeType>(value.size()), allocator);
         for (const auto& one : value) list.PushBack(json_value(one, allocator), allocator);
         return list;
     }
 }
+/// The list of `of(element)` for each element.
+template <class Elements, class Of>
+JsonValue json_list(const Elements& elements, JsonAllocator& allocator, Of&& of) {
+    JsonValue list(rapidjson::kArrayType);
+    for (const auto& element : elements) list.PushBack(json_value(of(element), allocator), allocator);
+    return list;
+}
+/// [value]
+JsonValue json_list_of(JsonValue value, JsonAllocator& allocator);
+/// A whole number below 1e9 without a decimal point, as a person writes it.
+JsonValue json_number(double value);
 /// Adds names and values in turn.
 template <class Value, class... Rest>
 void add_members(JsonValue& object, JsonAllocator& allocator, std::string_view name, Value&& value, Rest&&... rest) {
     add_member(object, name, json_value(std::forward<Value>(value), allocator), allocator);
     if constexpr (sizeof...(rest) > 0) add_members(object, allocator, std::forward<Rest>(rest)...);
 }
+/// Adds names and values in turn but for values that say nothing: empty texts and lists, none where there may be one, false.
+template <class Value, class... Rest>
+void add_given(JsonValue& object, JsonAllocator& allocator, std::string_view name, Value&& value, Rest&&... rest) {
+    bool given = false;
+    if constexpr (std::derived_from<std::remove_cvref_t<Value>, JsonValue>)
+        given = value.IsArray() ? !value.Empty() : value.MemberCount() > 0;
+    else if constexpr (requires { value.empty(); }) given = !value.empty();
+    else given = static_cast<bool>(value);
+    if (given) add_members(object, allocator, name, std::forward<Value>(value));
+    if constexpr (sizeof...(rest) > 0) add_given(object, allocator, std::forward<Rest>(rest)...);
+}
+/// Copies those members that the object has.
+void copy_members(JsonValue& object, JsonAllocator& allocator, const JsonValue& from, std::initializer_list<const char*> names);
 /// {name: value, ...} of names and values in turn.
 template <class... Members>
 JsonValue json_object(JsonAllocator& allocator, Members&&... members) {

@@ -73,6 +73,9 @@ struct Relationship {
     RelationParameters parameters;
 };
 
+/// As geometry tells it.
+Relationship extracted_relationship(GeometricRelation kind, int id, std::vector<int> annotations);
+
 struct RelationGraph {
     std::vector<Relationship> relationships;
     Json provenance;  ///< as read; null if none

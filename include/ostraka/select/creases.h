@@ -49,7 +49,4 @@ std::vector<Crease> find_creases(const Mesh& mesh, const CreaseOptions& options 
 /// mesh's coordinates, "" if unknown.
 AnnotationSet annotate_creases(const std::vector<Crease>& creases, bool regions, const std::string& unit = {});
 
-/// The response of every vertex, a number without unit.
-std::vector<double> crease_response(const Mesh& mesh, const CreaseOptions& options = {});
-
 }  // namespace ostraka

@@ -19,6 +19,12 @@ std::vector<std::string> near_misses(const std::string& text, const std::vector<
 /// ": did you mean 'a', 'b' or 'c'?" or nothing.
 std::string did_you_mean(const std::vector<std::string>& suggestions);
 
+/// "'a', 'b' or 'c'"
+std::string alternatives(const std::vector<std::string>& list);
+
+/// What stands before the blank and the number at the end of a folded text, or the text.
+std::string without_number(const std::string& folded_text);
+
 /// The value in another unit: lengths (um, mm, cm, dm, m, km, in, ft), their squares, cubes and reciprocals ("mm^2", "1/mm",
 /// "1/mm^2"), angles (deg, rad); nothing where the units are not of one kind.
 std::optional<double> converted(double value, const std::string& from, const std::string& to);
