@@ -2,11 +2,9 @@
 #pragma once
 
 #include "ostraka/fracture/fragment.h"
-#include "ostraka/geom/point_tree.h"
 
 #include <Eigen/Geometry>
 
-#include <memory>
 #include <vector>
 
 namespace ostraka {

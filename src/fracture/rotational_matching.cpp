@@ -6,8 +6,6 @@
 
 #include "ostraka/core/disjoint_sets.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
-#include "ostraka/core/text.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/stats/summary.h"
 

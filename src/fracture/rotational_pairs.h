@@ -5,8 +5,6 @@
 #include "ostraka/fracture/rotational_matching.h"
 #include "rotation_map.h"
 
-#include <array>
-
 namespace ostraka {
 
 /// A sherd with the vessel's axis as the vertical one through the origin.

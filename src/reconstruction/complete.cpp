@@ -5,7 +5,6 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
-#include "ostraka/geom/eigen.h"
 #include "ostraka/geom/surface_search.h"
 
 #include <algorithm>

@@ -4,6 +4,7 @@
 #include "reconstruction_verdict.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/stopwatch.h"
 #include "ostraka/core/text.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/io/diagnose.h"
@@ -11,7 +12,6 @@
 #include <CGAL/boost/graph/helpers.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 namespace ostraka {
@@ -160,9 +160,8 @@ public:
 private:
     template <class Work>
     void timed(const char* phase, Work&& work) {
-        const auto begin = std::chrono::steady_clock::now();
+        const AddedSeconds watch(result_.seconds[phase]);
         work();
-        result_.seconds[phase] += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     }
 
     void place() {

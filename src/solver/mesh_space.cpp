@@ -3,9 +3,9 @@
 
 #include "constraint_rows.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/core/stopwatch.h"
 
 #include <algorithm>
-#include <chrono>
 #include <map>
 #include <span>
 
@@ -19,10 +19,6 @@ using solver::RowMatrix;
 double diagonal_of(const Points& points) {
     if (points.cols() == 0) return 0;
     return (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).norm();
-}
-
-double seconds_since(std::chrono::steady_clock::time_point begin) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
 /// Below this the matrix counts as singular (see SparseCholesky::reciprocal_condition).
@@ -101,9 +97,9 @@ void MeshSpaceSolver::State::renew_weights(std::span<const std::unique_ptr<Const
 bool MeshSpaceSolver::State::factorise() {
     LowerTriangle matrix = solver::normal_matrix(unknowns.rows, columns, row_weight);
     if (!has_pattern) {
-        const auto begin = std::chrono::steady_clock::now();
+        const Stopwatch watch;
         cholesky.analyse(matrix);
-        symbolic_seconds = seconds_since(begin);
+        symbolic_seconds = watch.seconds();
         has_pattern = true;
     }
     double sum = 0;
@@ -232,7 +228,7 @@ MeshSpaceSolver::~MeshSpaceSolver() = default;
 
 void MeshSpaceSolver::initialize() {
     State& s = *state_;
-    const auto begin = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     if (s.has_factor && !s.updates_current) {
         s.has_factor = s.update(constraints_);
         s.updates_current = true;
@@ -258,7 +254,7 @@ void MeshSpaceSolver::initialize() {
     for (const double w : s.row_weight) total_weight_ += w;
     setup_.updated_rows = static_cast<int>(s.updated_rows.size());
     setup_.times.symbolic += s.symbolic_seconds;
-    setup_.times.factor += seconds_since(begin) - s.symbolic_seconds;
+    setup_.times.factor += watch.seconds() - s.symbolic_seconds;
     s.symbolic_seconds = 0;
 }
 
