@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ostraka/fracture/fragment.h"
+#include "ostraka/geom/point_tree.h"
 
 #include <Eigen/Geometry>
 

@@ -407,8 +407,7 @@ struct TemplateFitter::State {
     /// Levels through the cage; gives the first one that is left for the template's vertices.
     int fit_cage(const MatchSearch& search, const NonRigidOptions& options, Fitter& exact, NonRigidFit& fit) {
         if (cage == nullptr) fail_usage("the fit is to go through a cage, and there is none", "give the cage of the template");
-        Points at_rest(3, static_cast<Eigen::Index>(cage->cage.number_of_vertices()));
-        for (const Vertex v : cage->cage.vertices()) at_rest.col(static_cast<Eigen::Index>(v)) = eigen(cage->cage.point(v));
+        const Points at_rest = columns_of(cage->cage);
         Fitter through = smooth_fitter(search, options);
         through.go_through(weights(), at_rest);
         const int level = options.space == NonRigidOptions::Space::both ? std::max(1, options.levels - 1) : options.levels;

@@ -32,8 +32,7 @@ std::string PoseSearches::key_of(const Fragment& fragment, double min_scale, dou
 }
 
 std::optional<PoseSearchResult> PoseSearches::find(const Fragment& fragment, double min_scale, double max_scale) {
-    std::vector<bool> counts(fragment.facets.size());
-    for (std::size_t f = 0; f < counts.size(); ++f) counts[f] = fragment.facets[f] != Facet::fracture;
+    const std::vector<bool> counts = not_broken(fragment.facets);
     if (!counts.empty() && std::find(counts.begin(), counts.end(), true) == counts.end()) return {};
     const std::string key = key_of(fragment, min_scale, max_scale);
     if (const auto found = stored_.find(key); found != stored_.end()) {

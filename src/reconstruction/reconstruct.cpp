@@ -18,12 +18,6 @@ namespace ostraka {
 
 namespace {
 
-Mesh scaled_by(const Mesh& mesh, double scale) {
-    Motion motion;
-    motion.scale = scale;
-    return moved(mesh, motion);
-}
-
 /// Of a closed mesh: its volume is negative.
 bool inside_out(const Mesh& mesh) {
     if (mesh.number_of_faces() == 0 || !CGAL::is_closed(mesh)) return false;
@@ -227,8 +221,7 @@ private:
             FragmentPlacement& placement = result_.placement.fragments[k];
             const Fragment& fragment = *fragments_[k];
             if (!placement.problem.empty()) continue;
-            std::vector<bool> counts(fragment.facets.size());
-            for (std::size_t f = 0; f < counts.size(); ++f) counts[f] = fragment.facets[f] != Facet::fracture;
+            const std::vector<bool> counts = not_broken(fragment.facets);
             if (!counts.empty() && std::find(counts.begin(), counts.end(), true) == counts.end()) continue;
             std::vector<Anchor> anchors;
             const std::vector<LandmarkPair>& pairs = pairs_[k];

@@ -23,8 +23,8 @@ struct ProfileImage {
 
     void add(std::size_t row, double from, double to);
     void clear(std::size_t row);
-    [[nodiscard]] bool reaches_axis_below() const;
-    [[nodiscard]] bool reaches_axis_above() const;
+    /// In a row from `first` to before `end`.
+    [[nodiscard]] bool reaches_axis(std::size_t first, std::size_t end) const;
     /// Rows without wall between others get the wall between those, straight.
     void bridge(std::vector<std::string>* notes);
     /// Gaussian of a standard deviation in cells, mirrored at the axis.

@@ -86,8 +86,7 @@ void MeshSpaceSolver::State::prepare(std::span<const std::unique_ptr<Constraint>
 void MeshSpaceSolver::State::renew_weights(std::span<const std::unique_ptr<Constraint>> constraints) {
     row_weight.assign(unknowns.rows.rows(), 0.0);
     for (std::size_t c = 0; c < constraints.size(); ++c)
-        std::fill(row_weight.begin() + static_cast<std::ptrdiff_t>(unknowns.first_row[c]),
-                  row_weight.begin() + static_cast<std::ptrdiff_t>(unknowns.first_row[c + 1]), constraints[c]->weight());
+        std::fill_n(row_weight.data() + unknowns.first_row[c], unknowns.rows_of(c), constraints[c]->weight());
     floating = solver::floating_parts(unknowns, row_weight);
     idle.assign(static_cast<std::size_t>(unknowns.count), 0);
     for (const int i : floating.idle) idle[i] = 1;
@@ -129,8 +128,7 @@ bool MeshSpaceSolver::State::update(std::span<const std::unique_ptr<Constraint>>
     std::vector<double> change;
     for (const auto& [c, before] : factored_weight) {
         const Constraint& constraint = *constraints[c];
-        std::fill(row_weight.begin() + static_cast<std::ptrdiff_t>(unknowns.first_row[c]),
-                  row_weight.begin() + static_cast<std::ptrdiff_t>(unknowns.first_row[c + 1]), constraint.weight());
+        std::fill_n(row_weight.data() + unknowns.first_row[c], unknowns.rows_of(c), constraint.weight());
         if (constraint.weight() == before) continue;
         // What holds parts in place may have changed, too.
         if (constraint.weight() == 0 || before == 0 || static_cast<std::size_t>(constraint.map().rows) > max_rows) return false;
@@ -190,9 +188,7 @@ void MeshSpaceSolver::State::renew_constants(std::span<const std::unique_ptr<Con
     // The rows that move have no say here.
     std::vector<char> constant(unknowns.rows.rows(), 0);
     for (std::size_t c = 0; c < constraints.size(); ++c)
-        if (constraints[c]->constant())
-            std::fill(constant.begin() + static_cast<std::ptrdiff_t>(unknowns.first_row[c]),
-                      constant.begin() + static_cast<std::ptrdiff_t>(unknowns.first_row[c + 1]), 1);
+        if (constraints[c]->constant()) std::fill_n(constant.data() + unknowns.first_row[c], unknowns.rows_of(c), 1);
     parallel_for(static_cast<std::size_t>(unknowns.count), [&](std::size_t i) {
         Eigen::Vector3d sum = Eigen::Vector3d::Zero();
         for (std::size_t k = columns.begin[i]; k < columns.begin[i + 1]; ++k)
