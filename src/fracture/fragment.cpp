@@ -1,6 +1,7 @@
 #include "ostraka/fracture/fragment.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/words.h"
 #include "ostraka/geom/eigen.h"
 
 #include <algorithm>
@@ -8,10 +9,7 @@
 
 namespace ostraka {
 
-std::string to_string(Facet facet) {
-    static constexpr const char* words[]{"outer", "inner", "fracture"};
-    return words[static_cast<std::size_t>(facet)];
-}
+std::string to_string(Facet facet) { return word_for(facet, {"outer", "inner", "fracture"}); }
 
 std::optional<Facet> named_facet(const Annotation& annotation) {
     if (annotation.type != AnnotationType::region) return std::nullopt;

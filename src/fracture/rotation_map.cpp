@@ -1,4 +1,4 @@
-#include "rotation_map.h"
+#include "rotations.h"
 
 #include "ostraka/core/angles.h"
 #include "ostraka/geom/eigen.h"

@@ -2,7 +2,7 @@
 #include "ostraka/core/angles.h"
 #include "ostraka/core/dense.h"
 
-#include "rotational_assembly.h"
+#include "rotations.h"
 
 #include "ostraka/core/disjoint_sets.h"
 #include "ostraka/core/error.h"

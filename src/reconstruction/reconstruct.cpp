@@ -27,14 +27,6 @@ bool inside_out(const Mesh& mesh) {
     return volume < 0;
 }
 
-bool same(const Motion& a, const Motion& b) {
-    return a.rotation == b.rotation && a.translation == b.translation && a.scale == b.scale;
-}
-bool same(const std::vector<Anchor>& a, const std::vector<Anchor>& b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                      [](const Anchor& x, const Anchor& y) { return x.of_part == y.of_part && x.of_whole == y.of_whole; });
-}
-
 /// The share of an annotation's vertices that were observed.
 double observed_share(const Mesh& mesh, const AnnotationSet& set, int id, const std::vector<bool>& seen) {
     const Annotation* one = set.find(id);
@@ -230,8 +222,7 @@ private:
                     anchors.push_back({pairs[i].on_fragment, on_scaled(pairs[i])});
             std::optional<KnownFragment::Refined>& known = prepared_.fragments[k].refined;
             const double scale = result_.placement.scale;
-            if (!known || shaped_ || known->scale != scale || !same(known->start, placement.pose) ||
-                !same(known->anchors, anchors)) {
+            if (!known || shaped_ || known->scale != scale || known->start != placement.pose || known->anchors != anchors) {
                 if (!whole) whole.emplace(scaled_);
                 result_.alignment[k] =
                     align_part(fragment.mesh, counts, *whole, placement.pose, anchors, prepared_.options.alignment);
@@ -276,7 +267,7 @@ private:
             if (!placement.problem.empty()) continue;
             const Fragment& fragment = *fragments_[k];
             std::optional<KnownFragment::Matched>& known = prepared_.fragments[k].matched;
-            if (!known || shaped_ || known->scale != result_.placement.scale || !same(known->pose, placement.pose)) {
+            if (!known || shaped_ || known->scale != result_.placement.scale || known->pose != placement.pose) {
                 result_.annotations[k] =
                     match_annotations(scaled_, prepared_.set, fragment.mesh, fragment.annotations, placement.pose,
                                       prepared_.fragments[k].stated, prepared_.options.annotations);

@@ -1,4 +1,4 @@
-#include "profile_outline.h"
+#include "stages.h"
 
 #include "ostraka/core/text.h"
 

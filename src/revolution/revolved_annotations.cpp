@@ -1,4 +1,4 @@
-#include "revolved_annotations.h"
+#include "stages.h"
 
 #include <algorithm>
 #include <functional>

@@ -1,10 +1,7 @@
 #include "ostraka/revolution/surface_of_revolution.h"
 #include "ostraka/core/angles.h"
 
-#include "joined_sherds.h"
-#include "profile_sweep.h"
-#include "revolved_annotations.h"
-#include "wall_section.h"
+#include "stages.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/geom/eigen.h"

@@ -2,6 +2,7 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/text.h"
+#include "ostraka/core/words.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,10 +12,7 @@
 
 namespace ostraka {
 
-std::string to_string(Membership membership) {
-    static constexpr const char* words[]{"member", "other", "undecided"};
-    return words[static_cast<std::size_t>(membership)];
-}
+std::string to_string(Membership membership) { return word_for(membership, {"member", "other", "undecided"}); }
 
 namespace {
 

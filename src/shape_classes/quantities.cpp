@@ -1,6 +1,7 @@
 #include "ostraka/shape_classes/quantities.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/words.h"
 #include "ostraka/geom/with_points.h"
 #include "ostraka/measure/measure.h"
 #include "ostraka/relation/check.h"
@@ -12,8 +13,7 @@
 namespace ostraka {
 
 std::string to_string(QuantityKind kind) {
-    static constexpr const char* words[]{"proportion", "constraint", "relation", "part", "attribute", "geometry"};
-    return words[static_cast<std::size_t>(kind)];
+    return word_for(kind, {"proportion", "constraint", "relation", "part", "attribute", "geometry"});
 }
 
 QuantityKind quantity_kind(const std::string& word) {

@@ -3,6 +3,7 @@
 #include "anderson.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/stopwatch.h"
+#include "ostraka/core/words.h"
 
 #include <cmath>
 #include <sstream>
@@ -10,9 +11,8 @@
 namespace ostraka {
 
 std::string_view describe(StopReason reason) {
-    static constexpr const char* words[]{"no point moves any more", "the residual wanted is reached",
-                                         "the iterations allowed are used up", "the objective does not fall any further"};
-    return words[static_cast<std::size_t>(reason)];
+    return word_for(reason, {"no point moves any more", "the residual wanted is reached", "the iterations allowed are used up",
+                             "the objective does not fall any further"});
 }
 
 std::string SolveSummary::text() const {
