@@ -6,6 +6,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/words.h"
+#include "ostraka/geom/submesh.h"
 #include "ostraka/geom/surface_search.h"
 
 #include <algorithm>
