@@ -12,11 +12,6 @@ using Eigen::Vector3d;
 
 namespace {
 
-std::vector<Point> points_of(const std::vector<Vector3d>& places) {
-    std::vector<Point> points;
-    for (const Vector3d& p : places) points.push_back(point_of(p));
-    return points;
-}
 std::vector<Point> places_of(const std::vector<RimFrame>& frames) {
     std::vector<Point> points;
     for (const RimFrame& frame : frames) points.push_back(point_of(frame.place));
@@ -40,16 +35,18 @@ BreakAligner::BreakAligner(const Mesh& a, const BreakSide& side_a, const BreakSi
       whole_(a),
       surface_(a.number_of_faces() > 0 ? std::make_unique<SurfaceSearch>(whole_) : nullptr) {}
 
-const RimFrame* BreakAligner::continued_by(const RimFrame& frame, const Motion& pose, double search_radius,
-                                           double& squared) const {
-    const PointTree::Near near = frames_.nearest(point_of(pose(frame.place)), 1.5 * search_radius);
-    if (near.index == no_index) return nullptr;
-    const RimFrame& other = a_.frames[near.index];
-    if (other.facet != frame.facet || other.side.dot(pose.rotation * frame.side) < continued ||
-        other.fracture.dot(pose.rotation * frame.fracture) > -min_facing)
-        return nullptr;
-    squared = near.squared;
-    return &other;
+template <class Visit>
+void BreakAligner::for_each_continued(const Motion& pose, double search_radius, Visit&& visit) const {
+    for (const RimFrame& frame : b_.frames) {
+        const Vector3d p = pose(frame.place);
+        const PointTree::Near near = frames_.nearest(point_of(p), 1.5 * search_radius);
+        if (near.index == no_index) continue;
+        const RimFrame& other = a_.frames[near.index];
+        if (other.facet != frame.facet || other.side.dot(pose.rotation * frame.side) < continued ||
+            other.fracture.dot(pose.rotation * frame.fracture) > -min_facing)
+            continue;
+        visit(p, other, near.squared);
+    }
 }
 
 Motion BreakAligner::align(const Motion& start, std::size_t samples, int steps, double hold) const {
@@ -81,17 +78,12 @@ Motion BreakAligner::align(const Motion& start, std::size_t samples, int steps, 
         }
         std::vector<Plane> rims;
         double rim = 0;
-        for (const RimFrame& frame : b_.frames) {
-            const Vector3d p = pose(frame.place);
-            double squared = 0;
-            const RimFrame* found = continued_by(frame, pose, search_radius, squared);
-            if (found == nullptr) continue;
-            const RimFrame& other = *found;
+        for_each_continued(pose, search_radius, [&](const Vector3d& p, const RimFrame& other, double squared) {
             const double weight = std::pow(1 - squared / (2.25 * search_radius * search_radius), 2);
             rims.push_back({p, other.side, other.side.dot(other.place - p), weight});
             rims.push_back({p, other.fracture, other.fracture.dot(other.place - p), weight});
             rim += weight;
-        }
+        });
         if (planes.size() + rims.size() < 6) break;
         const double per_rim = rim > 0 ? edges_ * (all > 0 ? all : 1) / rim * 0.5 : 0;
         for (Plane& plane : rims) {
@@ -166,16 +158,11 @@ PairCandidate BreakAligner::judge(const Motion& pose, std::size_t samples, doubl
     over(b_.intact, [&](const Vector3d& p, const Vector3d&, double area) { penetrates(p, area); });
     result.residual = result.contact > 0 ? std::sqrt(square / result.contact) : 0;
     double rim = 0;
-    for (const RimFrame& frame : b_.frames) {
-        const Vector3d p = pose(frame.place);
-        double squared = 0;
-        const RimFrame* found = continued_by(frame, pose, last_search_radius_, squared);
-        if (found == nullptr) continue;
-        const RimFrame& other = *found;
+    for_each_continued(pose, last_search_radius_, [&](const Vector3d& p, const RimFrame& other, double) {
         // Across the side's plane counts, along the rim does not.
         const double step = other.side.dot(p - other.place) / last_search_radius_;
         rim += std::max(0.0, 1 - step * step);
-    }
+    });
     result.rim = rim / static_cast<double>(b_.frames.size()) * b_.rim_length / shorter;
     result.contact /= smaller;
     result.penetration = inside / smaller;

@@ -22,9 +22,10 @@ public:
     [[nodiscard]] PairCandidate judge(const Motion& pose, std::size_t samples, double close) const;
 
 private:
-    /// The first's frame that a frame of the second, posed, continues: within 1.5 search radii, its square distance.
-    [[nodiscard]] const RimFrame* continued_by(const RimFrame& frame, const Motion& pose, double search_radius,
-                                               double& squared) const;
+    /// Calls visit(place, frame, squared distance) for each frame of the second, posed, that continues one of the first
+    /// within 1.5 search radii: where it is, and that one.
+    template <class Visit>
+    void for_each_continued(const Motion& pose, double search_radius, Visit&& visit) const;
 
     const BreakSide &a_, &b_;
     double search_radius_, last_search_radius_, edges_;

@@ -4,7 +4,9 @@
 #include "break_align.h"
 #include "break_side.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/json_build.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/registration/pose_json.h"
 
 #include <algorithm>
 #include <cmath>
@@ -182,6 +184,20 @@ BreakPair pair_breaks(const Fragment& a, const Fragment& b, const PairOptions& o
             result.candidates.push_back(one);
     }
     decide(result, options);
+    return result;
+}
+
+JsonValue pair_to_json(const BreakPair& pair, const std::string& a, const std::string& b, JsonAllocator& allocator) {
+    JsonValue result = json_object(allocator, "format", "ostraka-pair", "version", 1, "first", a, "second", b, "verdict",
+                                   pair.decided() ? "together" : "undecided");
+    if (!pair.decided()) add_members(result, allocator, "because", pair.undecided);
+    const auto of_candidate = [&](const PairCandidate& one) {
+        return json_object(allocator, "pose", pose_to_json(one.pose, allocator), "score", one.score, "contact", one.contact,
+                           "rim", one.rim, "residual", one.residual, "penetration", one.penetration, "depth", one.depth);
+    };
+    add_members(result, allocator, "confidence", pair.confidence, "size", pair.size, "fractureOfFirst", pair.fracture_a,
+                "fractureOfSecond", pair.fracture_b, "tried", pair.tried, "candidates",
+                json_list(pair.candidates, allocator, of_candidate));
     return result;
 }
 

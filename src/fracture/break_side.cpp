@@ -57,11 +57,10 @@ BreakSide::BreakSide(const Fragment& fragment, double radius, int frame_count, i
     const Mesh& mesh = fragment.mesh;
     const std::string where = "fragment " + fragment.name;
     const std::vector<Vector> normals = filtered_normals(mesh, 0.01 * fragment_size(mesh));
-    std::vector<bool> broken(mesh.number_of_faces(), false), whole(broken.size(), true);
-    for (std::size_t f = 0; f < fragment.facets.size(); ++f) {
-        broken[f] = fragment.facets[f] == Facet::fracture;
-        whole[f] = !broken[f];
-    }
+    std::vector<bool> whole = not_broken(fragment.facets);
+    whole.resize(mesh.number_of_faces(), true);
+    std::vector<bool> broken = whole;
+    broken.flip();
     fracture = sample_faces(mesh, normals, broken, sample_count);
     if (fracture.places.empty())
         fail_input(where, "has no fracture that could be laid against another one",
@@ -146,11 +145,9 @@ BreakSide BreakSide::moved(const Motion& motion) const {
 
 SampleGrid::SampleGrid(const std::vector<Vector3d>& places, double margin) {
     Vector3d low = places.front(), high = low;
-    std::vector<Point> points;
     for (const Vector3d& p : places) {
         low = low.cwiseMin(p);
         high = high.cwiseMax(p);
-        points.push_back(point_of(p));
     }
     low_ = low - Vector3d::Constant(margin);
     const Vector3d extent = high - low + Vector3d::Constant(2 * margin);
@@ -158,7 +155,7 @@ SampleGrid::SampleGrid(const std::vector<Vector3d>& places, double margin) {
     width_ = extent.maxCoeff() / cells;
     for (std::size_t k = 0; k < 3; ++k) count_[k] = static_cast<std::size_t>(extent[static_cast<Eigen::Index>(k)] / width_) + 1;
     nearest_.resize(count_[0] * count_[1] * count_[2]);
-    const PointTree tree(points);
+    const PointTree tree(points_of(places));
     const double far = 4 * extent.sum();
     parallel_for(
         count_[1] * count_[2],

@@ -103,29 +103,4 @@ Walls walls_under(const Mesh& mesh, const std::vector<Vector>& normals, std::siz
     return walls;
 }
 
-std::vector<std::size_t> pieces_of(const Mesh& mesh, const std::vector<std::size_t>& labels, std::size_t& count) {
-    constexpr auto none = static_cast<std::size_t>(-1);
-    std::vector<std::size_t> piece(labels.size(), none);
-    std::vector<Face> stack;
-    count = 0;
-    for (const Face first : mesh.faces()) {
-        if (piece[first] != none) continue;
-        stack.assign(1, first);
-        piece[first] = count;
-        while (!stack.empty()) {
-            const Face face = stack.back();
-            stack.pop_back();
-            Halfedge h = mesh.halfedge(face);
-            for (int k = 0; k < 3; ++k, h = mesh.next(h)) {
-                const Face other = mesh.face(mesh.opposite(h));
-                if (other == Mesh::null_face() || piece[other] != none || labels[other] != labels[face]) continue;
-                piece[other] = count;
-                stack.push_back(other);
-            }
-        }
-        ++count;
-    }
-    return piece;
-}
-
 }  // namespace ostraka

@@ -31,7 +31,4 @@ std::vector<std::size_t> min_labels(const Mesh& mesh, const std::vector<std::vec
 std::vector<std::size_t> convex_parts(const Mesh& mesh, const std::vector<double>& areas, const std::vector<double>& turns,
                                       double sharpest);
 
-/// Number of the piece of faces with one label, joined over edges, that each face is in; pieces by their lowest face.
-std::vector<std::size_t> pieces_of(const Mesh& mesh, const std::vector<std::size_t>& labels, std::size_t& count);
-
 }  // namespace ostraka

@@ -6,6 +6,7 @@
 #include "ostraka/core/dense.h"
 #include "ostraka/core/error.h"
 #include "ostraka/geom/eigen.h"
+#include "ostraka/geom/submesh.h"
 
 #include <algorithm>
 #include <cmath>
@@ -216,11 +217,12 @@ private:
     }
 
     void finish() {
-        std::size_t count = 0;
-        const std::vector<std::size_t> piece = pieces_of(mesh_, labels_, count);
-        result_.segments.resize(count);
+        const FacePieces pieces = face_pieces(
+            mesh_, [](Face) { return true; },
+            [&](Halfedge h) { return labels_[mesh_.face(h)] == labels_[mesh_.face(mesh_.opposite(h))]; });
+        result_.segments.resize(pieces.count);
         for (std::size_t f = 0; f < labels_.size(); ++f) {
-            FacetSegment& segment = result_.segments[piece[f]];
+            FacetSegment& segment = result_.segments[pieces.of_face[f]];
             segment.facet = static_cast<Facet>(labels_[f]);
             segment.faces.push_back(static_cast<Index>(f));
             segment.area += areas_[f];

@@ -1,6 +1,7 @@
 #include "ostraka/fracture/fragment.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/words.h"
 #include "ostraka/geom/eigen.h"
 
 #include <algorithm>
@@ -8,29 +9,31 @@
 
 namespace ostraka {
 
-std::string to_string(Facet facet) {
-    static constexpr const char* words[]{"outer", "inner", "fracture"};
-    return words[static_cast<std::size_t>(facet)];
+std::string to_string(Facet facet) { return word_for(facet, {"outer", "inner", "fracture"}); }
+
+std::optional<Facet> named_facet(const Annotation& annotation) {
+    if (annotation.type != AnnotationType::region) return std::nullopt;
+    std::string tag = annotation.tag;
+    std::transform(tag.begin(), tag.end(), tag.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    for (const Facet facet : {Facet::outer, Facet::inner, Facet::fracture})
+        if (tag == to_string(facet)) return facet;
+    return std::nullopt;
 }
 
 std::vector<Facet> facets_of(const Mesh& mesh, const AnnotationSet& set, Facet other) {
     std::vector<Facet> facets(mesh.number_of_faces(), other);
     std::vector<int> owner(facets.size(), -1);
     for (const Annotation& annotation : set.annotations) {
-        if (annotation.type != AnnotationType::region) continue;
-        std::string tag = annotation.tag;
-        std::transform(tag.begin(), tag.end(), tag.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-        for (const Facet facet : {Facet::outer, Facet::inner, Facet::fracture}) {
-            if (tag != to_string(facet)) continue;
-            for (const Index face : annotation.faces) {
-                if (owner[face] >= 0 && facets[face] != facet)
-                    fail_input("annotation " + std::to_string(annotation.id),
-                               "says of face " + std::to_string(face) + " that it is " + to_string(facet) + ", and annotation " +
-                                   std::to_string(owner[face]) + " that it is " + to_string(facets[face]),
-                               "take the face out of one of them");
-                facets[face] = facet;
-                owner[face] = annotation.id;
-            }
+        const std::optional<Facet> facet = named_facet(annotation);
+        if (!facet) continue;
+        for (const Index face : annotation.faces) {
+            if (owner[face] >= 0 && facets[face] != *facet)
+                fail_input("annotation " + std::to_string(annotation.id),
+                           "says of face " + std::to_string(face) + " that it is " + to_string(*facet) + ", and annotation " +
+                               std::to_string(owner[face]) + " that it is " + to_string(facets[face]),
+                           "take the face out of one of them");
+            facets[face] = *facet;
+            owner[face] = annotation.id;
         }
     }
     return facets;
@@ -40,6 +43,18 @@ Mesh moved(const Mesh& mesh, const Motion& motion) {
     Mesh result = mesh;
     for (const Vertex v : result.vertices()) result.point(v) = point_of(motion(eigen(mesh.point(v))));
     return result;
+}
+
+std::vector<bool> not_broken(const std::vector<Facet>& facets) {
+    std::vector<bool> marks(facets.size());
+    for (std::size_t f = 0; f < marks.size(); ++f) marks[f] = facets[f] != Facet::fracture;
+    return marks;
+}
+
+Mesh scaled_by(const Mesh& mesh, double scale) {
+    Motion motion;
+    motion.scale = scale;
+    return moved(mesh, motion);
 }
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-#include "rotation_map.h"
+#include "rotations.h"
 
 #include "ostraka/core/angles.h"
 #include "ostraka/geom/eigen.h"
@@ -23,16 +23,14 @@ RotationMap::RotationMap(ProfileCells& cells, const SurfaceSamples& surface, con
     : steps_(steps), area_(surface.area) {
     if (surface.places.empty()) return;
     each_ = surface.area / static_cast<double>(surface.places.size());
-    std::vector<Point> breaks;
-    for (const Vector3d& p : fracture) breaks.push_back(point_of(p));
-    const PointTree tree(breaks);
+    const PointTree tree(points_of(fracture));
     const double step = 2 * pi / steps;
     for (std::size_t i = 0; i < surface.places.size(); ++i) {
         const Vector3d& p = surface.places[i];
         const int row = cells.row(p, surface.normals[i], search_radius);
         if (row < 0) continue;
         const int column = static_cast<int>(std::lround(std::atan2(p.y(), p.x()) / step) + steps) % steps;
-        if (breaks.empty() || tree.nearest(point_of(p), margin).index == no_index) deep_.push_back({row, column});
+        if (fracture.empty() || tree.nearest(point_of(p), margin).index == no_index) deep_.push_back({row, column});
         if (covered_.size() <= static_cast<std::size_t>(row)) covered_.resize(static_cast<std::size_t>(row) + 1);
         auto& line = covered_[static_cast<std::size_t>(row)];
         if (line.empty()) line.assign(static_cast<std::size_t>(steps), false);

@@ -1,5 +1,5 @@
-#include "rotational_assembly.h"
 #include "ostraka/core/angles.h"
+#include "rotations.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,12 +2,10 @@
 #include "ostraka/core/angles.h"
 #include "ostraka/core/dense.h"
 
-#include "rotational_assembly.h"
+#include "rotations.h"
 
 #include "ostraka/core/disjoint_sets.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
-#include "ostraka/core/text.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/stats/summary.h"
 
@@ -35,10 +33,7 @@ public:
         meet_all();
         std::vector<bool> fixed;
         for (const SherdOnAxis& one : given_) fixed.push_back(one.fixed);
-        std::size_t root = 0;
-        for (std::size_t k = 0; k < given_.size(); ++k)
-            if (sherds_[k].map->area() > sherds_[root].map->area()) root = k;
-        assembly_ = assemble_rotations(*pairs_, fixed, root, options_.beam);
+        assembly_ = assemble_rotations(*pairs_, fixed, largest(), options_.beam);
         for (std::size_t k = 0; k < given_.size(); ++k) now_.push_back(rotated_by(assembly_.rotations[k]));
         join(fixed);
         put_aside(fixed);
@@ -193,11 +188,7 @@ private:
             if (note.empty()) note = "no turn about the axis is decided by its break";
             std::vector<bool> others(n, true);
             others[k] = false;
-            double here = 0, minimum = 0;
-            for (std::size_t q = 0; q < n; ++q)
-                if (q != k)
-                    here +=
-                        pairs_->of(q, k).shared_at(RotationPairs::between(q, k, assembly_.rotations[q], assembly_.rotations[k]));
+            double here = shared_area(k, assembly_.rotations), minimum = 0;
             const double rotation = least_shared_rotation(*pairs_, assembly_.rotations, others, k, minimum);
             const double little = 0.02 * sherds_[k].map->area();
             if (here > little && minimum < here) {
@@ -217,9 +208,7 @@ private:
     /// One sherd after the other comes to all that it is joined to, held to the template.
     void refine(const std::vector<bool>& fixed) {
         const std::size_t n = given_.size();
-        std::size_t still = 0;
-        for (std::size_t k = 0; k < n; ++k)
-            if (sherds_[k].map->area() > sherds_[still].map->area()) still = k;
+        const std::size_t still = largest();
         constexpr int sweeps = 4;
         for (int sweep = 0; sweep < sweeps; ++sweep)
             for (std::size_t k = 0; k < n; ++k) {
@@ -254,15 +243,25 @@ private:
             joint.rotation = 180 / pi * wrapped(rotation_about_axis(now_[b]) - rotation_about_axis(now_[a]));
             joint.contact = fit.contact, joint.rim = fit.rim, joint.residual = fit.residual, joint.score = fit.score;
         }
+        std::vector<double> rotations;
+        for (const Motion& motion : now_) rotations.push_back(rotation_about_axis(motion));
         for (std::size_t k = 0; k < n; ++k) {
-            double shared = 0;
-            for (std::size_t q = 0; q < n; ++q)
-                if (q != k)
-                    shared += pairs_->of(q, k).shared_at(
-                        RotationPairs::between(q, k, rotation_about_axis(now_[q]), rotation_about_axis(now_[k])));
             const double area = sherds_[k].map->area();
-            result_.overlap.push_back(area > 0 ? std::min(1.0, shared / area) : 0);
+            result_.overlap.push_back(area > 0 ? std::min(1.0, shared_area(k, rotations) / area) : 0);
         }
+    }
+
+    /// The first of those that cover most.
+    [[nodiscard]] std::size_t largest() const {
+        const auto smaller = [](const UprightSherd& a, const UprightSherd& b) { return a.map->area() < b.map->area(); };
+        return static_cast<std::size_t>(std::max_element(sherds_.begin(), sherds_.end(), smaller) - sherds_.begin());
+    }
+    /// Area of a sherd that the others share with it.
+    [[nodiscard]] double shared_area(std::size_t k, const std::vector<double>& rotations) const {
+        double area = 0;
+        for (std::size_t q = 0; q < given_.size(); ++q)
+            if (q != k) area += pairs_->of(q, k).shared_at(RotationPairs::between(q, k, rotations[q], rotations[k]));
+        return area;
     }
 
     const std::vector<SherdOnAxis>& given_;

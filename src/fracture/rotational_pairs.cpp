@@ -1,4 +1,4 @@
-#include "rotational_pairs.h"
+#include "rotations.h"
 
 #include "ostraka/core/angles.h"
 #include "ostraka/core/parallel.h"

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <queue>
 
 namespace ostraka {
@@ -20,51 +19,15 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 
 double distance(const Point& a, const Point& b) { return std::sqrt(CGAL::squared_distance(a, b)); }
 
-/// Lengths of the shortest edge paths from vertices that start with the given lengths, at most `limit`.
-std::vector<double> edge_distances(const Mesh& mesh, const std::vector<std::pair<Vertex, double>>& start, double limit) {
-    std::vector<double> lengths(mesh.number_of_vertices(), infinite);
-    using Entry = std::pair<double, Index>;
-    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
-    const auto meet = [&](Vertex v, double length) {
-        if (length > limit || length >= lengths[v]) return;
-        lengths[v] = length;
-        front.emplace(length, v);
-    };
-    for (const auto& [v, length] : start) meet(v, length);
-    while (!front.empty()) {
-        const auto [length, index] = front.top();
-        front.pop();
-        if (length > lengths[index] || mesh.is_isolated(Vertex(index))) continue;
-        for (const Halfedge h : mesh.halfedges_around_target(mesh.halfedge(Vertex(index))))
-            meet(mesh.source(h), length + distance(mesh.point(Vertex(index)), mesh.point(mesh.source(h))));
-    }
-    return lengths;
-}
-
+/// The faces that hold a node, which is one of this mesh.
 std::vector<Face> faces_at(const Mesh& mesh, const SurfaceNode& node) {
-    std::vector<Face> faces;
-    const auto range = [](const char* what, std::size_t index, std::size_t count) {
-        if (index >= count)
-            fail_usage(std::string("a place on ") + what + ' ' + std::to_string(index) + " of " + std::to_string(count),
-                       "was it taken on another mesh?");
-    };
-    switch (node.kind) {
-        case SurfaceNode::Kind::face:
-            range("face", node.element, mesh.number_of_faces());
-            faces.emplace_back(node.element);
-            break;
-        case SurfaceNode::Kind::edge:
-            range("edge", node.element, mesh.number_of_edges());
-            for (const Index side : {0U, 1U})
-                if (const Halfedge h = mesh.halfedge(Edge(node.element), side); !mesh.is_border(h)) faces.push_back(mesh.face(h));
-            break;
-        case SurfaceNode::Kind::vertex:
-            range("vertex", node.element, mesh.number_of_vertices());
-            if (!mesh.is_isolated(Vertex(node.element)))
-                for (const Face face : mesh.faces_around_target(mesh.halfedge(Vertex(node.element))))
-                    if (face != Mesh::null_face()) faces.push_back(face);
-    }
-    return faces;
+    const auto [what, count] = node.kind == SurfaceNode::Kind::face   ? std::pair("face", mesh.number_of_faces())
+                               : node.kind == SurfaceNode::Kind::edge ? std::pair("edge", mesh.number_of_edges())
+                                                                      : std::pair("vertex", mesh.number_of_vertices());
+    if (node.element >= count)
+        fail_usage(std::string("a place on ") + what + ' ' + std::to_string(node.element) + " of " + std::to_string(count),
+                   "was it taken on another mesh?");
+    return faces_of(mesh, node);
 }
 
 /// The vertices from which edge paths start, with the straight way to each.
@@ -100,6 +63,26 @@ double distance_to_face(const Mesh& mesh, Face face, const Point& p) {
 }
 
 }  // namespace
+
+std::vector<double> edge_distances(const Mesh& mesh, const std::vector<std::pair<Vertex, double>>& start, double limit) {
+    std::vector<double> lengths(mesh.number_of_vertices(), infinite);
+    using Entry = std::pair<double, Index>;
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
+    const auto meet = [&](Vertex v, double length) {
+        if (length > limit || length >= lengths[v]) return;
+        lengths[v] = length;
+        front.emplace(length, v);
+    };
+    for (const auto& [v, length] : start) meet(v, length);
+    while (!front.empty()) {
+        const auto [length, index] = front.top();
+        front.pop();
+        if (length > lengths[index] || mesh.is_isolated(Vertex(index))) continue;
+        for (const Halfedge h : mesh.halfedges_around_target(mesh.halfedge(Vertex(index))))
+            meet(mesh.source(h), length + distance(mesh.point(Vertex(index)), mesh.point(mesh.source(h))));
+    }
+    return lengths;
+}
 
 std::vector<double> geodesic_distances(const Mesh& mesh, const std::vector<Index>& sources, double limit) {
     if (sources.empty()) fail_usage("there is no vertex to measure distances from", "give one");

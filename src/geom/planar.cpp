@@ -46,30 +46,24 @@ PlaneRectangle smallest_rectangle(const std::vector<Vector2d>& hull) {
         if (y > x) r.along = b, std::swap(r.length, r.breadth);
         return r;
     };
-    Calipers calipers(corners);
-    std::vector<PlaneRectangle> all;
-    double minimum = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-        const Vector2d a = (corners[(i + 1) % corners.size()] - corners[i]).normalized();
-        all.push_back(rectangle(a, calipers.along(i, a)));
-        minimum = std::min(minimum, all.back().area());
-    }
-    best.length = -1;
-    for (const auto& r : all)
-        if (r.area() <= minimum * (1 + 1e-9) && r.length > best.length) best = r;
-    // Sides of no length to speak of point anywhere, and the calipers may lose their way: then all corners are looked at.
-    const Vector2d a = best.along;
-    if (const auto check = rectangle(a, extent_along(a, corners));
-        !(std::abs(check.area() - best.area()) <= 1e-12 * check.area())) {
-        best.length = -1, minimum = std::numeric_limits<double>::infinity();
+    const auto choose = [&](auto&& extent) {
+        std::vector<PlaneRectangle> all;
+        double minimum = std::numeric_limits<double>::infinity();
         for (std::size_t i = 0; i < corners.size(); ++i) {
             const Vector2d side = (corners[(i + 1) % corners.size()] - corners[i]).normalized();
-            all[i] = rectangle(side, extent_along(side, corners));
-            minimum = std::min(minimum, all[i].area());
+            all.push_back(rectangle(side, extent(i, side)));
+            minimum = std::min(minimum, all.back().area());
         }
+        best.length = -1;
         for (const auto& r : all)
             if (r.area() <= minimum * (1 + 1e-9) && r.length > best.length) best = r;
-    }
+    };
+    Calipers calipers(corners);
+    choose([&](std::size_t i, const Vector2d& side) { return calipers.along(i, side); });
+    // Sides of no length to speak of point anywhere, and the calipers may lose their way: then all corners are looked at.
+    if (const auto check = rectangle(best.along, extent_along(best.along, corners));
+        !(std::abs(check.area() - best.area()) <= 1e-12 * check.area()))
+        choose([&](std::size_t, const Vector2d& side) { return extent_along(side, corners); });
     return best;
 }
 

@@ -1,8 +1,6 @@
 #include "ostraka/geom/point_tree.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace ostraka {

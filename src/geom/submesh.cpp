@@ -48,8 +48,7 @@ SubMesh keep_faces(const Mesh& mesh, const std::vector<bool>& keep, bool largest
         for (Index f = 0; f < keep.size(); ++f)
             if (keep[f]) faces.push_back(f);
     }
-    SurfacePatch patch = cut_out(mesh, std::move(faces), Point(0, 0, 0));
-    SubMesh result{std::move(patch.mesh), std::move(patch.vertices), std::move(patch.faces)};
+    SubMesh result = cut_out(mesh, std::move(faces), Point(0, 0, 0));
     for (const Vertex v : result.mesh.vertices()) result.mesh.point(v) = mesh.point(Vertex(result.vertices[v]));
     return result;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ostraka/geom/point_tree.h"
+#include "ostraka/geom/submesh.h"
 
 #include <functional>
 #include <vector>
@@ -16,11 +17,8 @@ bool may_hold_near(const Mesh& mesh, Face face, const PointTree& points, double 
 
 /// Some faces of a mesh as a mesh of its own, moved to `origin` and scaled by a power of two so that it measures about one.
 /// A vertex at which the faces form several fans is there once for each.
-struct SurfacePatch {
-    Mesh mesh;
-    std::vector<Index> vertices;  ///< of the whole mesh, for each vertex of the patch
-    std::vector<Index> faces;     ///< of the whole mesh, for each face of the patch, ascending
-    double scale = 1;             ///< length in the whole mesh = scale times length in the patch
+struct SurfacePatch : SubMesh {
+    double scale = 1;  ///< length in the whole mesh = scale times length in the patch
 };
 SurfacePatch cut_out(const Mesh& mesh, std::vector<Index> faces, const Point& origin);
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace ostraka {
 
@@ -27,6 +26,15 @@ SurfaceNode edge_node(const Mesh& mesh, Halfedge h, double along, double snap) {
     return node;
 }
 
+bool same(const SurfaceNode& a, const SurfaceNode& b) { return a.kind == b.kind && a.element == b.element && a.point == b.point; }
+
+/// A way out of a face: a node on its border that `from` does not share an edge with.
+struct Exit {
+    SurfaceNode node;
+    double progress;
+};
+}  // namespace
+
 std::vector<Face> faces_of(const Mesh& mesh, const SurfaceNode& node) {
     std::vector<Face> faces;
     const auto add = [&](Halfedge h) {
@@ -46,15 +54,6 @@ std::vector<Face> faces_of(const Mesh& mesh, const SurfaceNode& node) {
     }
     return faces;
 }
-
-bool same(const SurfaceNode& a, const SurfaceNode& b) { return a.kind == b.kind && a.element == b.element && a.point == b.point; }
-
-/// A way out of a face: a node on its border that `from` does not share an edge with.
-struct Exit {
-    SurfaceNode node;
-    double progress;
-};
-}  // namespace
 
 SurfaceNode surface_node(const Mesh& mesh, Index face, const std::array<double, 3>& barycentric, double snap) {
     const auto vertices = corners(mesh, Face(face));

@@ -6,24 +6,12 @@
 #include "arguments.h"
 
 #include "ostraka/core/json_build.h"
+#include "ostraka/core/stopwatch.h"
 #include "ostraka/core/words.h"
-
-#include <chrono>
 
 namespace ostraka {
 
 using namespace fields;
-
-/// Seconds since it was made.
-class Stopwatch {
-public:
-    [[nodiscard]] double seconds() const {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    }
-
-private:
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 /// How the table (table.cpp) makes an operation; defined in the file of its name.
 template <class Work>

@@ -263,7 +263,7 @@ struct StudyProportions final : Operation {
         complete = map.values.allFinite();
         if (complete && m > 1)
             write_plot(files.plot("measures"),
-                       Dendrogram{"Measures by how fixed their ratios are (average linkage)", average_linkage(map.values),
+                       Dendrogram{"Measures by how fixed their ratios are (average linkage)", linkage(map.values),
                                   map.rows, "standard deviation of the logarithm of ratios"});
         else report.note("no plot 'measures': not each two measures have a ratio known of two objects or more");
     }

@@ -1,7 +1,6 @@
 #include "ostraka/reconstruction/assembly.h"
 
 #include "ostraka/core/json_build.h"
-#include "ostraka/fracture/rotational_report.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/registration/pose_json.h"
@@ -14,131 +13,131 @@ namespace ostraka {
 namespace {
 
 JsonValue placement_of(const FragmentPlacement& one, JsonAllocator& allocator) {
-    JsonValue entry(rapidjson::kObjectType), landmarks(rapidjson::kArrayType);
-    if (!one.problem.empty()) {
-        add_member(entry, "problem", one.problem, allocator);
-    } else {
-        add_members(entry, allocator, "pose", pose_to_json(one.pose, allocator), "residual", one.residual);
-    }
-    if (one.own_scale > 0) add_member(entry, "ownScale", JsonValue(one.own_scale), allocator);
-    for (const LandmarkResidual& landmark : one.landmarks) {
-        JsonValue item = json_object(allocator, "name", landmark.name, "distance", landmark.distance, "used", landmark.used);
-        landmarks.PushBack(item, allocator);
-    }
-    add_member(entry, "landmarks", std::move(landmarks), allocator);
+    JsonValue entry(rapidjson::kObjectType);
+    if (one.problem.empty()) add_members(entry, allocator, "pose", pose_to_json(one.pose, allocator), "residual", one.residual);
+    else add_members(entry, allocator, "problem", one.problem);
+    if (one.own_scale > 0) add_members(entry, allocator, "ownScale", one.own_scale);
+    const auto of_landmark = [&](const LandmarkResidual& landmark) {
+        return json_object(allocator, "name", landmark.name, "distance", landmark.distance, "used", landmark.used);
+    };
+    add_members(entry, allocator, "landmarks", json_list(one.landmarks, allocator, of_landmark));
     return entry;
 }
 
 /// What a search had to say of a fragment's pose.
 JsonValue search_of(const PoseSearchResult& one, JsonAllocator& allocator) {
-    JsonValue entry(rapidjson::kObjectType), slippable(rapidjson::kObjectType), ways(rapidjson::kArrayType);
-    const auto triple = [&](const Eigen::Vector3d& v) {
-        JsonValue list(rapidjson::kArrayType);
-        for (int i = 0; i < 3; ++i) list.PushBack(v[i], allocator);
-        return list;
-    };
-    add_members(entry, allocator, "decided", one.decided, "confidence", one.confidence, "margin", one.margin);
-    if (!one.candidates.empty()) {
+    JsonValue entry = json_object(allocator, "decided", one.decided, "confidence", one.confidence, "margin", one.margin);
+    if (!one.candidates.empty())
         add_members(entry, allocator, "score", one.candidates.front().score, "share", one.candidates.front().share);
-    }
-    if (!one.reason.empty()) add_member(entry, "reason", one.reason, allocator);
-    add_member(slippable, "kind", to_string(one.slippable.kind), allocator);
-    if (one.slippable.kind != SlippableKind::none) {
-        add_members(slippable, allocator, "text", one.slippable.text(), "point", triple(one.slippable.point), "direction",
-                    triple(one.slippable.direction));
-    }
-    for (const SlippableRange& way : one.ways) {
-        JsonValue item = json_object(allocator, "turns", way.rotates, "least", way.minimum, "most", way.maximum);
-        ways.PushBack(item, allocator);
-    }
-    add_member(slippable, "ways", std::move(ways), allocator);
-    add_member(entry, "freedom", std::move(slippable), allocator);
+    if (!one.reason.empty()) add_members(entry, allocator, "reason", one.reason);
+    JsonValue slippable = json_object(allocator, "kind", to_string(one.slippable.kind));
+    if (one.slippable.kind != SlippableKind::none)
+        add_members(slippable, allocator, "text", one.slippable.text(), "point", one.slippable.point, "direction",
+                    one.slippable.direction);
+    const auto of_way = [&](const SlippableRange& way) {
+        return json_object(allocator, "turns", way.rotates, "least", way.minimum, "most", way.maximum);
+    };
+    add_members(slippable, allocator, "ways", json_list(one.ways, allocator, of_way));
+    add_members(entry, allocator, "freedom", std::move(slippable));
     return entry;
 }
 
+JsonValue joint_of(const BreakJoint& joint, const std::vector<std::string>& names, JsonAllocator& allocator) {
+    JsonValue item =
+        json_object(allocator, "first", names[static_cast<std::size_t>(joint.first)], "second",
+                    names[static_cast<std::size_t>(joint.second)], "turn", joint.rotation, "score", joint.score, "contact",
+                    joint.contact, "rim", joint.rim, "residual", joint.residual, "carries", joint.carries);
+    if (joint.carries)
+        add_members(item, allocator, "share", joint.share, "lead", joint.lead, "confidence", joint.confidence, "decided",
+                    joint.decided);
+    return item;
+}
+
+/// Whether a fragment's rotation is decided, and together with whose.
+JsonValue rotation_of(const RotationMatch& rotations, std::size_t fragment, const std::vector<std::string>& names,
+                      JsonAllocator& allocator) {
+    std::vector<std::string> with;
+    for (std::size_t k = 0; k < rotations.group.size(); ++k)
+        if (k != fragment && rotations.group[k] == rotations.group[fragment]) with.push_back(names[k]);
+    JsonValue item = json_object(allocator, "decided", !with.empty(), "holdsWith", with, "overlap", rotations.overlap[fragment]);
+    if (!rotations.notes[fragment].empty()) add_members(item, allocator, "note", rotations.notes[fragment]);
+    return item;
+}
+
 JsonValue constraint_of(const ConstraintReport& constraint, JsonAllocator& allocator) {
-    JsonValue entry(rapidjson::kObjectType), deviations(rapidjson::kArrayType);
-    add_members(entry, allocator, "id", constraint.id, "type", constraint.type, "used", constraint.used, "before",
-                to_string(constraint.before), "verdict", to_string(constraint.verdict), "text", constraint.text);
+    JsonValue deviations(rapidjson::kArrayType);
     for (std::size_t i = 0; i < constraint.deviations.size(); ++i) {
         const Deviation& d = constraint.deviations[i];
-        JsonValue item(rapidjson::kObjectType);
-        add_member(item, "quantity", d.quantity, allocator);
-        if (i < constraint.before_values.size()) add_member(item, "before", JsonValue(constraint.before_values[i]), allocator);
-        if (d.value) add_member(item, "value", JsonValue(*d.value), allocator);
-        if (d.tolerance) add_member(item, "tolerance", JsonValue(*d.tolerance), allocator);
-        add_member(item, "unit", d.unit, allocator);
+        JsonValue item = json_object(allocator, "quantity", d.quantity);
+        if (i < constraint.before_values.size()) add_members(item, allocator, "before", constraint.before_values[i]);
+        if (d.value) add_members(item, allocator, "value", *d.value);
+        if (d.tolerance) add_members(item, allocator, "tolerance", *d.tolerance);
+        add_members(item, allocator, "unit", d.unit);
         deviations.PushBack(item, allocator);
     }
-    add_member(entry, "deviations", std::move(deviations), allocator);
-    return entry;
+    return json_object(allocator, "id", constraint.id, "type", constraint.type, "used", constraint.used, "before",
+                       to_string(constraint.before), "verdict", to_string(constraint.verdict), "text", constraint.text,
+                       "deviations", std::move(deviations));
+}
+
+JsonValue match_of(const AnnotationMatch& match, JsonAllocator& allocator) {
+    return json_object(allocator, "ofFragment", match.of_fragment, "ofTemplate", match.of_template, "score", match.score,
+                       "attributes", match.attributes, "containers", match.containers, "place", match.place, "extent",
+                       match.extent, "stated", match.stated);
+}
+
+JsonValue objection_of(const Objection& objection, const std::vector<std::string>& names, JsonAllocator& allocator) {
+    JsonValue item(rapidjson::kObjectType);
+    if (objection.fragment >= 0) add_members(item, allocator, "fragment", names[static_cast<std::size_t>(objection.fragment)]);
+    if (objection.constraint >= 0) add_members(item, allocator, "constraint", objection.constraint);
+    add_members(item, allocator, "kind", to_string(objection.kind));
+    if (objection.strain > 0) add_members(item, allocator, "strain", objection.strain);
+    add_members(item, allocator, "text", objection.text);
+    return item;
 }
 
 }  // namespace
 
 JsonValue assembly_to_json(const Reconstruction& result, const AssemblyNames& names, JsonAllocator& allocator) {
-    JsonValue assembly(rapidjson::kObjectType), fragments(rapidjson::kArrayType), constraints(rapidjson::kArrayType),
-        objections(rapidjson::kArrayType), levels(rapidjson::kArrayType);
-    add_members(assembly, allocator, "format", "ostraka-assembly", "version", 1, "template", names.template_file, "scale",
-                result.placement.scale);
+    JsonValue fragments(rapidjson::kArrayType);
     for (std::size_t k = 0; k < result.placement.fragments.size(); ++k) {
-        JsonValue entry = placement_of(result.placement.fragments[k], allocator), matches(rapidjson::kArrayType),
-                  notes(rapidjson::kArrayType);
-        add_member(entry, "name", k < names.fragments.size() ? names.fragments[k] : std::to_string(k + 1), allocator);
+        JsonValue entry = placement_of(result.placement.fragments[k], allocator);
+        add_members(entry, allocator, "name", k < names.fragments.size() ? names.fragments[k] : std::to_string(k + 1));
         const bool searched = k < result.searched.size() && result.searched[k].has_value();
         if (searched || result.placement.fragments[k].problem.empty())
-            add_member(entry, "source", searched ? "search" : "landmarks", allocator);
-        if (searched) add_member(entry, "search", search_of(*result.searched[k], allocator), allocator);
+            add_members(entry, allocator, "source", searched ? "search" : "landmarks");
+        if (searched) add_members(entry, allocator, "search", search_of(*result.searched[k], allocator));
         if (result.rotations && result.rotations->group[k] >= 0)
-            add_member(entry, "turn", rotation_to_json(*result.rotations, k, names.fragments, allocator), allocator);
-        if (k < result.annotations.size())
-            for (const AnnotationMatch& match : result.annotations[k]) {
-                JsonValue item = json_object(allocator, "ofFragment", match.of_fragment, "ofTemplate", match.of_template, "score",
-                                             match.score, "attributes", match.attributes, "containers", match.containers, "place",
-                                             match.place, "extent", match.extent, "stated", match.stated);
-                matches.PushBack(item, allocator);
-            }
-        add_member(entry, "annotations", std::move(matches), allocator);
-        if (k < result.notes.size())
-            for (const std::string& note : result.notes[k]) notes.PushBack(JsonValue(note, allocator), allocator);
-        add_member(entry, "notes", std::move(notes), allocator);
-        if (k < result.joined.size())
-            add_member(entry, "joinedFaces", JsonValue(static_cast<std::uint64_t>(result.joined[k])), allocator);
+            add_members(entry, allocator, "turn", rotation_of(*result.rotations, k, names.fragments, allocator));
+        const auto matches = k < result.annotations.size() ? result.annotations[k] : std::vector<AnnotationMatch>();
+        add_members(entry, allocator, "annotations",
+                    json_list(matches, allocator, [&](const AnnotationMatch& match) { return match_of(match, allocator); }),
+                    "notes", k < result.notes.size() ? result.notes[k] : std::vector<std::string>());
+        if (k < result.joined.size()) add_members(entry, allocator, "joinedFaces", result.joined[k]);
         fragments.PushBack(entry, allocator);
     }
-    add_member(assembly, "fragments", std::move(fragments), allocator);
+    JsonValue assembly = json_object(allocator, "format", "ostraka-assembly", "version", 1, "template", names.template_file,
+                                     "scale", result.placement.scale, "fragments", std::move(fragments));
     if (result.rotations) {
-        add_members(assembly, allocator, "joints", joints_to_json(*result.rotations, names.fragments, allocator), "wall",
+        const auto of_joint = [&](const BreakJoint& joint) { return joint_of(joint, names.fragments, allocator); };
+        add_members(assembly, allocator, "joints", json_list(result.rotations->joints, allocator, of_joint), "wall",
                     result.rotations->wall);
     }
-    for (const NonRigidFit::Level& level : result.fit.levels) {
-        JsonValue item = json_object(allocator, "smoothing", level.smoothing, "matched", level.matched, "residual",
-                                     level.residual, "steps", level.steps);
-        levels.PushBack(item, allocator);
-    }
-    add_members(assembly, allocator, "levels", std::move(levels), "observedShare", result.observed_share, "crossings",
-                result.crossings);
-    JsonValue completion(rapidjson::kArrayType);
-    for (const CompletionNote& note : result.object.notes)
-        completion.PushBack(JsonValue(names.fragments[static_cast<std::size_t>(note.fragment)] + ": " + note.text, allocator),
-                            allocator);
-    add_member(assembly, "completionNotes", std::move(completion), allocator);
-    for (const ConstraintReport& constraint : result.constraints)
-        constraints.PushBack(constraint_of(constraint, allocator), allocator);
-    add_member(assembly, "constraints", std::move(constraints), allocator);
-    for (const Objection& objection : result.objections) {
-        JsonValue item(rapidjson::kObjectType);
-        if (objection.fragment >= 0)
-            add_member(item, "fragment", names.fragments[static_cast<std::size_t>(objection.fragment)], allocator);
-        if (objection.constraint >= 0) add_member(item, "constraint", JsonValue(objection.constraint), allocator);
-        add_member(item, "kind", to_string(objection.kind), allocator);
-        if (objection.strain > 0) add_member(item, "strain", JsonValue(objection.strain), allocator);
-        add_member(item, "text", objection.text, allocator);
-        objections.PushBack(item, allocator);
-    }
-    add_members(assembly, allocator, "objections", std::move(objections), "strain", result.strain, "verdict",
-                to_string(result.verdict));
-    if (!result.undecided.empty()) add_member(assembly, "undecided", result.undecided, allocator);
+    const auto of_level = [&](const NonRigidFit::Level& level) {
+        return json_object(allocator, "smoothing", level.smoothing, "matched", level.matched, "residual", level.residual, "steps",
+                           level.steps);
+    };
+    const auto of_note = [&](const CompletionNote& note) {
+        return json_value(names.fragments[static_cast<std::size_t>(note.fragment)] + ": " + note.text, allocator);
+    };
+    const auto of_constraint = [&](const ConstraintReport& constraint) { return constraint_of(constraint, allocator); };
+    const auto of_objection = [&](const Objection& one) { return objection_of(one, names.fragments, allocator); };
+    add_members(
+        assembly, allocator, "levels", json_list(result.fit.levels, allocator, of_level), "observedShare", result.observed_share,
+        "crossings", result.crossings, "completionNotes", json_list(result.object.notes, allocator, of_note), "constraints",
+        json_list(result.constraints, allocator, of_constraint), "objections",
+        json_list(result.objections, allocator, of_objection), "strain", result.strain, "verdict", to_string(result.verdict));
+    if (!result.undecided.empty()) add_members(assembly, allocator, "undecided", result.undecided);
     return assembly;
 }
 

@@ -5,7 +5,8 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
-#include "ostraka/geom/eigen.h"
+#include "ostraka/core/words.h"
+#include "ostraka/geom/submesh.h"
 #include "ostraka/geom/surface_search.h"
 
 #include <algorithm>
@@ -15,10 +16,7 @@ namespace ostraka {
 
 using Eigen::Vector3d;
 
-std::string to_string(Origin origin) {
-    static constexpr const char* words[]{"observed", "interpolated", "hypothesis"};
-    return words[static_cast<std::size_t>(origin)];
-}
+std::string to_string(Origin origin) { return word_for(origin, {"observed", "interpolated", "hypothesis"}); }
 
 namespace {
 

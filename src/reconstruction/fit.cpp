@@ -7,13 +7,13 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/core/stopwatch.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/reconstruction/template_cage.h"
 #include "ostraka/remesh/simplify.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 namespace ostraka {
@@ -22,18 +22,6 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 namespace {
-
-class Stopwatch {
-public:
-    explicit Stopwatch(double& sum) : sum_(sum), begin_(std::chrono::steady_clock::now()) {}
-    ~Stopwatch() { sum_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
-    Stopwatch(const Stopwatch&) = delete;
-    Stopwatch& operator=(const Stopwatch&) = delete;
-
-private:
-    double& sum_;
-    std::chrono::steady_clock::time_point begin_;
-};
 
 /// The levels of a fit over one mesh of the template.
 class Fitter {
@@ -74,7 +62,7 @@ public:
     void run(int first, int end, NonRigidFit& fit) {
         if (first == end) return;
         if (weights_ == nullptr) {
-            const Stopwatch watch(fit.seconds_solving);
+            const AddedSeconds watch(fit.seconds_solving);
             solver_ = &system_.renewed_solver();
         }
         for (int level = first; level < end; ++level) {
@@ -86,7 +74,7 @@ public:
                 diagonal_;
             for (; record.steps < options_.steps; ++record.steps) {
                 match(search_radius, fit);
-                const Stopwatch watch(fit.seconds_solving);
+                const AddedSeconds watch(fit.seconds_solving);
                 const Points before = now_;
                 if (record.steps == 0) start_ = level == 0 ? rest_ : now_;
                 solve(record.smoothing, level == 0 ? options_.stay * diagonal_ : options_.fade * record.smoothing,
@@ -103,7 +91,7 @@ public:
     }
 
     const std::vector<VertexMatch>& match(double search_radius, NonRigidFit& fit) {
-        const Stopwatch watch(fit.seconds_matching);
+        const AddedSeconds watch(fit.seconds_matching);
         matches_ = search_.matches(now_, mesh_, labels_, search_radius, std::cos(options_.angle * pi / 180));
         if (options_.counterparts == NonRigidOptions::Counterparts::surface) return matches_;
         VertexAssignmentOptions options = options_.vertices;
@@ -126,7 +114,7 @@ public:
         const Points left = now_;
         for (int step = 0; step < max_steps; ++step) {
             match(search_radius, fit);
-            const Stopwatch watch(fit.seconds_solving);
+            const AddedSeconds watch(fit.seconds_solving);
             const Points before = now_;
             if (!step_to_planes(left, smoothing)) return;
             if ((now_ - before).colwise().norm().maxCoeff() < settled * diagonal_) return;
@@ -419,8 +407,7 @@ struct TemplateFitter::State {
     /// Levels through the cage; gives the first one that is left for the template's vertices.
     int fit_cage(const MatchSearch& search, const NonRigidOptions& options, Fitter& exact, NonRigidFit& fit) {
         if (cage == nullptr) fail_usage("the fit is to go through a cage, and there is none", "give the cage of the template");
-        Points at_rest(3, static_cast<Eigen::Index>(cage->cage.number_of_vertices()));
-        for (const Vertex v : cage->cage.vertices()) at_rest.col(static_cast<Eigen::Index>(v)) = eigen(cage->cage.point(v));
+        const Points at_rest = columns_of(cage->cage);
         Fitter through = smooth_fitter(search, options);
         through.go_through(weights(), at_rest);
         const int level = options.space == NonRigidOptions::Space::both ? std::max(1, options.levels - 1) : options.levels;
@@ -440,7 +427,7 @@ struct TemplateFitter::State {
         while (level < options.levels && Fitter::smoothing(options, level, diagonal) >= edges * edge) ++level;
         Fitter over = smooth_fitter(search, options);
         over.run(0, level, fit);
-        const Stopwatch watch(fit.seconds_coarsening);
+        const AddedSeconds watch(fit.seconds_coarsening);
         if (level > 0) exact.start_at(follow(over));
         return level;
     }
@@ -481,7 +468,7 @@ NonRigidFit TemplateFitter::fit(double scale, const std::vector<PlacedFragment>&
     NonRigidFit fit;
     const MatchSearch search(s.mesh, s.set, fragments, scale, options.outlines);
     {
-        const Stopwatch watch(fit.seconds_coarsening);
+        const AddedSeconds watch(fit.seconds_coarsening);
         s.prepare();
     }
     Fitter fine(s.fine, search, search.labels(s.mesh, {}), search.correspondences(), s.diagonal, options);

@@ -12,15 +12,6 @@ namespace ostraka {
 
 namespace {
 
-/// What a region's tag calls it, "outer", "inner" or "fracture"; empty for any other annotation.
-std::string facet_named(const Annotation& annotation) {
-    if (annotation.type != AnnotationType::region) return {};
-    std::string tag = annotation.tag;
-    std::transform(tag.begin(), tag.end(), tag.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return tag == "outer" || tag == "inner" || tag == "fracture" ? tag : std::string();
-}
-bool names_facets(const Annotation& annotation) { return !facet_named(annotation).empty(); }
-
 bool has_border(const Mesh& mesh) {
     return std::any_of(mesh.edges().begin(), mesh.edges().end(), [&](Edge e) { return mesh.is_border(e); });
 }
@@ -60,7 +51,8 @@ FragmentFile read_fragment(const Path& file, const FragmentFileOptions& options)
         std::swap(fragment.annotations.annotations, set.annotations);
         fragment.annotations.unit = set.unit;
         const auto& list = fragment.annotations.annotations;
-        annotated = options.facets != FacetSource::none && std::any_of(list.begin(), list.end(), names_facets);
+        annotated = options.facets != FacetSource::none &&
+                    std::any_of(list.begin(), list.end(), [](const Annotation& one) { return named_facet(one).has_value(); });
     }
     const bool by_shape = options.facets == FacetSource::automatic ||
                           (options.facets == FacetSource::either && !annotated && (result.points || !has_border(fragment.mesh)));
@@ -132,10 +124,10 @@ AnnotationSet facet_annotations(const Facets& facets, const std::string& unit) {
 void update_facet_annotations(AnnotationSet& set, const Facets& facets) {
     AnnotationSet found = facet_annotations(facets, set.unit);
     std::erase_if(set.annotations, [&](Annotation& old) {
-        const std::string name = facet_named(old);
-        if (name.empty()) return false;
+        const std::optional<Facet> facet = named_facet(old);
+        if (!facet) return false;
         const auto match = std::find_if(found.annotations.begin(), found.annotations.end(),
-                                        [&](const Annotation& one) { return one.tag == name; });
+                                        [&](const Annotation& one) { return one.tag == to_string(*facet); });
         if (match == found.annotations.end()) return true;
         std::vector<Quantity> quantities;
         for (const Attribute& attribute : match->attributes) {

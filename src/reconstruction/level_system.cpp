@@ -46,8 +46,7 @@ Rings rings_of(const Mesh& mesh, const Points& rest) {
 }  // namespace
 
 LevelSystem::LevelSystem(const Mesh& of) : mesh(of) {
-    rest.resize(3, static_cast<Eigen::Index>(mesh.number_of_vertices()));
-    for (const Vertex v : mesh.vertices()) rest.col(static_cast<Eigen::Index>(v)) = eigen(mesh.point(v));
+    rest = columns_of(mesh);
     rings = rings_of(mesh, rest);
     double sum = 0;
     for (const double area : rings.area) sum += area;

@@ -80,8 +80,8 @@ MatchSearch::MatchSearch(const Mesh& mesh, const AnnotationSet& set, const std::
 void MatchSearch::add_outline_correspondences(const Mesh& mesh, const AnnotationSet& set) {
     for (std::size_t k = 0; k < fragments_.size(); ++k) {
         const PlacedFragment& fragment = fragments_[k];
-        std::vector<bool> broken(fragment.facets.size());
-        for (std::size_t f = 0; f < broken.size(); ++f) broken[f] = fragment.facets[f] == Facet::fracture;
+        std::vector<bool> broken = not_broken(fragment.facets);
+        broken.flip();
         std::vector<std::pair<Index, Index>> landmarks;
         for (std::size_t l = 0; l < landmarks_.size(); ++l)
             if (landmark_fragment_[l] == static_cast<int>(k)) landmarks.push_back(landmarks_[l]);

@@ -32,8 +32,7 @@ std::string PoseSearches::key_of(const Fragment& fragment, double min_scale, dou
 }
 
 std::optional<PoseSearchResult> PoseSearches::find(const Fragment& fragment, double min_scale, double max_scale) {
-    std::vector<bool> counts(fragment.facets.size());
-    for (std::size_t f = 0; f < counts.size(); ++f) counts[f] = fragment.facets[f] != Facet::fracture;
+    const std::vector<bool> counts = not_broken(fragment.facets);
     if (!counts.empty() && std::find(counts.begin(), counts.end(), true) == counts.end()) return {};
     const std::string key = key_of(fragment, min_scale, max_scale);
     if (const auto found = stored_.find(key); found != stored_.end()) {
@@ -49,41 +48,25 @@ std::optional<PoseSearchResult> PoseSearches::find(const Fragment& fragment, dou
 
 namespace {
 
-JsonValue to_array(const double* numbers, int count, JsonAllocator& allocator) {
-    JsonValue list(rapidjson::kArrayType);
-    for (int i = 0; i < count; ++i) list.PushBack(numbers[i], allocator);
-    return list;
-}
-JsonValue to_json(const Eigen::Vector3d& v, JsonAllocator& allocator) { return to_array(v.data(), 3, allocator); }
 JsonValue to_json(const Motion& motion, JsonAllocator& allocator) {
-    JsonValue entry(rapidjson::kObjectType);
-    const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> rows = motion.rotation;
-    add_members(entry, allocator, "turn", to_array(rows.data(), 9, allocator), "shift", to_json(motion.translation, allocator),
-                "scale", motion.scale);
-    return entry;
+    return json_object(allocator, "turn", motion.rotation.reshaped<Eigen::RowMajor>(), "shift", motion.translation, "scale",
+                       motion.scale);
 }
+
 JsonValue to_json(const PoseSearchResult& result, JsonAllocator& allocator) {
-    JsonValue entry(rapidjson::kObjectType), candidates(rapidjson::kArrayType), slippable(rapidjson::kObjectType),
-        ways(rapidjson::kArrayType);
-    for (const PoseCandidate& one : result.candidates) {
-        JsonValue item = json_object(allocator, "pose", to_json(one.pose, allocator), "scale", one.scale, "score", one.score,
-                                     "share", one.share, "inside", one.inside, "residual", one.residual);
-        candidates.PushBack(item, allocator);
-    }
-    add_members(entry, allocator, "candidates", std::move(candidates), "margin", result.margin, "confidence", result.confidence,
-                "decided", result.decided, "reason", result.reason);
-    add_members(slippable, allocator, "kind", to_string(result.slippable.kind), "point",
-                to_json(result.slippable.point, allocator), "direction", to_json(result.slippable.direction, allocator), "pitch",
-                result.slippable.pitch);
-    add_member(entry, "freedom", std::move(slippable), allocator);
-    for (const SlippableRange& way : result.ways) {
-        JsonValue item =
-            json_object(allocator, "point", to_json(way.point, allocator), "direction", to_json(way.direction, allocator),
-                        "turns", way.rotates, "least", way.minimum, "most", way.maximum);
-        ways.PushBack(item, allocator);
-    }
-    add_member(entry, "ways", std::move(ways), allocator);
-    return entry;
+    const auto of_candidate = [&](const PoseCandidate& one) {
+        return json_object(allocator, "pose", to_json(one.pose, allocator), "scale", one.scale, "score", one.score, "share",
+                           one.share, "inside", one.inside, "residual", one.residual);
+    };
+    const auto of_way = [&](const SlippableRange& way) {
+        return json_object(allocator, "point", way.point, "direction", way.direction, "turns", way.rotates, "least", way.minimum,
+                           "most", way.maximum);
+    };
+    JsonValue slippable = json_object(allocator, "kind", to_string(result.slippable.kind), "point", result.slippable.point,
+                                      "direction", result.slippable.direction, "pitch", result.slippable.pitch);
+    return json_object(allocator, "candidates", json_list(result.candidates, allocator, of_candidate), "margin", result.margin,
+                       "confidence", result.confidence, "decided", result.decided, "reason", result.reason, "freedom",
+                       std::move(slippable), "ways", json_list(result.ways, allocator, of_way));
 }
 
 // The schema has been seen to before these.
@@ -124,16 +107,14 @@ PoseSearchResult result_from(const JsonValue& entry) {
 }  // namespace
 
 JsonValue PoseSearches::to_json(JsonAllocator& allocator) const {
-    JsonValue document(rapidjson::kObjectType), list(rapidjson::kArrayType);
-    add_members(document, allocator, "format", "ostraka-searches", "version", 1, "template", of_template_);
-    for (const auto& [key, known] : stored_) {
-        JsonValue entry(rapidjson::kObjectType), result = ostraka::to_json(known.result, allocator);
-        add_members(entry, allocator, "fragment", known.fragment, "key", key, "checksum", sha256(to_text(result)), "result",
-                    std::move(result));
-        list.PushBack(entry, allocator);
-    }
-    add_member(document, "searches", std::move(list), allocator);
-    return document;
+    const auto of_stored = [&](const auto& entry) {
+        JsonValue result = ostraka::to_json(entry.second.result, allocator);
+        const std::string checksum = sha256(to_text(result));
+        return json_object(allocator, "fragment", entry.second.fragment, "key", entry.first, "checksum", checksum, "result",
+                           std::move(result));
+    };
+    return json_object(allocator, "format", "ostraka-searches", "version", 1, "template", of_template_, "searches",
+                       json_list(stored_, allocator, of_stored));
 }
 
 std::size_t PoseSearches::add(const JsonValue& document, const std::string& file) {

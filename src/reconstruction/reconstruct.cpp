@@ -4,6 +4,7 @@
 #include "reconstruction_verdict.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/stopwatch.h"
 #include "ostraka/core/text.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/io/diagnose.h"
@@ -11,18 +12,11 @@
 #include <CGAL/boost/graph/helpers.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 namespace ostraka {
 
 namespace {
-
-Mesh scaled_by(const Mesh& mesh, double scale) {
-    Motion motion;
-    motion.scale = scale;
-    return moved(mesh, motion);
-}
 
 /// Of a closed mesh: its volume is negative.
 bool inside_out(const Mesh& mesh) {
@@ -31,14 +25,6 @@ bool inside_out(const Mesh& mesh) {
     double volume = 0;
     for (const Face face : mesh.faces()) volume += (centroid(mesh, face) - origin) * area_vector(mesh, face);
     return volume < 0;
-}
-
-bool same(const Motion& a, const Motion& b) {
-    return a.rotation == b.rotation && a.translation == b.translation && a.scale == b.scale;
-}
-bool same(const std::vector<Anchor>& a, const std::vector<Anchor>& b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                      [](const Anchor& x, const Anchor& y) { return x.of_part == y.of_part && x.of_whole == y.of_whole; });
 }
 
 /// The share of an annotation's vertices that were observed.
@@ -160,9 +146,8 @@ public:
 private:
     template <class Work>
     void timed(const char* phase, Work&& work) {
-        const auto begin = std::chrono::steady_clock::now();
+        const AddedSeconds watch(result_.seconds[phase]);
         work();
-        result_.seconds[phase] += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     }
 
     void place() {
@@ -228,8 +213,7 @@ private:
             FragmentPlacement& placement = result_.placement.fragments[k];
             const Fragment& fragment = *fragments_[k];
             if (!placement.problem.empty()) continue;
-            std::vector<bool> counts(fragment.facets.size());
-            for (std::size_t f = 0; f < counts.size(); ++f) counts[f] = fragment.facets[f] != Facet::fracture;
+            const std::vector<bool> counts = not_broken(fragment.facets);
             if (!counts.empty() && std::find(counts.begin(), counts.end(), true) == counts.end()) continue;
             std::vector<Anchor> anchors;
             const std::vector<LandmarkPair>& pairs = pairs_[k];
@@ -238,8 +222,7 @@ private:
                     anchors.push_back({pairs[i].on_fragment, on_scaled(pairs[i])});
             std::optional<KnownFragment::Refined>& known = prepared_.fragments[k].refined;
             const double scale = result_.placement.scale;
-            if (!known || shaped_ || known->scale != scale || !same(known->start, placement.pose) ||
-                !same(known->anchors, anchors)) {
+            if (!known || shaped_ || known->scale != scale || known->start != placement.pose || known->anchors != anchors) {
                 if (!whole) whole.emplace(scaled_);
                 result_.alignment[k] =
                     align_part(fragment.mesh, counts, *whole, placement.pose, anchors, prepared_.options.alignment);
@@ -284,7 +267,7 @@ private:
             if (!placement.problem.empty()) continue;
             const Fragment& fragment = *fragments_[k];
             std::optional<KnownFragment::Matched>& known = prepared_.fragments[k].matched;
-            if (!known || shaped_ || known->scale != result_.placement.scale || !same(known->pose, placement.pose)) {
+            if (!known || shaped_ || known->scale != result_.placement.scale || known->pose != placement.pose) {
                 result_.annotations[k] =
                     match_annotations(scaled_, prepared_.set, fragment.mesh, fragment.annotations, placement.pose,
                                       prepared_.fragments[k].stated, prepared_.options.annotations);

@@ -1,6 +1,7 @@
 #include "reconstruction_verdict.h"
 
 #include "ostraka/core/text.h"
+#include "ostraka/core/words.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,14 +9,10 @@
 namespace ostraka {
 
 std::string to_string(ObjectionKind kind) {
-    static constexpr const char* names[]{"placement", "size", "landmarks", "surface", "overlap", "constraint"};
-    return names[static_cast<std::size_t>(kind)];
+    return word_for(kind, {"placement", "size", "landmarks", "surface", "overlap", "constraint"});
 }
 
-std::string to_string(Compatibility compatibility) {
-    static constexpr const char* names[]{"compatible", "incompatible", "undecided"};
-    return names[static_cast<std::size_t>(compatibility)];
-}
+std::string to_string(Compatibility compatibility) { return word_for(compatibility, {"compatible", "incompatible", "undecided"}); }
 
 namespace {
 

@@ -2,6 +2,7 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/geom/eigen.h"
+#include "ostraka/geom/submesh.h"
 #include "ostraka/io/diagnose.h"
 #include "ostraka/remesh/insert_curves.h"
 
@@ -82,46 +83,28 @@ struct Sides {
     std::vector<Vertex> failed;  ///< of borders that have a region on another side than its longest border has it
 };
 
-constexpr std::size_t no_region = static_cast<std::size_t>(-1);
-
 /// The halfedge of a piece of a curve that was inserted.
 Halfedge curve_halfedge(const InsertedCurves& cut, std::size_t curve, std::size_t i) {
     const auto& nodes = cut.node_vertex[curve];
     return find_halfedge(cut.mesh, Vertex(nodes[i]), Vertex(nodes[i + 1]));
 }
 
-/// The region of each face, parted by the curves, and the number of regions.
-std::pair<std::vector<std::size_t>, std::size_t> regions_between(const InsertedCurves& cut) {
+/// Regions of faces, parted by the curves.
+FacePieces regions_between(const InsertedCurves& cut) {
     const Mesh& mesh = cut.mesh;
     std::vector<bool> fence(mesh.number_of_edges(), false);
     for (std::size_t l = 0; l < cut.node_vertex.size(); ++l)
         for (std::size_t i = 0; i + 1 < cut.node_vertex[l].size(); ++i) fence[mesh.edge(curve_halfedge(cut, l, i))] = true;
-    std::vector<std::size_t> region(mesh.number_of_faces(), no_region);
-    std::size_t count = 0;
-    for (const Face seed : mesh.faces()) {
-        if (region[seed] != no_region) continue;
-        std::vector<Face> stack{seed};
-        region[seed] = count;
-        while (!stack.empty()) {
-            const Face face = stack.back();
-            stack.pop_back();
-            for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(face))) {
-                const Halfedge other = mesh.opposite(h);
-                if (fence[mesh.edge(h)] || mesh.is_border(other) || region[mesh.face(other)] != no_region) continue;
-                region[mesh.face(other)] = count;
-                stack.push_back(mesh.face(other));
-            }
-        }
-        ++count;
-    }
-    return {std::move(region), count};
+    return face_pieces(
+        mesh, [](Face) { return true; }, [&](Halfedge h) { return !fence[mesh.edge(h)]; });
 }
 
 Sides part(const InsertedCurves& cut, const Patch& patch, const std::vector<std::optional<SurfaceHit>>& places) {
+    constexpr auto none = static_cast<std::size_t>(-1);
     const Mesh& mesh = cut.mesh;
     const auto [region, count] = regions_between(cut);
     std::vector<bool> left(count, false);
-    std::vector<std::size_t> longest(count, no_region);                  // loop beside each region
+    std::vector<std::size_t> longest(count, none);                       // loop beside each region
     std::vector<std::pair<std::size_t, std::size_t>> on_left, on_right;  // region and loop
     for (std::size_t l = 0; l < cut.node_vertex.size(); ++l)
         for (std::size_t i = 0; i + 1 < cut.node_vertex[l].size(); ++i) {
@@ -131,7 +114,7 @@ Sides part(const InsertedCurves& cut, const Patch& patch, const std::vector<std:
                 const std::size_t r = region[mesh.face(half)];
                 auto& side = half == h ? on_left : on_right;
                 if (side.empty() || side.back() != std::pair(r, l)) side.emplace_back(r, l);
-                if (longest[r] == no_region || patch.loops()[l].size() > patch.loops()[longest[r]].size()) longest[r] = l;
+                if (longest[r] == none || patch.loops()[l].size() > patch.loops()[longest[r]].size()) longest[r] = l;
             }
         }
     for (const Face face : patch.closed()) {
@@ -162,28 +145,25 @@ private:
     [[nodiscard]] bool is_left(Halfedge h) const { return !mesh.is_border(h) && !gone[mesh.face(h)]; }
 };
 
-/// The vertices within so many rings of the seam, but for the seam and those `frozen`; `near` marks all of them.
-std::vector<Vertex> band_around(const CutSurface& surface, const std::map<Index, Vector3d>& seam, int rings,
-                                const std::vector<bool>& frozen, std::vector<bool>& near) {
-    const Mesh& mesh = surface.mesh;
-    std::vector<Vertex> front, band;
-    for (const auto& [v, place] : seam) {
-        near[v] = true;
-        front.emplace_back(v);
-    }
-    for (int r = 1; r <= rings; ++r) {
+/// Marks in `near` the vertices within so many rings of those of `front`, which it marks, over edges that `joins(halfedge)` lets
+/// pass; gives those that were not in `front`.
+template <class Joins>
+std::vector<Vertex> rings_around(const Mesh& mesh, std::vector<Vertex> front, int rings, std::vector<bool>& near, Joins&& joins) {
+    std::vector<Vertex> found;
+    for (const Vertex v : front) near[v] = true;
+    for (int r = 0; r < rings; ++r) {
         std::vector<Vertex> then;
         for (const Vertex v : front)
             for (const Halfedge h : mesh.halfedges_around_target(mesh.halfedge(v))) {
                 const Vertex other = mesh.source(h);
-                if (near[other] || !surface.has(h)) continue;
+                if (near[other] || !joins(h)) continue;
                 near[other] = true;
                 then.push_back(other);
-                if (!(static_cast<std::size_t>(other) < frozen.size() && frozen[other])) band.push_back(other);
             }
+        found.insert(found.end(), then.begin(), then.end());
         front = std::move(then);
     }
-    return band;
+    return found;
 }
 
 /// Vertices of the surface near the seam shifted by displacements that are harmonic between the seam and those `fixed`.
@@ -194,7 +174,10 @@ std::vector<bool> follow(const CutSurface& surface, const std::map<Index, Vector
     const double edge = mean_edge_length(mesh);
     const int rings = edge > 0 ? static_cast<int>(std::clamp(std::ceil(width / edge), 1.0, 40.0)) : 1;
     std::vector<bool> near(points.size(), false);
-    const std::vector<Vertex> band = band_around(surface, seam, rings, frozen, near);
+    std::vector<Vertex> front;
+    for (const auto& [v, place] : seam) front.emplace_back(v);
+    std::vector<Vertex> band = rings_around(mesh, front, rings, near, [&](Halfedge h) { return surface.has(h); });
+    std::erase_if(band, [&](Vertex v) { return static_cast<std::size_t>(v) < frozen.size() && frozen[v]; });
     std::vector<Vector3d> shift(mesh.number_of_vertices(), Vector3d::Zero()), next(band.size());
     for (const auto& [v, place] : seam) shift[v] = place - points[v];
     std::vector<std::vector<Vertex>> around;
@@ -238,22 +221,10 @@ void cut_triangle(std::array<Index, 3> t, const Splits& splits, std::vector<std:
 /// Vertices of the patch that few edges part from its border.
 std::vector<bool> near_border(const Patch& patch) {
     constexpr int rings = 4;
-    const Mesh& mesh = patch.mesh();
-    std::vector<bool> near(mesh.number_of_vertices(), false);
-    std::vector<Vertex> front;
-    for (const auto& loop : patch.loops()) front.insert(front.end(), loop.begin(), loop.end());
-    for (const Vertex v : front) near[v] = true;
-    for (int r = 0; r < rings; ++r) {
-        std::vector<Vertex> then;
-        for (const Vertex v : front)
-            for (const Halfedge h : mesh.halfedges_around_target(mesh.halfedge(v))) {
-                const Vertex other = mesh.source(h);
-                if (near[other]) continue;
-                near[other] = true;
-                then.push_back(other);
-            }
-        front = std::move(then);
-    }
+    std::vector<bool> near(patch.mesh().number_of_vertices(), false);
+    std::vector<Vertex> border;
+    for (const auto& loop : patch.loops()) border.insert(border.end(), loop.begin(), loop.end());
+    static_cast<void>(rings_around(patch.mesh(), border, rings, near, [](Halfedge) { return true; }));
     return near;
 }
 

@@ -3,7 +3,6 @@
 
 #include "patch.h"
 
-#include "ostraka/geom/submesh.h"
 #include "ostraka/geom/surface_search.h"
 
 #include <optional>

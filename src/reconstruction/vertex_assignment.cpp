@@ -6,7 +6,6 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
-#include "ostraka/geom/eigen.h"
 #include "ostraka/geom/point_tree.h"
 
 #include <algorithm>

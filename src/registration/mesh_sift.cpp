@@ -5,6 +5,7 @@
 #include "ostraka/fields/curvature.h"
 #include "ostraka/geom/diffusion.h"
 #include "ostraka/geom/eigen.h"
+#include "ostraka/geom/geodesic.h"
 #include "ostraka/geom/neighbourhood.h"
 
 #include <cmath>
@@ -56,29 +57,10 @@ Level smoothed_level(const Mesh& mesh, const Diffusion& diffusion, const Eigen::
 
 /// Distance of each vertex to the border along edges; infinite on closed meshes.
 std::vector<double> border_distances(const Mesh& mesh) {
-    std::vector<double> distance(mesh.number_of_vertices(), std::numeric_limits<double>::infinity());
-    std::vector<std::pair<double, Index>> heap;
-    for (const Vertex v : mesh.vertices()) {
-        if (mesh.is_isolated(v)) distance[v] = 0;
-        else if (mesh.is_border(v)) distance[v] = 0, heap.emplace_back(0, v);
-    }
-    std::make_heap(heap.begin(), heap.end(), std::greater<>());
-    while (!heap.empty()) {
-        std::pop_heap(heap.begin(), heap.end(), std::greater<>());
-        const auto [d, i] = heap.back();
-        heap.pop_back();
-        if (d > distance[i]) continue;
-        for (const Halfedge h : mesh.halfedges_around_target(mesh.halfedge(Vertex(i)))) {
-            const Vertex next = mesh.source(h);
-            const double through = d + std::sqrt(CGAL::squared_distance(mesh.point(next), mesh.point(Vertex(i))));
-            if (through < distance[next]) {
-                distance[next] = through;
-                heap.emplace_back(through, next);
-                std::push_heap(heap.begin(), heap.end(), std::greater<>());
-            }
-        }
-    }
-    return distance;
+    std::vector<std::pair<Vertex, double>> border;
+    for (const Vertex v : mesh.vertices())
+        if (mesh.is_isolated(v) || mesh.is_border(v)) border.emplace_back(v, 0.0);
+    return edge_distances(mesh, border);
 }
 
 struct Salient {

@@ -6,8 +6,8 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/geom/eigen.h"
+#include "ostraka/registration/surface_points.h"
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -23,9 +23,7 @@ struct Sample {
 
 /// Centroids of faces, each for the same area.
 std::vector<Sample> samples_of(const Mesh& part, const std::vector<bool>& of_part, int count) {
-    double area = 0;
-    for (const Face face : part.faces())
-        if (of_part.empty() || of_part[face]) area += face_area(part, face);
+    const double area = marked_area(part, of_part);
     if (!(area > 0)) fail_input("fragment", "has no area that could be laid onto a template", "look at its faces and facets");
     std::vector<Sample> samples;
     double sum = 0, next = 0.5 * area / count;

@@ -1,19 +1,14 @@
 #include "ostraka/registration/pose_json.h"
 
+#include "ostraka/core/json_build.h"
+
 namespace ostraka {
 
 JsonValue pose_to_json(const Motion& pose, JsonAllocator& allocator) {
-    JsonValue rows(rapidjson::kArrayType);
-    for (int i = 0; i < 4; ++i) {
-        JsonValue row(rapidjson::kArrayType);
-        for (int j = 0; j < 4; ++j)
-            row.PushBack(i == 3   ? (j == 3 ? 1.0 : 0.0)
-                         : j == 3 ? pose.translation[i]
-                                  : pose.scale * pose.rotation(i, j),
-                         allocator);
-        rows.PushBack(row, allocator);
-    }
-    return rows;
+    Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
+    matrix.topLeftCorner<3, 3>() = pose.scale * pose.rotation;
+    matrix.topRightCorner<3, 1>() = pose.translation;
+    return json_list(matrix.rowwise(), allocator, [&](const auto& row) { return json_value(row, allocator); });
 }
 
 }  // namespace ostraka

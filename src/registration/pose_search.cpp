@@ -13,7 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 namespace ostraka {
 
@@ -118,6 +117,13 @@ struct Proposal {
     double scale = 1, score = 0;
 };
 
+/// A pose on the scaled whole as one on the whole as it is.
+Motion on_unscaled(Motion pose, double scale) {
+    pose.scale /= scale;
+    pose.translation /= scale;
+    return pose;
+}
+
 double angle_between(const Motion& a, const Motion& b) {
     return std::acos(std::clamp(((a.rotation.transpose() * b.rotation).trace() - 1) / 2, -1.0, 1.0));
 }
@@ -198,9 +204,7 @@ struct PoseSearch::State {
             bool inside = false;
         };
         std::vector<Sample> samples(points.size());
-        Motion onto = one.pose;
-        onto.scale /= scale;
-        onto.translation /= scale;
+        const Motion onto = on_unscaled(one.pose, scale);
         parallel_for(points.size(), [&](std::size_t i) {
             const Vector3d p = onto(points.places[i]), n = onto.rotation * points.normals[i];
             const auto hit = whole.closest_compatible(point_of(p), vector_of(n), 0.5, 2.5 * tolerance / scale);
@@ -235,9 +239,7 @@ struct PoseSearch::State {
         how.iterations = 12;
         how.angle = 95;  // faces of a rough scan lean any way; only the other side of a wall must stay out
         how.search_radius = std::min(10.0, 2.5 * tolerance / one.scale / whole.diagonal());
-        Motion start = one.pose;
-        start.scale /= one.scale;
-        start.translation /= one.scale;
+        const Motion start = on_unscaled(one.pose, one.scale);
         PoseCandidate other = one;
         const PartAlignment aligned = align_part(part, of_part, whole, start, {}, how);
         other.pose.rotation = aligned.pose.rotation;
@@ -254,9 +256,7 @@ struct PoseSearch::State {
         const SurfacePoints some = thinned(points, 300);
         const Extent extent = extent_of(points);
         const Nearness near(tolerance / at.scale);
-        Motion onto = at.pose;
-        onto.scale /= at.scale;
-        onto.translation /= at.scale;
+        const Motion onto = on_unscaled(at.pose, at.scale);
         // Told by the whole's points under the part: those are many, and smoother than what a scan of a sherd is.
         std::vector<Vector3d> places, normals;
         const Motion back = onto.inverse();
@@ -414,10 +414,8 @@ PoseSearchResult PoseSearch::find(const Mesh& part, const std::vector<bool>& of_
         return pose;
     };
     const auto really_different = [&](const PoseCandidate& a, const PoseCandidate& b) {
-        Motion at = a.pose, bt = b.pose;
-        // Compared on the whole as it is.
-        at.scale /= a.scale, at.translation /= a.scale, bt.scale /= b.scale, bt.translation /= b.scale;
-        return State::differ(at, bt, extent.middle, extent.size / std::sqrt(a.scale * b.scale));
+        return State::differ(on_unscaled(a.pose, a.scale), on_unscaled(b.pose, b.scale), extent.middle,
+                             extent.size / std::sqrt(a.scale * b.scale));
     };
     const double tolerance = s.options.tolerance * extent.size;
     const auto pose_of = [&](const Proposal& one) {

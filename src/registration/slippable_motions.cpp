@@ -1,5 +1,6 @@
 #include "ostraka/registration/slippable_motions.h"
 #include "ostraka/core/dense.h"
+#include "ostraka/core/words.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,20 +11,13 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 std::string to_string(SlippableKind kind) {
-    static constexpr const char* words[]{"none", "turn", "shift", "screw", "tube", "ball", "plane", "more"};
-    return words[static_cast<std::size_t>(kind)];
+    return word_for(kind, {"none", "turn", "shift", "screw", "tube", "ball", "plane", "more"});
 }
 
 std::string SlippableMotions::text() const {
-    static constexpr const char* words[]{"none",
-                                         "turn about a line",
-                                         "shift along a line",
-                                         "screw along a line",
-                                         "turn about a line and shift along it",
-                                         "turn about a point",
-                                         "shift in a plane and turn about its normal",
-                                         "nearly any motion"};
-    return words[static_cast<std::size_t>(kind)];
+    return word_for(
+        kind, {"none", "turn about a line", "shift along a line", "screw along a line", "turn about a line and shift along it",
+               "turn about a point", "shift in a plane and turn about its normal", "nearly any motion"});
 }
 
 namespace {

@@ -11,13 +11,10 @@ namespace {
 
 Vector position(const Mesh& mesh, Vertex v) { return mesh.point(v) - CGAL::ORIGIN; }
 
-/// Halfway between two points, without overflow and the same from both sides.
-Point middle(const Point& p, const Point& q) { return {p.x() / 2 + q.x() / 2, p.y() / 2 + q.y() / 2, p.z() / 2 + q.z() / 2}; }
-
 /// Loop 1987: 3/8, 3/8, 1/8, 1/8 inside, the middle on the border.
 Point loop_edge_point(const Mesh& mesh, Edge e) {
     const Halfedge h = mesh.halfedge(e, 0), o = mesh.opposite(h);
-    if (mesh.is_border(e)) return middle(mesh.point(mesh.source(h)), mesh.point(mesh.target(h)));
+    if (mesh.is_border(e)) return midway(mesh.point(mesh.source(h)), mesh.point(mesh.target(h)));
     return CGAL::ORIGIN + (3.0 / 8) * (position(mesh, mesh.source(h)) + position(mesh, mesh.target(h))) +
            (1.0 / 8) * (position(mesh, mesh.target(mesh.next(h))) + position(mesh, mesh.target(mesh.next(o))));
 }
@@ -61,7 +58,7 @@ void cut_into_four(Mesh& mesh, bool smooth, RefineResult& result) {
     result.parents.reserve(result.parents.size() + E);
     for (Index e = 0; e < E; ++e) {
         const Vertex a = mesh.vertex(Edge(e), 0), b = mesh.vertex(Edge(e), 1);
-        mesh.add_vertex(smooth ? loop_edge_point(mesh, Edge(e)) : middle(mesh.point(a), mesh.point(b)));
+        mesh.add_vertex(smooth ? loop_edge_point(mesh, Edge(e)) : midway(mesh.point(a), mesh.point(b)));
         result.parents.push_back({a, b});
     }
     for (Index v = 0; v < smoothed.size(); ++v) mesh.point(Vertex(v)) = smoothed[v];
@@ -71,11 +68,6 @@ void cut_into_four(Mesh& mesh, bool smooth, RefineResult& result) {
     // Halfedge 2 e runs into the middle of its edge, halfedge 2 (E + e) out of it; the other way round on the opposite side.
     const auto first = [E](Halfedge h) { return h % 2 == 0 ? h : Halfedge(h + 2 * E); };
     const auto second = [E](Halfedge h) { return h % 2 == 0 ? Halfedge(h + 2 * E) : h; };
-    const auto link = [&mesh](Face f, Halfedge a, Halfedge b, Halfedge c) {
-        for (const Halfedge h : {a, b, c}) mesh.set_face(h, f);
-        mesh.set_next(a, b), mesh.set_next(b, c), mesh.set_next(c, a);
-        mesh.set_halfedge(f, a);
-    };
     for (Index f = 0; f < F; ++f) {
         std::array<Halfedge, 3> h;
         h[0] = mesh.halfedge(Face(f)), h[1] = mesh.next(h[0]), h[2] = mesh.next(h[1]);
@@ -85,9 +77,9 @@ void cut_into_four(Mesh& mesh, bool smooth, RefineResult& result) {
             const Halfedge before = h[(k + 2) % 3];
             mesh.set_target(inner[k], Vertex(V + before / 2));
             mesh.set_target(mesh.opposite(inner[k]), Vertex(V + h[k] / 2));
-            link(Face(F + 3 * f + k), inner[k], second(before), first(h[k]));
+            link_triangle(mesh, Face(F + 3 * f + k), inner[k], second(before), first(h[k]));
         }
-        link(Face(f), mesh.opposite(inner[1]), mesh.opposite(inner[2]), mesh.opposite(inner[0]));
+        link_triangle(mesh, Face(f), mesh.opposite(inner[1]), mesh.opposite(inner[2]), mesh.opposite(inner[0]));
     }
     for (const auto& [h, next] : border) {
         mesh.set_face(first(h), Mesh::null_face());

@@ -17,8 +17,7 @@ public:
     void halve(Edge e) {
         const Halfedge h = mesh_.halfedge(e, 0), o = mesh_.opposite(h);  // a -> b, b -> a; afterwards a -> m, m -> a
         const Vertex a = mesh_.source(h), b = mesh_.target(h);
-        const Point &p = mesh_.point(a), &q = mesh_.point(b);
-        const Vertex m = mesh_.add_vertex(Point(p.x() / 2 + q.x() / 2, p.y() / 2 + q.y() / 2, p.z() / 2 + q.z() / 2));
+        const Vertex m = mesh_.add_vertex(midway(mesh_.point(a), mesh_.point(b)));
         result_.parents.push_back({a, b});
         const Halfedge rest = mesh_.add_edge(m, b), back = mesh_.opposite(rest);  // m -> b, b -> m
         edges_.copy(e, mesh_.edge(rest));
@@ -33,8 +32,8 @@ public:
         } else {
             const Halfedge next = mesh_.next(h), last = mesh_.prev(h);  // b -> c, c -> a
             const Halfedge cut = add_cut(m, mesh_.target(next));        // m -> c
-            link(mesh_.face(h), h, cut, last);
-            link(add_face(mesh_.face(h)), rest, next, mesh_.opposite(cut));
+            link_triangle(mesh_, mesh_.face(h), h, cut, last);
+            link_triangle(mesh_, add_face(mesh_.face(h)), rest, next, mesh_.opposite(cut));
         }
         if (mesh_.is_border(o)) {
             mesh_.set_face(back, Mesh::null_face());
@@ -44,8 +43,8 @@ public:
         } else {
             const Halfedge next = mesh_.next(o), last = mesh_.prev(o);  // a -> d, d -> b
             const Halfedge cut = add_cut(m, mesh_.target(next));        // m -> d
-            link(mesh_.face(o), o, next, mesh_.opposite(cut));
-            link(add_face(mesh_.face(o)), back, cut, last);
+            link_triangle(mesh_, mesh_.face(o), o, next, mesh_.opposite(cut));
+            link_triangle(mesh_, add_face(mesh_.face(o)), back, cut, last);
         }
         ++result_.bisections;
     }
@@ -60,11 +59,6 @@ private:
         faces_.copy(old, face);
         result_.face_origin.push_back(result_.face_origin[old]);
         return face;
-    }
-    void link(Face f, Halfedge a, Halfedge b, Halfedge c) {
-        for (const Halfedge h : {a, b, c}) mesh_.set_face(h, f);
-        mesh_.set_next(a, b), mesh_.set_next(b, c), mesh_.set_next(c, a);
-        mesh_.set_halfedge(f, a);
     }
 
     Mesh& mesh_;

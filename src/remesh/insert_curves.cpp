@@ -33,7 +33,6 @@ InsertedCurves insert_curves(const Mesh& mesh, const std::vector<SurfaceCurve>& 
         }
     }
     for (const Point& p : cutter.new_points()) soup.points.push_back({p.x(), p.y(), p.z()});
-    result.new_vertices = cutter.new_points().size();
     result.mesh = build_mesh(soup);
     return result;
 }

@@ -4,7 +4,6 @@
 #include "ostraka/core/mesh.h"
 
 #include <functional>
-#include <string_view>
 
 namespace ostraka {
 

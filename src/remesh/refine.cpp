@@ -1,6 +1,5 @@
 #include "ostraka/remesh/refine.h"
 
-#include "collapse.h"
 #include "ostraka/core/error.h"
 #include "subdivide.h"
 
@@ -64,48 +63,6 @@ RefineResult refine(Mesh& mesh, const RefineOptions& options) {
         halve_longest_edges(mesh, options.vertices, result);
     }
     return result;
-}
-
-namespace {
-
-/// Appends the vertices after `a` on the way to `b` along the parts of one old edge; false if no old edge joined them.
-bool append_edge(const Mesh& mesh, const RefineResult& result, Vertex a, Vertex b, std::vector<Index>& vertex_path) {
-    const std::size_t start = vertex_path.size();
-    bool found = false;
-    for_each_incoming(mesh, a, [&](Halfedge incoming) {
-        const Index origin = result.edge_origin[mesh.edge(incoming)];
-        if (found || origin == no_index) return;
-        vertex_path.resize(start);
-        Halfedge h = mesh.opposite(incoming);
-        for (;;) {
-            vertex_path.push_back(mesh.target(h));
-            if (vertex_path.back() < result.old_vertices) break;
-            Halfedge onward = Mesh::null_halfedge();  // a vertex inside an old edge has two parts of it
-            for_each_incoming(mesh, mesh.target(h), [&](Halfedge g) {
-                if (g != h && result.edge_origin[mesh.edge(g)] == origin) onward = mesh.opposite(g);
-            });
-            h = onward;
-        }
-        found = vertex_path.back() == Index(b);
-    });
-    if (!found) vertex_path.resize(start);
-    return found;
-}
-
-}  // namespace
-
-std::vector<Index> refine_polyline(const Mesh& mesh, const RefineResult& result, const std::vector<Index>& polyline) {
-    std::vector<Index> vertex_path;
-    for (std::size_t i = 0; i < polyline.size(); ++i) {
-        if (polyline[i] >= result.old_vertices || mesh.is_isolated(Vertex(polyline[i])))
-            fail_input("poly-line",
-                       "names vertex " + std::to_string(polyline[i]) + ", which the mesh did not have before it was refined");
-        if (i == 0) vertex_path.push_back(polyline[0]);
-        else if (!append_edge(mesh, result, Vertex(polyline[i - 1]), Vertex(polyline[i]), vertex_path))
-            fail_input("poly-line", "goes from vertex " + std::to_string(polyline[i - 1]) + " to " + std::to_string(polyline[i]) +
-                                        " without an edge");
-    }
-    return vertex_path;
 }
 
 void RefineOptions::describe(OptionList& visit) {

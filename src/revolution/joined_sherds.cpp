@@ -1,4 +1,4 @@
-#include "joined_sherds.h"
+#include "stages.h"
 
 #include "ostraka/core/angles.h"
 #include "ostraka/core/dense.h"

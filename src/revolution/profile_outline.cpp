@@ -1,4 +1,4 @@
-#include "profile_outline.h"
+#include "stages.h"
 
 #include "ostraka/core/text.h"
 
@@ -30,13 +30,8 @@ double ProfileImage::at(long row, long column) const {
     return wall_share[static_cast<std::size_t>(row) * columns + static_cast<std::size_t>(column)];
 }
 
-bool ProfileImage::reaches_axis_below() const {
-    for (std::size_t row = 0; row < rows / 2; ++row)
-        if (wall_share[row * columns] > 0.5) return true;
-    return false;
-}
-bool ProfileImage::reaches_axis_above() const {
-    for (std::size_t row = rows / 2; row < rows; ++row)
+bool ProfileImage::reaches_axis(std::size_t first, std::size_t end) const {
+    for (std::size_t row = first; row < end; ++row)
         if (wall_share[row * columns] > 0.5) return true;
     return false;
 }

@@ -1,5 +1,5 @@
-#include "profile_sweep.h"
 #include "ostraka/core/angles.h"
+#include "stages.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "revolved_annotations.h"
+#include "stages.h"
 
 #include <algorithm>
 #include <functional>
@@ -42,11 +42,15 @@ void annotate_revolution(RevolutionTemplate& result, const AxisFrame& frame, dou
     for (const Vector3d& v : {Vector3d(frame.foot + lowest * frame.up), frame.up})
         for (int k = 0; k < 3; ++k) axis.descriptor.values.push_back(v[k]);
     set.annotations.front().attributes.push_back(axis);
-    const auto region = [&](const std::string& tag, std::array<int, 3> colour, const std::function<bool(Index)>& in) {
+    const auto started = [&](const std::string& tag, const std::array<int, 3>& colour) {
         Annotation one;
         one.id = free_id(set);
         one.tag = tag;
         one.colour = colour;
+        return one;
+    };
+    const auto region = [&](const std::string& tag, std::array<int, 3> colour, const std::function<bool(Index)>& in) {
+        Annotation one = started(tag, colour);
         for (Index f = 0; f < outer.size(); ++f)
             if (in(f)) one.faces.push_back(f);
         if (!one.faces.empty()) set.annotations.push_back(std::move(one));
@@ -56,10 +60,7 @@ void annotate_revolution(RevolutionTemplate& result, const AxisFrame& frame, dou
     region("base", {90, 70, 60}, [&](Index f) { return base[f]; });
     const auto ring = [&](const std::string& tag, std::size_t i, std::array<int, 3> colour) {
         if (rings[i].size() < 3) return;
-        Annotation one;
-        one.id = free_id(set);
-        one.tag = tag;
-        one.colour = colour;
+        Annotation one = started(tag, colour);
         one.type = AnnotationType::line;
         auto& way = one.polylines.emplace_back();
         for (const Vertex v : rings[i]) way.push_back(Index(v));
@@ -79,10 +80,7 @@ void annotate_revolution(RevolutionTemplate& result, const AxisFrame& frame, dou
     if (result.base) ring("foot", foot, {60, 40, 40});
     const auto pole = [&](const std::string& tag, std::size_t i) {
         if (rings[i].size() != 1) return;
-        Annotation one;
-        one.id = free_id(set);
-        one.tag = tag;
-        one.colour = {30, 30, 30};
+        Annotation one = started(tag, {30, 30, 30});
         one.type = AnnotationType::point;
         one.points = {Index(rings[i].front())};
         set.annotations.push_back(std::move(one));

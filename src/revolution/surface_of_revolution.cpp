@@ -1,10 +1,7 @@
 #include "ostraka/revolution/surface_of_revolution.h"
 #include "ostraka/core/angles.h"
 
-#include "joined_sherds.h"
-#include "profile_sweep.h"
-#include "revolved_annotations.h"
-#include "wall_section.h"
+#include "stages.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/geom/eigen.h"
@@ -90,9 +87,9 @@ private:
             section.drop_rare(options_);
             result_.rim = section.has_rim(options_);
             image_ = std::move(section.image);
-            result_.base = image_.reaches_axis_below();
+            result_.base = image_.reaches_axis(0, image_.rows / 2);
             // The foot is where the wall reaches the axis; of an open tube the narrower end.
-            const bool upside_down = !result_.base && image_.reaches_axis_above();
+            const bool upside_down = !result_.base && image_.reaches_axis(image_.rows / 2, image_.rows);
             if (attempt == 1 || !upside_down) break;
             result_.axis.direction = -result_.axis.direction;
         }

@@ -1,4 +1,4 @@
-#include "wall_section.h"
+#include "stages.h"
 
 #include "ostraka/core/angles.h"
 #include "ostraka/core/parallel.h"
@@ -65,11 +65,7 @@ WallSection wall_section(const SurfaceSearch& search, const AxisFrame& frame, do
                         }
                     };
                     // Outwards from the axis on either side of it.
-                    std::vector<SurfaceHit> sorted = hits;
-                    std::stable_sort(sorted.begin(), sorted.end(), [&](const SurfaceHit& a, const SurfaceHit& b) {
-                        return std::abs(a.distance) < std::abs(b.distance);
-                    });
-                    for (const SurfaceHit& hit : sorted) visit(hit);
+                    for (const SurfaceHit& hit : hits) visit(hit);
                     if (!any) continue;
                     met[row][static_cast<std::size_t>(side > 0 ? k : half + k)] = true;
                     ++image.present[row];

@@ -27,6 +27,14 @@ Axis axis_of(const Reader& read, std::size_t i, AxisFinder find) {
     return found;
 }
 
+/// Of all members, two or more.
+std::vector<Axis> axes_of_parts(const Reader& read) {
+    read.need(2, 0);
+    std::vector<Axis> axes;
+    for (std::size_t i = 0; i < read.members(); ++i) axes.push_back(axis_of(read, i, axis_of_part));
+    return axes;
+}
+
 /// The reference's axis on the shape as it is, or at rest where a deformed reference has none any more.
 Axis reference_now(const Reader& read, const Axis& rest, const State& now, AxisFinder find) {
     Axis found = find(now.mesh, read.member(read.members() - 1));
@@ -48,9 +56,7 @@ double volume(const Mesh& mesh, const Points& points) {
 }  // namespace
 
 Statement co_axiality(const ReaderPtr& read, const RelationOptions& tolerances) {
-    read->need(2, 0);
-    std::vector<Axis> axes;
-    for (std::size_t i = 0; i < read->members(); ++i) axes.push_back(axis_of(*read, i, axis_of_part));
+    const std::vector<Axis> axes = axes_of_parts(*read);
     Statement statement;
     statement.follows = true;
     statement.lower = [read, axes](const State&, const State& now) {
@@ -71,9 +77,7 @@ Statement co_axiality(const ReaderPtr& read, const RelationOptions& tolerances) 
 }
 
 Statement axis_angle(const ReaderPtr& read, const RelationOptions& tolerances) {
-    read->need(2, 0);
-    std::vector<Axis> axes;
-    for (std::size_t i = 0; i < read->members(); ++i) axes.push_back(axis_of(*read, i, axis_of_part));
+    const std::vector<Axis> axes = axes_of_parts(*read);
     const double angle = read->relationship().type == "perpendicular axes" ? pi / 2 : 0;
     Statement statement;
     statement.follows = true;
@@ -110,9 +114,7 @@ Statement structural_continuity(const ReaderPtr& read, const RelationOptions& to
         parameters.point = eigen(reference.point);
         parameters.stations = segment->stations;
         parameters.coefficients = segment->shares;
-        Statement::Constraints list;
-        list.push_back(read->make("AxisOnLine", segment->vertices, parameters));
-        return list;
+        return only(read->make("AxisOnLine", segment->vertices, parameters));
     };
     // The axis is constrained, and the surface follows: it may turn, which displacements from neighbours could not.
     statement.rotating = read->vertices(0);
@@ -124,9 +126,7 @@ Statement structural_continuity(const ReaderPtr& read, const RelationOptions& to
         constexpr double stiffness = 10;
         Statement::Constraints list;
         for (const Index v : rotating) {
-            std::vector<int> star{static_cast<int>(v)};
-            for (const Vertex n : mesh.vertices_around_target(mesh.halfedge(Vertex(v))))
-                star.push_back(static_cast<int>(n.idx()));
+            const std::vector<int> star = star_of(mesh, Vertex(v));
             ConstraintParameters parameters;
             parameters.target.emplace(3, static_cast<Eigen::Index>(star.size()));
             for (std::size_t i = 0; i < star.size(); ++i)

@@ -14,14 +14,7 @@ namespace ostraka {
 
 namespace {
 
-using semantic::columns_of;
 using semantic::list_of;
-
-Points columns_of(const std::vector<Point>& list) {
-    Points points(3, static_cast<Eigen::Index>(list.size()));
-    for (std::size_t i = 0; i < list.size(); ++i) points.col(static_cast<Eigen::Index>(i)) = eigen(list[i]);
-    return points;
-}
 
 /// What solving for some of the constraints gives.
 struct Outcome {
@@ -96,10 +89,6 @@ private:
         std::map<Index, int> reattached;  // by which feature
         for (const Relationship& relationship : graph_.relationships) {
             if (!relationship.is_constraint) continue;
-            ConstraintReport report;
-            report.id = relationship.id;
-            report.type = relationship.type;
-            report.weight = relationship.weight;
             statements_.push_back(semantic::understand(shape, relationship, tolerances_, graph_where_));
             const semantic::Statement& statement = statements_.back();
             if (statement.reattachment && relationship.weight > 0)
@@ -112,11 +101,7 @@ private:
                                             std::to_string(other->second) + ", seated as well",
                                         "seat one of them, or make one annotation of both");
                     }
-            report.hard = statement.hard;
-            report.used = statement.unknown.empty() && relationship.weight > 0;
-            if (!statement.unknown.empty()) report.text = "left out: " + statement.unknown;
-            else if (!report.used) report.text = "left out: its weight is zero";
-            result.constraints.push_back(std::move(report));
+            result.constraints.push_back(semantic::report_of(relationship, statement));
         }
     }
 
@@ -226,10 +211,7 @@ private:
         if (options_.laplacian > 0)
             for (const Vertex v : space_.mesh.vertices()) {
                 if (space_.mesh.is_isolated(v) || rotating_.count(v.idx()) > 0) continue;
-                std::vector<int> ids{static_cast<int>(v.idx())};
-                for (const Vertex n : space_.mesh.vertices_around_target(space_.mesh.halfedge(v)))
-                    ids.push_back(static_cast<int>(n.idx()));
-                list.push_back(make_constraint("LaplacianDisplacement", ids, options_.laplacian, {},
+                list.push_back(make_constraint("LaplacianDisplacement", semantic::star_of(space_.mesh, v), options_.laplacian, {},
                                                options_.details == DeformOptions::Details::rest ? rest_ : edited_));
             }
         const bool any_hard = std::any_of(owner_.begin(), owner_.end(), [&](std::size_t i) { return statements_[i].hard; });
@@ -278,10 +260,8 @@ private:
         if (options_.laplacian > 0)
             for (const Vertex v : space_.cage->vertices()) {
                 if (space_.cage->is_isolated(v)) continue;
-                std::vector<int> ids{static_cast<int>(n) + static_cast<int>(v.idx())};
-                for (const Vertex u : space_.cage->vertices_around_target(space_.cage->halfedge(v)))
-                    ids.push_back(static_cast<int>(n) + static_cast<int>(u.idx()));
-                list.push_back(make_constraint("LaplacianDisplacement", ids, share * options_.laplacian, {}, shape));
+                list.push_back(make_constraint("LaplacianDisplacement", semantic::star_of(*space_.cage, v, static_cast<int>(n)),
+                                               share * options_.laplacian, {}, shape));
             }
         CageSpaceSolver solver(take(std::move(list)), extended, rest_cage);
         // What must hold counts a thousandfold: a cage may not be able to do it.

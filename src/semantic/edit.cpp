@@ -222,13 +222,7 @@ std::vector<Index> influential(const Coordinates& coordinates, const std::vector
     return list;
 }
 
-std::vector<Index> vertices_of(const Mesh& mesh, const Annotation& annotation) {
-    std::set<Index> list(annotation.points.begin(), annotation.points.end());
-    for (const auto& polyline : annotation.polylines) list.insert(polyline.begin(), polyline.end());
-    for (const Index f : annotation.faces)
-        for (const Vertex v : corners(mesh, Face(f))) list.insert(v.idx());
-    return {list.begin(), list.end()};
-}
+std::vector<Index> vertices_of(const Mesh& mesh, const Annotation& annotation) { return touched_vertices(mesh, annotation); }
 
 std::vector<EditState> follow_edit(const JsonValue& edit, const HandleSpace& space, const std::string& where) {
     validate(edit, "edit", where);

@@ -77,12 +77,6 @@ std::vector<int> in_order(const Mesh& mesh, const Annotation& annotation) {
     return {vertices.begin(), vertices.end()};
 }
 
-std::vector<int> ring(const Mesh& mesh, Index v) {
-    std::vector<int> ids{static_cast<int>(v)};
-    for (const Vertex n : mesh.vertices_around_target(mesh.halfedge(Vertex(v)))) ids.push_back(static_cast<int>(n.idx()));
-    return ids;
-}
-
 void add_edges(const Mesh& mesh, const Annotation& annotation, std::vector<std::vector<int>>& groups) {
     if (annotation.type != AnnotationType::region) {
         const std::vector<int> ids = in_order(mesh, annotation);
@@ -145,7 +139,7 @@ std::vector<std::vector<int>> groups_of(const Reader& read, const Form& form) {
                 // Cotangents need all of the faces around.
                 for (const Index v : vertices_of(mesh, annotation))
                     if (std::string_view(form.kind).find("Cotangent") == std::string_view::npos || !mesh.is_border(Vertex(v)))
-                        groups.push_back(ring(mesh, v));
+                        groups.push_back(star_of(mesh, Vertex(v)));
                 break;
         }
     }
@@ -182,11 +176,7 @@ Statement low_level(const ReaderPtr& read, const RelationOptions& tolerances) {
     const auto list = std::make_shared<const Statement::Constraints>(lower());
     // Against the size of the group at rest: the finer the mesh, the smaller its edges and faces.
     std::vector<double> sizes;
-    for (const auto& constraint : *list) {
-        Eigen::AlignedBox3d box;
-        for (const int v : constraint->ids()) box.extend(Vector3d(read->shape().rest.col(v)));
-        sizes.push_back(box.diagonal().norm());
-    }
+    for (const auto& constraint : *list) sizes.push_back(read->size_at_rest(*constraint));
     const Deviation residual{"residual of a vertex", 0.0, 100 * tolerances.distance, "%"};
     statement.measure = [=](const State& deformed) {
         Deviation worst = residual;

@@ -12,23 +12,14 @@ std::vector<ConstraintReport> measure_constraints(const Mesh& mesh, const Annota
     check_options(tolerances, "constraints");
     const Mesh there = with_points(mesh, points);
     const semantic::State state(there);
-    const Points rest = semantic::columns_of(mesh);
+    const Points rest = columns_of(mesh);
     const semantic::Shape shape{mesh, set, rest};
     std::vector<ConstraintReport> reports;
     for (const Relationship& relationship : graph.relationships) {
         if (!relationship.is_constraint) continue;
-        ConstraintReport report;
-        report.id = relationship.id;
-        report.type = relationship.type;
-        report.weight = relationship.weight;
         const semantic::Statement statement = semantic::understand(shape, relationship, tolerances, graph_name);
-        report.hard = statement.hard;
-        report.used = statement.unknown.empty() && relationship.weight > 0;
-        if (!statement.unknown.empty()) {
-            report.text = "left out: " + statement.unknown;
-        } else if (!report.used) {
-            report.text = "left out: its weight is zero";
-        } else {
+        ConstraintReport report = semantic::report_of(relationship, statement);
+        if (report.used) {
             const semantic::Measured measured = statement.measure(state);
             report.verdict = measured.verdict;
             report.deviations = measured.deviations;

@@ -189,10 +189,8 @@ Statement proportion(const ReaderPtr& read, const RelationOptions&) {
     statement.anchors = part->anchors();
     statement.follows = tapes;
     statement.lower = [=](const State& edited, const State& now) {
-        Statement::Constraints list;
         const double size = other.value(now.points);
-        list.push_back(tapes ? part->to({range.min * size, range.max * size}, edited) : part->against(other, range, edited));
-        return list;
+        return only(tapes ? part->to({range.min * size, range.max * size}, edited) : part->against(other, range, edited));
     };
     statement.measure = within(range, [=](const Points& p) { return part->gauge().value(p) / other.value(p); });
     return statement;
@@ -204,11 +202,7 @@ Statement keep_measure(const ReaderPtr& read, const RelationOptions&) {
     const auto part = std::make_shared<const Stretch>(read, 0, gauge_of(*read, "measure", 0));
     Statement statement;
     statement.anchors = part->anchors();
-    statement.lower = [=](const State& edited, const State&) {
-        Statement::Constraints list;
-        list.push_back(part->to(range, edited));
-        return list;
-    };
+    statement.lower = [=](const State& edited, const State&) { return only(part->to(range, edited)); };
     statement.measure = within(range, [=](const Points& p) { return part->gauge().value(p); });
     return statement;
 }

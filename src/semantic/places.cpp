@@ -12,13 +12,8 @@ namespace {
 /// All vertices together as one kind would have them.
 Statement all_on(const char* kind, const ReaderPtr& read, const RelationOptions& tolerances) {
     read->need(1, 0);
-    const auto lower = [read, kind](const State&, const State&) {
-        Statement::Constraints list;
-        list.push_back(read->make(kind, read->all_vertices(), {}));
-        return list;
-    };
     Statement statement;
-    statement.lower = lower;
+    statement.lower = [read, kind](const State&, const State&) { return only(read->make(kind, read->all_vertices(), {})); };
     const std::shared_ptr<const Constraint> together = read->make(kind, read->all_vertices(), {});
     const Deviation distance{"rms distance", 0.0, length_tolerance(*read, tolerances), read->shape().set.unit};
     statement.measure = [together, distance](const State& deformed) {
@@ -132,9 +127,7 @@ Statement mirror_symmetry(const ReaderPtr& read, const RelationOptions& toleranc
         ConstraintParameters given = parameters;
         given.target.emplace(3, static_cast<Eigen::Index>(partners.gaps.size()));
         for (std::size_t i = 0; i < partners.gaps.size(); ++i) given.target->col(static_cast<Eigen::Index>(i)) = partners.gaps[i];
-        Statement::Constraints list;
-        list.push_back(read->make("MirrorSymmetry", partners.ids, given));
-        return list;
+        return only(read->make("MirrorSymmetry", partners.ids, given));
     };
     const Deviation distance{"distance", 0.0, tolerance, read->shape().set.unit};
     statement.measure = [=](const State& deformed) {

@@ -5,6 +5,7 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/json.h"
+#include "ostraka/core/words.h"
 #include "ostraka/geom/eigen.h"
 
 #include <algorithm>
@@ -140,9 +141,7 @@ public:
         for (const auto& member : parameters_.GetObject()) {
             const std::string name = member.name.GetString();
             if (asked_.count(name) > 0) continue;
-            std::string list;
-            for (const std::string& known : asked_) list += (list.empty() ? "" : ", ") + known;
-            fail("has a parameter '" + name + "', which it does not know", "use: " + list);
+            fail("has a parameter '" + name + "', which it does not know", "use: " + joined(asked_));
         }
     }
     /// The measure that `name` names by id or name in the annotation; the only one if it is left out.
@@ -174,6 +173,13 @@ public:
         } catch (const Error& error) {
             fail(error.problem(), error.remedy());
         }
+    }
+
+    /// Diagonal of the box of a constraint's points at rest.
+    [[nodiscard]] double size_at_rest(const Constraint& constraint) const {
+        Eigen::AlignedBox3d box;
+        for (const int v : constraint.ids()) box.extend(Vector3d(shape_.rest.col(v)));
+        return box.diagonal().norm();
     }
 
 private:

@@ -67,11 +67,7 @@ Statement keep_shape(const ReaderPtr& read, const RelationOptions& tolerances) {
     };
     // A part is small against the object: its own size tells what matters.
     std::vector<double> tolerance;
-    for (const auto& part : *parts) {
-        Eigen::AlignedBox3d box;
-        for (const int v : part->ids()) box.extend(Vector3d(read->shape().rest.col(v)));
-        tolerance.push_back(tolerances.distance * box.diagonal().norm());
-    }
+    for (const auto& part : *parts) tolerance.push_back(tolerances.distance * read->size_at_rest(*part));
     statement.measure = [=, unit = read->shape().set.unit](const State& deformed) {
         Deviation worst{"rms distance from its shape", 0.0, tolerance.front(), unit};
         for (std::size_t i = 0; i < parts->size(); ++i) {

@@ -24,10 +24,10 @@ const std::map<std::string, Understanding>& table() {
 
 }  // namespace
 
-Points columns_of(const Mesh& mesh) {
-    Points points(3, static_cast<Eigen::Index>(mesh.number_of_vertices()));
-    for (const Vertex v : mesh.vertices()) points.col(v.idx()) = eigen(mesh.point(v));
-    return points;
+std::vector<int> star_of(const Mesh& mesh, Vertex vertex, int first) {
+    std::vector<int> ids{first + static_cast<int>(vertex.idx())};
+    for (const Vertex n : mesh.vertices_around_target(mesh.halfedge(vertex))) ids.push_back(first + static_cast<int>(n.idx()));
+    return ids;
 }
 
 Measured verdict_of(std::vector<Deviation> deviations) {
@@ -73,6 +73,18 @@ Statement understand(const Shape& shape, const Relationship& relationship, const
     statement.hard = read->flag("hard");
     read->refuse_others();
     return statement;
+}
+
+ConstraintReport report_of(const Relationship& relationship, const Statement& statement) {
+    ConstraintReport report;
+    report.id = relationship.id;
+    report.type = relationship.type;
+    report.weight = relationship.weight;
+    report.hard = statement.hard;
+    report.used = statement.unknown.empty() && relationship.weight > 0;
+    if (!statement.unknown.empty()) report.text = "left out: " + statement.unknown;
+    else if (!report.used) report.text = "left out: its weight is zero";
+    return report;
 }
 
 }  // namespace ostraka::semantic

@@ -3,13 +3,13 @@
 
 #include "reattachment.h"
 
+#include "ostraka/geom/eigen.h"
 #include "ostraka/relation/check.h"
+#include "ostraka/semantic/deform.h"
 #include "ostraka/semantic/edit.h"
 #include "ostraka/solver/constraint.h"
 
 namespace ostraka::semantic {
-
-Points columns_of(const Mesh& mesh);
 
 /// What constraints are stated on. `rest` are the mesh's points before the edit, a column each.
 struct Shape {
@@ -49,8 +49,21 @@ struct Statement {
     std::string unknown;  ///< why it is left out, if it is
 };
 
+/// A list of one constraint.
+inline Statement::Constraints only(std::unique_ptr<Constraint> constraint) {
+    Statement::Constraints list;
+    list.push_back(std::move(constraint));
+    return list;
+}
+
+/// A vertex and its neighbours, as the ids of points of which the mesh's begin at `first`.
+std::vector<int> star_of(const Mesh& mesh, Vertex vertex, int first = 0);
+
 /// Reads a relationship and checks it on the shape at rest. Throws Error (input) naming it where it makes no sense.
 Statement understand(const Shape& shape, const Relationship& relationship, const RelationOptions& tolerances,
                      const std::string& where);
+
+/// Of a constraint that was understood, before anything is measured: what it is, and whether it is used.
+ConstraintReport report_of(const Relationship& relationship, const Statement& statement);
 
 }  // namespace ostraka::semantic

@@ -11,26 +11,13 @@ namespace ostraka {
 
 namespace {
 
-template <class List, class Make>
-JsonValue list_of(const List& list, JsonAllocator& allocator, Make&& make) {
-    JsonValue array(rapidjson::kArrayType);
-    for (const auto& item : list) array.PushBack(make(item), allocator);
-    return array;
-}
-JsonValue numbers(const std::vector<double>& list, JsonAllocator& allocator) {
-    return list_of(list, allocator, [](double x) { return JsonValue(x); });
-}
-JsonValue texts(const std::vector<std::string>& list, JsonAllocator& allocator) {
-    return list_of(list, allocator, [&](const std::string& text) { return json_string(text, allocator); });
-}
-
 void add_quantity(JsonValue& object, const ClassQuantity& quantity, JsonAllocator& allocator) {
-    add_member(object, "kind", to_string(quantity.kind), allocator);
-    if (quantity.id >= 0) add_member(object, "id", JsonValue(quantity.id), allocator);
-    add_member(object, "name", quantity.name, allocator);
-    if (!quantity.of.empty()) add_member(object, "of", quantity.of, allocator);
-    if (!quantity.unit.empty()) add_member(object, "unit", quantity.unit, allocator);
-    add_member(object, "oneSided", JsonValue(quantity.one_sided), allocator);
+    add_members(object, allocator, "kind", to_string(quantity.kind));
+    if (quantity.id >= 0) add_members(object, allocator, "id", quantity.id);
+    add_members(object, allocator, "name", quantity.name);
+    if (!quantity.of.empty()) add_members(object, allocator, "of", quantity.of);
+    if (!quantity.unit.empty()) add_members(object, allocator, "unit", quantity.unit);
+    add_members(object, allocator, "oneSided", quantity.one_sided);
 }
 
 struct Field {
@@ -49,15 +36,14 @@ constexpr Field fields[] = {{"min", &LearntRange::min},
 JsonValue range_to_json(const LearntRange& range, JsonAllocator& allocator) {
     JsonValue object(rapidjson::kObjectType);
     add_quantity(object, range.quantity, allocator);
-    add_member(object, "count", JsonValue(static_cast<std::uint64_t>(range.count)), allocator);
+    add_members(object, allocator, "count", range.count);
     if (range.count > 0)
-        for (const Field& field : fields) add_member(object, field.name, JsonValue(range.*field.value), allocator);
+        for (const Field& field : fields) add_members(object, allocator, field.name, range.*field.value);
     add_members(object, allocator, "logarithm", range.logarithm, "falseReject", range.reject);
-    if (range.deviation) add_member(object, "deviation", JsonValue(*range.deviation), allocator);
-    if (range.low) add_member(object, "low", JsonValue(*range.low), allocator);
-    if (range.high) add_member(object, "high", JsonValue(*range.high), allocator);
-    add_member(object, "values", list_of(range.values, allocator, [](const auto& v) { return v ? JsonValue(*v) : JsonValue(); }),
-               allocator);
+    if (range.deviation) add_members(object, allocator, "deviation", *range.deviation);
+    if (range.low) add_members(object, allocator, "low", *range.low);
+    if (range.high) add_members(object, allocator, "high", *range.high);
+    add_members(object, allocator, "values", range.values);
     return object;
 }
 
@@ -151,11 +137,8 @@ void write_class(const Path& folder, const ShapeClass& learnt, const Provenance&
         const ClassMember& member = learnt.members[i];
         JsonValue object = json_object(allocator, "name", member.name, "placedBy", member.placed_by, "scale", member.scale,
                                        "centroidSize", modes.centroid_sizes[i], "fromMean", modes.distances[i]);
-        std::vector<double> row;
-        for (Eigen::Index k = 0; k < modes.coefficients.cols(); ++k)
-            row.push_back(modes.coefficients(static_cast<Eigen::Index>(i), k));
-        add_member(object, "coefficients", numbers(row, allocator), allocator);
-        if (!member.notes.empty()) add_member(object, "notes", texts(member.notes, allocator), allocator);
+        add_members(object, allocator, "coefficients", modes.coefficients.row(static_cast<Eigen::Index>(i)));
+        if (!member.notes.empty()) add_members(object, allocator, "notes", member.notes);
         members.PushBack(object, allocator);
     }
     add_members(document, allocator, "falseReject", learnt.reject, "resolution", learnt.resolution, "members", std::move(members),
@@ -176,12 +159,11 @@ void write_class(const Path& folder, const ShapeClass& learnt, const Provenance&
                   {static_cast<std::size_t>(modes.modes.rows()), static_cast<std::size_t>(modes.modes.cols())});
         add_member(shape, "modes", rows, allocator);
     }
-    add_members(shape, allocator, "variances", numbers(modes.variances, allocator), "totalVariance", modes.total, "meanSize",
-                modes.mean_size);
-    add_members(document, allocator, "shape", std::move(shape), "ranges",
-                list_of(learnt.ranges, allocator, [&](const auto& r) { return range_to_json(r, allocator); }), "fragments",
-                list_of(learnt.fragments, allocator, [&](const auto& r) { return range_to_json(r, allocator); }), "notes",
-                texts(learnt.notes, allocator), "provenance", provenance.to_json(allocator));
+    add_members(shape, allocator, "variances", modes.variances, "totalVariance", modes.total, "meanSize", modes.mean_size);
+    const auto of_range = [&](const LearntRange& range) { return range_to_json(range, allocator); };
+    add_members(document, allocator, "shape", std::move(shape), "ranges", json_list(learnt.ranges, allocator, of_range),
+                "fragments", json_list(learnt.fragments, allocator, of_range), "notes", learnt.notes, "provenance",
+                provenance.to_json(allocator));
     write_json(folder / (learnt.name + ".class.json"), document);
 }
 
@@ -254,35 +236,30 @@ ShapeClass read_class(const Path& file) {
 }
 
 JsonValue classification_to_json(const Classification& answer, JsonAllocator& allocator) {
-    JsonValue report(rapidjson::kObjectType), answers(rapidjson::kArrayType);
-    add_members(report, allocator, "object", answer.object, "verdict", to_string(answer.verdict), "text", answer.text);
-    const auto name = [&](int k) { return answer.answers[static_cast<std::size_t>(k)].name; };
-    if (answer.best >= 0) add_member(report, "class", name(answer.best), allocator);
-    if (answer.nearest >= 0) add_member(report, "nearest", name(answer.nearest), allocator);
-    for (const ClassAnswer& one : answer.answers) {
-        JsonValue object(rapidjson::kObjectType), checks(rapidjson::kArrayType);
-        add_members(object, allocator, "class", one.name, "verdict", to_string(one.verdict));
-        if (!one.undecided.empty()) add_member(object, "undecided", one.undecided, allocator);
-        if (one.fit.problem.empty()) {
+    const auto of_check = [&](const QuantityCheck& check) {
+        JsonValue item(rapidjson::kObjectType);
+        add_quantity(item, check.quantity, allocator);
+        if (check.quantity.value) add_members(item, allocator, "value", *check.quantity.value);
+        if (check.low) add_members(item, allocator, "low", *check.low);
+        if (check.high) add_members(item, allocator, "high", *check.high);
+        add_members(item, allocator, "decides", check.decides, "off", check.off, "excess", check.excess);
+        if (!check.worst.empty()) add_members(item, allocator, "most", check.worst);
+        return item;
+    };
+    const auto of_class = [&](const ClassAnswer& one) {
+        JsonValue object = json_object(allocator, "class", one.name, "verdict", to_string(one.verdict));
+        if (!one.undecided.empty()) add_members(object, allocator, "undecided", one.undecided);
+        if (one.fit.problem.empty())
             add_members(object, allocator, "score", one.score, "placedBy", one.fit.placed_by, "scale", one.fit.scale,
-                        "coefficients", numbers(one.coordinates.coefficients, allocator), "mahalanobis",
-                        one.coordinates.mahalanobis);
-        }
-        add_member(object, "against", texts(one.reasons(), allocator), allocator);
-        for (const QuantityCheck& check : one.checks) {
-            JsonValue item(rapidjson::kObjectType);
-            add_quantity(item, check.quantity, allocator);
-            if (check.quantity.value) add_member(item, "value", JsonValue(*check.quantity.value), allocator);
-            if (check.low) add_member(item, "low", JsonValue(*check.low), allocator);
-            if (check.high) add_member(item, "high", JsonValue(*check.high), allocator);
-            add_members(item, allocator, "decides", check.decides, "off", check.off, "excess", check.excess);
-            if (!check.worst.empty()) add_member(item, "most", check.worst, allocator);
-            checks.PushBack(item, allocator);
-        }
-        add_member(object, "checks", std::move(checks), allocator);
-        answers.PushBack(object, allocator);
-    }
-    add_member(report, "answers", std::move(answers), allocator);
+                        "coefficients", one.coordinates.coefficients, "mahalanobis", one.coordinates.mahalanobis);
+        add_members(object, allocator, "against", one.reasons(), "checks", json_list(one.checks, allocator, of_check));
+        return object;
+    };
+    JsonValue report = json_object(allocator, "object", answer.object, "verdict", to_string(answer.verdict), "text", answer.text);
+    const auto name = [&](int k) { return answer.answers[static_cast<std::size_t>(k)].name; };
+    if (answer.best >= 0) add_members(report, allocator, "class", name(answer.best));
+    if (answer.nearest >= 0) add_members(report, allocator, "nearest", name(answer.nearest));
+    add_members(report, allocator, "answers", json_list(answer.answers, allocator, of_class));
     return report;
 }
 

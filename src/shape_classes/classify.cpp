@@ -2,6 +2,7 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/text.h"
+#include "ostraka/core/words.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,10 +12,7 @@
 
 namespace ostraka {
 
-std::string to_string(Membership membership) {
-    static constexpr const char* words[]{"member", "other", "undecided"};
-    return words[static_cast<std::size_t>(membership)];
-}
+std::string to_string(Membership membership) { return word_for(membership, {"member", "other", "undecided"}); }
 
 namespace {
 
@@ -46,14 +44,16 @@ std::string words(const QuantityCheck& check) {
            (check.worst.empty() ? "" : "; most of all " + check.worst);
 }
 
+/// The value of the quantity that has this key; none where there is none.
+std::optional<double> value_of(const std::vector<ClassQuantity>& quantities, const std::string& key) {
+    const auto found = std::find_if(quantities.begin(), quantities.end(), [&](const auto& one) { return one.key() == key; });
+    return found == quantities.end() ? std::nullopt : found->value;
+}
+
 /// Adds what is measured of all parts together; `worst` gets, by key, which of them is farthest off.
 void add_parts(const ShapeClass& learnt, std::vector<ClassQuantity>& quantities, std::map<std::string, std::string>& worst) {
     std::vector<std::optional<double>> values;
-    for (const LearntRange& range : learnt.ranges) {
-        const auto found = std::find_if(quantities.begin(), quantities.end(),
-                                        [&](const ClassQuantity& one) { return one.key() == range.quantity.key(); });
-        values.push_back(found == quantities.end() ? std::optional<double>() : found->value);
-    }
+    for (const LearntRange& range : learnt.ranges) values.push_back(value_of(quantities, range.quantity.key()));
     for (PartsTogether& one : parts_together(learnt.ranges, values, expected_parts(learnt.ranges))) {
         if (one.quantity.value) {
             const double value = *values[one.worst];
@@ -74,11 +74,9 @@ double score_of(const ShapeClass& learnt, const LearntMember& object, const std:
     // What no fit changes: by how much the object's own surface differs from the members' mean.
     for (const ClassQuantity& quantity : geometry_quantities(WholeShape())) {
         const LearntRange* range = learnt.find(quantity.key());
-        const auto own = std::find_if(object.quantities.begin(), object.quantities.end(),
-                                      [&](const ClassQuantity& one) { return one.key() == quantity.key(); });
-        if (range != nullptr && range->count > 0 && range->mean > 0 && own != object.quantities.end() && own->value &&
-            *own->value > 0)
-            score += 2 * std::abs(std::log(*own->value / range->mean));
+        const std::optional<double> own = value_of(object.quantities, quantity.key());
+        if (range != nullptr && range->count > 0 && range->mean > 0 && own && *own > 0)
+            score += 2 * std::abs(std::log(*own / range->mean));
     }
     // Parts together: roots of mean squared logarithms, and how far its own annotations are from those of the template.
     for (const ClassQuantity& quantity : quantities)
@@ -132,10 +130,7 @@ ClassAnswer compare_with(const ShapeClass& learnt, const LearntMember& object, c
     answer.score = score_of(learnt, object, quantities, answer.coordinates);
     bool any = false;
     for (const LearntRange& range : learnt.ranges) {
-        const auto found = std::find_if(quantities.begin(), quantities.end(),
-                                        [&](const ClassQuantity& one) { return one.key() == range.quantity.key(); });
-        answer.checks.push_back(
-            check_of(range, found == quantities.end() ? std::optional<double>() : found->value, options.attributes));
+        answer.checks.push_back(check_of(range, value_of(quantities, range.quantity.key()), options.attributes));
         QuantityCheck& check = answer.checks.back();
         check.worst = worst[range.quantity.key()];
         any = any || check.decides;

@@ -116,14 +116,11 @@ std::vector<UsedThreshold> take_thresholds(ReconstructOptions& options, const Sh
 }
 
 JsonValue thresholds_to_json(const std::vector<UsedThreshold>& thresholds, JsonAllocator& allocator) {
-    JsonValue list(rapidjson::kArrayType);
-    for (const UsedThreshold& threshold : thresholds) {
+    return json_list(thresholds, allocator, [&](const UsedThreshold& threshold) {
         JsonValue one = json_object(allocator, "option", threshold.option, "value", threshold.value, "from", threshold.from);
-        if (threshold.members > 0)
-            add_member(one, "members", JsonValue(static_cast<std::uint64_t>(threshold.members)), allocator);
-        list.PushBack(one, allocator);
-    }
-    return list;
+        if (threshold.members > 0) add_members(one, allocator, "members", threshold.members);
+        return one;
+    });
 }
 
 std::string topology_checksum(const Mesh& mesh) {

@@ -120,17 +120,10 @@ FitResiduals residuals_of(const Mesh& rest, const Mesh& fitted, const Mesh& obje
     return residuals;
 }
 
-Mesh scaled_by(const Mesh& mesh, double scale) {
-    Motion motion;
-    motion.scale = scale;
-    return moved(mesh, motion);
-}
-
 /// Where the template is at its scale, and how the object gets there.
 struct Place {
     double scale = 1;
     Motion pose;  ///< rigid, of the object
-    double overlap = 1;
 };
 
 std::vector<Place> places_by_surface(const Mesh& mesh, const WholeObject& member, const MemberFitOptions& options) {
@@ -163,7 +156,6 @@ std::vector<Place> places_by_surface(const Mesh& mesh, const WholeObject& member
         place.scale = ratio * alignment.motion.scale;
         place.pose.rotation = alignment.motion.rotation.transpose();
         place.pose.translation = -(place.pose.rotation * alignment.motion.translation);
-        place.overlap = alignment.overlap;
         const bool known = std::any_of(places.begin(), places.end(), [&](const Place& other) {
             return (other.pose.rotation - place.pose.rotation).norm() < 0.2;
         });
@@ -221,7 +213,7 @@ MemberFit fit_member(const Mesh& mesh, const AnnotationSet& set, const WholeObje
             const CommonPlacement placement = place_by_landmarks({pairs}, options.placement);
             const FragmentPlacement& one = placement.fragments.front();
             if (one.problem.empty()) {
-                places.push_back({placement.scale, one.pose, 1});
+                places.push_back({placement.scale, one.pose});
                 best.placed_by = "landmarks";
             } else if (one.mirrored) {
                 best.problem = one.problem;
@@ -249,7 +241,6 @@ MemberFit fit_member(const Mesh& mesh, const AnnotationSet& set, const WholeObje
         if (!(cost < minimum)) continue;
         minimum = cost;
         best.scale = place.scale;
-        best.share_placed = place.overlap;
         best.residuals = residuals;
         best.points.clear();
         const Motion back = place.pose.inverse();

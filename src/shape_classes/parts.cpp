@@ -49,11 +49,6 @@ FaceMoments face_moments(const Mesh& mesh, const Faces& faces, const Vector3d& o
     return moments;
 }
 
-bool is_part(const Mesh& mesh, const Annotation& annotation) {
-    return annotation.type == AnnotationType::region && !annotation.all && !annotation.faces.empty() &&
-           annotation.faces.size() < mesh.number_of_faces();
-}
-
 AnnotationSet parts_of(const Mesh& mesh, const AnnotationSet& set) {
     AnnotationSet parts;
     for (const Annotation& annotation : set.annotations)
@@ -93,6 +88,11 @@ std::map<std::int32_t, std::int32_t> counterparts(const Overlap& overlap) {
 
 }  // namespace
 
+bool is_part(const Mesh& mesh, const Annotation& annotation) {
+    return annotation.type == AnnotationType::region && !annotation.all && !annotation.faces.empty() &&
+           annotation.faces.size() < mesh.number_of_faces();
+}
+
 std::vector<ClassQuantity> part_quantities(const ClassTemplate& known, const std::vector<Point>& points, const WholeObject* own) {
     const AnnotationSet parts = parts_of(known.mesh, known.set);
     std::vector<ClassQuantity> list;
@@ -125,11 +125,7 @@ std::vector<ClassQuantity> part_quantities(const ClassTemplate& known, const std
                                    std::sqrt((theirs_counts ? own_whole : whole).area)};
     }
     const auto add = [&](const Annotation& annotation, const std::string& name, std::optional<double> value) {
-        ClassQuantity& quantity = list.emplace_back();
-        quantity.kind = QuantityKind::part;
-        quantity.id = annotation.id;
-        quantity.of = annotation.tag;
-        quantity.name = name;
+        ClassQuantity& quantity = list.emplace_back(ClassQuantity{QuantityKind::part, annotation.id, name, annotation.tag});
         if (value && std::isfinite(*value)) quantity.value = value;
     };
     std::set<std::pair<std::int32_t, std::int32_t>> neighbours;

@@ -1,6 +1,7 @@
 #include "ostraka/shape_classes/quantities.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/words.h"
 #include "ostraka/geom/with_points.h"
 #include "ostraka/measure/measure.h"
 #include "ostraka/relation/check.h"
@@ -12,8 +13,7 @@
 namespace ostraka {
 
 std::string to_string(QuantityKind kind) {
-    static constexpr const char* words[]{"proportion", "constraint", "relation", "part", "attribute", "geometry"};
-    return words[static_cast<std::size_t>(kind)];
+    return word_for(kind, {"proportion", "constraint", "relation", "part", "attribute", "geometry"});
 }
 
 QuantityKind quantity_kind(const std::string& word) {
@@ -88,11 +88,8 @@ std::optional<ClassQuantity> ratio_of(const Mesh& shape, const AnnotationSet& se
     const Json parameters = parse_json(relationship.constraint.empty() ? "{}" : relationship.constraint, "constraint");
     const Attribute *first = named(parameters, "measure1", *a), *second = named(parameters, "measure2", *b);
     if (first == nullptr || second == nullptr) return {};
-    ClassQuantity quantity;
-    quantity.kind = QuantityKind::proportion;
-    quantity.id = relationship.id;
-    quantity.of = relationship.type;
-    quantity.name = first->name + " of " + a->tag + " / " + second->name + " of " + b->tag;
+    ClassQuantity quantity{QuantityKind::proportion, relationship.id,
+                           first->name + " of " + a->tag + " / " + second->name + " of " + b->tag, relationship.type};
     const double below = evaluate(shape, *b, second->measure);
     if (below > 0) quantity.value = evaluate(shape, *a, first->measure) / below;
     return quantity;
@@ -101,11 +98,7 @@ std::optional<ClassQuantity> ratio_of(const Mesh& shape, const AnnotationSet& se
 void add_attributes(const Mesh& shape, const AnnotationSet& set, std::vector<ClassQuantity>& list) {
     for (const Annotation& annotation : set.annotations)
         for (const Attribute& attribute : annotation.attributes) {
-            ClassQuantity quantity;
-            quantity.kind = QuantityKind::attribute;
-            quantity.id = annotation.id;
-            quantity.name = attribute.name;
-            quantity.of = annotation.tag;
+            ClassQuantity quantity{QuantityKind::attribute, annotation.id, attribute.name, annotation.tag};
             if (attribute.type == AttributeType::measure) {
                 quantity.value = evaluate(shape, annotation, attribute.measure);
                 quantity.unit = set.unit;
@@ -140,12 +133,7 @@ std::vector<ClassQuantity> measure_quantities(const ClassTemplate& known, const 
         const Relationship& relationship = known.graph.relationships[i];
         const auto add = [&](QuantityKind kind, const std::vector<Deviation>& deviations) {
             for (const Deviation& deviation : deviations) {
-                ClassQuantity quantity;
-                quantity.kind = kind;
-                quantity.id = relationship.id;
-                quantity.of = relationship.type;
-                quantity.name = deviation.quantity;
-                quantity.unit = deviation.unit;
+                ClassQuantity quantity{kind, relationship.id, deviation.quantity, relationship.type, deviation.unit};
                 quantity.one_sided = deviation.tolerance.has_value();  // a residual: it holds up to its tolerance
                 if (deviation.value && std::isfinite(*deviation.value)) quantity.value = deviation.value;
                 list.push_back(std::move(quantity));

@@ -6,6 +6,7 @@
 #include "ostraka/geom/with_points.h"
 #include "ostraka/io/diagnose.h"
 #include "ostraka/semantic/deform.h"
+#include "ostraka/shape_classes/parts.h"
 #include "ostraka/stats/random.h"
 
 #include <algorithm>
@@ -54,9 +55,7 @@ public:
         frame_ = landmarks_of({known.mesh.points().begin(), known.mesh.points().end()});
         for (const Relationship& one : known.graph.relationships) constrained_ = constrained_ || one.is_constraint;
         for (const Annotation& annotation : known.set.annotations)
-            if (annotation.type == AnnotationType::region && !annotation.all && !annotation.faces.empty() &&
-                annotation.faces.size() < known.mesh.number_of_faces())
-                parts_.push_back(&annotation);
+            if (is_part(known.mesh, annotation)) parts_.push_back(&annotation);
         if (options.by == SampleOptions::Way::modes && learnt.modes.variances.empty())
             fail_input("class", "has no modes of variation", "learn it from two or more members that differ, or draw --by edits");
         if (options.by == SampleOptions::Way::edits && parts_.empty())

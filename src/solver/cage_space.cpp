@@ -5,9 +5,9 @@
 
 #include "kernels.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/core/stopwatch.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <span>
 
@@ -351,16 +351,14 @@ CageSpaceSolver::~CageSpaceSolver() = default;
 void CageSpaceSolver::initialize() {
     State& s = *state_;
     if (s.formed && s.factored) return;
-    const auto seconds = [begin = std::chrono::steady_clock::now()] {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    };
+    const Stopwatch watch;
     if (!s.formed) {
         s.form(constraints_);
-        setup_.times.symbolic += seconds();
+        setup_.times.symbolic += watch.seconds();
     }
-    const double before = seconds();
+    const double before = watch.seconds();
     s.make_factor();
-    setup_.times.factor += seconds() - before;
+    setup_.times.factor += watch.seconds() - before;
     setup_.factor_entries = static_cast<double>(s.cage * s.cage);
     setup_.regularised = s.regularisation > 0;
     setup_.regularisation = s.regularisation;

@@ -4,7 +4,6 @@
 #include <Eigen/Sparse>
 
 #include <memory>
-#include <vector>
 
 namespace ostraka::solver {
 

@@ -23,6 +23,7 @@ struct Unknowns {
     std::vector<std::size_t> first_row;  ///< of each constraint, and the number of rows
     int count = 0;                       ///< points and means
     RowMatrix rows;
+    [[nodiscard]] std::size_t rows_of(std::size_t constraint) const { return first_row[constraint + 1] - first_row[constraint]; }
 };
 Unknowns number_unknowns(std::span<const std::unique_ptr<Constraint>> constraints, Eigen::Index points);
 

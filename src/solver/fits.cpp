@@ -40,19 +40,10 @@ private:
     std::function<Eigen::Vector3d(const Eigen::Vector3d&)> closest_;
 };
 
-/// Rows: the centred points.
-class Centred : public MomentConstraint {
-protected:
-    explicit Centred(Making&& m) : MomentConstraint(m.kind, std::move(m.ids), m.weight) {
-        map_.direct = map_.rows = static_cast<Eigen::Index>(ids().size());
-        map_.centred = true;
-    }
-};
-
 /// On some line: the first principal axis (ShapeUp, section 4).
-class Line final : public Centred {
+class Line final : public MomentConstraint {
 public:
-    explicit Line(Making&& m) : Centred(std::move(m)) {}
+    using MomentConstraint::MomentConstraint;
     [[nodiscard]] LinearProjection project_moments(const Moments& moments) const override {
         const Eigen::Vector3d d = principal(moments.rows).eigenvectors().col(2);
         return {d * d.transpose(), Eigen::Matrix3d::Zero()};
@@ -60,9 +51,9 @@ public:
 };
 
 /// On some plane: the one at right angles to the last principal axis.
-class Plane final : public Centred {
+class Plane final : public MomentConstraint {
 public:
-    explicit Plane(Making&& m) : Centred(std::move(m)) {}
+    using MomentConstraint::MomentConstraint;
     [[nodiscard]] LinearProjection project_moments(const Moments& moments) const override {
         const Eigen::Vector3d n = principal(moments.rows).eigenvectors().col(0);
         return {Eigen::Matrix3d::Identity() - n * n.transpose(), Eigen::Matrix3d::Zero()};
@@ -70,10 +61,10 @@ public:
 };
 
 /// On some plane of a given normal (the thesis, section 5.2.1).
-class Orientation final : public Centred {
+class Orientation final : public MomentConstraint {
 public:
-    explicit Orientation(Making&& m, const Eigen::Vector3d& n)
-        : Centred(std::move(m)), plane_(Eigen::Matrix3d::Identity() - n * n.transpose()) {}
+    Orientation(const Making& m, const Eigen::Vector3d& n)
+        : MomentConstraint(m), plane_(Eigen::Matrix3d::Identity() - n * n.transpose()) {}
     [[nodiscard]] LinearProjection project_moments(const Moments&) const override { return {plane_, Eigen::Matrix3d::Zero()}; }
 
 private:
@@ -89,12 +80,9 @@ std::unique_ptr<Constraint> make_on_surface(Making&& m) {
     return std::make_unique<OnSurface>(std::move(m));
 }
 
-std::unique_ptr<Constraint> make_line(Making&& m) { return std::make_unique<Line>(std::move(m)); }
-std::unique_ptr<Constraint> make_plane(Making&& m) { return std::make_unique<Plane>(std::move(m)); }
+std::unique_ptr<Constraint> make_line(Making&& m) { return std::make_unique<Line>(m); }
+std::unique_ptr<Constraint> make_plane(Making&& m) { return std::make_unique<Plane>(m); }
 
-std::unique_ptr<Constraint> make_orientation(Making&& m) {
-    const Eigen::Vector3d n = m.direction();
-    return std::make_unique<Orientation>(std::move(m), n);
-}
+std::unique_ptr<Constraint> make_orientation(Making&& m) { return std::make_unique<Orientation>(m, m.direction()); }
 
 }  // namespace ostraka::solver

@@ -88,10 +88,13 @@ SymmetricEigen3 principal(const Eigen::Matrix3d& symmetric);
 /// Some unit vector at right angles to a unit vector.
 Eigen::Vector3d any_perpendicular(const Eigen::Vector3d& unit);
 
-/// A constraint whose projection follows from moments.
+/// A constraint whose projection follows from moments. Rows: the centred points.
 class MomentConstraint : public Constraint {
 public:
-    using Constraint::Constraint;
+    explicit MomentConstraint(const Making& m) : Constraint(m.kind, m.ids, m.weight) {
+        map_.direct = map_.rows = static_cast<Eigen::Index>(ids().size());
+        map_.centred = true;
+    }
     [[nodiscard]] bool by_moments() const final { return true; }
     void project(const RowsIn& rows, RowsOut projected) const final;
 };

@@ -10,8 +10,8 @@ namespace {
 /// One row: the weighted mean of the neighbours less the point. It shall be zero, or what it was in the rest state.
 class Laplacian final : public Constraint {
 public:
-    Laplacian(Making&& m, const std::vector<double>& weights, bool displacement)
-        : Constraint(m.kind, std::move(m.ids), m.weight), displacement_(displacement) {
+    Laplacian(const Making& m, const std::vector<double>& weights, bool displacement)
+        : Constraint(m.kind, m.ids, m.weight), displacement_(displacement) {
         map_.rows = 1;
         map_.entries.reserve(weights.size() + 1);
         map_.entries.push_back({0, 0, -1.0});
@@ -102,21 +102,13 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Constraint> make_laplacian(Making&& m) {
-    const auto weights = uniform(m);
-    return std::make_unique<Laplacian>(std::move(m), weights, false);
-}
-std::unique_ptr<Constraint> make_laplacian_displacement(Making&& m) {
-    const auto weights = uniform(m);
-    return std::make_unique<Laplacian>(std::move(m), weights, true);
-}
+std::unique_ptr<Constraint> make_laplacian(Making&& m) { return std::make_unique<Laplacian>(m, uniform(m), false); }
+std::unique_ptr<Constraint> make_laplacian_displacement(Making&& m) { return std::make_unique<Laplacian>(m, uniform(m), true); }
 std::unique_ptr<Constraint> make_cotangent_laplacian(Making&& m) {
-    const auto weights = cotangent_weights(m);
-    return std::make_unique<Laplacian>(std::move(m), weights, false);
+    return std::make_unique<Laplacian>(m, cotangent_weights(m), false);
 }
 std::unique_ptr<Constraint> make_cotangent_laplacian_displacement(Making&& m) {
-    const auto weights = cotangent_weights(m);
-    return std::make_unique<Laplacian>(std::move(m), weights, true);
+    return std::make_unique<Laplacian>(m, cotangent_weights(m), true);
 }
 
 std::unique_ptr<Constraint> make_bending(Making&& m) {

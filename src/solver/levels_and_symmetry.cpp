@@ -286,10 +286,7 @@ std::unique_ptr<Constraint> make_axis_on_line(Making&& m) {
     return std::make_unique<AxisOnLine>(m, direction, point);
 }
 
-std::unique_ptr<Constraint> make_means_on_level(Making&& m) {
-    const Vector3d up = m.direction();
-    return std::make_unique<MeansOnLevel>(m, up);
-}
+std::unique_ptr<Constraint> make_means_on_level(Making&& m) { return std::make_unique<MeansOnLevel>(m, m.direction()); }
 
 std::unique_ptr<Constraint> make_mirror_symmetry(Making&& m) {
     if (!m.parameters.coefficients.empty()) {

@@ -3,9 +3,9 @@
 
 #include "constraint_rows.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/core/stopwatch.h"
 
 #include <algorithm>
-#include <chrono>
 #include <map>
 #include <span>
 
@@ -19,10 +19,6 @@ using solver::RowMatrix;
 double diagonal_of(const Points& points) {
     if (points.cols() == 0) return 0;
     return (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).norm();
-}
-
-double seconds_since(std::chrono::steady_clock::time_point begin) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
 /// Below this the matrix counts as singular (see SparseCholesky::reciprocal_condition).
@@ -90,8 +86,7 @@ void MeshSpaceSolver::State::prepare(std::span<const std::unique_ptr<Constraint>
 void MeshSpaceSolver::State::renew_weights(std::span<const std::unique_ptr<Constraint>> constraints) {
     row_weight.assign(unknowns.rows.rows(), 0.0);
     for (std::size_t c = 0; c < constraints.size(); ++c)
-        std::fill(row_weight.begin() + static_cast<std::ptrdiff_t>(unknowns.first_row[c]),
-                  row_weight.begin() + static_cast<std::ptrdiff_t>(unknowns.first_row[c + 1]), constraints[c]->weight());
+        std::fill_n(row_weight.data() + unknowns.first_row[c], unknowns.rows_of(c), constraints[c]->weight());
     floating = solver::floating_parts(unknowns, row_weight);
     idle.assign(static_cast<std::size_t>(unknowns.count), 0);
     for (const int i : floating.idle) idle[i] = 1;
@@ -101,9 +96,9 @@ void MeshSpaceSolver::State::renew_weights(std::span<const std::unique_ptr<Const
 bool MeshSpaceSolver::State::factorise() {
     LowerTriangle matrix = solver::normal_matrix(unknowns.rows, columns, row_weight);
     if (!has_pattern) {
-        const auto begin = std::chrono::steady_clock::now();
+        const Stopwatch watch;
         cholesky.analyse(matrix);
-        symbolic_seconds = seconds_since(begin);
+        symbolic_seconds = watch.seconds();
         has_pattern = true;
     }
     double sum = 0;
@@ -133,8 +128,7 @@ bool MeshSpaceSolver::State::update(std::span<const std::unique_ptr<Constraint>>
     std::vector<double> change;
     for (const auto& [c, before] : factored_weight) {
         const Constraint& constraint = *constraints[c];
-        std::fill(row_weight.begin() + static_cast<std::ptrdiff_t>(unknowns.first_row[c]),
-                  row_weight.begin() + static_cast<std::ptrdiff_t>(unknowns.first_row[c + 1]), constraint.weight());
+        std::fill_n(row_weight.data() + unknowns.first_row[c], unknowns.rows_of(c), constraint.weight());
         if (constraint.weight() == before) continue;
         // What holds parts in place may have changed, too.
         if (constraint.weight() == 0 || before == 0 || static_cast<std::size_t>(constraint.map().rows) > max_rows) return false;
@@ -194,9 +188,7 @@ void MeshSpaceSolver::State::renew_constants(std::span<const std::unique_ptr<Con
     // The rows that move have no say here.
     std::vector<char> constant(unknowns.rows.rows(), 0);
     for (std::size_t c = 0; c < constraints.size(); ++c)
-        if (constraints[c]->constant())
-            std::fill(constant.begin() + static_cast<std::ptrdiff_t>(unknowns.first_row[c]),
-                      constant.begin() + static_cast<std::ptrdiff_t>(unknowns.first_row[c + 1]), 1);
+        if (constraints[c]->constant()) std::fill_n(constant.data() + unknowns.first_row[c], unknowns.rows_of(c), 1);
     parallel_for(static_cast<std::size_t>(unknowns.count), [&](std::size_t i) {
         Eigen::Vector3d sum = Eigen::Vector3d::Zero();
         for (std::size_t k = columns.begin[i]; k < columns.begin[i + 1]; ++k)
@@ -232,7 +224,7 @@ MeshSpaceSolver::~MeshSpaceSolver() = default;
 
 void MeshSpaceSolver::initialize() {
     State& s = *state_;
-    const auto begin = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     if (s.has_factor && !s.updates_current) {
         s.has_factor = s.update(constraints_);
         s.updates_current = true;
@@ -258,7 +250,7 @@ void MeshSpaceSolver::initialize() {
     for (const double w : s.row_weight) total_weight_ += w;
     setup_.updated_rows = static_cast<int>(s.updated_rows.size());
     setup_.times.symbolic += s.symbolic_seconds;
-    setup_.times.factor += seconds_since(begin) - s.symbolic_seconds;
+    setup_.times.factor += watch.seconds() - s.symbolic_seconds;
     s.symbolic_seconds = 0;
 }
 

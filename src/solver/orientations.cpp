@@ -95,11 +95,7 @@ Vector3d mean_of(const Points& points) { return points.col(0) + (points.colwise(
 /// The points as they are, turned about their mean so that their fitted plane has the given normal, either way round.
 class FittedPlaneOrientation final : public MomentConstraint {
 public:
-    FittedPlaneOrientation(Making&& m, const Vector3d& normal)
-        : MomentConstraint(m.kind, std::move(m.ids), m.weight), normal_(normal) {
-        map_.direct = map_.rows = static_cast<Index>(ids().size());
-        map_.centred = true;
-    }
+    FittedPlaneOrientation(const Making& m, const Vector3d& normal) : MomentConstraint(m), normal_(normal) {}
     [[nodiscard]] LinearProjection project_moments(const Moments& moments) const override {
         const Vector3d fitted = principal(moments.rows).eigenvectors().col(0);
         return {rotation_to(fitted, normal_, moments.rows), Matrix3d::Zero()};
@@ -150,9 +146,7 @@ private:
 class AxisDirection final : public MomentConstraint {
 public:
     AxisDirection(const Making& m, const Vector3d& direction, Making::Interval range)
-        : MomentConstraint(m.kind, m.ids, m.weight), direction_(direction), range_(range) {
-        map_.direct = map_.rows = static_cast<Index>(ids().size());
-        map_.centred = true;
+        : MomentConstraint(m), direction_(direction), range_(range) {
         shape_ = m.rest.colwise() - mean_of(m.rest);
         if (!(shape_.cwiseAbs().maxCoeff() > 0)) m.fail("the rest points are all at one place");
         rest_axis_ = rest_axis_of(m, shape_);
@@ -178,8 +172,7 @@ private:
 }  // namespace
 
 std::unique_ptr<Constraint> make_fitted_plane_orientation(Making&& m) {
-    const Vector3d normal = m.direction();
-    return std::make_unique<FittedPlaneOrientation>(std::move(m), normal);
+    return std::make_unique<FittedPlaneOrientation>(m, m.direction());
 }
 
 std::unique_ptr<Constraint> make_co_axiality(Making&& m) {
@@ -191,8 +184,7 @@ std::unique_ptr<Constraint> make_axis_direction(Making&& m) {
     constexpr double right_angle = pi / 2;
     const auto range = m.range(0, m.parameters.min ? right_angle : 0.0);
     if (range.max > right_angle) m.fail("an angle between axes is at most pi / 2", "angles are in radians");
-    const Vector3d direction = m.direction();
-    return std::make_unique<AxisDirection>(m, direction, range);
+    return std::make_unique<AxisDirection>(m, m.direction(), range);
 }
 
 }  // namespace ostraka::solver

@@ -11,12 +11,8 @@ namespace {
 /// A reference shape, centred. Rows: the centred points.
 class ShapeGroup : public MomentConstraint {
 protected:
-    ShapeGroup(Making&& m, const Points& shape) : MomentConstraint(m.kind, std::move(m.ids), m.weight) {
-        map_.direct = map_.rows = static_cast<Eigen::Index>(ids().size());
-        map_.centred = true;
-        shape_ = centred(shape);
-        outer_ = outer_sum(shape_, shape_);
-    }
+    ShapeGroup(const Making& m, const Points& shape)
+        : MomentConstraint(m), shape_(centred(shape)), outer_(outer_sum(shape_, shape_)) {}
     static Points centred(const Points& shape) {
         const Points near = shape.colwise() - shape.col(0).eval();
         return near.colwise() - near.rowwise().mean().eval();
@@ -40,7 +36,7 @@ protected:
 /// A turned, moved and, within a range, scaled copy of the reference shape. Rigid is the range [1, 1].
 class Similarity final : public ShapeGroup {
 public:
-    Similarity(Making&& m, const Points& shape, Making::Interval scale) : ShapeGroup(std::move(m), shape), scale_(scale) {}
+    Similarity(const Making& m, const Points& shape, Making::Interval scale) : ShapeGroup(m, shape), scale_(scale) {}
     [[nodiscard]] LinearProjection project_moments(const Moments& moments) const override {
         const Eigen::Matrix3d rotation = best_rotation(moments.reference);
         double scale = 1;
@@ -56,8 +52,8 @@ private:
 /// A copy R (I + (s - 1) a a^T) of the reference shape that is stretched by s along its own axis a, turned and moved.
 class NonUniformScaling final : public ShapeGroup {
 public:
-    NonUniformScaling(Making&& m, const Points& shape, const Eigen::Vector3d& axis, Making::Interval scale)
-        : ShapeGroup(std::move(m), shape), axis_(axis), scale_(scale) {}
+    NonUniformScaling(const Making& m, const Points& shape, const Eigen::Vector3d& axis, Making::Interval scale)
+        : ShapeGroup(m, shape), axis_(axis), scale_(scale) {}
     [[nodiscard]] LinearProjection project_moments(const Moments& moments) const override {
         // For a given s the best rotation is known, for a given rotation the best s: the squared distance as a function of s
         // alone is smooth but may have several minima, so that it is sampled first.
@@ -131,14 +127,13 @@ private:
 }  // namespace
 
 std::unique_ptr<Constraint> make_rigid(Making&& m) {
-    const Points shape = m.target_or(m.rest);
-    return std::make_unique<Similarity>(std::move(m), shape, Making::Interval{1, 1});
+    return std::make_unique<Similarity>(m, m.target_or(m.rest), Making::Interval{1, 1});
 }
 
 std::unique_ptr<Constraint> make_similarity(Making&& m) {
     const Points shape = m.target_or(m.rest);
     const auto scale = m.range(0, std::numeric_limits<double>::infinity());
-    return std::make_unique<Similarity>(std::move(m), shape, scale);
+    return std::make_unique<Similarity>(m, shape, scale);
 }
 
 std::unique_ptr<Constraint> make_equilateral(Making&& m) {
@@ -147,14 +142,14 @@ std::unique_ptr<Constraint> make_equilateral(Making&& m) {
         const double angle = 2 * pi * static_cast<double>(i) / static_cast<double>(shape.cols());
         shape.col(i) << std::cos(angle), std::sin(angle), 0;
     }
-    return std::make_unique<Similarity>(std::move(m), shape, Making::Interval{0, std::numeric_limits<double>::infinity()});
+    return std::make_unique<Similarity>(m, shape, Making::Interval{0, std::numeric_limits<double>::infinity()});
 }
 
 std::unique_ptr<Constraint> make_non_uniform_scaling(Making&& m) {
     const Points shape = m.target_or(m.rest);
     const Eigen::Vector3d axis = m.direction();
     const auto scale = m.range(0, std::numeric_limits<double>::infinity());
-    return std::make_unique<NonUniformScaling>(std::move(m), shape, axis, scale);
+    return std::make_unique<NonUniformScaling>(m, shape, axis, scale);
 }
 
 std::unique_ptr<Constraint> make_parallelogram(Making&& m) { return std::make_unique<Quadrilateral>(std::move(m), false); }

@@ -2,36 +2,17 @@
 
 #include "anderson.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/core/stopwatch.h"
+#include "ostraka/core/words.h"
 
-#include <chrono>
 #include <cmath>
 #include <sstream>
 
 namespace ostraka {
 
-namespace {
-
-using Clock = std::chrono::steady_clock;
-
-/// Adds the time of its life to a sum.
-class Stopwatch {
-public:
-    explicit Stopwatch(double& sum) : sum_(sum) {}
-    ~Stopwatch() { sum_ += std::chrono::duration<double>(Clock::now() - begin_).count(); }
-    Stopwatch(const Stopwatch&) = delete;
-    Stopwatch& operator=(const Stopwatch&) = delete;
-
-private:
-    double& sum_;
-    Clock::time_point begin_ = Clock::now();
-};
-
-}  // namespace
-
 std::string_view describe(StopReason reason) {
-    static constexpr const char* words[]{"no point moves any more", "the residual wanted is reached",
-                                         "the iterations allowed are used up", "the objective does not fall any further"};
-    return words[static_cast<std::size_t>(reason)];
+    return word_for(reason, {"no point moves any more", "the residual wanted is reached", "the iterations allowed are used up",
+                             "the objective does not fall any further"});
 }
 
 std::string SolveSummary::text() const {
@@ -81,14 +62,14 @@ SolveSummary Solver::solve(Points& variables, const SolveOptions& options) {
     initialize();
     SolveSummary summary = setup_;
     setup_.times = {};
-    const auto begin = Clock::now();
+    const Stopwatch clock;
     const auto project_at = [&](const Points& at) {
-        const Stopwatch watch(summary.times.project);
+        const AddedSeconds watch(summary.times.project);
         return project(at);
     };
     const auto record = [&](double objective) {
         summary.objective.push_back(objective);
-        summary.seconds.push_back(std::chrono::duration<double>(Clock::now() - begin).count());
+        summary.seconds.push_back(clock.seconds());
     };
     // Below this share of the starting value the objective is rounding.
     constexpr double rounding = 1e-15;
@@ -105,13 +86,13 @@ SolveSummary Solver::solve(Points& variables, const SolveOptions& options) {
     while (summary.iterations < options.iterations && summary.stop != StopReason::residual) {
         plain = x;
         {
-            const Stopwatch watch(summary.times.solve);
+            const AddedSeconds watch(summary.times.solve);
             global_step(plain);
         }
         ++summary.iterations;
         bool accelerated = false;
         if (options.window > 0) {
-            const Stopwatch watch(summary.times.accelerate);
+            const AddedSeconds watch(summary.times.accelerate);
             anderson.next(x, plain, candidate);
             accelerated = summary.iterations > 1;
         }

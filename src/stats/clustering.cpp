@@ -19,8 +19,16 @@ void check_neighbourhood(double epsilon, int minimum) {
     if (minimum < 1) fail_usage("the least number of neighbours is " + std::to_string(minimum), "use 1 or more");
 }
 
-template <class Distance>
-std::vector<int> dbscan_by(std::size_t n, double epsilon, int minimum, const Distance& distance) {
+}  // namespace
+
+std::vector<int> dbscan(const Eigen::MatrixXd& samples, double epsilon, int minimum) {
+    check_neighbourhood(epsilon, minimum);
+    require_samples(samples, "DBSCAN");
+    const Eigen::MatrixXd columns = samples.transpose();
+    const auto n = static_cast<std::size_t>(samples.rows());
+    const auto distance = [&](std::size_t i, std::size_t j) {
+        return (columns.col(static_cast<Eigen::Index>(i)) - columns.col(static_cast<Eigen::Index>(j))).stableNorm();
+    };
     constexpr int unseen = -2, noise = -1;
     std::vector<int> labels(n, unseen);
     const auto neighbours = [&](std::size_t i) {
@@ -53,48 +61,6 @@ std::vector<int> dbscan_by(std::size_t n, double epsilon, int minimum, const Dis
     return labels;
 }
 
-/// The representative of each sample's cluster after some merges.
-std::vector<int> numbered(const Linkage& tree, std::size_t merges) {
-    const auto n = static_cast<std::size_t>(tree.samples);
-    std::vector<int> parent(n + merges, -1);
-    for (std::size_t m = 0; m < merges; ++m) {
-        parent[static_cast<std::size_t>(tree.merges[m].first)] = static_cast<int>(n + m);
-        parent[static_cast<std::size_t>(tree.merges[m].second)] = static_cast<int>(n + m);
-    }
-    // Parents have larger numbers than their children.
-    std::vector<int> top(parent.size());
-    for (std::size_t i = parent.size(); i-- > 0;)
-        top[i] = parent[i] < 0 ? static_cast<int>(i) : top[static_cast<std::size_t>(parent[i])];
-    std::vector<int> label(parent.size(), -1), result(n);
-    int count = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-        int& name = label[static_cast<std::size_t>(top[i])];
-        if (name < 0) name = count++;
-        result[i] = name;
-    }
-    return result;
-}
-
-}  // namespace
-
-std::vector<int> dbscan(const Eigen::MatrixXd& samples, double epsilon, int minimum) {
-    check_neighbourhood(epsilon, minimum);
-    require_samples(samples, "DBSCAN");
-    const Eigen::MatrixXd columns = samples.transpose();
-    return dbscan_by(static_cast<std::size_t>(samples.rows()), epsilon, minimum, [&](std::size_t i, std::size_t j) {
-        return (columns.col(static_cast<Eigen::Index>(i)) - columns.col(static_cast<Eigen::Index>(j))).stableNorm();
-    });
-}
-
-std::vector<int> dbscan_of_distances(const Eigen::MatrixXd& distances, double epsilon, int minimum) {
-    check_neighbourhood(epsilon, minimum);
-    require_symmetric(distances, true, "DBSCAN");
-    return dbscan_by(static_cast<std::size_t>(distances.rows()), epsilon, minimum, [&](std::size_t i, std::size_t j) {
-        const auto a = static_cast<Eigen::Index>(std::min(i, j)), b = static_cast<Eigen::Index>(std::max(i, j));
-        return distances(a, b);
-    });
-}
-
 Eigen::MatrixXd distance_matrix(const Eigen::MatrixXd& samples) {
     require_samples(samples, "distances");
     const Eigen::MatrixXd columns = samples.transpose();
@@ -102,22 +68,6 @@ Eigen::MatrixXd distance_matrix(const Eigen::MatrixXd& samples) {
     for (Eigen::Index i = 0; i < samples.rows(); ++i)
         for (Eigen::Index j = 0; j < i; ++j) result(i, j) = result(j, i) = (columns.col(i) - columns.col(j)).stableNorm();
     return result;
-}
-
-double neighbour_epsilon(const Eigen::MatrixXd& samples, int neighbours) {
-    if (neighbours < 1) fail_usage("the number of neighbours is " + std::to_string(neighbours), "use 1 or more");
-    const Eigen::MatrixXd distances = distance_matrix(samples);
-    const auto n = static_cast<std::size_t>(samples.rows()), k = std::min(static_cast<std::size_t>(neighbours), n - 1);
-    if (k == 0) return 0;
-    double sum = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-        std::vector<double> others;
-        for (std::size_t j = 0; j < n; ++j)
-            if (j != i) others.push_back(distances(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)));
-        std::partial_sort(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(k), others.end());
-        sum += std::accumulate(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(k), 0.0) / static_cast<double>(k);
-    }
-    return sum / static_cast<double>(n);
 }
 
 double volume_epsilon(const Eigen::MatrixXd& samples, int minimum) {
@@ -135,8 +85,6 @@ double volume_epsilon(const Eigen::MatrixXd& samples, int minimum) {
     const double d = dimensions, n = static_cast<double>(samples.rows());
     return std::exp((log_volume + std::log(minimum) + std::lgamma(d / 2 + 1) - std::log(n) - d / 2 * std::log(pi)) / d);
 }
-
-Linkage average_linkage(const Eigen::MatrixXd& distances) { return linkage(distances, LinkageMethod::average); }
 
 Linkage linkage(const Eigen::MatrixXd& distances, LinkageMethod method) {
     require_symmetric(distances, true, "linkage");
@@ -201,13 +149,24 @@ Linkage linkage(const Eigen::MatrixXd& distances, LinkageMethod method) {
 std::vector<int> cut_at(const Linkage& tree, double height) {
     std::size_t merges = 0;
     while (merges < tree.merges.size() && tree.merges[merges].height <= height) ++merges;
-    return numbered(tree, merges);
-}
-
-std::vector<int> cut_into(const Linkage& tree, int clusters) {
-    if (clusters < 1 || clusters > tree.samples)
-        fail_usage("the number of clusters is " + std::to_string(clusters), "use 1 to " + std::to_string(tree.samples));
-    return numbered(tree, static_cast<std::size_t>(tree.samples - clusters));
+    const auto n = static_cast<std::size_t>(tree.samples);
+    std::vector<int> parent(n + merges, -1);
+    for (std::size_t m = 0; m < merges; ++m) {
+        parent[static_cast<std::size_t>(tree.merges[m].first)] = static_cast<int>(n + m);
+        parent[static_cast<std::size_t>(tree.merges[m].second)] = static_cast<int>(n + m);
+    }
+    // Parents have larger numbers than their children.
+    std::vector<int> top(parent.size());
+    for (std::size_t i = parent.size(); i-- > 0;)
+        top[i] = parent[i] < 0 ? static_cast<int>(i) : top[static_cast<std::size_t>(parent[i])];
+    std::vector<int> label(parent.size(), -1), result(n);
+    int count = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        int& name = label[static_cast<std::size_t>(top[i])];
+        if (name < 0) name = count++;
+        result[i] = name;
+    }
+    return result;
 }
 
 std::vector<int> leaf_order(const Linkage& tree) {

@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <numeric>
 
 namespace ostraka {
@@ -49,66 +48,9 @@ double permutation_p_value(double observed, const std::vector<double>& chance) {
     return static_cast<double>(1 + as_large) / static_cast<double>(1 + chance.size());
 }
 
-double normal_probability(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
-
 double normal_quantile(double p) {
     if (!(p > 0 && p < 1)) fail_usage("a normal quantile at " + std::to_string(p), "use a probability between 0 and 1");
     return boost::math::quantile(boost::math::normal(), p);
-}
-
-std::optional<Interval> bootstrap_interval(std::size_t count, const SampleStatistic& statistic, const BootstrapOptions& options) {
-    check_options(options, "bootstrap");
-    if (count < 2) return std::nullopt;
-    std::vector<std::size_t> all(count);
-    std::iota(all.begin(), all.end(), std::size_t{0});
-    const std::optional<double> observed = statistic(all);
-    if (!observed) return std::nullopt;
-
-    const auto resamples = static_cast<std::size_t>(options.resamples);
-    std::vector<std::optional<double>> drawn(resamples), without(count);
-    parallel_for(
-        resamples, [&](std::size_t b) { drawn[b] = statistic(Random(options.seed, b).resample(count)); }, 16);
-    parallel_for(
-        count,
-        [&](std::size_t i) {
-            std::vector<std::size_t> rest = all;
-            rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
-            without[i] = statistic(rest);
-        },
-        16);
-    std::vector<double> values, left_out;
-    for (const auto& value : drawn)
-        if (value) values.push_back(*value);
-    for (const auto& value : without) {
-        if (!value) return std::nullopt;
-        left_out.push_back(*value);
-    }
-    if (2 * values.size() < resamples) return std::nullopt;
-    require_finite(values, "bootstrap");
-
-    // Efron 1987, section 3: the bias by the share of resamples below what was observed, the acceleration by the jackknife.
-    double below = 0;
-    for (const double value : values) below += value < *observed ? 1 : value == *observed ? 0.5 : 0;
-    const double n = static_cast<double>(values.size());
-    const double bias = normal_quantile(std::clamp(below / n, 0.5 / n, 1 - 0.5 / n));
-    const double mean = summarise(left_out).mean;
-    double squares = 0, cubes = 0;
-    const double unit = std::max(std::abs(mean - *std::min_element(left_out.begin(), left_out.end())),
-                                 std::abs(mean - *std::max_element(left_out.begin(), left_out.end())));
-    if (unit > 0)
-        for (const double value : left_out) {
-            const double d = (mean - value) / unit;
-            squares += d * d;
-            cubes += d * d * d;
-        }
-    const double acceleration = squares > 0 ? cubes / (6 * std::pow(squares, 1.5)) : 0;
-    const auto limit = [&](double probability) {
-        const double z = bias + normal_quantile(probability), below_line = 1 - acceleration * z;
-        const double at = below_line > 0 ? normal_probability(bias + z / below_line) : z > 0 ? 1.0 : 0.0;
-        return sample_quantile(values, at);
-    };
-    const double tail = (1 - options.confidence) / 2;
-    return Interval{limit(tail), limit(1 - tail)};
 }
 
 std::optional<Interval> deviation_interval(const std::vector<double>& values, bool relative, double confidence) {
@@ -199,12 +141,6 @@ std::vector<ClusterStability> cluster_stability(const std::vector<int>& labels,
         result.push_back(of);
     }
     return result;
-}
-
-void BootstrapOptions::describe(OptionList& visit) {
-    visit("resamples", resamples, "resamples of the bootstrap", Range{1, 10000000});
-    visit("confidence", confidence, "confidence of intervals", Range{0.01, 0.9999});
-    visit("seed", seed, "seed of the random numbers", Range{0, 1e18});
 }
 
 void StabilityOptions::describe(OptionList& visit) {

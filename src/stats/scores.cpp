@@ -198,23 +198,6 @@ CrossValidation cross_validate(const std::vector<bool>& truth, const Learner& le
     return result;
 }
 
-CrossValidation cross_validate_threshold(const std::vector<double>& values, const std::vector<bool>& truth, Side side,
-                                         const CrossValidationOptions& options) {
-    require_both(values, truth);
-    return cross_validate(
-        truth,
-        [&](const std::vector<std::size_t>& known, const std::vector<std::size_t>& asked) {
-            std::vector<double> v;
-            std::vector<bool> t;
-            for (const std::size_t i : known) v.push_back(values[i]), t.push_back(truth[i]);
-            const Threshold threshold = best_threshold(v, t, side);
-            std::vector<bool> said;
-            for (const std::size_t i : asked) said.push_back(threshold.positive(values[i]));
-            return said;
-        },
-        options);
-}
-
 void CrossValidationOptions::describe(OptionList& visit) {
     visit("folds", folds, "parts that are left out in turn", Range{2, 100000});
     visit("repeats", repeats, "divisions into parts", Range{1, 100000});

@@ -17,6 +17,20 @@ inline Eigen::Matrix3d turned(double degrees, const Vector3d& axis) {
     return Eigen::AngleAxisd(degrees * 3.14159265358979323846 / 180, axis.normalized()).toRotationMatrix();
 }
 
+/// An object without parts; the thinnest wall or gap is in mm.
+inline std::unique_ptr<SyntheticObject> start_object(const std::string& name, const std::string& object_class,
+                                                     const std::string& description, int genus, std::size_t minimum_vertices,
+                                                     double thinnest) {
+    auto object = std::make_unique<SyntheticObject>();
+    object->name = name;
+    object->object_class = object_class;
+    object->description = description;
+    object->genus = genus;
+    object->minimum_vertices = minimum_vertices;
+    object->thinnest = thinnest;
+    return object;
+}
+
 /// Adds a part and returns its label.
 inline int add_part(SyntheticObject& object, const std::string& name, const Colour3& colour) {
     object.parts.push_back(name);
@@ -25,11 +39,7 @@ inline int add_part(SyntheticObject& object, const std::string& name, const Colo
 }
 
 inline void add_member(SyntheticObject& object, SolidPointer solid, int part, double blend) {
-    Member member;
-    member.solid = std::move(solid);
-    member.blend = blend;
-    member.stretches = {{std::numeric_limits<double>::infinity(), part}};
-    object.members.push_back(std::move(member));
+    object.members.push_back({std::move(solid), blend, false, {{std::numeric_limits<double>::infinity(), part}}});
 }
 
 /// A member in several parts: `until` pairs the number of a profile point or bead with the part that ends there.
@@ -37,9 +47,7 @@ template <class Items>
 void add_divided_member(SyntheticObject& object, SolidPointer solid, const Items& items, double blend,
                         const std::vector<std::pair<double, int>>& until) {
     const auto lengths = chord_lengths(items);
-    Member member;
-    member.solid = std::move(solid);
-    member.blend = blend;
+    Member member{std::move(solid), blend, false, {}};
     for (const auto& [item, part] : until) {
         const auto below = static_cast<std::size_t>(item);
         const double share = item - static_cast<double>(below);
@@ -52,15 +60,16 @@ void add_divided_member(SyntheticObject& object, SolidPointer solid, const Items
 
 /// Cuts a solid away; the walls it leaves become `part` (or, below 0, belong to what was cut).
 inline void carve(SyntheticObject& object, SolidPointer solid, int part, double blend) {
-    Member member;
-    member.solid = std::move(solid);
-    member.blend = blend;
-    member.carves = true;
+    Member member{std::move(solid), blend, true, {}};
     if (part >= 0) member.stretches = {{std::numeric_limits<double>::infinity(), part}};
     object.members.push_back(std::move(member));
 }
 
 using ObjectPointer = std::unique_ptr<const SyntheticObject>;
+inline ObjectPointer finished(std::unique_ptr<SyntheticObject> object) {
+    object->finish();
+    return object;
+}
 ObjectPointer make_teapot();
 ObjectPointer make_vase();
 ObjectPointer make_statuette();

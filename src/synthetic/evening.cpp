@@ -19,11 +19,12 @@ constexpr double min_fullness = 0.12;
 class Evening {
 public:
     Evening(const SyntheticObject& object, Triangles&& mesh, std::size_t wanted)
-        : object_(object), table_(mesh), points_(std::move(mesh.points)), normals_(points_.size()), wanted_(wanted) {
-        double area = 0;
-        for (const auto& [a, b, c] : mesh.faces) area += 0.5 * (points_[b] - points_[a]).cross(points_[c] - points_[a]).norm();
-        // Even triangles: each vertex has sqrt(3)/2 of the squared edge length to itself.
-        edge_ = std::sqrt(area / static_cast<double>(wanted) * 2 / std::numbers::sqrt3);
+        : object_(object),
+          table_(mesh),
+          edge_(std::sqrt(area(mesh) / static_cast<double>(wanted) * 2 / std::numbers::sqrt3)),
+          points_(std::move(mesh.points)),
+          normals_(points_.size()),
+          wanted_(wanted) {
         mesh.faces = {};
     }
 
@@ -219,9 +220,9 @@ private:
 
     const SyntheticObject& object_;
     HalfedgeTable table_;
+    double edge_;  ///< of even triangles: each vertex has sqrt(3)/2 of its square to itself
     std::vector<Vector3d> points_, normals_;
     std::size_t wanted_;
-    double edge_ = 0;
 };
 
 }  // namespace

@@ -20,7 +20,6 @@ public:
     [[nodiscard]] std::size_t halfedges() const { return origin_.size(); }
     [[nodiscard]] std::size_t vertices() const { return outgoing_.size(); }
     [[nodiscard]] std::size_t living_vertices() const { return living_vertices_; }
-    [[nodiscard]] std::size_t living_faces() const { return living_faces_; }
 
     /// Calls visit(halfedge) for the halfedges that leave `v`, clockwise.
     template <class Visit>
@@ -45,7 +44,7 @@ public:
 private:
     void glue(Index a, Index b) { opposite_[a] = b, opposite_[b] = a; }
     std::vector<Index> origin_, opposite_, outgoing_;
-    std::size_t living_vertices_, living_faces_;
+    std::size_t living_vertices_;
 };
 
 /// Collapses short edges until `vertices` are left, flips edges towards Delaunay triangles and moves vertices along the surface

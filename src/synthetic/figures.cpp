@@ -4,13 +4,7 @@
 namespace ostraka::shapes {
 
 ObjectPointer make_hand() {
-    auto object = std::make_unique<SyntheticObject>();
-    object->name = "hand";
-    object->object_class = "hand";
-    object->description = "open left hand with wrist, palm and five fingers";
-    object->genus = 0;
-    object->minimum_vertices = 1000;
-    object->thinnest = 5;
+    auto object = start_object("hand", "hand", "open left hand with wrist, palm and five fingers", 0, 1000, 5);
     const int palm = add_part(*object, "palm", {224, 180, 150}), wrist = add_part(*object, "wrist", {200, 150, 120});
     const int thumb = add_part(*object, "thumb", {200, 60, 60}), index = add_part(*object, "index finger", {220, 140, 50});
     const int middle = add_part(*object, "middle finger", {190, 180, 60}), ring = add_part(*object, "ring finger", {80, 150, 90});
@@ -43,18 +37,14 @@ ObjectPointer make_hand() {
     finger(middle, {-10.5, 2.5, 92}, -3, {45, 28, 19}, 9.9);
     finger(ring, {12, 2, 88}, 5, {41, 26, 18}, 9.4);
     finger(little, {32, 0.5, 79}, 14, {32, 20, 15}, 8.2);
-    object->finish();
-    return object;
+    return finished(std::move(object));
 }
 
 ObjectPointer make_statuette() {
-    auto object = std::make_unique<SyntheticObject>();
-    object->name = "statuette";
-    object->object_class = "drum player statuette";
-    object->description = "votive figure: base, tubular body, head with a cap, two arms that hold a drum before the chest";
-    object->genus = 2;  // an opening between each arm and the body
-    object->minimum_vertices = 1500;
-    object->thinnest = 5;
+    // Genus 2: an opening between each arm and the body.
+    auto object = start_object("statuette", "drum player statuette",
+                               "votive figure: base, tubular body, head with a cap, two arms that hold a drum before the chest",
+                               2, 1500, 5);
     const int body = add_part(*object, "body", {196, 140, 96}), base = add_part(*object, "base", {120, 90, 70});
     const int head = add_part(*object, "head", {214, 170, 130}), cap = add_part(*object, "cap", {90, 110, 150});
     const int left = add_part(*object, "left arm", {190, 70, 60}), right = add_part(*object, "right arm", {80, 140, 90});
@@ -82,8 +72,7 @@ ObjectPointer make_statuette() {
                               {{36, side * 26, 105}, 7}}),
                    side > 0 ? left : right, 5);
     }
-    object->finish();
-    return object;
+    return finished(std::move(object));
 }
 
 }  // namespace ostraka::shapes

@@ -12,13 +12,8 @@ Vector3d along_leg(double height, double side) {
 }  // namespace
 
 ObjectPointer make_chair() {
-    auto object = std::make_unique<SyntheticObject>();
-    object->name = "chair";
-    object->object_class = "armchair";
-    object->description = "chair with back, two arms on supports and four legs";
-    object->genus = 2;  // an opening under each arm
-    object->minimum_vertices = 1500;
-    object->thinnest = 18;
+    // Genus 2: an opening under each arm.
+    auto object = start_object("chair", "armchair", "chair with back, two arms on supports and four legs", 2, 1500, 18);
     const int seat = add_part(*object, "seat", {190, 140, 90}), back = add_part(*object, "back", {160, 100, 60});
     add_member(*object, make_box({{0, 0, 440}, Eigen::Matrix3d::Identity()}, {240, 230, 22}, 16), seat, 0);
     // The back leans by 10 degrees; it stands on the rear edge of the seat.
@@ -62,8 +57,7 @@ ObjectPointer make_chair() {
                               {{front * 228, side * 206, 17}, 17}}),
                    leg, 16);
     }
-    object->finish();
-    return object;
+    return finished(std::move(object));
 }
 
 }  // namespace ostraka::shapes

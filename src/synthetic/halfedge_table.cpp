@@ -8,8 +8,7 @@ HalfedgeTable::HalfedgeTable(const Triangles& mesh)
     : origin_(3 * mesh.faces.size()),
       opposite_(3 * mesh.faces.size(), no_index),
       outgoing_(mesh.points.size(), no_index),
-      living_vertices_(mesh.points.size()),
-      living_faces_(mesh.faces.size()) {
+      living_vertices_(mesh.points.size()) {
     // Halfedges listed by origin; each looks for its reverse among those of its target.
     std::vector<Index> begin(mesh.points.size() + 1, 0);
     for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
@@ -69,7 +68,6 @@ void HalfedgeTable::collapse(Index h) {
         for (Index k = 0; k < 3; ++k) origin_[3 * face + k] = no_index;
     }
     --living_vertices_;
-    living_faces_ -= 2;
 }
 
 bool HalfedgeTable::can_flip(Index h) const {

@@ -20,15 +20,11 @@ constexpr int label(HeadPart part) { return static_cast<int>(part); }
 class HeadBuilder {
 public:
     HeadBuilder(const HeadShape& shape, const HandWork& work)
-        : s_(shape), w_(work), object_(std::make_unique<SyntheticObject>()) {}
+        : s_(shape),
+          w_(work),
+          object_(shapes::start_object("head", "head of a figurine", "face, hair, ears, neck", 0, 1500, 2.6)) {}
 
     std::unique_ptr<const SyntheticObject> build() {
-        object_->name = "head";
-        object_->object_class = "head of a figurine";
-        object_->description = "face, hair, ears, neck";
-        object_->genus = 0;
-        object_->minimum_vertices = 1500;
-        object_->thinnest = 2.6;
         const std::array<std::array<std::uint8_t, 3>, 12> colours{{{205, 160, 120},
                                                                    {220, 175, 130},
                                                                    {150, 170, 190},

@@ -202,6 +202,13 @@ Vector3d crossing(const SyntheticObject& object, const Vector3d& a, const Vector
 
 }  // namespace
 
+double area(const Triangles& mesh) {
+    double sum = 0;
+    for (const auto& [a, b, c] : mesh.faces)
+        sum += 0.5 * (mesh.points[b] - mesh.points[a]).cross(mesh.points[c] - mesh.points[a]).norm();
+    return sum;
+}
+
 Lattice seeded_lattice(const SyntheticObject& object, double cube, std::uint64_t seed) {
     const auto share = [&](std::uint64_t counter) { return random_share(seed, counter); };
     // A quaternion from four numbers: no need for uniform rotations, any general position will do.

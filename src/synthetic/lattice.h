@@ -21,6 +21,8 @@ struct Triangles {
     std::vector<std::array<Index, 3>> faces;
 };
 
+double area(const Triangles& mesh);
+
 /// Vertices that the lattice gives on a surface of one unit of area when its cubes have edge 1: the mean number of its
 /// edges that a unit of area cuts (8 of length sqrt(3)/2 and 6 of length 1 a cube, each seen at half its length).
 inline constexpr double lattice_vertices_per_area = 6.4641016151377546;

@@ -19,14 +19,6 @@ namespace {
 /// Lattice vertices made for each one wanted: with fewer, thin triangles must stay; with more, time is lost.
 constexpr double surplus = 1.6;
 
-double area(const shapes::Triangles& mesh) {
-    double sum = 0;
-    for (const auto& [a, b, c] : mesh.faces) {
-        sum += 0.5 * (mesh.points[b] - mesh.points[a]).cross(mesh.points[c] - mesh.points[a]).norm();
-    }
-    return sum;
-}
-
 /// Closed surfaces have 3/2 edges a face, so V - E + F = V - F / 2.
 bool has_genus(const shapes::Triangles& mesh, int genus) {
     return static_cast<long long>(mesh.points.size()) - static_cast<long long>(mesh.faces.size() / 2) == 2 - 2 * genus;
@@ -50,7 +42,7 @@ bool is_connected(const shapes::Triangles& mesh) {
 shapes::Triangles marched(const SyntheticObject& object, double vertices, std::uint64_t seed) {
     // A first coarse surface tells the area.
     const double coarse = object.box().diagonal().norm() / 40;
-    const double pilot_area = area(shapes::march(object, shapes::seeded_lattice(object, coarse, seed)));
+    const double pilot_area = shapes::area(shapes::march(object, shapes::seeded_lattice(object, coarse, seed)));
     double cube = std::min(std::sqrt(shapes::lattice_vertices_per_area * pilot_area / vertices), 0.9 * object.thinnest);
     for (int attempt = 0; attempt < 4; ++attempt, cube /= 1.4) {
         shapes::Triangles mesh = shapes::march(object, shapes::seeded_lattice(object, cube, seed));
@@ -119,7 +111,7 @@ SyntheticMesh make_mesh(const SyntheticObject& object, const MakeOptions& option
         made.face_labels[f] = object.part(object.project(Vector3d((even.points[a] + even.points[b] + even.points[c]) / 3)));
     });
     if (options.noise > 0) {
-        const double edge = std::sqrt(area(even) / static_cast<double>(even.points.size()) * 2 / std::sqrt(3.0));
+        const double edge = std::sqrt(shapes::area(even) / static_cast<double>(even.points.size()) * 2 / std::sqrt(3.0));
         parallel_for(even.points.size(), [&](std::size_t v) {
             const Vector3d normal = object.sample(even.points[v]).gradient.normalized();
             even.points[v] += options.noise * edge * (2 * random_share(options.seed, 1000 + v) - 1) * normal;

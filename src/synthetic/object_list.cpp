@@ -1,6 +1,7 @@
 #include "builder.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/nearest_name.h"
 
 #include <algorithm>
 #include <map>
@@ -19,21 +20,6 @@ const std::map<std::string, Maker>& makers() {
     return list;
 }
 
-/// Levenshtein distance.
-std::size_t edits(const std::string& a, const std::string& b) {
-    std::vector<std::size_t> row(b.size() + 1);
-    for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
-    for (std::size_t i = 1; i <= a.size(); ++i) {
-        std::size_t diagonal = row[0];
-        row[0] = i;
-        for (std::size_t j = 1; j <= b.size(); ++j) {
-            const std::size_t changed = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-            diagonal = row[j];
-            row[j] = std::min({changed, row[j] + 1, row[j - 1] + 1});
-        }
-    }
-    return row.back();
-}
 }  // namespace
 
 std::vector<std::string> synthetic_object_names() {
@@ -54,7 +40,7 @@ const SyntheticObject& synthetic_object(const std::string& name) {
     std::size_t minimum = std::max<std::size_t>(3, name.size() / 2 + 1);
     for (const auto& [known, maker] : makers()) {
         all += (all.empty() ? "" : ", ") + known;
-        const std::size_t distance = name.size() > 64 ? 64 : edits(name, known);
+        const std::size_t distance = name.size() > 64 ? 64 : edit_distance(name, known, minimum - 1);
         if (distance < minimum) minimum = distance, nearest = known;
     }
     fail_usage("there is no made object '" + name + "'",

@@ -7,21 +7,12 @@ namespace ostraka::shapes {
 namespace {
 std::unique_ptr<SyntheticObject> start(const std::string& name, const std::string& description, int genus, double area,
                                        double volume) {
-    auto object = std::make_unique<SyntheticObject>();
-    object->name = object->object_class = name;
-    object->description = description;
-    object->genus = genus;
-    object->minimum_vertices = 200;
+    auto object = start_object(name, name, description, genus, 200, std::numeric_limits<double>::infinity());
     object->exact_area = area;
     object->exact_volume = volume;
     return object;
 }
 constexpr Colour3 grey{190, 190, 185}, red{200, 60, 50}, blue{60, 100, 190}, green{70, 160, 90};
-
-ObjectPointer finished(std::unique_ptr<SyntheticObject> object) {
-    object->finish();
-    return object;
-}
 }  // namespace
 
 ObjectPointer make_sphere() {

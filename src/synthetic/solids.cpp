@@ -4,6 +4,8 @@
 
 #include "ostraka/core/error.h"
 
+#include <functional>
+
 namespace ostraka {
 
 using Eigen::AlignedBox3d;
@@ -42,87 +44,22 @@ Sample revolve(const Vector3d& p, double distance, double value, const Vector2d&
     return {value, {gradient.x() * p.x() / distance, gradient.x() * p.y() / distance, gradient.y()}};
 }
 
-class Ellipsoid final : public PlacedSolid {
+/// A formula in its own frame says all of it.
+class FormulaSolid final : public PlacedSolid {
 public:
-    Ellipsoid(const SolidPose& pose, const Vector3d& radii) : PlacedSolid(pose), radii_(radii), smallest_(radii.minCoeff()) {}
-    [[nodiscard]] double flatness() const override { return smallest_ / radii_.maxCoeff(); }
+    using Formula = std::function<Sample(const Vector3d& p)>;
+    FormulaSolid(const SolidPose& pose, const Vector3d& half_extents, Formula formula, double flatness = 1)
+        : PlacedSolid(pose), half_extents_(half_extents), formula_(std::move(formula)), flatness_(flatness) {}
+    [[nodiscard]] double flatness() const override { return flatness_; }
 
 protected:
-    [[nodiscard]] Sample local(const Vector3d& p) const override {
-        const Vector3d q = p.cwiseQuotient(radii_);
-        const double length = q.norm();
-        if (length < 1e-300) return {-smallest_, Vector3d::UnitX()};
-        return {smallest_ * (length - 1), smallest_ / length * q.cwiseQuotient(radii_)};
-    }
-    [[nodiscard]] Vector3d half_extents() const override { return radii_; }
+    [[nodiscard]] Sample local(const Vector3d& p) const override { return formula_(p); }
+    [[nodiscard]] Vector3d half_extents() const override { return half_extents_; }
 
 private:
-    Vector3d radii_;
-    double smallest_;
-};
-
-class RoundedBox final : public PlacedSolid {
-public:
-    RoundedBox(const SolidPose& pose, const Vector3d& half, double rounding)
-        : PlacedSolid(pose), half_(half), core_(half - Vector3d::Constant(rounding)), rounding_(rounding) {}
-
-protected:
-    [[nodiscard]] Sample local(const Vector3d& p) const override {
-        const Vector3d q = p.cwiseAbs() - core_;
-        const Vector3d sign(p.x() < 0 ? -1 : 1, p.y() < 0 ? -1 : 1, p.z() < 0 ? -1 : 1);
-        int side = 0;
-        if (q.maxCoeff(&side) <= 0) return {q[side] - rounding_, sign[side] * Vector3d::Unit(side)};
-        const Vector3d outside = q.cwiseMax(0.0);
-        const double distance = outside.norm();
-        return {distance - rounding_, outside.cwiseProduct(sign) / distance};
-    }
-    [[nodiscard]] Vector3d half_extents() const override { return half_; }
-
-private:
-    Vector3d half_, core_;
-    double rounding_;
-};
-
-class RoundedCylinder final : public PlacedSolid {
-public:
-    RoundedCylinder(const SolidPose& pose, double radius, double half_height, double rounding)
-        : PlacedSolid(pose), half_(radius, half_height), core_(half_ - Vector2d::Constant(rounding)), rounding_(rounding) {}
-
-protected:
-    [[nodiscard]] Sample local(const Vector3d& p) const override {
-        const double axis_distance = std::hypot(p.x(), p.y());
-        const double up = p.z() < 0 ? -1 : 1;
-        const Vector2d q(axis_distance - core_.x(), std::abs(p.z()) - core_.y());
-        if (q.maxCoeff() <= 0) {
-            const bool lid = q.y() > q.x();
-            return revolve(p, axis_distance, q.maxCoeff() - rounding_, lid ? Vector2d(0, up) : Vector2d(1, 0));
-        }
-        const Vector2d outside = q.cwiseMax(0.0);
-        const double distance = outside.norm();
-        return revolve(p, axis_distance, distance - rounding_, Vector2d(outside.x(), outside.y() * up) / distance);
-    }
-    [[nodiscard]] Vector3d half_extents() const override { return {half_.x(), half_.x(), half_.y()}; }
-
-private:
-    Vector2d half_, core_;
-    double rounding_;
-};
-
-class Torus final : public PlacedSolid {
-public:
-    Torus(const SolidPose& pose, double ring, double tube) : PlacedSolid(pose), ring_(ring), tube_(tube) {}
-
-protected:
-    [[nodiscard]] Sample local(const Vector3d& p) const override {
-        const double axis_distance = std::hypot(p.x(), p.y());
-        const Vector2d q(axis_distance - ring_, p.z());
-        const double distance = q.norm();
-        return revolve(p, axis_distance, distance - tube_, distance < 1e-300 ? Vector2d(1, 0) : Vector2d(q / distance));
-    }
-    [[nodiscard]] Vector3d half_extents() const override { return {ring_ + tube_, ring_ + tube_, tube_}; }
-
-private:
-    double ring_, tube_;
+    Vector3d half_extents_;
+    Formula formula_;
+    double flatness_;
 };
 
 class Tube final : public Solid {
@@ -286,19 +223,56 @@ void check_sizes(const char* what, std::initializer_list<double> sizes, double r
 
 SolidPointer make_ellipsoid(const SolidPose& pose, const Vector3d& radii) {
     check_sizes("an ellipsoid", {radii.x(), radii.y(), radii.z()});
-    return std::make_unique<Ellipsoid>(pose, radii);
+    const double smallest = radii.minCoeff();
+    const auto formula = [radii, smallest](const Vector3d& p) -> Sample {
+        const Vector3d q = p.cwiseQuotient(radii);
+        const double length = q.norm();
+        if (length < 1e-300) return {-smallest, Vector3d::UnitX()};
+        return {smallest * (length - 1), smallest / length * q.cwiseQuotient(radii)};
+    };
+    return std::make_unique<FormulaSolid>(pose, radii, formula, smallest / radii.maxCoeff());
 }
 SolidPointer make_box(const SolidPose& pose, const Vector3d& half, double rounding) {
     check_sizes("a box", {half.x(), half.y(), half.z()}, rounding, half.minCoeff());
-    return std::make_unique<RoundedBox>(pose, half, rounding);
+    const Vector3d core = half - Vector3d::Constant(rounding);
+    const auto formula = [core, rounding](const Vector3d& p) -> Sample {
+        const Vector3d q = p.cwiseAbs() - core;
+        const Vector3d sign(p.x() < 0 ? -1 : 1, p.y() < 0 ? -1 : 1, p.z() < 0 ? -1 : 1);
+        int side = 0;
+        if (q.maxCoeff(&side) <= 0) return {q[side] - rounding, sign[side] * Vector3d::Unit(side)};
+        const Vector3d outside = q.cwiseMax(0.0);
+        const double distance = outside.norm();
+        return {distance - rounding, outside.cwiseProduct(sign) / distance};
+    };
+    return std::make_unique<FormulaSolid>(pose, half, formula);
 }
 SolidPointer make_cylinder(const SolidPose& pose, double radius, double half_height, double rounding) {
     check_sizes("a cylinder", {radius, half_height}, rounding, std::min(radius, half_height));
-    return std::make_unique<RoundedCylinder>(pose, radius, half_height, rounding);
+    const Vector2d core = Vector2d(radius, half_height) - Vector2d::Constant(rounding);
+    const auto formula = [core, rounding](const Vector3d& p) {
+        const double axis_distance = std::hypot(p.x(), p.y());
+        const double up = p.z() < 0 ? -1 : 1;
+        const Vector2d q(axis_distance - core.x(), std::abs(p.z()) - core.y());
+        if (q.maxCoeff() <= 0) {
+            const bool lid = q.y() > q.x();
+            return revolve(p, axis_distance, q.maxCoeff() - rounding, lid ? Vector2d(0, up) : Vector2d(1, 0));
+        }
+        const Vector2d outside = q.cwiseMax(0.0);
+        const double distance = outside.norm();
+        return revolve(p, axis_distance, distance - rounding, Vector2d(outside.x(), outside.y() * up) / distance);
+    };
+    return std::make_unique<FormulaSolid>(pose, Vector3d(radius, radius, half_height), formula);
 }
 SolidPointer make_torus(const SolidPose& pose, double ring_radius, double tube_radius) {
     check_sizes("a torus", {ring_radius, tube_radius, ring_radius - tube_radius});
-    return std::make_unique<Torus>(pose, ring_radius, tube_radius);
+    const auto formula = [ring_radius, tube_radius](const Vector3d& p) {
+        const double axis_distance = std::hypot(p.x(), p.y());
+        const Vector2d q(axis_distance - ring_radius, p.z());
+        const double distance = q.norm();
+        return revolve(p, axis_distance, distance - tube_radius, distance < 1e-300 ? Vector2d(1, 0) : Vector2d(q / distance));
+    };
+    const double reach = ring_radius + tube_radius;
+    return std::make_unique<FormulaSolid>(pose, Vector3d(reach, reach, tube_radius), formula);
 }
 SolidPointer make_tube(const std::vector<Bead>& beads) {
     check_path(beads, "a tube");

@@ -5,6 +5,7 @@
 #include "statuette_build.h"
 
 #include "ostraka/core/parallel.h"
+#include "ostraka/geom/submesh.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/stats/random.h"
 
@@ -88,24 +89,12 @@ void open_pinches(std::vector<bool>& missing, const Mesh& mesh) {
 /// The largest piece of what is left, as a mesh of its own; labels follow.
 void take_away(Statuette& statuette, const std::vector<bool>& missing) {
     const Mesh& mesh = statuette.mesh;
-    std::vector<Index> piece(mesh.number_of_faces(), no_index);
-    Index pieces = 0, largest = 0;
-    std::size_t maximum = 0;
-    for (const Face start : mesh.faces()) {
-        if (missing[start.idx()] || piece[start.idx()] != no_index) continue;
-        std::vector<Face> list{start};
-        piece[start.idx()] = pieces;
-        for (std::size_t i = 0; i < list.size(); ++i) {
-            for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(list[i]))) {
-                const Face next = mesh.face(mesh.opposite(h));
-                if (missing[next.idx()] || piece[next.idx()] != no_index) continue;
-                piece[next.idx()] = pieces;
-                list.push_back(next);
-            }
-        }
-        if (list.size() > maximum) maximum = list.size(), largest = pieces;
-        ++pieces;
-    }
+    const auto [piece, pieces] = face_pieces(
+        mesh, [&](Face f) { return !missing[f]; }, [](Halfedge) { return true; });
+    std::vector<std::size_t> sizes(pieces, 0);
+    for (const Index number : piece)
+        if (number != no_index) ++sizes[number];
+    const auto largest = static_cast<Index>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
     TriangleSoup soup;
     std::vector<Index> renamed(mesh.number_of_vertices(), no_index);
     std::vector<std::int32_t> labels;

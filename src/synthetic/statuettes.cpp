@@ -243,22 +243,17 @@ void add_head(SyntheticObject& object, const StatuetteParameters& p, const Statu
 
 std::unique_ptr<SyntheticObject> build_statuette(const StatuetteParameters& p, const StatuetteBody& body) {
     const StatuetteFrame& frame = body.frame;
-    auto object = std::make_unique<SyntheticObject>();
-    object->name = option_text(p, "technique") + "-made statuette";
-    object->object_class = "votive statuette";
-    object->description = "tubular body on a flared base, head, two arms";
     const bool offering = p.pose == StatuetteParameters::Pose::offering;
-    object->genus = offering ? 1 : 0;
-    object->minimum_vertices = 4000;
-    object->thinnest = 4;
+    auto object = start_object(option_text(p, "technique") + "-made statuette", "votive statuette",
+                               "tubular body on a flared base, head, two arms", offering ? 1 : 0, 4000, 4);
     const int tube = add_part(*object, "body", {196, 140, 96}), base = add_part(*object, "base", {150, 104, 74});
     const int head = add_part(*object, "head", {214, 170, 130});
     const int right = add_part(*object, "right arm", {80, 140, 90}), left = add_part(*object, "left arm", {190, 70, 60});
     const std::vector<Vector2d> profile = body_profile(p, frame);
-    Member trunk;
-    trunk.solid = make_warped(make_revolved({}, profile), body.outside);
-    trunk.stretches = {{chord_lengths(profile)[15], base}, {std::numeric_limits<double>::infinity(), tube}};
-    object->members.push_back(std::move(trunk));
+    object->members.push_back({make_warped(make_revolved({}, profile), body.outside),
+                               0,
+                               false,
+                               {{chord_lengths(profile)[15], base}, {std::numeric_limits<double>::infinity(), tube}}});
     const double shoulders = 0.85 * frame.joint_height, r = frame.tube_radius;
     const Vector2d c = body.outside->centre(shoulders);
     add_member(*object, make_ellipsoid({{c.x(), c.y(), shoulders}, Matrix3d::Identity()}, {0.95 * r, 1.5 * r, 0.72 * r}), tube,

@@ -7,13 +7,8 @@
 namespace ostraka::shapes {
 
 ObjectPointer make_teapot() {
-    auto object = std::make_unique<SyntheticObject>();
-    object->name = "teapot";
-    object->object_class = "flowered teapot";
-    object->description = "lidded teapot with spout, handle, knob and five flowers in relief at one level";
-    object->genus = 1;
-    object->minimum_vertices = 1500;
-    object->thinnest = 2.2;
+    auto object = start_object("teapot", "flowered teapot",
+                               "lidded teapot with spout, handle, knob and five flowers in relief at one level", 1, 1500, 2.2);
     const int body = add_part(*object, "body", {214, 205, 186}), base = add_part(*object, "base", {120, 86, 60});
     const int lid = add_part(*object, "lid", {170, 140, 100}), knob = add_part(*object, "knob", {196, 150, 40});
     const int spout = add_part(*object, "spout", {70, 120, 170}), handle = add_part(*object, "handle", {70, 140, 90});
@@ -39,18 +34,12 @@ ObjectPointer make_teapot() {
         const int flower = add_part(*object, "flower " + std::to_string(i + 1), petals[i]);
         object->reliefs.push_back({radius * outward + Vector3d(0, 0, level), outward, 9, 1.2, 0.16, 5, flower});
     }
-    object->finish();
-    return object;
+    return finished(std::move(object));
 }
 
 ObjectPointer make_vase() {
-    auto object = std::make_unique<SyntheticObject>();
-    object->name = "vase";
-    object->object_class = "two-handled vase";
-    object->description = "hollow vase with foot, belly, decorated band, neck, lip and two handles";
-    object->genus = 2;
-    object->minimum_vertices = 2000;
-    object->thinnest = 4;
+    auto object = start_object("vase", "two-handled vase",
+                               "hollow vase with foot, belly, decorated band, neck, lip and two handles", 2, 2000, 4);
     const int foot = add_part(*object, "foot", {110, 70, 50}), belly = add_part(*object, "belly", {196, 120, 70});
     const int band = add_part(*object, "band", {40, 40, 40}), shoulder = add_part(*object, "shoulder", {206, 136, 84});
     const int neck = add_part(*object, "neck", {180, 100, 60}), lip = add_part(*object, "lip", {60, 50, 45});
@@ -70,8 +59,7 @@ ObjectPointer make_vase() {
                                       {{side * 72, 0, 200}, 5.5}, {{side * 70, 0, 179}, 5.5}, {{side * 63, 0, 160}, 6}};
         add_member(*object, make_tube(beads), handle, 5);
     }
-    object->finish();
-    return object;
+    return finished(std::move(object));
 }
 
 }  // namespace ostraka::shapes

@@ -194,7 +194,7 @@ TEST(HeatMap, RefusesWhatDoesNotFit) {
 TEST(DendrogramPicture, OfTreesOfAnySize) {
     Eigen::MatrixXd places(4, 1);
     places << 0, 5, 1, 7;
-    Dendrogram tree{"tree", average_linkage(distance_matrix(places)), {"a", "b", "c", "d"}};
+    Dendrogram tree{"tree", linkage(distance_matrix(places)), {"a", "b", "c", "d"}};
     EXPECT_EQ(svg_bytes(tree), svg_bytes(tree));
     tree.cut = 2.5;
     for (const std::size_t colour : {0u, 1u}) EXPECT_GT(count(picture_of(tree), category_colour(colour)), 100u);
@@ -209,13 +209,13 @@ TEST(DendrogramPicture, OfTreesOfAnySize) {
     EXPECT_GT(count(picture, category_colour(0)), 100u);
     tree.groups = {1, 0};
     EXPECT_THROW(svg_bytes(tree), Error);
-    EXPECT_NO_THROW(svg_bytes(Dendrogram{"", average_linkage(Eigen::MatrixXd::Zero(1, 1)), {"alone"}}));
-    EXPECT_NO_THROW(svg_bytes(Dendrogram{"", average_linkage(Eigen::MatrixXd::Zero(3, 3)), {"a", "a", "a"}}));
+    EXPECT_NO_THROW(svg_bytes(Dendrogram{"", linkage(Eigen::MatrixXd::Zero(1, 1)), {"alone"}}));
+    EXPECT_NO_THROW(svg_bytes(Dendrogram{"", linkage(Eigen::MatrixXd::Zero(3, 3)), {"a", "a", "a"}}));
 }
 
 TEST(DendrogramPicture, RefusesWhatIsNoTree) {
     EXPECT_THROW(svg_bytes(Dendrogram{}), Error);
-    Dendrogram tree{"", average_linkage(Eigen::MatrixXd::Zero(3, 3)), {"a", "b"}};
+    Dendrogram tree{"", linkage(Eigen::MatrixXd::Zero(3, 3)), {"a", "b"}};
     EXPECT_THROW(svg_bytes(tree), Error) << "a name is missing";
     tree.names.push_back("c");
     tree.tree.merges[1] = tree.tree.merges[0];

@@ -50,7 +50,6 @@ TEST(Dbscan, OfARingInsideARing) {
     }
     const std::vector<int> labels = dbscan(samples, 0.6, 2);
     for (int i = 0; i < 120; ++i) ASSERT_EQ(labels[i], i < 60 ? 0 : 1);
-    EXPECT_EQ(dbscan_of_distances(distance_matrix(samples), 0.6, 2), labels);
 }
 
 TEST(Dbscan, OfIdenticalSamplesAndBadInput) {
@@ -61,32 +60,20 @@ TEST(Dbscan, OfIdenticalSamplesAndBadInput) {
     EXPECT_THROW(dbscan(column({1}), std::nan(""), 1), Error);
     EXPECT_THROW(dbscan(column({1}), 1, 0), Error);
     EXPECT_THROW(dbscan(column({std::nan("")}), 1, 1), Error);
-    Eigen::MatrixXd distances(2, 2);
-    distances << 0, 1, 2, 0;
-    EXPECT_THROW(dbscan_of_distances(distances, 1, 1), Error) << "not symmetric";
-    distances << 0, -1, -1, 0;
-    EXPECT_THROW(dbscan_of_distances(distances, 1, 1), Error) << "negative";
-    EXPECT_THROW(dbscan_of_distances(Eigen::MatrixXd::Zero(2, 3), 1, 1), Error);
 }
 
 TEST(DbscanNeighbourhood, ByHand) {
-    // Nearest others: 1, 1, 2; two nearest: (1 + 3) / 2, (1 + 2) / 2, (2 + 3) / 2.
-    EXPECT_DOUBLE_EQ(neighbour_epsilon(column({0, 1, 3}), 1), 4.0 / 3);
-    EXPECT_DOUBLE_EQ(neighbour_epsilon(column({0, 1, 3}), 2), 2);
-    EXPECT_DOUBLE_EQ(neighbour_epsilon(column({0, 1, 3}), 9), 2);
-    EXPECT_EQ(neighbour_epsilon(column({4}), 3), 0);
     // 5 samples on a length of 10: each has 2 of length, so radius 1 holds one sample; in a square, pi r^2 = area / n.
     EXPECT_NEAR(volume_epsilon(column({0, 1, 2, 3, 10}), 1), 1, 1e-12);
     Eigen::MatrixXd square(4, 3);
     square << 0, 0, 7, 2, 0, 7, 0, 2, 7, 2, 2, 7;
     EXPECT_NEAR(volume_epsilon(square, 1), 1 / std::sqrt(std::numbers::pi), 1e-12) << "the flat third column does not count";
     EXPECT_EQ(volume_epsilon(column({4, 4}), 1), 0);
-    EXPECT_THROW(neighbour_epsilon(column({4}), 0), Error);
 }
 
 TEST(Linkage, ByHand) {
     // 0 and 1 at 1; 5 and 7 at 2; the pairs at the mean of 5, 7, 4, 6.
-    const Linkage tree = average_linkage(distance_matrix(column({0, 5, 1, 7})));
+    const Linkage tree = linkage(distance_matrix(column({0, 5, 1, 7})));
     ASSERT_EQ(tree.merges.size(), 3u);
     EXPECT_EQ(tree.merges[0].first, 0);
     EXPECT_EQ(tree.merges[0].second, 2);
@@ -102,8 +89,6 @@ TEST(Linkage, ByHand) {
     EXPECT_EQ(linkage(distance_matrix(column({0, 5, 1, 7})), LinkageMethod::complete).merges[2].height, 7);
     EXPECT_EQ(cut_at(tree, 0.5), (std::vector<int>{0, 1, 2, 3}));
     EXPECT_EQ(cut_at(tree, 2), (std::vector<int>{0, 1, 0, 1}));
-    EXPECT_EQ(cut_into(tree, 3), (std::vector<int>{0, 1, 0, 2}));
-    EXPECT_EQ(cut_into(tree, 1), (std::vector<int>{0, 0, 0, 0}));
     EXPECT_EQ(leaf_order(tree), (std::vector<int>{0, 2, 1, 3}));
 }
 
@@ -134,7 +119,7 @@ TEST(Linkage, AgreesWithItsDefinition) {
     for (std::uint64_t seed = 0; seed < 10; ++seed) {
         const Eigen::MatrixXd distances = distance_matrix(random_samples(25, 3, seed));
         const std::vector<double> heights = slow_heights(distances);
-        const Linkage tree = average_linkage(distances);
+        const Linkage tree = linkage(distances);
         ASSERT_EQ(tree.merges.size(), heights.size());
         for (std::size_t i = 0; i < heights.size(); ++i) EXPECT_NEAR(tree.merges[i].height, heights[i], 1e-12);
         std::vector<int> leaves = leaf_order(tree);
@@ -150,16 +135,20 @@ TEST(Linkage, SingleLinkageCutIsDbscanWithMinimumOne) {
 }
 
 TEST(Linkage, OfOneOfIdenticalAndOfBadInput) {
-    const Linkage one = average_linkage(Eigen::MatrixXd::Zero(1, 1));
+    const Linkage one = linkage(Eigen::MatrixXd::Zero(1, 1));
     EXPECT_TRUE(one.merges.empty());
     EXPECT_EQ(leaf_order(one), std::vector<int>{0});
-    EXPECT_EQ(cut_into(one, 1), std::vector<int>{0});
-    const Linkage same = average_linkage(Eigen::MatrixXd::Zero(5, 5));
+    const Linkage same = linkage(Eigen::MatrixXd::Zero(5, 5));
     EXPECT_EQ(same.merges.size(), 4u);
     EXPECT_EQ(same.merges.back().size, 5);
     EXPECT_EQ(leaf_order(same).size(), 5u);
-    EXPECT_THROW(average_linkage(Eigen::MatrixXd(0, 0)), Error);
-    EXPECT_THROW(cut_into(same, 6), Error);
+    EXPECT_THROW(linkage(Eigen::MatrixXd(0, 0)), Error);
+    Eigen::MatrixXd distances(2, 2);
+    distances << 0, 1, 2, 0;
+    EXPECT_THROW(linkage(distances), Error) << "not symmetric";
+    distances << 0, -1, -1, 0;
+    EXPECT_THROW(linkage(distances), Error) << "negative";
+    EXPECT_THROW(linkage(Eigen::MatrixXd::Zero(2, 3)), Error);
 }
 
 TEST(SpectralEmbedding, TakesTheLargestMagnitudes) {

@@ -5,11 +5,29 @@
 
 #include <Eigen/Geometry>
 
+#include <vector>
+
 namespace ostraka {
 
 inline Eigen::Vector3d eigen(const Point& p) { return {p.x(), p.y(), p.z()}; }
 inline Eigen::Vector3d eigen(const Vector& v) { return {v.x(), v.y(), v.z()}; }
 inline Point point_of(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 inline Vector vector_of(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+/// Points, a column each.
+inline Eigen::Matrix3Xd columns_of(const std::vector<Point>& list) {
+    Eigen::Matrix3Xd points(3, static_cast<Eigen::Index>(list.size()));
+    for (std::size_t i = 0; i < list.size(); ++i) points.col(static_cast<Eigen::Index>(i)) = eigen(list[i]);
+    return points;
+}
+inline Eigen::Matrix3Xd columns_of(const Mesh& mesh) {
+    Eigen::Matrix3Xd points(3, static_cast<Eigen::Index>(mesh.number_of_vertices()));
+    for (const Vertex v : mesh.vertices()) points.col(v.idx()) = eigen(mesh.point(v));
+    return points;
+}
+inline std::vector<Point> points_of(const std::vector<Eigen::Vector3d>& places) {
+    std::vector<Point> points;
+    for (const Eigen::Vector3d& place : places) points.push_back(point_of(place));
+    return points;
+}
 
 }  // namespace ostraka

@@ -18,6 +18,11 @@ namespace ostraka {
 std::vector<double> geodesic_distances(const Mesh& mesh, const std::vector<Index>& sources,
                                        double limit = std::numeric_limits<double>::infinity());
 
+/// For every vertex the length of the shortest way along edges from vertices that start with the given lengths; infinite where
+/// none arrives, or only one longer than `limit`.
+std::vector<double> edge_distances(const Mesh& mesh, const std::vector<std::pair<Vertex, double>>& start,
+                                   double limit = std::numeric_limits<double>::infinity());
+
 /// The length of the shortest curve over the faces between two places; infinite if none joins them. Only the faces that a curve
 /// no longer than the shortest edge path can meet are worked on. Throws Error (usage) for a place that is not on the mesh.
 double geodesic_distance(const Mesh& mesh, const SurfaceNode& from, const SurfaceNode& to);

@@ -17,6 +17,7 @@ struct Motion {
     [[nodiscard]] Motion inverse() const;
     /// First `other`, then this.
     [[nodiscard]] Motion after(const Motion& other) const;
+    bool operator==(const Motion&) const = default;
 };
 
 struct FitOptions {

@@ -22,6 +22,8 @@ struct SurfaceNode {
 /// Barycentric coordinates below `snap` are taken for zero, so that a node near an edge or a vertex lies on it.
 SurfaceNode surface_node(const Mesh& mesh, Index face, const std::array<double, 3>& barycentric, double snap = 1e-6);
 SurfaceNode surface_node(const Mesh& mesh, Vertex vertex);
+/// The faces that hold the node.
+std::vector<Face> faces_of(const Mesh& mesh, const SurfaceNode& node);
 
 /// A curve over the surface: each piece nodes[i] -> nodes[i + 1] lies in one face.
 struct SurfaceCurve {

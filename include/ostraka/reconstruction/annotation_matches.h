@@ -6,7 +6,6 @@
 #include "ostraka/geom/rigid_fit.h"
 
 #include <optional>
-#include <string>
 #include <vector>
 
 namespace ostraka {

@@ -7,7 +7,6 @@
 #include "ostraka/reconstruction/pose_searches.h"
 
 #include <optional>
-#include <string>
 #include <vector>
 
 namespace ostraka {

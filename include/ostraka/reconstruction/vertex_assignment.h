@@ -4,7 +4,6 @@
 #include "ostraka/annotation/annotation.h"
 #include "ostraka/core/options.h"
 
-#include <string>
 #include <utility>
 #include <vector>
 

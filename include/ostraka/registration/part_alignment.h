@@ -23,6 +23,7 @@ struct PartAlignmentOptions {
 /// A place of the part that belongs to a place of the whole.
 struct Anchor {
     Eigen::Vector3d of_part, of_whole;
+    bool operator==(const Anchor&) const = default;
 };
 
 struct PartAlignment {

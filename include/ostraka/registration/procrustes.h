@@ -5,7 +5,6 @@
 
 #include <Eigen/Core>
 
-#include <string>
 #include <vector>
 
 namespace ostraka {

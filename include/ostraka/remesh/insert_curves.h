@@ -13,7 +13,6 @@ struct InsertedCurves {
     Mesh mesh;                                    ///< old vertices first, under their old indices; the surface is unchanged
     std::vector<Index> face_origin;               ///< new face -> old face
     std::vector<std::vector<Index>> node_vertex;  ///< per curve and node: the vertex at it
-    std::size_t new_vertices = 0;
 };
 
 /// Adds a vertex at each node of the curves and cuts the faces so that each piece of a curve is an edge, or a path of edges

@@ -6,7 +6,6 @@
 
 #include <array>
 #include <cstdint>
-#include <string>
 #include <vector>
 
 namespace ostraka {
@@ -38,9 +37,5 @@ struct RefineResult {
 /// Sources: Rivara, "Algorithms for refining triangular grids suitable for adaptive and multigrid techniques", 1984 (halving
 /// longest edges keeps angles bounded); Loop, "Smooth subdivision surfaces based on triangles", 1987.
 RefineResult refine(Mesh& mesh, const RefineOptions& options);
-
-/// The path of new edges that an old poly-line (successive vertices joined by edges of the old mesh) has become; an old edge, as
-/// in `edge_origin`, is given by its two vertices. Throws Error (input) if two successive vertices were not joined by an edge.
-std::vector<Index> refine_polyline(const Mesh& mesh, const RefineResult& result, const std::vector<Index>& polyline);
 
 }  // namespace ostraka

@@ -59,7 +59,6 @@ struct MemberFit {
     std::string problem;        ///< why it is not fitted, in words with the remedy; empty if it is
     std::vector<std::string> notes;
     std::optional<FitResiduals> residuals;  ///< none in correspondence
-    double share_placed = 0;                ///< of the surface's samples that found a partner in the rigid placement
 };
 
 /// In words with the numbers why the template does not lie on the object: `off()` is above `maximum`. Empty where it does, or

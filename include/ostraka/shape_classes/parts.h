@@ -7,7 +7,10 @@
 
 namespace ostraka {
 
-/// Of each region of the template that is a part of it (not the whole), as registered to a member: share of the surface; length
+/// A region that is neither empty nor the whole.
+bool is_part(const Mesh& mesh, const Annotation& annotation);
+
+/// Of each region of the template that is a part of it, as registered to a member: share of the surface; length
 /// and width, the two largest sides of an even bar with the region's moments of inertia (12 times the eigenvalues of the
 /// covariance over its area, their roots); distance of its centroid from that of the whole; and the distance between the
 /// centroids of two regions that share an edge on the template. Lengths are shares of the root of the whole's area. A region that

@@ -20,9 +20,9 @@ struct ClassQuantity {
     int id = -1;             ///< of the relationship, or of the annotation an attribute belongs to
     std::string name;        ///< "little finger / ring finger", "height", "distance" ...
     std::string of;          ///< type of the relationship, tag of the annotation
-    std::string unit;        ///< "" for shares and ratios
+    std::string unit = {};   ///< "" for shares and ratios
     bool one_sided = false;  ///< a residual: less is never worse
-    std::optional<double> value;
+    std::optional<double> value = {};
 
     /// Who it is the same quantity as, on another member.
     [[nodiscard]] std::string key() const;

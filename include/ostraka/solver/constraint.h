@@ -13,7 +13,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -146,8 +145,7 @@ struct ConstraintParameters {
 /// One kind that make_constraint knows.
 struct ConstraintKind {
     std::string_view name;
-    int min_ids, max_ids;     ///< max_ids 0: any number
-    std::string_view admits;  ///< in a line
+    int min_ids, max_ids;  ///< max_ids 0: any number
 };
 const std::vector<ConstraintKind>& constraint_kinds();
 

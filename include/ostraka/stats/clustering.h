@@ -3,23 +3,17 @@
 
 #include <Eigen/Core>
 
-#include <string>
 #include <vector>
 
 namespace ostraka {
 
-/// DBSCAN (Ester, Kriegel, Sander and Xu 1996) of the rows of `samples`, or of a symmetric matrix of distances. A sample with at
-/// least `minimum` samples (itself counted) at distances of at most `epsilon` is in the inside of a cluster. Returns a label a
+/// DBSCAN (Ester, Kriegel, Sander and Xu 1996) of the rows of `samples`. A sample with at least `minimum` samples (itself counted) at distances of at most `epsilon` is in the inside of a cluster. Returns a label a
 /// sample: 0, 1, ... in the order of the clusters' first inner samples, and -1 for noise; a sample on the rim of two clusters
 /// belongs to the first. With minimum 1 there is no noise, and clusters are what steps of `epsilon` connect. Quadratic in the
 /// number of samples. Throws Error (input) for no sample, values that are not finite, a matrix that is not symmetric or negative,
 /// and Error (usage) for an epsilon below 0 or a minimum below 1.
 std::vector<int> dbscan(const Eigen::MatrixXd& samples, double epsilon, int minimum);
-std::vector<int> dbscan_of_distances(const Eigen::MatrixXd& distances, double epsilon, int minimum);
 
-/// Mean over the samples of the mean distance to their `neighbours` nearest others (all others where there are fewer); 0 for one
-/// sample. Throws as above.
-double neighbour_epsilon(const Eigen::MatrixXd& samples, int neighbours);
 /// The radius at which as many samples, spread evenly over the box that holds them, would have `minimum` of them within reach
 /// (Daszykowski, Walczak and Massart 2001). Columns without extent do not count; 0 where none has any. Throws as above.
 double volume_epsilon(const Eigen::MatrixXd& samples, int minimum);
@@ -43,13 +37,10 @@ struct Linkage {
 /// Average linkage (UPGMA, Sokal and Michener 1958) by chains of nearest neighbours (Murtagh 1983): quadratic in the number of
 /// samples. `method`: by the mean, the least or the largest distance between members. Throws as above.
 enum class LinkageMethod { average, single, complete };
-Linkage average_linkage(const Eigen::MatrixXd& distances);
-Linkage linkage(const Eigen::MatrixXd& distances, LinkageMethod method);
+Linkage linkage(const Eigen::MatrixXd& distances, LinkageMethod method = LinkageMethod::average);
 
 /// Labels of the clusters that merges up to `height` make, numbered by their first samples.
 std::vector<int> cut_at(const Linkage& tree, double height);
-/// Labels of `clusters` clusters. Throws Error (usage) for a number that is not from 1 to the number of samples.
-std::vector<int> cut_into(const Linkage& tree, int clusters);
 /// The samples in the order of the tree's leaves, so that no lines of a drawing cross.
 std::vector<int> leaf_order(const Linkage& tree);
 

@@ -1,4 +1,4 @@
-// What chance alone may explain: permutation tests, bootstrap intervals, false discoveries, the stability of clusters.
+// What chance alone may explain: permutation tests, intervals, false discoveries, the stability of clusters.
 #pragma once
 
 #include "ostraka/core/options.h"
@@ -19,29 +19,12 @@ std::vector<double> benjamini_yekutieli(const std::vector<double>& p);
 /// look for small values give both negated.
 double permutation_p_value(double observed, const std::vector<double>& chance);
 
-/// Distribution function of the standard normal distribution, and its inverse. Throws Error (usage) unless 0 < p < 1.
-double normal_probability(double x);
+/// The inverse of the distribution function of the standard normal distribution. Throws Error (usage) unless 0 < p < 1.
 double normal_quantile(double p);
 
 struct Interval {
     double low = 0, high = 0;
 };
-
-struct BootstrapOptions {
-    int resamples = 2000;
-    double confidence = 0.95;
-    std::uint64_t seed = 1;
-    void describe(OptionList& visit);
-};
-
-/// A statistic of the samples with these indices; none where it is not defined.
-using SampleStatistic = std::function<std::optional<double>(const std::vector<std::size_t>& samples)>;
-
-/// Bootstrap interval of a statistic of `count` samples, bias-corrected and accelerated (Efron 1987). None for fewer than two
-/// samples, or where the statistic is not defined for all of them, for one left out, or for half of the resamples. Resamples run
-/// in parallel: `statistic` must not change what it shares.
-std::optional<Interval> bootstrap_interval(std::size_t count, const SampleStatistic& statistic,
-                                           const BootstrapOptions& options = {});
 
 /// Interval of the standard deviation of a population that need not be normal (Bonett 2006), from the kurtosis about a trimmed
 /// mean; with `relative` of the coefficient of variation: the error of the mean and its correlation with that of the deviation

@@ -81,8 +81,4 @@ using Learner = std::function<std::vector<bool>(const std::vector<std::size_t>& 
 /// are at least two positives and two negatives.
 CrossValidation cross_validate(const std::vector<bool>& truth, const Learner& learn, const CrossValidationOptions& options = {});
 
-/// The same for `best_threshold` of one value a sample. Throws as both.
-CrossValidation cross_validate_threshold(const std::vector<double>& values, const std::vector<bool>& truth,
-                                         Side side = Side::above, const CrossValidationOptions& options = {});
-
 }  // namespace ostraka

@@ -3,7 +3,6 @@
 
 #include <Eigen/Geometry>
 
-#include <limits>
 #include <memory>
 #include <vector>
 

@@ -1,0 +1,32 @@
+// How long work takes.
+#pragma once
+
+#include <chrono>
+
+namespace ostraka {
+
+/// Seconds since it was made.
+class Stopwatch {
+public:
+    [[nodiscard]] double seconds() const {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+    }
+
+private:
+    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+/// Adds the seconds of its life to a sum.
+class AddedSeconds {
+public:
+    explicit AddedSeconds(double& sum) : sum_(sum) {}
+    ~AddedSeconds() { sum_ += watch_.seconds(); }
+    AddedSeconds(const AddedSeconds&) = delete;
+    AddedSeconds& operator=(const AddedSeconds&) = delete;
+
+private:
+    double& sum_;
+    Stopwatch watch_;
+};
+
+}  // namespace ostraka
