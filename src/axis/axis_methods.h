@@ -36,6 +36,9 @@ inline double covered_percent(std::vector<double> angles) {
 }
 
 double part_diagonal(const Mesh& mesh, const std::vector<Index>& faces);
+/// The least and the greatest height of the faces along a direction, over a place whose own 0 counts too.
+std::pair<double, double> extent_along(const Mesh& mesh, const std::vector<Index>& faces, const Vector3d& place,
+                                       const Vector3d& direction);
 /// The straight axis of a result, its point moved next to `centre`.
 void set_line(Axis& axis, const Vector3d& point, const Vector3d& direction, const Vector3d& centre);
 

@@ -83,19 +83,14 @@ Axis slice_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOpt
         return axis;
     }
     const Vector3d centroid = eigen(moments.centroid), direction = eigen(moments.directions[0]);
-    double minimum = 0, maximum = 0;
-    for (const Index f : faces)
-        for (const Vertex v : corners(mesh, Face(f))) {
-            const double h = direction.dot(eigen(mesh.point(v)) - centroid);
-            minimum = std::min(minimum, h), maximum = std::max(maximum, h);
-        }
+    const auto ends = extent_along(mesh, faces, centroid, direction);
     const double diagonal = part_diagonal(mesh, faces);
     const auto count = static_cast<std::size_t>(options.slices);
     std::vector<PatchSlice> first(count);
     parallel_for(
         count,
         [&](std::size_t i) {
-            const double h = minimum + (maximum - minimum) * (0.03 + 0.94 * (double(i) + 0.5) / double(count));
+            const double h = ends.first + (ends.second - ends.first) * (0.03 + 0.94 * (double(i) + 0.5) / double(count));
             first[i] = cut(mesh, faces, centroid + h * direction, direction, 2 * diagonal);
         },
         1);

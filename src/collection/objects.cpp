@@ -5,6 +5,7 @@
 #include "ostraka/core/inside.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
+#include "ostraka/core/words.h"
 
 #include "json_text.h"
 
@@ -64,6 +65,13 @@ std::string checksum_of(const CollectionObject& object) {
         return {};
     }
     return hash.hexadecimal();
+}
+
+/// Whether `read_collection` of its folder would take the file for an object's: by its ending a mesh, annotations or markups.
+bool is_object_file(const Path& file) {
+    const std::string name = file.filename().string();
+    return name.front() != '.' && (name.ends_with(markup_ending) || name.ends_with(".ant.json") ||
+                                   std::find(mesh_endings.begin(), mesh_endings.end(), extension(file)) != mesh_endings.end());
 }
 
 Collection from_folder(const Path& folder) {
@@ -144,21 +152,13 @@ void note_copies(Collection& collection) {
     std::vector<std::string> lines;
     for (const auto& [checksum, names] : same) {
         if (names.size() < 2) continue;
-        std::string line;
-        for (const auto& name : names) line += (line.empty() ? "" : ", ") + name;
-        lines.push_back("the files of these objects are the same: " + line);
+        lines.push_back("the files of these objects are the same: " + joined(names));
     }
     std::sort(lines.begin(), lines.end());
     collection.notes.insert(collection.notes.end(), lines.begin(), lines.end());
 }
 
 }  // namespace
-
-bool is_object_file(const Path& file) {
-    const std::string name = file.filename().string();
-    return name.front() != '.' && (name.ends_with(markup_ending) || name.ends_with(".ant.json") ||
-                                   std::find(mesh_endings.begin(), mesh_endings.end(), extension(file)) != mesh_endings.end());
-}
 
 void check_new_collection(const Path& folder) {
     if (!is_folder(folder)) return;

@@ -1,7 +1,8 @@
 #include "ostraka/measure/measure.h"
-#include "ostraka/core/angles.h"
 
+#include "ostraka/core/angles.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/ids.h"
 #include "ostraka/core/limits.h"
 #include "ostraka/geom/geodesic.h"
 #include "ostraka/geom/shortest_path.h"
@@ -282,6 +283,15 @@ std::array<Index, 2> extremes(const Mesh& mesh, const Annotation& annotation, co
         if (height > high) high = height, result[1] = vertex;
     }
     return result;
+}
+
+Attribute& add_measure(Annotation& annotation, const std::string& name, Measure measure) {
+    Attribute attribute;
+    attribute.id = next_free_id(annotation.attributes);
+    attribute.name = name;
+    attribute.type = AttributeType::measure;
+    attribute.measure = std::move(measure);
+    return annotation.attributes.emplace_back(std::move(attribute));
 }
 
 RefreshResult refresh_measures(const Mesh& mesh, AnnotationSet& set, bool uncertainties) {

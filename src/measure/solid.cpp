@@ -1,10 +1,8 @@
 #include "ostraka/measure/solid.h"
 
-#include "compensated_sum.h"
 #include "ostraka/annotation/outline.h"
 #include "ostraka/core/error.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -29,6 +27,21 @@ Point middle_of(const Mesh& mesh, const std::vector<Index>& faces) {
                          : Point(box.xmin() + (box.xmax() - box.xmin()) / 2, box.ymin() + (box.ymax() - box.ymin()) / 2,
                                  box.zmin() + (box.zmax() - box.zmin()) / 2);
 }
+
+/// A sum of many numbers without loss (Neumaier 1974).
+class CompensatedSum {
+public:
+    CompensatedSum& operator+=(double x) {
+        const double next = sum_ + x;
+        lost_ += std::abs(sum_) >= std::abs(x) ? (sum_ - next) + x : (x - next) + sum_;
+        sum_ = next;
+        return *this;
+    }
+    [[nodiscard]] double value() const { return sum_ + lost_; }
+
+private:
+    double sum_ = 0, lost_ = 0;
+};
 
 /// Sums of signed tetrahedra from an origin to oriented triangles.
 class Tetrahedra {

@@ -25,6 +25,18 @@ private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+/// An operation on a mesh and its annotations.
+struct AnnotatedMeshOperation : Operation {
+    void describe_inputs(Parameters& p) {
+        p.input("mesh", Kind::mesh, mesh, "mesh file");
+        p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)");
+    }
+    [[nodiscard]] const AnnotationSet& set() const { return annotations.on(mesh->mesh); }
+
+    MeshInput mesh;
+    AnnotationsInput annotations;
+};
+
 /// How the table (table.cpp) makes an operation; defined in the file of its name.
 template <class Work>
 std::unique_ptr<Operation> make() {

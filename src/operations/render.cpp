@@ -112,10 +112,7 @@ struct Render final : Operation {
             const Mesh& mesh = meshes.get(k).mesh;
             const AnnotationSet& set = annotations.on(mesh, k);
             draw_annotations(scene, mesh, set);
-            if (how.up == "auto" && set.up) {
-                how.up.clear();
-                for (const double x : *set.up) how.up += (how.up.empty() ? "" : ",") + number(x, 17);
-            }
+            if (how.up == "auto" && set.up) how.up = joined(*set.up, ",", [](double x) { return number(x, 17); });
         } else if (!maps.has(k)) {
             colour_by_file(scene, extras, meshes.file(k));
         }

@@ -144,9 +144,7 @@ struct SliceObject final : Operation {
     }
 
     static std::string listed(const std::vector<double>& numbers) {
-        std::string text;
-        for (const double x : numbers) text += (text.empty() ? "" : ",") + number(x);
-        return text;
+        return joined(numbers, ",", [](double x) { return number(x); });
     }
 
     [[nodiscard]] std::optional<AxisMethod> own_axis() const {
@@ -263,7 +261,7 @@ struct SliceObject final : Operation {
     [[nodiscard]] SliceSheet sheet(const CutObject& cut) const {
         const std::size_t n = cut.slices.size(), maximum = static_cast<std::size_t>(drawn);
         SliceSheet content;
-        content.title = name_of_drawing() + ": " + std::to_string(n) + (n == 1 ? " slice" : " slices");
+        content.title = name_of_drawing() + ": " + counted(n, "slice");
         content.unit = unit_of_lengths;
         for (std::size_t k = 0; k < std::min(n, maximum); ++k) {
             const std::size_t i = n <= maximum ? k : k * (n - 1) / std::max<std::size_t>(1, maximum - 1);

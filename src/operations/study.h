@@ -35,7 +35,6 @@ private:
 };
 
 /// The table result.failed: the objects that failed or were left out, also as notes. Returns how many.
-void declare_failures(ReportLayout& layout);
 std::size_t report_failures(Report& report, const Collection& collection, const std::vector<ObjectResult>& results);
 
 /// How many of the objects that were studied have a known answer.

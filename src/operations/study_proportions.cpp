@@ -9,7 +9,6 @@
 #include "ostraka/report/table.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace ostraka {
 

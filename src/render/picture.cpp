@@ -55,7 +55,7 @@ Rgb parse_colour(const std::string& text) {
     return {channel(1), channel(3), channel(5)};
 }
 
-std::string png_bytes(const Picture& picture) {
+void write_png(const Path& file, const Picture& picture) {
     const CairoSurface surface(cairo_image_surface_create(CAIRO_FORMAT_ARGB32, picture.width, picture.height),
                                &cairo_surface_destroy);
     const auto failed = [](cairo_status_t status) {
@@ -71,10 +71,8 @@ std::string png_bytes(const Picture& picture) {
     std::string bytes;
     if (const auto status = cairo_surface_write_to_png_stream(surface.get(), &append, &bytes); status != CAIRO_STATUS_SUCCESS)
         failed(status);
-    return bytes;
+    write_file(file, bytes);
 }
-
-void write_png(const Path& file, const Picture& picture) { write_file(file, png_bytes(picture)); }
 
 Picture read_png(const Path& file) {
     const std::string bytes = read_file(file);

@@ -111,8 +111,6 @@ std::string draw(const HeatMap& map, Sheet::Format format) {
 
 }  // namespace
 
-std::string svg_bytes(const HeatMap& map) { return draw(map, report::Sheet::Format::svg); }
-
 void write_plot(const Path& file, const HeatMap& map) {
     report::write_sheet(file, [&](report::Sheet::Format format) { return draw(map, format); });
 }

@@ -239,8 +239,6 @@ std::string draw(const Plot& plot, Sheet::Format format) {
 
 }  // namespace
 
-std::string svg_bytes(const Plot& plot) { return draw(plot, report::Sheet::Format::svg); }
-
 void write_plot(const Path& file, const Plot& plot) {
     report::write_sheet(file, [&](report::Sheet::Format format) { return draw(plot, format); });
 }

@@ -4,7 +4,6 @@
 #include "strips.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace ostraka::detail {
 

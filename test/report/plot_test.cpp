@@ -44,6 +44,12 @@ Picture picture_of(const Drawing& drawing) {
     return read_png(scratch / "plot.png");
 }
 
+template <class Drawing>
+std::string svg_bytes(const Drawing& drawing) {
+    write_plot("memory:plot.svg", drawing);
+    return read_file("memory:plot.svg");
+}
+
 TEST(Plot, IsTheSameWhereverAndWheneverItIsDrawn) {
     const std::string first = svg_bytes(simple());
     EXPECT_EQ(svg_bytes(simple()), first) << "also where other surfaces were made before";

@@ -39,6 +39,13 @@ JsonValue json_object(JsonAllocator& allocator, Members&&... members) {
     if constexpr (sizeof...(members) > 0) add_members(object, allocator, std::forward<Members>(members)...);
     return object;
 }
+/// [make(entry), ...] of the entries.
+template <class Entries, class Make>
+JsonValue json_list(const Entries& entries, JsonAllocator& allocator, const Make& make) {
+    JsonValue list(rapidjson::kArrayType);
+    for (const auto& entry : entries) list.PushBack(make(entry), allocator);
+    return list;
+}
 /// {"format": "ostraka-KIND", "version": 1}
 Json json_document(std::string_view kind);
 

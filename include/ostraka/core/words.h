@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace ostraka {
 
@@ -16,6 +18,18 @@ std::string joined(const Texts& texts, std::string_view between = ", ") {
         all += text;
     }
     return all;
+}
+/// The same of what `text_of(entry)` says of each entry, or a member.
+template <class Entries, class TextOf>
+std::string joined(const Entries& entries, std::string_view between, const TextOf& text_of) {
+    std::vector<std::string> texts;
+    for (const auto& entry : entries) texts.push_back(std::invoke(text_of, entry));
+    return joined(texts, between);
+}
+/// "07" for the seventh of ten or more: all numbers from 1 to `count` are equally long.
+inline std::string padded(std::size_t number, std::size_t count) {
+    const std::string digits = std::to_string(number);
+    return std::string(std::to_string(count).size() - digits.size(), '0') + digits;
 }
 /// "1 slice", "2 slices".
 inline std::string counted(std::size_t count, std::string_view what) {

@@ -14,8 +14,5 @@ namespace ostraka {
 /// without faces or a face out of range.
 Statistics vertex_statistics(const Mesh& mesh, const std::vector<double>& map, const std::vector<Index>& faces,
                              const std::string& where = "map");
-/// The same for a map with one value a face.
-Statistics face_statistics(const Mesh& mesh, const std::vector<double>& map, const std::vector<Index>& faces,
-                           const std::string& where = "map");
 
 }  // namespace ostraka

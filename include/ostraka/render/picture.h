@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace ostraka {
@@ -29,9 +28,7 @@ struct Picture {
 /// "#rrggbb", "white", "black" or "grey". Throws Error (usage) for anything else.
 Rgb parse_colour(const std::string& text);
 
-/// The picture as a PNG file's bytes. Throws Error (failure) if memory runs out.
-std::string png_bytes(const Picture& picture);
-/// Writes a PNG file atomically.
+/// Writes a PNG file atomically. Throws Error (failure) if memory runs out.
 void write_png(const Path& file, const Picture& picture);
 /// Reads a PNG file. Throws Error (input) if it is none.
 Picture read_png(const Path& file);

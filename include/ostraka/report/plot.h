@@ -49,10 +49,9 @@ struct Plot {
     std::vector<PlotLine> lines = {};
 };
 
-/// The plot as an SVG file's bytes, the same for the same plot. Throws Error (input) where no point has a place on the axes, and
-/// Error (usage) where there are labels or intervals but not one a point.
-std::string svg_bytes(const Plot& plot);
-/// Writes it atomically, folders and all; a PNG of twice the size where the file's name ends in .png.
+/// Writes it as an SVG, or as a PNG of twice the size where the file's name ends in .png, atomically, folders and all; the same
+/// bytes for the same plot. Throws Error (input) where no point has a place on the axes, and Error (usage) where there are labels
+/// or intervals but not one a point.
 void write_plot(const Path& file, const Plot& plot);
 
 }  // namespace ostraka
