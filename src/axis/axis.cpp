@@ -20,6 +20,13 @@ const AxisFigure* Axis::figure(const std::string& name) const {
 
 namespace detail {
 
+AreaMoments part_moments(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options) {
+    check_options(options, "axis");
+    const AreaMoments moments = area_moments(mesh, faces);
+    if (!(moments.area > 0)) fail_input("part", "has no faces with area", "choose another part");
+    return moments;
+}
+
 double part_diagonal(const Mesh& mesh, const std::vector<Index>& faces) {
     CGAL::Bbox_3 box;
     for (const Index f : faces)
@@ -79,9 +86,7 @@ AreaMoments area_moments(const Mesh& mesh, const std::vector<Index>& faces) {
 }
 
 Axis principal_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options) {
-    check_options(options, "axis");
-    const AreaMoments moments = area_moments(mesh, faces);
-    if (!(moments.area > 0)) fail_input("part", "has no faces with area", "choose another part");
+    const AreaMoments moments = part_moments(mesh, faces, options);
     Axis axis;
     const Vector3d centre = eigen(moments.centroid);
     for (std::size_t k = 0; k < 3; ++k) {

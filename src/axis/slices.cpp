@@ -74,9 +74,7 @@ PatchSlice cut(const Mesh& mesh, const std::vector<Index>& faces, const Vector3d
 }  // namespace
 
 Axis slice_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options) {
-    check_options(options, "axis");
-    const AreaMoments moments = area_moments(mesh, faces);
-    if (!(moments.area > 0)) fail_input("part", "has no faces with area", "choose another part");
+    const AreaMoments moments = part_moments(mesh, faces, options);
     Axis axis;
     if (moments.variances[0] < 1.3 * moments.variances[1]) {
         axis.reason = "it is not longer than wide";

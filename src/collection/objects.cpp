@@ -32,24 +32,11 @@ bool is_name(const std::string& name) {
 constexpr const char* name_rule =
     "use at most 200 bytes of UTF-8 without / \\ and control characters, not beginning with a full stop";
 
-/// As it can be shown, its first characters.
-std::string shown(const std::string& name) {
-    std::string text;
-    for (std::size_t at = 0, count = 0; at < name.size(); ++count) {
-        if (count == 60) return text + "...";
-        const Character here = character_at(name, at);
-        const bool odd = is_control(here.code) || (here.code == 0xFFFD && here.length == 1);
-        text += odd ? "?" : name.substr(at, here.length);
-        at += here.length;
-    }
-    return text;
-}
-
 /// "a, b, c and 4 more"
 std::string some_of(const std::vector<std::string>& names) {
     std::string text;
     for (std::size_t i = 0; i < std::min<std::size_t>(names.size(), 3); ++i)
-        text += (i == 0 ? "'" : ", '") + shown(names[i]) + "'";
+        text += (i == 0 ? "'" : ", '") + printable(names[i], 60) + "'";
     return names.size() <= 3 ? text : text + " and " + std::to_string(names.size() - 3) + " more";
 }
 
@@ -90,10 +77,10 @@ Collection from_folder(const Path& folder) {
     }
     for (const std::string& name : others)
         if (is_object_file(folder / name))
-            collection.left_out.emplace_back(shown(name), "is no file that can be read (is it a link to nothing?)");
+            collection.left_out.emplace_back(printable(name, 60), "is no file that can be read (is it a link to nothing?)");
     const auto add = [&](const std::string& name, const std::string& stem, const Path& mesh) {
         if (!is_name(name)) {
-            collection.left_out.emplace_back(shown(name),
+            collection.left_out.emplace_back(printable(name, 60),
                                              std::string("its name cannot be that of an object (") + name_rule + ")");
             return;
         }
@@ -139,7 +126,8 @@ Collection from_file(const Path& file) {
         object.name = text_of(objects[i], "name");
         if (object.name.empty()) object.name = (object.mesh.empty() ? object.landmarks : object.mesh).stem().string();
         if (!is_name(object.name))
-            fail_input(file.string() + ", at " + at, "'" + shown(object.name) + "' cannot be the name of an object", name_rule);
+            fail_input(file.string() + ", at " + at, "'" + printable(object.name, 60) + "' cannot be the name of an object",
+                       name_rule);
         collection.objects.push_back(std::move(object));
     }
     return collection;
@@ -207,10 +195,11 @@ std::map<std::string, std::string> read_labels(const Path& file, const std::stri
         std::string there;
         for (std::size_t i = 0; i < names.size(); ++i) {
             if (trimmed(names[i]) == wanted) return i;
-            there += (i == 0 ? "'" : ", '") + shown(names[i]) + "'";
+            there += (i == 0 ? "'" : ", '") + printable(names[i], 60) + "'";
         }
         fail_input(
-            where + ", line " + std::to_string(rows.front().line), "there is no column '" + shown(wanted) + "' among " + there,
+            where + ", line " + std::to_string(rows.front().line),
+            "there is no column '" + printable(wanted, 60) + "' among " + there,
             "the first row names the columns: 'name' for the objects, 'label' (or that of --truth-column) for the answers");
     };
     const std::size_t name_column = column_of("name"), label_column = column_of(column.empty() ? "label" : column);

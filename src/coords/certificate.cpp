@@ -92,11 +92,7 @@ CoordinateCertificate certify(const Coordinates& coordinates, const Mesh& cage, 
                        " columns, not " + std::to_string(rows) + " and " + std::to_string(columns),
                    "give the mesh and the cage that they were computed for");
     if (columns == 0) fail_input("cage", "has no vertices");
-    CoordinateCertificate result;
-    result.kind = coordinates.kind;
-    result.points = points.size();
-    result.vertices = cage.number_of_vertices();
-    result.faces = cage.number_of_faces();
+    CoordinateCertificate result{coordinates.kind, points.size(), cage.number_of_vertices(), cage.number_of_faces()};
     if (coordinate_kind(coordinates.kind).on_cage) certify_kind(cage, options, result);
     if (points.empty()) return result;
 

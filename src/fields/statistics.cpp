@@ -7,17 +7,12 @@
 
 namespace ostraka {
 
-namespace {
-
-void check_faces(const Mesh& mesh, const std::vector<Index>& faces) {
-    if (faces.empty()) fail_usage("the region has no faces", "select some");
+void check_region(const Mesh& mesh, const std::vector<Index>& faces) {
     for (const Index face : faces)
         if (face >= mesh.number_of_faces())
             fail_usage("face " + std::to_string(face) + " is not one of the " + std::to_string(mesh.number_of_faces()) + " faces",
                        "was it selected on another mesh?");
 }
-
-}  // namespace
 
 Statistics vertex_statistics(const Mesh& mesh, const std::vector<double>& map, const std::vector<Index>& faces,
                              const std::string& where) {
@@ -25,7 +20,8 @@ Statistics vertex_statistics(const Mesh& mesh, const std::vector<double>& map, c
         fail_input(where,
                    "has " + std::to_string(map.size()) + " values for " + std::to_string(mesh.number_of_vertices()) + " vertices",
                    "give one value for each of the vertices");
-    check_faces(mesh, faces);
+    if (faces.empty()) fail_usage("the region has no faces", "select some");
+    check_region(mesh, faces);
     std::vector<std::pair<Index, double>> shares;
     shares.reserve(3 * faces.size());
     for (const Index face : faces) {

@@ -286,12 +286,9 @@ std::array<Index, 2> extremes(const Mesh& mesh, const Annotation& annotation, co
 }
 
 Attribute& add_measure(Annotation& annotation, const std::string& name, Measure measure) {
-    Attribute attribute;
-    attribute.id = next_free_id(annotation.attributes);
-    attribute.name = name;
-    attribute.type = AttributeType::measure;
-    attribute.measure = std::move(measure);
-    return annotation.attributes.emplace_back(std::move(attribute));
+    annotation.attributes.push_back(
+        {next_free_id(annotation.attributes), name, AttributeType::measure, {}, std::move(measure), {}});
+    return annotation.attributes.back();
 }
 
 RefreshResult refresh_measures(const Mesh& mesh, AnnotationSet& set, bool uncertainties) {

@@ -2,6 +2,7 @@
 
 #include "ostraka/annotation/outline.h"
 #include "ostraka/core/error.h"
+#include "ostraka/fields/statistics.h"
 
 #include <cmath>
 #include <limits>
@@ -10,13 +11,6 @@
 namespace ostraka {
 
 namespace {
-
-void check_faces(const Mesh& mesh, const std::vector<Index>& faces) {
-    for (const Index face : faces)
-        if (face >= mesh.number_of_faces())
-            fail_usage("face " + std::to_string(face) + " is not one of the " + std::to_string(mesh.number_of_faces()) + " faces",
-                       "was it selected on another mesh?");
-}
 
 /// The middle of the region's box: sums about it lose nothing far from the origin.
 Point middle_of(const Mesh& mesh, const std::vector<Index>& faces) {
@@ -76,7 +70,7 @@ double closed_volume(const Mesh& mesh) {
 }
 
 Point surface_centroid(const Mesh& mesh, const std::vector<Index>& faces) {
-    check_faces(mesh, faces);
+    check_region(mesh, faces);
     if (faces.empty()) fail_usage("the region has no faces", "select some");
     const Point origin = middle_of(mesh, faces);
     CompensatedSum area, x, y, z, mean_x, mean_y, mean_z;
@@ -93,7 +87,7 @@ Point surface_centroid(const Mesh& mesh, const std::vector<Index>& faces) {
 }
 
 RegionSolid region_solid(const Mesh& mesh, const std::vector<Index>& faces) {
-    check_faces(mesh, faces);
+    check_region(mesh, faces);
     RegionSolid result;
     if (faces.empty()) return result;
     Tetrahedra sum(middle_of(mesh, faces));

@@ -295,18 +295,4 @@ std::string Report::to_text(ReportFormat format) const {
 
 std::string number(double value, int digits) { return ostraka::digits(value, digits); }
 
-std::string printable(const std::string& text, std::size_t maximum) {
-    std::string clean;
-    std::size_t columns = 0;
-    for (std::size_t at = 0; at < text.size();) {
-        const Character here = character_at(text, at);
-        if (++columns > maximum) return clean + "...";
-        // A byte that begins no character may steer a terminal that does not read UTF-8.
-        const bool odd = is_control(here.code) || (here.code == 0xFFFD && here.length == 1);
-        clean += odd ? "?" : text.substr(at, here.length);
-        at += here.length;
-    }
-    return clean;
-}
-
 }  // namespace ostraka

@@ -200,10 +200,7 @@ struct SliceObject final : Operation {
         if (!plane.empty()) {
             cut = cut_parallel(mesh->mesh, frame_of_plane(), {0}, faces);
         } else {
-            CutOptions options;
-            options.up = upwards;
-            options.places = {heights, spacing, count.value_or(50), range[0], range[1]};
-            options.direction = own_axis();
+            CutOptions options{own_axis(), upwards, {heights, spacing, count.value_or(50), range[0], range[1]}, {}};
             if (!options.direction && direction != "up") {
                 const auto along = asked_direction();
                 options.up = {along[0], along[1], along[2]};
@@ -226,9 +223,7 @@ struct SliceObject final : Operation {
             case SliceForm::mesh: {
                 MeshExtras extras;
                 extras.face_colours = slice_colours(mesh->mesh, cut, colour_by);
-                WriteOptions options;
-                options.comment = context.provenance().to_line();
-                context.notes({}, write_mesh(file, mesh->mesh, extras, options));
+                context.notes({}, write_mesh(file, mesh->mesh, extras, {.comment = context.provenance().to_line()}));
                 break;
             }
             case SliceForm::sheet:

@@ -2,6 +2,7 @@
 
 #include "ostraka/core/csv.h"
 #include "ostraka/core/json_build.h"
+#include "ostraka/core/text.h"
 #include "ostraka/render/colour_scale.h"
 
 #include <algorithm>
@@ -233,11 +234,7 @@ std::string slice_table(const CutObject& cut, const std::string& unit) {
                                     "turned_contours", "doubtful_share"};
     for (const auto& entry : list_descriptors({})) header.emplace_back(entry.name);
     std::string text = csv_row(header);
-    const auto cell = [](double value) {
-        char buffer[32];
-        std::snprintf(buffer, sizeof buffer, "%.12g", value);
-        return std::isfinite(value) ? std::string(buffer) : std::string();
-    };
+    const auto cell = [](double value) { return std::isfinite(value) ? digits(value, 12) : std::string(); };
     for (std::size_t i = 0; i < cut.slices.size(); ++i) {
         const Slice& slice = cut.slices[i];
         const auto open = std::count_if(slice.contours.begin(), slice.contours.end(), [](const Contour& c) { return !c.closed; });

@@ -34,6 +34,13 @@ private:
     PlotFormat plots_ = PlotFormat::svg;
 };
 
+/// An operation on a collection.
+struct StudyOperation : Operation {
+    void check() const override { files.check(); }
+
+    StudyFiles files;
+};
+
 /// The table result.failed: the objects that failed or were left out, also as notes. Returns how many.
 std::size_t report_failures(Report& report, const Collection& collection, const std::vector<ObjectResult>& results);
 

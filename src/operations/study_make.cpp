@@ -33,9 +33,7 @@ struct StudyMake : Operation {
     }
 
     void write(const std::string& name, const Mesh& mesh, const MeshExtras& extras, const Provenance& provenance) const {
-        WriteOptions writing;
-        writing.comment = provenance.to_line();
-        write_mesh(folder.in(name + ".ply"), mesh, extras, writing);
+        write_mesh(folder.in(name + ".ply"), mesh, extras, {.comment = provenance.to_line()});
     }
 
     FolderOutput folder;

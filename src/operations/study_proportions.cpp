@@ -104,7 +104,7 @@ Plot variation_plot(const ProportionStudy& study, const std::string& title) {
     return plot;
 }
 
-struct StudyProportions final : Operation {
+struct StudyProportions final : StudyOperation {
     void describe(Parameters& p) override {
         files.describe(p, false, "folder of meshes, a list of objects (.study.json), or a table of measures (.csv)");
         p.input_option("measures", Kind::text, measures, "the measures to take on every object (.measures.json)");
@@ -131,7 +131,7 @@ struct StudyProportions final : Operation {
     }
 
     void check() const override {
-        files.check();
+        StudyOperation::check();
         if (from_table() && measures) fail_usage("--measures with a table", "a table holds the measures already");
         if (!from_table() && !measures) fail_usage("--measures is missing", "name the measures to be taken (.measures.json)");
         if (!graph && (mesh || annotations || annotations_out || graph_in))
@@ -267,7 +267,6 @@ struct StudyProportions final : Operation {
         else report.note("no plot 'measures': not each two measures have a ratio known of two objects or more");
     }
 
-    StudyFiles files;
     FileInput measures;
     MeshInput mesh;
     AnnotationsInput annotations;

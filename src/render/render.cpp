@@ -1,7 +1,8 @@
 #include "ostraka/render/render.h"
-#include "ostraka/core/angles.h"
 
+#include "ostraka/core/angles.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/text.h"
 #include "overlay.h"
 #include "shading.h"
 
@@ -144,11 +145,9 @@ void add_scale_bar(Canvas& canvas, Plan& plan, const Scene& scene, double unit_l
         pane.bar_length = pane.bar_pixels = 0;
         return;
     }
-    char number[32];
-    std::snprintf(number, sizeof number, "%.6g", pane.bar_length);
     const std::string unit = detail::clean_text(scene.unit);
     const std::string text =
-        (plan.camera.distance > 0 ? "\xE2\x89\x88 " : "") + std::string(number) + (unit.empty() ? "" : " " + unit);
+        (plan.camera.distance > 0 ? "\xE2\x89\x88 " : "") + digits(pane.bar_length, 6) + (unit.empty() ? "" : " " + unit);
     detail::draw_scale_bar(canvas, pane.left + 14 * style.size, pane.top + pane.height + strip - 8 * style.size, pane.bar_pixels,
                            text, style);
 }

@@ -213,11 +213,7 @@ std::string fixed(double value, int after_point) {
     return text.find_first_not_of("-0.") == std::string::npos && text.front() == '-' ? text.substr(1) : text;
 }
 
-std::string significant(double value, int digits) {
-    char text[64];
-    std::snprintf(text, sizeof text, "%.*g", digits, value);
-    return text;
-}
+std::string significant(double value, int digits) { return ostraka::digits(value, digits); }
 
 std::string significant(const std::optional<double>& value, int digits) { return value ? significant(*value, digits) : "-"; }
 

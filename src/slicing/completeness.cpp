@@ -1,5 +1,5 @@
 // What is there of a slice's outline.
-#include "completeness.h"
+#include "settling.h"
 
 #include "ostraka/core/angles.h"
 #include "ostraka/geom/circle.h"

@@ -1,5 +1,5 @@
 // Which contours contain which, by votes of their points.
-#include "nesting.h"
+#include "settling.h"
 
 #include "strips.h"
 

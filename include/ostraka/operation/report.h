@@ -3,6 +3,7 @@
 
 #include "ostraka/core/finding.h"
 #include "ostraka/core/provenance.h"
+#include "ostraka/core/words.h"
 
 #include <concepts>
 #include <deque>
@@ -236,7 +237,5 @@ private:
 
 /// A number for people: so many significant digits.
 std::string number(double value, int digits = 5);
-/// Text of files is data: no control character reaches a terminal, at most so many columns.
-std::string printable(const std::string& text, std::size_t maximum = 10000);
 
 }  // namespace ostraka

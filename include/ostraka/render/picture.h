@@ -1,4 +1,4 @@
-// Pictures: pixels in memory, PNG files.
+// Pictures: pixels in memory, written as PNG files.
 #pragma once
 
 #include "ostraka/core/file.h"
@@ -30,7 +30,5 @@ Rgb parse_colour(const std::string& text);
 
 /// Writes a PNG file atomically. Throws Error (failure) if memory runs out.
 void write_png(const Path& file, const Picture& picture);
-/// Reads a PNG file. Throws Error (input) if it is none.
-Picture read_png(const Path& file);
 
 }  // namespace ostraka
