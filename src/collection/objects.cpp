@@ -22,12 +22,8 @@ constexpr const char* markup_ending = ".mrk.json";
 
 /// Names become names of files and stand in JSON: no folders, nothing hidden, nothing a terminal would act on, UTF-8.
 bool is_name(const std::string& name) {
-    for (std::size_t at = 0; at < name.size();) {
-        const Character here = character_at(name, at);
-        if (is_control(here.code) || (here.code == 0xFFFD && here.length == 1)) return false;
-        at += here.length;
-    }
-    return !name.empty() && name.size() <= 200 && name.front() != '.' && name.find_first_of("/\\") == std::string::npos;
+    return !name.empty() && name.size() <= 200 && name.front() != '.' && name.find_first_of("/\\") == std::string::npos &&
+           printable(name) == name;
 }
 constexpr const char* name_rule =
     "use at most 200 bytes of UTF-8 without / \\ and control characters, not beginning with a full stop";

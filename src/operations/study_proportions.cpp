@@ -247,7 +247,6 @@ struct StudyProportions final : StudyOperation {
         write_plot(files.plot("variation"), variation_plot(study, "How much each ratio varies, with 95 % intervals"));
         HeatMap map{"Standard deviation of the logarithm of each ratio", {}, {}, {}, "standard deviation"};
         map.values.setConstant(m, m, std::numeric_limits<double>::quiet_NaN());
-        bool complete = true;
         for (const RatioRow& ratio : study.ratios) {
             const auto a = rows[ratio.numerator], b = rows[ratio.denominator];
             if (ratio.row.summary && ratio.row.summary->count > 1) map.values(a, b) = map.values(b, a) = ratio.log_deviation;
@@ -259,8 +258,7 @@ struct StudyProportions final : StudyOperation {
         map.minimum = 0;
         write_plot(files.plot("deviations"), map);
         for (Eigen::Index j = 0; j < m; ++j) map.values(j, j) = 0;
-        complete = map.values.allFinite();
-        if (complete && m > 1)
+        if (map.values.allFinite() && m > 1)
             write_plot(files.plot("measures"),
                        Dendrogram{"Measures by how fixed their ratios are (average linkage)", average_linkage(map.values),
                                   map.rows, "standard deviation of the logarithm of ratios"});
