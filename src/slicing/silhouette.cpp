@@ -75,8 +75,8 @@ private:
 
 /// From which side of a field to which a curve runs, in pairs (0 below, 1 right, 2 above, 3 left), by the corners that are
 /// covered (1, 2, 4, 8, counter-clockwise from the lower left one on). Covered corners are joined.
-constexpr std::array<std::string_view, 16> pieces{"",   "03", "10",   "13", "21", "0123", "20", "23",
-                                                  "32", "02", "3012", "12", "31", "01",   "30", ""};
+constexpr std::array<std::string_view, 16> curve_pieces{"",   "03", "10",   "13", "21", "0123", "20", "23",
+                                                        "32", "02", "3012", "12", "31", "01",   "30", ""};
 
 /// Curves where the coverage is one half, with more of it to the left.
 std::vector<std::vector<Vector2d>> trace(const Mask& mask) {
@@ -96,7 +96,7 @@ std::vector<std::vector<Vector2d>> trace(const Mask& mask) {
         for (int c = 0; c + 1 < columns; ++c) {
             const auto covered = [&](int column, int row) { return value(column, row) >= 0.5 ? 1U : 0U; };
             const std::string_view piece =
-                pieces[covered(c, r) | covered(c + 1, r) << 1 | covered(c + 1, r + 1) << 2 | covered(c, r + 1) << 3];
+                curve_pieces[covered(c, r) | covered(c + 1, r) << 1 | covered(c + 1, r + 1) << 2 | covered(c, r + 1) << 3];
             const std::int64_t sides[] = {right(c, r), above(c + 1, r), right(c, r + 1), above(c, r)};
             for (std::size_t k = 0; k < piece.size(); k += 2) {
                 starts.push_back(sides[piece[k] - '0']);

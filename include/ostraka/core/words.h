@@ -21,11 +21,11 @@ std::string joined(const Texts& texts, std::string_view between = ", ") {
     }
     return all;
 }
-/// The same of what `text_of(entry)` says of each entry, or a member.
+/// The same of what `say(entry)` is of each entry, or of a member of each.
 template <class Entries, class TextOf>
-std::string joined(const Entries& entries, std::string_view between, const TextOf& text_of) {
+std::string joined(const Entries& entries, std::string_view between, const TextOf& say) {
     std::vector<std::string> texts;
-    for (const auto& entry : entries) texts.push_back(std::invoke(text_of, entry));
+    for (const auto& entry : entries) texts.push_back(std::invoke(say, entry));
     return joined(texts, between);
 }
 /// "07" for the seventh of ten or more: all numbers from 1 to `count` are equally long.
