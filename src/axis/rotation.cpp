@@ -3,7 +3,6 @@
 
 #include "ostraka/core/angles.h"
 #include "ostraka/core/dense.h"
-#include "ostraka/core/error.h"
 #include "ostraka/stats/summary.h"
 
 #include <random>

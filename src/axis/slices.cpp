@@ -1,7 +1,6 @@
 // Axis of a tubular part from the centres of its slices.
 #include "axis_methods.h"
 
-#include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
 
 namespace ostraka {

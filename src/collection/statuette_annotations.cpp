@@ -3,15 +3,11 @@
 #include "ostraka/annotation/label_file.h"
 #include "ostraka/measure/measure.h"
 
+#include <algorithm>
+
 namespace ostraka {
 
 namespace {
-
-const StatuetteLandmark* find_landmark(const Statuette& statuette, const std::string& name) {
-    for (const StatuetteLandmark& landmark : statuette.landmarks)
-        if (landmark.name == name) return &landmark;
-    return nullptr;
-}
 
 /// Nothing if a landmark is missing.
 void add_measure(const Statuette& statuette, Annotation& object, const std::string& name, const std::string& tool,
@@ -20,8 +16,9 @@ void add_measure(const Statuette& statuette, Annotation& object, const std::stri
     measure.tool = tool;
     measure.unit = "mm";
     for (const std::string& each : landmarks) {
-        const StatuetteLandmark* landmark = find_landmark(statuette, each);
-        if (landmark == nullptr) return;
+        const auto landmark = std::find_if(statuette.landmarks.begin(), statuette.landmarks.end(),
+                                           [&](const StatuetteLandmark& one) { return one.name == each; });
+        if (landmark == statuette.landmarks.end()) return;
         measure.points.push_back(landmark->vertex);
         measure.locations.push_back({landmark->face, landmark->barycentric});
     }

@@ -37,6 +37,15 @@ struct AnnotatedMeshOperation : Operation {
     AnnotationsInput annotations;
 };
 
+/// {"format": "ostraka-KIND", "version": 1, members of `result`, "provenance"}.
+inline Json document_of(std::string_view kind, const JsonValue& result, const Provenance& provenance) {
+    Json document = json_document(kind);
+    auto& allocator = document.GetAllocator();
+    for (const auto& member : result.GetObject()) add_members(document, allocator, member.name.GetString(), member.value);
+    add_members(document, allocator, "provenance", provenance.to_json(allocator));
+    return document;
+}
+
 /// How the table (table.cpp) makes an operation; defined in the file of its name.
 template <class Work>
 std::unique_ptr<Operation> make() {

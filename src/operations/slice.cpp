@@ -215,7 +215,7 @@ struct SliceObject final : Operation {
         context.check_output(file);
         switch (form) {
             case SliceForm::json:
-                write_json(file, document(context, report));
+                write_json(file, document_of("slices", report.result(), context.provenance()));  // the result so far
                 break;
             case SliceForm::csv:
                 write_file(file, slice_table(cut, unit_of_lengths));
@@ -232,16 +232,6 @@ struct SliceObject final : Operation {
             case SliceForm::profile:
                 if (is_drawable(file.filename().string(), cut, report)) draw_profile(file, false, cut, report);
         }
-    }
-
-    /// The result so far, as a file.
-    static Json document(const Context& context, const Report& report) {
-        Json document = json_document("slices");
-        auto& allocator = document.GetAllocator();
-        for (const auto& member : report.result().GetObject())
-            add_members(document, allocator, member.name.GetString(), member.value);
-        add_members(document, allocator, "provenance", context.provenance().to_json(allocator));
-        return document;
     }
 
     /// Nothing is drawn where nothing was met.

@@ -72,10 +72,7 @@ void KnownAnswers::add_to(Report& report) const {
 }
 
 void write_study_report(const Path& file, const std::string& kind, const JsonValue& result, const Provenance& provenance) {
-    Json document = json_document(kind);
-    auto& allocator = document.GetAllocator();
-    for (const auto& member : result.GetObject()) add_members(document, allocator, member.name.GetString(), member.value);
-    add_members(document, allocator, "provenance", provenance.to_json(allocator));
+    const Json document = document_of(kind, result, provenance);
     validate(document, kind, file.string());
     write_json(file, document);
 }

@@ -57,7 +57,7 @@ struct KnownAnswers {
     void add_to(Report& report) const;
 };
 
-/// {"format": "ostraka-KIND", "version", members of `result`, "provenance"}, checked against the schema KIND.
+/// `document_of` these, checked against the schema KIND.
 void write_study_report(const Path& file, const std::string& kind, const JsonValue& result, const Provenance& provenance);
 
 }  // namespace ostraka

@@ -124,7 +124,6 @@ private:
     struct Kept;
     std::unique_ptr<Kept> kept_;
     std::vector<Path> memory_;
-    std::size_t memories_ = 0;
 };
 
 /// An operation with what it is to be run on.
