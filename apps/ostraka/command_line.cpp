@@ -28,24 +28,11 @@ std::vector<std::string> words_of(const std::string& name) {
     return words;
 }
 
-[[noreturn]] void refuse_word(const std::string& word, const std::string& what, const std::vector<std::string>& names,
-                              const std::string& help) {
-    const std::string near = nearest_name(word, names);
-    fail_usage("'" + printable(word, 60) + "' is no " + what, near.empty() ? help : "did you mean '" + near + "'?");
-}
-
 /// Names the nearest option: the operation's or one that all have.
 [[noreturn]] void refuse_option(const Call& call, const std::string& written) {
     const std::size_t begin = written.find_first_not_of('-');
     const std::string name = begin == std::string::npos ? written : written.substr(begin, written.find('=') - begin);
-    std::vector<std::string> names{"json", "show", "quiet", "threads", "help"};
-    for (const Option& option : call.parameters().options) names.push_back(option.name);
-    for (const Slot* slot : call.parameters().slots()) names.push_back(slot->name);
-    const std::string near = nearest_name(name, names);
-    throw Error(ErrorKind::usage, call.entry().name, "has no option '" + printable(name, 60) + "'",
-                near.empty()   ? "'ostraka " + std::string(call.entry().name) + " --help' shows them"
-                : near == name ? "options begin with --"
-                               : "did you mean '" + near + "'?");
+    call.no_such_name(name, {"json", "show", "quiet", "threads", "help"});
 }
 
 /// The operation whose words begin the arguments; null where they name a group or nothing. Throws where they name neither.
@@ -65,10 +52,11 @@ const OperationEntry* named_operation(int argc, char** argv) {
     }
     if (best == nullptr && agreeing < given.size()) {
         std::string before;
-        for (std::size_t i = 0; i < agreeing; ++i) before += given[i] + " ";
-        refuse_word(given[agreeing],
-                    agreeing == 0 ? "command" : "command of 'ostraka " + before.substr(0, before.size() - 1) + "'", next,
-                    "'ostraka " + before + "--help' shows them");
+        for (std::size_t i = 0; i < agreeing; ++i) before += " " + given[i];
+        const std::string near = nearest_name(given[agreeing], next);
+        fail_usage(
+            "'" + printable(given[agreeing], 60) + "' is no command" + (agreeing == 0 ? "" : " of 'ostraka" + before + "'"),
+            near.empty() ? "'ostraka" + before + " --help' shows them" : "did you mean '" + near + "'?");
     }
     return best;
 }

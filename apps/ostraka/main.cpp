@@ -1,7 +1,7 @@
 #include "command_line.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/operation/report.h"
+#include "ostraka/core/words.h"
 
 #include <csignal>
 #include <iostream>

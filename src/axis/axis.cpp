@@ -1,9 +1,9 @@
 // Moments, principal axes, circles, and the choice of a method.
 #include "ostraka/axis/axis.h"
-#include "ostraka/core/dense.h"
 
 #include "axis_methods.h"
 
+#include "ostraka/core/dense.h"
 #include "ostraka/core/error.h"
 
 #include <cstdio>
@@ -20,11 +20,29 @@ const AxisFigure* Axis::figure(const std::string& name) const {
 
 namespace detail {
 
+AreaMoments part_moments(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options) {
+    check_options(options, "axis");
+    const AreaMoments moments = area_moments(mesh, faces);
+    if (!(moments.area > 0)) fail_input("part", "has no faces with area", "choose another part");
+    return moments;
+}
+
 double part_diagonal(const Mesh& mesh, const std::vector<Index>& faces) {
     CGAL::Bbox_3 box;
     for (const Index f : faces)
         for (const Vertex v : corners(mesh, Face(f))) box += mesh.point(v).bbox();
     return std::hypot(box.xmax() - box.xmin(), box.ymax() - box.ymin(), box.zmax() - box.zmin());
+}
+
+std::pair<double, double> extent_along(const Mesh& mesh, const std::vector<Index>& faces, const Vector3d& place,
+                                       const Vector3d& direction) {
+    double minimum = 0, maximum = 0;
+    for (const Index f : faces)
+        for (const Vertex v : corners(mesh, Face(f))) {
+            const double h = direction.dot(eigen(mesh.point(v)) - place);
+            minimum = std::min(minimum, h), maximum = std::max(maximum, h);
+        }
+    return {minimum, maximum};
 }
 
 void set_line(Axis& axis, const Vector3d& point, const Vector3d& direction, const Vector3d& centre) {
@@ -68,19 +86,12 @@ AreaMoments area_moments(const Mesh& mesh, const std::vector<Index>& faces) {
 }
 
 Axis principal_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options) {
-    check_options(options, "axis");
-    const AreaMoments moments = area_moments(mesh, faces);
-    if (!(moments.area > 0)) fail_input("part", "has no faces with area", "choose another part");
+    const AreaMoments moments = part_moments(mesh, faces, options);
     Axis axis;
     const Vector3d centre = eigen(moments.centroid);
     for (std::size_t k = 0; k < 3; ++k) {
         const Vector3d d = eigen(moments.directions[k]);
-        double minimum = 0, maximum = 0;
-        for (const Index f : faces)
-            for (const Vertex v : corners(mesh, Face(f))) {
-                const double h = d.dot(eigen(mesh.point(v)) - centre);
-                minimum = std::min(minimum, h), maximum = std::max(maximum, h);
-            }
+        const auto [minimum, maximum] = extent_along(mesh, faces, centre, d);
         axis.lines.push_back({point_of(centre + minimum * d), point_of(centre + maximum * d)});
         axis.figures.push_back({"extent " + std::to_string(k + 1), maximum - minimum, "length"});
     }
@@ -165,7 +176,7 @@ void AxisOptions::describe(OptionList& visit) {
     visit("slices", slices, "slices: number of planes across the part", Range{4, 10000});
     visit("trials", trials, "rotation: random sets of normals tried", Range{0, 1000000});
     visit("smoothing", smoothing, "rotation: how often normals are averaged over their neighbours", Range{0, 100});
-    visit("seed", seed, "rotation: of the random sets", Anything{});
+    visit("seed", seed, "rotation: of the random sets");
 }
 
 }  // namespace ostraka

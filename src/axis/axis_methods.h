@@ -35,7 +35,12 @@ inline double covered_percent(std::vector<double> angles) {
     return gap < std::max(5 * pi / 180, 6 * pi / double(angles.size())) ? 100 : 100 * (1 - gap / (2 * pi));
 }
 
+/// Of a part to find an axis of. Throws Error (usage) for options out of range, Error (input) where no face has an area.
+AreaMoments part_moments(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options);
 double part_diagonal(const Mesh& mesh, const std::vector<Index>& faces);
+/// The least and the greatest height of the faces along a direction, over a place whose own 0 counts too.
+std::pair<double, double> extent_along(const Mesh& mesh, const std::vector<Index>& faces, const Vector3d& place,
+                                       const Vector3d& direction);
 /// The straight axis of a result, its point moved next to `centre`.
 void set_line(Axis& axis, const Vector3d& point, const Vector3d& direction, const Vector3d& centre);
 

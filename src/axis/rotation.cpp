@@ -3,7 +3,6 @@
 
 #include "ostraka/core/angles.h"
 #include "ostraka/core/dense.h"
-#include "ostraka/core/error.h"
 #include "ostraka/stats/summary.h"
 
 #include <random>
@@ -324,9 +323,7 @@ double sphere_error(const std::vector<Sample>& samples, const Profile& profile) 
 }  // namespace
 
 Axis rotation_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options) {
-    check_options(options, "axis");
-    const AreaMoments moments = area_moments(mesh, faces);
-    if (!(moments.area > 0)) fail_input("part", "has no faces with area", "choose another part");
+    const AreaMoments moments = part_moments(mesh, faces, options);
     const double scale = part_diagonal(mesh, faces);
     const Vector3d centroid = eigen(moments.centroid);
     const std::vector<Sample> samples = take_samples(mesh, faces, options.smoothing, centroid, scale);

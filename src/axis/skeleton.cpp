@@ -154,9 +154,7 @@ std::vector<std::size_t> main_way(const Graph& graph) {
 }  // namespace
 
 Axis skeleton_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options) {
-    check_options(options, "axis");
-    const AreaMoments moments = area_moments(mesh, faces);
-    if (!(moments.area > 0)) fail_input("part", "has no faces with area", "choose another part");
+    const AreaMoments moments = part_moments(mesh, faces, options);
     const std::vector<Index> piece = largest_piece(mesh, faces);
     if (piece.size() > 200000)
         fail_input("part", "has " + std::to_string(piece.size()) + " faces, too many for a skeleton", "simplify the mesh first");

@@ -1,7 +1,6 @@
 // Axis of a tubular part from the centres of its slices.
 #include "axis_methods.h"
 
-#include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
 
 namespace ostraka {
@@ -74,28 +73,21 @@ PatchSlice cut(const Mesh& mesh, const std::vector<Index>& faces, const Vector3d
 }  // namespace
 
 Axis slice_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options) {
-    check_options(options, "axis");
-    const AreaMoments moments = area_moments(mesh, faces);
-    if (!(moments.area > 0)) fail_input("part", "has no faces with area", "choose another part");
+    const AreaMoments moments = part_moments(mesh, faces, options);
     Axis axis;
     if (moments.variances[0] < 1.3 * moments.variances[1]) {
         axis.reason = "it is not longer than wide";
         return axis;
     }
     const Vector3d centroid = eigen(moments.centroid), direction = eigen(moments.directions[0]);
-    double minimum = 0, maximum = 0;
-    for (const Index f : faces)
-        for (const Vertex v : corners(mesh, Face(f))) {
-            const double h = direction.dot(eigen(mesh.point(v)) - centroid);
-            minimum = std::min(minimum, h), maximum = std::max(maximum, h);
-        }
+    const auto ends = extent_along(mesh, faces, centroid, direction);
     const double diagonal = part_diagonal(mesh, faces);
     const auto count = static_cast<std::size_t>(options.slices);
     std::vector<PatchSlice> first(count);
     parallel_for(
         count,
         [&](std::size_t i) {
-            const double h = minimum + (maximum - minimum) * (0.03 + 0.94 * (double(i) + 0.5) / double(count));
+            const double h = ends.first + (ends.second - ends.first) * (0.03 + 0.94 * (double(i) + 0.5) / double(count));
             first[i] = cut(mesh, faces, centroid + h * direction, direction, 2 * diagonal);
         },
         1);

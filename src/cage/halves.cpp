@@ -1,8 +1,6 @@
 // Mirror-symmetric surfaces: one half, and the whole of it.
 #include "shrink.h"
 
-#include "ostraka/core/error.h"
-
 #include <map>
 
 namespace ostraka::cage {

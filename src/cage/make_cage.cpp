@@ -129,4 +129,15 @@ std::vector<CageResult> make_nested_cages(const Mesh& mesh, std::vector<std::uin
     return results;
 }
 
+void CageOptions::describe(OptionList& visit) {
+    visit("vertices", vertices, "wanted number of vertices", Range{4, 1e6});
+    visit("alpha", alpha,
+          "what is narrower than this is wrapped over; 0: a fortieth, and more where the wanted number of vertices needs it",
+          Range{0, 1}, "share of the diagonal");
+    visit("offset", offset, "distance of the wrap from the mesh", Range{1e-4, 0.5}, "share of the diagonal");
+    visit("genus", genus,
+          "holes through the object: follow (the cage has those that the wrap leaves open) or fill (the cage has none)",
+          Choices{"follow", "fill"});
+}
+
 }  // namespace ostraka

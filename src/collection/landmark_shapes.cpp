@@ -4,7 +4,6 @@
 #include "ostraka/core/json_build.h"
 #include "ostraka/interchange/landmarks.h"
 
-#include <algorithm>
 #include <array>
 #include <set>
 

@@ -60,16 +60,8 @@ Heading heading_of(const std::string& text) {
 Json object_measures_to_json(const ObjectMeasures& measures) {
     Json document(rapidjson::kObjectType);
     auto& allocator = document.GetAllocator();
-    const auto strings = [&](const std::vector<std::string>& list) {
-        JsonValue array(rapidjson::kArrayType);
-        for (const auto& text : list) array.PushBack(json_string(text, allocator), allocator);
-        return array;
-    };
-    JsonValue values(rapidjson::kArrayType), powers(rapidjson::kArrayType);
-    for (const auto& value : measures.values) values.PushBack(value ? JsonValue(*value) : JsonValue(), allocator);
-    for (const int power : measures.powers) powers.PushBack(power, allocator);
-    add_members(document, allocator, "unit", measures.unit, "values", std::move(values), "powers", std::move(powers), "units",
-                strings(measures.units), "notes", strings(measures.notes));
+    add_members(document, allocator, "unit", measures.unit, "values", measures.values, "powers", measures.powers, "units",
+                measures.units, "notes", measures.notes);
     return document;
 }
 

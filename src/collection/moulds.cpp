@@ -20,6 +20,15 @@ PreparedHead prepare_head(const Mesh& mesh, const CompareOptions& options) {
     return head;
 }
 
+namespace {
+
+/// What two heads have in common.
+struct PairComparison {
+    int matches_ab = 0, matches_ba = 0;        ///< MeshSIFT's count, from each side
+    int consistent_ab = 0, consistent_ba = 0;  ///< of them, what one motion explains
+    double distance = 0;                       ///< of the registration
+    double overlap = 0, scale = 1;             ///< of the registration; b is `scale` times as large as a
+};
 PairComparison compare_pair(const PreparedHead& a, const PreparedHead& b, const CompareOptions& options) {
     PairComparison result;
     result.matches_ab = static_cast<int>(match_features(a.features, b.features, options.matches).size());
@@ -45,8 +54,6 @@ PairComparison compare_pair(const PreparedHead& a, const PreparedHead& b, const 
     result.scale = alignment.motion.scale;
     return result;
 }
-
-namespace {
 
 JsonValue to_json(const PairComparison& pair, JsonAllocator& allocator) {
     JsonValue list(rapidjson::kArrayType);
@@ -178,8 +185,7 @@ void GroupOptions::describe(OptionList& visit) {
     visit("epsilon", epsilon,
           "distance within groups: a number (shares of the largest distance for embedding), knn (mean distance to the nearest "
           "neighbours), volume (evenly spread points), knee (bend of the curve of nearest distances), silhouette (groups that "
-          "stand out best), nested (these, and again within each as long as parts stand out)",
-          Anything{});
+          "stand out best), nested (these, and again within each as long as parts stand out)");
     visit("expected-size", expected_size, "heads of one mould that are expected, for knn; 0: the square root of their number",
           Range{0, 1e9});
     visit("dimensions", dimensions, "eigenvectors of the embedding", Range{1, 20});

@@ -5,6 +5,7 @@
 #include "ostraka/core/inside.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
+#include "ostraka/core/words.h"
 
 #include "json_text.h"
 
@@ -21,34 +22,17 @@ constexpr const char* markup_ending = ".mrk.json";
 
 /// Names become names of files and stand in JSON: no folders, nothing hidden, nothing a terminal would act on, UTF-8.
 bool is_name(const std::string& name) {
-    for (std::size_t at = 0; at < name.size();) {
-        const Character here = character_at(name, at);
-        if (is_control(here.code) || (here.code == 0xFFFD && here.length == 1)) return false;
-        at += here.length;
-    }
-    return !name.empty() && name.size() <= 200 && name.front() != '.' && name.find_first_of("/\\") == std::string::npos;
+    return !name.empty() && name.size() <= 200 && name.front() != '.' && name.find_first_of("/\\") == std::string::npos &&
+           printable(name) == name;
 }
 constexpr const char* name_rule =
     "use at most 200 bytes of UTF-8 without / \\ and control characters, not beginning with a full stop";
-
-/// As it can be shown, its first characters.
-std::string shown(const std::string& name) {
-    std::string text;
-    for (std::size_t at = 0, count = 0; at < name.size(); ++count) {
-        if (count == 60) return text + "...";
-        const Character here = character_at(name, at);
-        const bool odd = is_control(here.code) || (here.code == 0xFFFD && here.length == 1);
-        text += odd ? "?" : name.substr(at, here.length);
-        at += here.length;
-    }
-    return text;
-}
 
 /// "a, b, c and 4 more"
 std::string some_of(const std::vector<std::string>& names) {
     std::string text;
     for (std::size_t i = 0; i < std::min<std::size_t>(names.size(), 3); ++i)
-        text += (i == 0 ? "'" : ", '") + shown(names[i]) + "'";
+        text += (i == 0 ? "'" : ", '") + printable(names[i], 60) + "'";
     return names.size() <= 3 ? text : text + " and " + std::to_string(names.size() - 3) + " more";
 }
 
@@ -64,6 +48,13 @@ std::string checksum_of(const CollectionObject& object) {
         return {};
     }
     return hash.hexadecimal();
+}
+
+/// Whether `read_collection` of its folder would take the file for an object's: by its ending a mesh, annotations or markups.
+bool is_object_file(const Path& file) {
+    const std::string name = file.filename().string();
+    return name.front() != '.' && (name.ends_with(markup_ending) || name.ends_with(".ant.json") ||
+                                   std::find(mesh_endings.begin(), mesh_endings.end(), extension(file)) != mesh_endings.end());
 }
 
 Collection from_folder(const Path& folder) {
@@ -82,10 +73,10 @@ Collection from_folder(const Path& folder) {
     }
     for (const std::string& name : others)
         if (is_object_file(folder / name))
-            collection.left_out.emplace_back(shown(name), "is no file that can be read (is it a link to nothing?)");
+            collection.left_out.emplace_back(printable(name, 60), "is no file that can be read (is it a link to nothing?)");
     const auto add = [&](const std::string& name, const std::string& stem, const Path& mesh) {
         if (!is_name(name)) {
-            collection.left_out.emplace_back(shown(name),
+            collection.left_out.emplace_back(printable(name, 60),
                                              std::string("its name cannot be that of an object (") + name_rule + ")");
             return;
         }
@@ -131,7 +122,8 @@ Collection from_file(const Path& file) {
         object.name = text_of(objects[i], "name");
         if (object.name.empty()) object.name = (object.mesh.empty() ? object.landmarks : object.mesh).stem().string();
         if (!is_name(object.name))
-            fail_input(file.string() + ", at " + at, "'" + shown(object.name) + "' cannot be the name of an object", name_rule);
+            fail_input(file.string() + ", at " + at, "'" + printable(object.name, 60) + "' cannot be the name of an object",
+                       name_rule);
         collection.objects.push_back(std::move(object));
     }
     return collection;
@@ -144,21 +136,13 @@ void note_copies(Collection& collection) {
     std::vector<std::string> lines;
     for (const auto& [checksum, names] : same) {
         if (names.size() < 2) continue;
-        std::string line;
-        for (const auto& name : names) line += (line.empty() ? "" : ", ") + name;
-        lines.push_back("the files of these objects are the same: " + line);
+        lines.push_back("the files of these objects are the same: " + joined(names));
     }
     std::sort(lines.begin(), lines.end());
     collection.notes.insert(collection.notes.end(), lines.begin(), lines.end());
 }
 
 }  // namespace
-
-bool is_object_file(const Path& file) {
-    const std::string name = file.filename().string();
-    return name.front() != '.' && (name.ends_with(markup_ending) || name.ends_with(".ant.json") ||
-                                   std::find(mesh_endings.begin(), mesh_endings.end(), extension(file)) != mesh_endings.end());
-}
 
 void check_new_collection(const Path& folder) {
     if (!is_folder(folder)) return;
@@ -207,10 +191,11 @@ std::map<std::string, std::string> read_labels(const Path& file, const std::stri
         std::string there;
         for (std::size_t i = 0; i < names.size(); ++i) {
             if (trimmed(names[i]) == wanted) return i;
-            there += (i == 0 ? "'" : ", '") + shown(names[i]) + "'";
+            there += (i == 0 ? "'" : ", '") + printable(names[i], 60) + "'";
         }
         fail_input(
-            where + ", line " + std::to_string(rows.front().line), "there is no column '" + shown(wanted) + "' among " + there,
+            where + ", line " + std::to_string(rows.front().line),
+            "there is no column '" + printable(wanted, 60) + "' among " + there,
             "the first row names the columns: 'name' for the objects, 'label' (or that of --truth-column) for the answers");
     };
     const std::size_t name_column = column_of("name"), label_column = column_of(column.empty() ? "label" : column);

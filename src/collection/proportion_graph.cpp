@@ -1,12 +1,8 @@
 #include "ostraka/collection/proportion_graph.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/ids.h"
 #include "ostraka/core/json_build.h"
-#include "ostraka/core/text.h"
 #include "ostraka/measure/measure.h"
-
-#include <algorithm>
 
 namespace ostraka {
 
@@ -59,11 +55,7 @@ Carried carry(const Mesh& mesh, AnnotationSet& set, const MeasureDefinition& def
     const std::string name = definition.attribute.empty() ? definition.name : definition.attribute;
     if (find_measure(annotation, name) == nullptr) {
         if (!definition.attribute.empty()) throw Refused{"the template's '" + annotation.tag + "' has no measure '" + name + "'"};
-        Attribute attribute;
-        attribute.id = next_free_id(annotation.attributes);
-        attribute.name = name;
-        attribute.type = AttributeType::measure;
-        Measure& measure = attribute.measure;
+        Measure measure;
         measure.tool = definition.tool;
         measure.exact = definition.exact;
         measure.unit = set.unit;
@@ -76,7 +68,7 @@ Carried carry(const Mesh& mesh, AnnotationSet& set, const MeasureDefinition& def
             for (const MeasurePlace& place : definition.pins) measure.points.push_back(pin_of(mesh, set, place));
         }
         measure.value = evaluate(mesh, annotation, measure);
-        annotation.attributes.push_back(std::move(attribute));
+        add_measure(annotation, name, std::move(measure));
     }
     return {annotation.id, annotation.tag, name};
 }
@@ -101,12 +93,7 @@ Proposals propose_proportions(const Mesh& mesh, const AnnotationSet& set, Relati
     check_options(options, "proposals");
     Proposals result;
     result.graph = std::move(existing);
-    // The set holds a document that cannot be copied: what matters of it is.
-    result.set.object_class = set.object_class;
-    result.set.unit = set.unit;
-    result.set.up = set.up;
-    result.set.annotations = set.annotations;
-    result.set.notes = set.notes;
+    result.set = set;
     for (const RatioRow& ratio : study.ratios) {
         if (ratio.fixedness != Fixedness::fixed && !(options.stable && ratio.fixedness == Fixedness::stable)) continue;
         try {
@@ -138,9 +125,9 @@ Proposals propose_proportions(const Mesh& mesh, const AnnotationSet& set, Relati
 }
 
 void ProposalOptions::describe(OptionList& visit) {
-    visit("stable", stable, "propose ratios that are stable as well, not only fixed ones", Anything{});
+    visit("stable", stable, "propose ratios that are stable as well, not only fixed ones");
     visit("weight", weight, "weight of the proposed constraints", Range{0, 1e12});
-    visit("hard", hard, "propose hard constraints", Anything{});
+    visit("hard", hard, "propose hard constraints");
 }
 
 }  // namespace ostraka

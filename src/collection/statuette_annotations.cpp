@@ -3,35 +3,28 @@
 #include "ostraka/annotation/label_file.h"
 #include "ostraka/measure/measure.h"
 
+#include <algorithm>
+
 namespace ostraka {
 
 namespace {
 
-const StatuetteLandmark* find_landmark(const Statuette& statuette, const std::string& name) {
-    for (const StatuetteLandmark& landmark : statuette.landmarks)
-        if (landmark.name == name) return &landmark;
-    return nullptr;
-}
-
 /// Nothing if a landmark is missing.
 void add_measure(const Statuette& statuette, Annotation& object, const std::string& name, const std::string& tool,
                  const std::vector<std::string>& landmarks) {
-    Attribute attribute;
-    attribute.id = static_cast<int>(object.attributes.size());
-    attribute.name = name;
-    attribute.type = AttributeType::measure;
-    Measure& measure = attribute.measure;
+    Measure measure;
     measure.tool = tool;
     measure.unit = "mm";
     for (const std::string& each : landmarks) {
-        const StatuetteLandmark* landmark = find_landmark(statuette, each);
-        if (landmark == nullptr) return;
+        const auto landmark = std::find_if(statuette.landmarks.begin(), statuette.landmarks.end(),
+                                           [&](const StatuetteLandmark& one) { return one.name == each; });
+        if (landmark == statuette.landmarks.end()) return;
         measure.points.push_back(landmark->vertex);
         measure.locations.push_back({landmark->face, landmark->barycentric});
     }
     measure.exact = tool == "tape";
     measure.value = evaluate(statuette.mesh, object, measure);
-    object.attributes.push_back(std::move(attribute));
+    add_measure(object, name, std::move(measure));
 }
 
 }  // namespace
@@ -50,15 +43,13 @@ AnnotationSet annotate_statuette(const Statuette& statuette) {
     }
     Annotation& object = ensure_root(set, statuette.mesh);
     // The height is taken between the lowest and the topmost vertex: arms never reach above the head.
-    Attribute height;
-    height.name = "total height";
-    height.type = AttributeType::measure;
-    height.measure.tool = "bounding";
-    height.measure.direction = {0, 0, 1};
-    height.measure.unit = "mm";
-    for (const Index pin : extremes(statuette.mesh, object, *height.measure.direction)) height.measure.points.push_back(pin);
-    height.measure.value = evaluate(statuette.mesh, object, height.measure);
-    object.attributes.push_back(std::move(height));
+    Measure height;
+    height.tool = "bounding";
+    height.direction = {0, 0, 1};
+    height.unit = "mm";
+    for (const Index pin : extremes(statuette.mesh, object, *height.direction)) height.points.push_back(pin);
+    height.value = evaluate(statuette.mesh, object, height);
+    add_measure(object, "total height", std::move(height));
     add_measure(statuette, object, "base diameter", "ruler", {"base right", "base left"});
     for (const std::string side : {"right", "left"}) {
         std::vector<std::string> way{"arm joint " + side};

@@ -1,10 +1,10 @@
 #include "ostraka/collection/technique.h"
 
-#include "ostraka/core/dense.h"
-
 #include "outline_harmonics.h"
 
+#include "ostraka/core/dense.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/json_build.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/slicing/slice.h"
 #include "ostraka/slicing/slice_descriptors.h"
@@ -239,14 +239,8 @@ Json technique_to_json(const TechniqueMeasures& measures) {
             row.PushBack(number_or_null(value), allocator);
         slices.PushBack(row, allocator);
     }
-    add_member(json, "slices", std::move(slices), allocator);
-    const auto count = [&](const char* name, std::size_t value) {
-        add_member(json, name, JsonValue(static_cast<std::uint64_t>(value)), allocator);
-    };
-    count("asked", measures.asked);
-    count("empty", measures.empty);
-    count("tooOpen", measures.too_open);
-    count("openUsed", measures.open_used);
+    add_members(json, allocator, "slices", std::move(slices), "asked", measures.asked, "empty", measures.empty, "tooOpen",
+                measures.too_open, "openUsed", measures.open_used);
     return json;
 }
 

@@ -52,4 +52,7 @@ std::vector<std::optional<TechniqueOutlier>> unlike_the_labelled(const std::vect
                                                                  const std::string& positive, double unlike_from);
 inline constexpr std::size_t min_compared = 3;
 
+/// Sets `words` of every answer (technique_words.cpp).
+void explain_answers(TechniqueStudy& study, const std::vector<TechniqueObject>& objects);
+
 }  // namespace ostraka

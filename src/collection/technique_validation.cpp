@@ -67,10 +67,7 @@ ClassifierResult validate_classifier(const std::vector<TechniqueObject>& objects
     };
     std::vector<bool> truth;
     for (const std::size_t row : known.rows) truth.push_back(known.truth[row]);
-    CrossValidationOptions folds;
-    folds.folds = options.folds;
-    folds.repeats = options.repeats;
-    folds.seed = options.seed;
+    const CrossValidationOptions folds{.folds = options.folds, .repeats = options.repeats, .seed = options.seed};
     result.validation = cross_validate(
         truth,
         [&](const std::vector<std::size_t>& taught, const std::vector<std::size_t>& asked) {

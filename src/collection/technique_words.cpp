@@ -1,4 +1,5 @@
-#include "technique_words.h"
+// Answers of a technique study in words.
+#include "technique_model.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,9 @@
 #include "lanes.h"
 
 #include "ostraka/core/mesh.h"
+#include "ostraka/core/parallel.h"
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -49,5 +51,22 @@ struct CageArrays {
 };
 
 inline Three three(const Point& p) { return {p.x(), p.y(), p.z()}; }
+
+/// Lays eight points at a time into `work.x`, calls `compute(work)`, then `take(work, l, i)` for the point i in lane l of each.
+template <class Work, class Compute, class Take>
+void for_each_point(const CageArrays& cage, const std::vector<Point>& points, const Compute& compute, const Take& take) {
+    parallel_blocks(points.size(), 64, [&](std::size_t begin, std::size_t end) {
+        Work work(cage);
+        for (std::size_t first = begin; first < end; first += lanes) {
+            const std::size_t count = std::min<std::size_t>(lanes, end - first);
+            for (std::size_t l = 0; l < lanes; ++l) {
+                const Three x = three(points[first + std::min(l, count - 1)]);
+                for (std::size_t k = 0; k < 3; ++k) work.x[k][l] = x[k];
+            }
+            compute(work);
+            for (std::size_t l = 0; l < count; ++l) take(work, l, first + l);
+        }
+    });
+}
 
 }  // namespace ostraka::coords

@@ -2,6 +2,7 @@
 
 #include "ostraka/coords/influence.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/json_build.h"
 #include "ostraka/core/parallel.h"
 
 #include <algorithm>
@@ -91,11 +92,7 @@ CoordinateCertificate certify(const Coordinates& coordinates, const Mesh& cage, 
                        " columns, not " + std::to_string(rows) + " and " + std::to_string(columns),
                    "give the mesh and the cage that they were computed for");
     if (columns == 0) fail_input("cage", "has no vertices");
-    CoordinateCertificate result;
-    result.kind = coordinates.kind;
-    result.points = points.size();
-    result.vertices = cage.number_of_vertices();
-    result.faces = cage.number_of_faces();
+    CoordinateCertificate result{coordinates.kind, points.size(), cage.number_of_vertices(), cage.number_of_faces()};
     if (coordinate_kind(coordinates.kind).on_cage) certify_kind(cage, options, result);
     if (points.empty()) return result;
 
@@ -159,21 +156,13 @@ CoordinateCertificate certify(const Coordinates& coordinates, const Mesh& cage, 
 }
 
 JsonValue to_json(const CoordinateCertificate& c, JsonAllocator& allocator) {
-    JsonValue object(rapidjson::kObjectType);
-    const auto put = [&](const char* name, JsonValue value) { add_member(object, name, std::move(value), allocator); };
-    put("partition", JsonValue(c.partition));
-    put("linearPrecision", JsonValue(c.linear));
-    if (c.worst_linear != no_index) put("worstPoint", JsonValue(c.worst_linear));
-    if (c.lagrange) put("lagrange", JsonValue(*c.lagrange));
-    if (c.edges) put("edgeLinearity", JsonValue(*c.edges));
-    if (c.on_faces) put("faceLinearity", JsonValue(*c.on_faces));
-    put("negativeShare", JsonValue(c.negative));
-    put("negativeRows", JsonValue(c.negative_rows));
-    put("negativeSum", JsonValue(c.negative_sum));
-    put("least", JsonValue(c.minimum));
-    put("most", JsonValue(c.maximum));
-    put("carriersMean", JsonValue(c.carriers_mean));
-    put("carriersMost", JsonValue(c.carriers_max));
+    JsonValue object = json_object(allocator, "partition", c.partition, "linearPrecision", c.linear);
+    if (c.worst_linear != no_index) add_members(object, allocator, "worstPoint", c.worst_linear);
+    if (c.lagrange) add_members(object, allocator, "lagrange", *c.lagrange);
+    if (c.edges) add_members(object, allocator, "edgeLinearity", *c.edges);
+    if (c.on_faces) add_members(object, allocator, "faceLinearity", *c.on_faces);
+    add_members(object, allocator, "negativeShare", c.negative, "negativeRows", c.negative_rows, "negativeSum", c.negative_sum,
+                "least", c.minimum, "most", c.maximum, "carriersMean", c.carriers_mean, "carriersMost", c.carriers_max);
     return object;
 }
 

@@ -21,18 +21,15 @@ void check_name(const Path& weights) {
 }
 
 JsonValue bound_json(const Mesh& mesh, JsonAllocator& allocator) {
-    JsonValue object = json_object(allocator, "vertices", mesh.number_of_vertices(), "faces", mesh.number_of_faces(), "sha256",
-                                   mesh_checksum(mesh));
-    return object;
+    return json_object(allocator, "vertices", mesh.number_of_vertices(), "faces", mesh.number_of_faces(), "sha256",
+                       mesh_checksum(mesh));
 }
 
 JsonValue write_array(const Path& file, const WeightMatrix& matrix, JsonAllocator& allocator) {
     const auto rows = static_cast<std::size_t>(matrix.rows()), columns = static_cast<std::size_t>(matrix.cols());
     if (!matrix.allFinite()) throw Error(ErrorKind::failure, file.string(), "a weight is not finite");
     const std::string checksum = write_npy(file, std::span(matrix.data(), rows * columns), {rows, columns});
-    JsonValue object =
-        json_object(allocator, "file", file.filename().string(), "rows", rows, "columns", columns, "sha256", checksum);
-    return object;
+    return json_object(allocator, "file", file.filename().string(), "rows", rows, "columns", columns, "sha256", checksum);
 }
 
 CoordinateHeader::Array array_of(const JsonValue& value) {

@@ -4,6 +4,7 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/core/words.h"
 
 #include <algorithm>
 #include <cmath>
@@ -55,12 +56,9 @@ std::vector<std::string> coordinate_kinds() {
 }
 
 const CoordinateKind& coordinate_kind(const std::string& name) {
-    std::string list;
-    for (const CoordinateKind& kind : kinds()) {
+    for (const CoordinateKind& kind : kinds())
         if (kind.name == name) return kind;
-        list += (list.empty() ? "" : ", ") + kind.name;
-    }
-    fail_usage("there are no coordinates of the kind '" + name + "'", "use one of: " + list);
+    fail_usage("there are no coordinates of the kind '" + name + "'", "use one of: " + joined(coordinate_kinds()));
 }
 
 Coordinates compute_coordinates(const std::string& name, const Mesh& cage, const std::vector<Point>& points,

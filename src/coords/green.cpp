@@ -11,7 +11,6 @@
 #include "lanes.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
 
 #include <algorithm>
 #include <limits>
@@ -196,23 +195,13 @@ Coordinates green(const Mesh& mesh, const std::vector<Point>& points, const Coor
     result.vertex.resize(rows, static_cast<Eigen::Index>(cage.points.size()));
     result.normal.resize(rows, static_cast<Eigen::Index>(cage.faces.size()));
     std::vector<double> winding_numbers(points.size());  // how often the cage goes around the point; NaN on it
-    parallel_blocks(points.size(), 64, [&](std::size_t begin, std::size_t end) {
-        Work work(cage);
-        for (std::size_t first = begin; first < end; first += lanes) {
-            const std::size_t count = std::min<std::size_t>(lanes, end - first);
-            for (std::size_t l = 0; l < lanes; ++l) {
-                const Three x = three(points[first + std::min(l, count - 1)]);
-                for (std::size_t k = 0; k < 3; ++k) work.x[k][l] = x[k];
-            }
-            integrate(cage, planes, snap, work);
-            for (std::size_t l = 0; l < count; ++l) {
-                const auto row = static_cast<Eigen::Index>(first + l);
-                double *phi = result.vertex.row(row).data(), *psi = result.normal.row(row).data(), sum = 0;
-                for (std::size_t i = 0; i < work.vertex.size(); ++i) sum += phi[i] = work.vertex[i].phi[l] / (4 * pi);
-                for (std::size_t i = 0; i < work.psi.size(); ++i) psi[i] = work.psi[i].psi[l] / (4 * pi * cage.scale);
-                winding_numbers[first + l] = work.near[l] != 0 ? std::numeric_limits<double>::quiet_NaN() : sum;
-            }
-        }
+    const auto compute = [&](Work& work) { integrate(cage, planes, snap, work); };
+    for_each_point<Work>(cage, points, compute, [&](const Work& work, std::size_t l, std::size_t point) {
+        const auto row = static_cast<Eigen::Index>(point);
+        double *phi = result.vertex.row(row).data(), *psi = result.normal.row(row).data(), sum = 0;
+        for (std::size_t i = 0; i < work.vertex.size(); ++i) sum += phi[i] = work.vertex[i].phi[l] / (4 * pi);
+        for (std::size_t i = 0; i < work.psi.size(); ++i) psi[i] = work.psi[i].psi[l] / (4 * pi * cage.scale);
+        winding_numbers[point] = work.near[l] != 0 ? std::numeric_limits<double>::quiet_NaN() : sum;
     });
     std::string list;
     std::size_t outside = 0;

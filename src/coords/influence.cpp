@@ -9,10 +9,9 @@
 
 namespace ostraka {
 
-std::vector<double> influence_on(const Coordinates& coordinates, const std::vector<Index>& points, const std::string& by) {
-    if (by != "max" && by != "sum") fail_usage("influence by '" + by + "'", "use max or sum");
+std::vector<double> influence_on(const Coordinates& coordinates, const std::vector<Index>& points, InfluenceBy by) {
     if (points.empty()) fail_input("points", "there are none to have influence on", "choose others");
-    const bool sum = by == "sum";
+    const bool sum = by == InfluenceBy::sum;
     const WeightMatrix& W = coordinates.vertex;
     std::vector<double> result(static_cast<std::size_t>(W.cols()), sum ? 0 : -INFINITY);
     for (const Index i : points) {

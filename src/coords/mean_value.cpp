@@ -9,9 +9,6 @@
 #include "lanes.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
-
-#include <optional>
 
 namespace ostraka::coords {
 
@@ -220,28 +217,19 @@ Coordinates mean_value(const Mesh& mesh, const std::vector<Point>& points, const
     const double snap = options.snap * cage.diagonal;
     Coordinates result;
     result.vertex.resize(static_cast<Eigen::Index>(points.size()), static_cast<Eigen::Index>(cage.points.size()));
-    parallel_blocks(points.size(), 64, [&](std::size_t begin, std::size_t end) {
-        Work work(cage);
-        for (std::size_t first = begin; first < end; first += lanes) {
-            const std::size_t count = std::min<std::size_t>(lanes, end - first);
-            for (std::size_t l = 0; l < lanes; ++l) {
-                const Three x = three(points[first + std::min(l, count - 1)]);
-                for (std::size_t k = 0; k < 3; ++k) work.x[k][l] = x[k];
-            }
-            sum_weights(cage, snap, work);
-            add_slivers(cage, work);
-            for (std::size_t l = 0; l < count; ++l) {
-                double* row = result.vertex.row(static_cast<Eigen::Index>(first + l)).data();
-                if (work.near[l] != 0 && weights_on_cage(cage, three(points[first + l]), snap, row)) continue;
-                double sum = 0;
-                for (const Work::OfVertex& v : work.vertex) sum += v.weight[l];
-                if (!(std::fabs(sum) > 0) || !std::isfinite(sum))
-                    fail_input("point " + std::to_string(first + l),
-                               "has no mean value coordinates in this cage: its weights have no sum",
-                               "it lies too far from the cage, or the cage encloses nothing");
-                for (std::size_t i = 0; i < work.vertex.size(); ++i) row[i] = work.vertex[i].weight[l] / sum;
-            }
-        }
+    const auto compute = [&](Work& work) {
+        sum_weights(cage, snap, work);
+        add_slivers(cage, work);
+    };
+    for_each_point<Work>(cage, points, compute, [&](const Work& work, std::size_t l, std::size_t point) {
+        double* row = result.vertex.row(static_cast<Eigen::Index>(point)).data();
+        if (work.near[l] != 0 && weights_on_cage(cage, three(points[point]), snap, row)) return;
+        double sum = 0;
+        for (const Work::OfVertex& v : work.vertex) sum += v.weight[l];
+        if (!(std::fabs(sum) > 0) || !std::isfinite(sum))
+            fail_input("point " + std::to_string(point), "has no mean value coordinates in this cage: its weights have no sum",
+                       "it lies too far from the cage, or the cage encloses nothing");
+        for (std::size_t i = 0; i < work.vertex.size(); ++i) row[i] = work.vertex[i].weight[l] / sum;
     });
     return result;
 }

@@ -1,8 +1,9 @@
 #include "ostraka/fields/curvature.h"
-#include "ostraka/core/angles.h"
 
+#include "ostraka/core/angles.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/fields/statistics.h"
 #include "ostraka/geom/neighbourhood.h"
 
 #include <cmath>
@@ -156,10 +157,8 @@ RegionCurvature region_curvature(const Mesh& mesh, const CurvatureIntegrals& int
     if (integrals.mean.size() != mesh.number_of_faces())
         fail_usage("the integrals are those of another mesh", "compute them anew");
     RegionCurvature result;
+    check_region(mesh, faces);
     for (const Index face : faces) {
-        if (face >= mesh.number_of_faces())
-            fail_usage("face " + std::to_string(face) + " is not one of the " + std::to_string(mesh.number_of_faces()) + " faces",
-                       "was it selected on another mesh?");
         result.area += face_area(mesh, Face(face));
         result.mean_integral += integrals.mean[face];
         result.gaussian_integral += integrals.gaussian[face];

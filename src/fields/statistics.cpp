@@ -7,28 +7,21 @@
 
 namespace ostraka {
 
-namespace {
-
-void check_map(const std::vector<double>& map, std::size_t count, const char* element, const std::string& where) {
-    if (map.size() != count)
-        fail_input(where, "has " + std::to_string(map.size()) + " values for " + std::to_string(count) + ' ' + element,
-                   std::string("give one value for each of the ") + element);
-}
-
-void check_faces(const Mesh& mesh, const std::vector<Index>& faces) {
-    if (faces.empty()) fail_usage("the region has no faces", "select some");
+void check_region(const Mesh& mesh, const std::vector<Index>& faces) {
     for (const Index face : faces)
         if (face >= mesh.number_of_faces())
             fail_usage("face " + std::to_string(face) + " is not one of the " + std::to_string(mesh.number_of_faces()) + " faces",
                        "was it selected on another mesh?");
 }
 
-}  // namespace
-
 Statistics vertex_statistics(const Mesh& mesh, const std::vector<double>& map, const std::vector<Index>& faces,
                              const std::string& where) {
-    check_map(map, mesh.number_of_vertices(), "vertices", where);
-    check_faces(mesh, faces);
+    if (map.size() != mesh.number_of_vertices())
+        fail_input(where,
+                   "has " + std::to_string(map.size()) + " values for " + std::to_string(mesh.number_of_vertices()) + " vertices",
+                   "give one value for each of the vertices");
+    if (faces.empty()) fail_usage("the region has no faces", "select some");
+    check_region(mesh, faces);
     std::vector<std::pair<Index, double>> shares;
     shares.reserve(3 * faces.size());
     for (const Index face : faces) {
@@ -48,21 +41,6 @@ Statistics vertex_statistics(const Mesh& mesh, const std::vector<double>& map, c
                        "mend the map or choose another region");
         values.push_back(map[vertex]);
         weights.push_back(shares[i].second);
-    }
-    return statistics(values, weights, where);
-}
-
-Statistics face_statistics(const Mesh& mesh, const std::vector<double>& map, const std::vector<Index>& faces,
-                           const std::string& where) {
-    check_map(map, mesh.number_of_faces(), "faces", where);
-    check_faces(mesh, faces);
-    std::vector<double> values, weights;
-    for (const Index face : faces) {
-        if (!std::isfinite(map[face]))
-            fail_input(where, "the value of face " + std::to_string(face) + " is not a finite number",
-                       "mend the map or choose another region");
-        values.push_back(map[face]);
-        weights.push_back(face_area(mesh, Face(face)));
     }
     return statistics(values, weights, where);
 }

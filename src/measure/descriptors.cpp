@@ -203,8 +203,8 @@ void store(Annotation& annotation, const std::vector<Quantity>& quantities, cons
 }
 
 void DescriptorOptions::describe(OptionList& visit) {
-    visit("curvature", curvature, "statistics of mean and Gaussian curvature at the vertices", Anything{});
-    visit("thickness", thickness, "statistics of the thickness under the faces (shape diameter)", Anything{});
+    visit("curvature", curvature, "statistics of mean and Gaussian curvature at the vertices");
+    visit("thickness", thickness, "statistics of the thickness under the faces (shape diameter)");
     curvature_options.describe(visit);
     thickness_options.describe(visit);
 }

@@ -1,14 +1,13 @@
 #include "ostraka/measure/examine.h"
 
 #include "ostraka/annotation/outline.h"
-#include "ostraka/core/error.h"
+#include "ostraka/core/text.h"
 #include "ostraka/measure/measure.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
-#include <sstream>
 
 namespace ostraka {
 
@@ -38,13 +37,6 @@ std::size_t count_patches(const Mesh& mesh, const std::vector<Index>& faces) {
         }
     }
     return patches;
-}
-
-std::string text_of(double value) {
-    std::ostringstream text;
-    text.precision(9);
-    text << value;
-    return text.str();
 }
 
 class Examiner {
@@ -77,7 +69,7 @@ public:
                 if (attribute.measure.stale) defect(here, name + " is marked stale");
                 else if (now.measure.stale) defect(here, name + " cannot be measured: its pins are not joined");
                 else if (attribute.measure.value) compare(*attribute.measure.value, *now.measure.value, here, name);
-                else remark(here, name + " has no value; measured here: " + text_of(*now.measure.value));
+                else remark(here, name + " has no value; measured here: " + digits(*now.measure.value, 9));
             } else if (attribute.type == AttributeType::descriptor) {
                 if (attribute.descriptor.stale) defect(here, name + " is marked stale");
                 else if (attribute.descriptor.values.empty() && attribute.descriptor.file.empty())
@@ -94,7 +86,7 @@ public:
 private:
     void compare(double stored, double computed, const std::string& where, const std::string& name) {
         if (std::abs(stored - computed) <= 1e-6 * std::max(std::abs(stored), std::abs(computed))) return;
-        defect(where, name + " is " + text_of(stored) + " but measures " + text_of(computed));
+        defect(where, name + " is " + digits(stored, 9) + " but measures " + digits(computed, 9));
     }
 
     void points(const Annotation& annotation, const std::string& at) {

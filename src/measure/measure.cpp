@@ -1,7 +1,8 @@
 #include "ostraka/measure/measure.h"
-#include "ostraka/core/angles.h"
 
+#include "ostraka/core/angles.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/ids.h"
 #include "ostraka/core/limits.h"
 #include "ostraka/geom/geodesic.h"
 #include "ostraka/geom/shortest_path.h"
@@ -282,6 +283,12 @@ std::array<Index, 2> extremes(const Mesh& mesh, const Annotation& annotation, co
         if (height > high) high = height, result[1] = vertex;
     }
     return result;
+}
+
+Attribute& add_measure(Annotation& annotation, const std::string& name, Measure measure) {
+    annotation.attributes.push_back(
+        {next_free_id(annotation.attributes), name, AttributeType::measure, {}, std::move(measure), {}});
+    return annotation.attributes.back();
 }
 
 RefreshResult refresh_measures(const Mesh& mesh, AnnotationSet& set, bool uncertainties) {

@@ -1,10 +1,9 @@
 #include "ostraka/measure/solid.h"
 
-#include "compensated_sum.h"
 #include "ostraka/annotation/outline.h"
 #include "ostraka/core/error.h"
+#include "ostraka/fields/statistics.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -12,13 +11,6 @@
 namespace ostraka {
 
 namespace {
-
-void check_faces(const Mesh& mesh, const std::vector<Index>& faces) {
-    for (const Index face : faces)
-        if (face >= mesh.number_of_faces())
-            fail_usage("face " + std::to_string(face) + " is not one of the " + std::to_string(mesh.number_of_faces()) + " faces",
-                       "was it selected on another mesh?");
-}
 
 /// The middle of the region's box: sums about it lose nothing far from the origin.
 Point middle_of(const Mesh& mesh, const std::vector<Index>& faces) {
@@ -29,6 +21,21 @@ Point middle_of(const Mesh& mesh, const std::vector<Index>& faces) {
                          : Point(box.xmin() + (box.xmax() - box.xmin()) / 2, box.ymin() + (box.ymax() - box.ymin()) / 2,
                                  box.zmin() + (box.zmax() - box.zmin()) / 2);
 }
+
+/// A sum of many numbers without loss (Neumaier 1974).
+class CompensatedSum {
+public:
+    CompensatedSum& operator+=(double x) {
+        const double next = sum_ + x;
+        lost_ += std::abs(sum_) >= std::abs(x) ? (sum_ - next) + x : (x - next) + sum_;
+        sum_ = next;
+        return *this;
+    }
+    [[nodiscard]] double value() const { return sum_ + lost_; }
+
+private:
+    double sum_ = 0, lost_ = 0;
+};
 
 /// Sums of signed tetrahedra from an origin to oriented triangles.
 class Tetrahedra {
@@ -63,7 +70,7 @@ double closed_volume(const Mesh& mesh) {
 }
 
 Point surface_centroid(const Mesh& mesh, const std::vector<Index>& faces) {
-    check_faces(mesh, faces);
+    check_region(mesh, faces);
     if (faces.empty()) fail_usage("the region has no faces", "select some");
     const Point origin = middle_of(mesh, faces);
     CompensatedSum area, x, y, z, mean_x, mean_y, mean_z;
@@ -80,7 +87,7 @@ Point surface_centroid(const Mesh& mesh, const std::vector<Index>& faces) {
 }
 
 RegionSolid region_solid(const Mesh& mesh, const std::vector<Index>& faces) {
-    check_faces(mesh, faces);
+    check_region(mesh, faces);
     RegionSolid result;
     if (faces.empty()) return result;
     Tetrahedra sum(middle_of(mesh, faces));

@@ -59,13 +59,15 @@ Call::Call(const OperationEntry& entry) : entry_(&entry), operation_(entry.make(
 Call::~Call() = default;
 Call::Call(Call&&) noexcept = default;
 
-void Call::no_such_name(const std::string& name) const {
-    std::vector<std::string> names;
+void Call::no_such_name(const std::string& name, const std::vector<std::string>& flags) const {
+    std::vector<std::string> names = flags;
     for (const Option& option : parameters_.options) names.push_back(option.name);
     for (const Slot* slot : parameters_.slots()) names.push_back(slot->name);
     const std::string near = nearest_name(name, names);
     throw Error(ErrorKind::usage, entry_->name, "has no option '" + printable(name, 60) + "'",
-                near.empty() ? "'ostraka " + std::string(entry_->name) + " --help' shows them" : "did you mean '" + near + "'?");
+                near.empty()                     ? "'ostraka " + std::string(entry_->name) + " --help' shows them"
+                : near == name && !flags.empty() ? "options begin with --"
+                                                 : "did you mean '" + near + "'?");
 }
 
 Option& Call::option(const std::string& name) {

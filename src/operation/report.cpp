@@ -1,9 +1,8 @@
 #include "ostraka/operation/report.h"
 
 #include "ostraka/core/json_build.h"
-#include "ostraka/core/words.h"
-
 #include "ostraka/core/text.h"
+#include "ostraka/core/words.h"
 #include "ostraka/report/table.h"
 
 #include <algorithm>
@@ -38,6 +37,32 @@ const Field* find_field(const std::vector<Field>& fields, std::string_view key) 
     return found == fields.end() ? nullptr : &*found;
 }
 
+/// A table for terminals: columns padded, numbers right-aligned, no text cut.
+std::string plain_table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows) {
+    std::vector<std::vector<std::string>> all{header};
+    for (const auto& row : rows) {
+        all.push_back(row);
+        all.back().resize(header.size());
+        for (auto& cell : all.back()) cell = printable(cell, std::string::npos);
+    }
+    const auto counts = [](const std::string& cell) { return cell.empty() || cell == "-" || is_number(cell); };
+    return aligned_rows(all, [&](std::size_t row, std::size_t column) {
+        if (row > 0) return is_number(all[row][column]);
+        return all.size() > 1 &&
+               std::all_of(all.begin() + 1, all.end(), [&](const auto& cells) { return counts(cells[column]); });
+    });
+}
+
+/// Names and values, one a line, the values below each other.
+std::string plain_values(const std::vector<std::pair<std::string, std::string>>& rows) {
+    std::size_t widest = 0;
+    for (const auto& [name, value] : rows) widest = std::max(widest, shown_width(name));
+    std::string text;
+    for (const auto& [name, value] : rows)
+        text += name + std::string(widest - shown_width(name) + 2, ' ') + printable(value, std::string::npos) + "\n";
+    return text;
+}
+
 }  // namespace
 
 ReportText::ReportText(double value) : text(number(value)) {}
@@ -53,11 +78,9 @@ std::string ReportValue::text() const {
             if constexpr (std::same_as<Type, bool>) return value ? "yes" : "no";
             else if constexpr (std::is_arithmetic_v<Type> || std::same_as<Type, std::string>) return ReportText(value).text;
             else if constexpr (std::same_as<Type, std::vector<std::string>>) return joined(value);
-            else if constexpr (requires { value.begin(); }) {
-                std::vector<std::string> texts;
-                for (const auto one : value) texts.push_back(ReportText(one).text);
-                return joined(texts, " ");
-            } else return {};
+            else if constexpr (requires { value.begin(); })
+                return joined(value, " ", [](auto one) { return ReportText(one).text; });
+            else return {};
         },
         value_);
 }
@@ -270,44 +293,6 @@ std::string Report::to_text(ReportFormat format) const {
     return text;
 }
 
-std::string plain_table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows) {
-    std::vector<std::vector<std::string>> all{header};
-    for (const auto& row : rows) {
-        all.push_back(row);
-        all.back().resize(header.size());
-        for (auto& cell : all.back()) cell = printable(cell, std::string::npos);
-    }
-    const auto counts = [](const std::string& cell) { return cell.empty() || cell == "-" || is_number(cell); };
-    return aligned_rows(all, [&](std::size_t row, std::size_t column) {
-        if (row > 0) return is_number(all[row][column]);
-        return all.size() > 1 &&
-               std::all_of(all.begin() + 1, all.end(), [&](const auto& cells) { return counts(cells[column]); });
-    });
-}
-
-std::string plain_values(const std::vector<std::pair<std::string, std::string>>& rows) {
-    std::size_t widest = 0;
-    for (const auto& [name, value] : rows) widest = std::max(widest, shown_width(name));
-    std::string text;
-    for (const auto& [name, value] : rows)
-        text += name + std::string(widest - shown_width(name) + 2, ' ') + printable(value, std::string::npos) + "\n";
-    return text;
-}
-
 std::string number(double value, int digits) { return ostraka::digits(value, digits); }
-
-std::string printable(const std::string& text, std::size_t maximum) {
-    std::string clean;
-    std::size_t columns = 0;
-    for (std::size_t at = 0; at < text.size();) {
-        const Character here = character_at(text, at);
-        if (++columns > maximum) return clean + "...";
-        // A byte that begins no character may steer a terminal that does not read UTF-8.
-        const bool odd = is_control(here.code) || (here.code == 0xFFFD && here.length == 1);
-        clean += odd ? "?" : text.substr(at, here.length);
-        at += here.length;
-    }
-    return clean;
-}
 
 }  // namespace ostraka

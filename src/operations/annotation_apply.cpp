@@ -155,19 +155,13 @@ struct AnnotationApply final : Operation {
     bool mesh_labels = false;
 };
 
-struct AnnotationList final : Operation {
+struct AnnotationList final : AnnotatedMeshOperation {
     void describe(Parameters& p) override {
-        p.input("mesh", Kind::mesh, mesh, "mesh file");
-        p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)");
+        describe_inputs(p);
         declare_annotations(p.report);
     }
 
-    void run(Context& context, Report& report) override {
-        report_annotations(context, report, mesh->mesh, annotations.on(mesh->mesh));
-    }
-
-    MeshInput mesh;
-    AnnotationsInput annotations;
+    void run(Context& context, Report& report) override { report_annotations(context, report, mesh->mesh, set()); }
 };
 
 struct AnnotationRemap final : Operation {

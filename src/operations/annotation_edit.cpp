@@ -38,10 +38,9 @@ std::array<int, 3> named_colour(const std::string& text) {
     return colour;
 }
 
-struct AnnotationEditing final : Operation {
+struct AnnotationEditing final : AnnotatedMeshOperation {
     void describe(Parameters& p) override {
-        p.input("mesh", Kind::mesh, mesh, "mesh file");
-        p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)");
+        describe_inputs(p);
         p.output("output", Kind::annotations, output, "annotations to write");
         p.input_option("edits", Kind::edit, list, "list of edits (JSON, doc/schema/annotation-edits.schema.json)");
         p.options("annotation", annotation, "the annotation to edit: its id, or its tag if no other has it");
@@ -75,25 +74,25 @@ struct AnnotationEditing final : Operation {
 
     void run(Context&, Report& report) override {
         const Mesh& on = mesh->mesh;
-        const AnnotationSet& before = annotations.on(on);
-        AnnotationSet set = before;
+        const AnnotationSet& before = set();
+        AnnotationSet edited = before;
         std::vector<AnnotationEdit> edits;
         if (list) edits = list.load<std::vector<AnnotationEdit>>(read_edits);
         else if (!annotation.empty()) edits = {by_options()};
         // A tag may be a number as well.
-        if (!list && !edits.empty() && edits[0].annotation.id && set.find(*edits[0].annotation.id) == nullptr)
+        if (!list && !edits.empty() && edits[0].annotation.id && edited.find(*edits[0].annotation.id) == nullptr)
             edits[0].annotation.id.reset();
-        std::vector<std::string> notes = edit_annotations(on, set, edits, list ? list.file() : "flags");
-        if (object_class) set.object_class = *object_class;
-        if (up) set.up = direction();
-        if (unit && *unit != set.unit) {
-            rename_unit(on, set, *unit);
+        std::vector<std::string> notes = edit_annotations(on, edited, edits, list ? list.file() : "flags");
+        if (object_class) edited.object_class = *object_class;
+        if (up) edited.up = direction();
+        if (unit && *unit != edited.unit) {
+            rename_unit(on, edited, *unit);
             notes.emplace_back("the numbers stay as they are: the unit is that of the mesh's coordinates");
         }
         report.notes(notes);
-        report("annotations", set.annotations.size());
-        add_differences(report, "changes", differences(before, set), "nothing changed");
-        output.write(std::move(set), on, mesh.file());
+        report("annotations", edited.annotations.size());
+        add_differences(report, "changes", differences(before, edited), "nothing changed");
+        output.write(std::move(edited), on, mesh.file());
     }
 
     [[nodiscard]] std::optional<std::array<double, 3>> direction() const {
@@ -122,8 +121,6 @@ struct AnnotationEditing final : Operation {
         return edit;
     }
 
-    MeshInput mesh;
-    AnnotationsInput annotations;
     AnnotationsOutput output;
     FileInput list;
     std::string annotation, colour;

@@ -7,10 +7,9 @@ namespace ostraka {
 
 namespace {
 
-struct AnnotationInfer final : Operation {
+struct AnnotationInfer final : AnnotatedMeshOperation {
     void describe(Parameters& p) override {
-        p.input("mesh", Kind::mesh, mesh, "mesh file");
-        p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)");
+        describe_inputs(p);
         p.input("vocabulary", Kind::vocabulary, vocabulary, "vocabulary with rules (.vocabulary.json, .ttl, .rdf)");
         p.output("output", Kind::annotations, output, "annotations to write");
         p.report.table("inferred", integer("annotation", "id"), text("tag", "tag"), text("attribute", "attribute"),
@@ -20,7 +19,7 @@ struct AnnotationInfer final : Operation {
 
     void run(Context&, Report& report) override {
         const auto& words = vocabulary.load<Vocabulary>(read_vocabulary);
-        InferenceResult result = infer(annotations.on(mesh->mesh), words);
+        InferenceResult result = infer(set(), words);
         report.empty_table("inferred", false);
         for (const Inference& one : result.inferred)
             report.row("inferred")("annotation", one.annotation)("tag", result.annotations.find(one.annotation)->tag)(
@@ -33,8 +32,6 @@ struct AnnotationInfer final : Operation {
         output.write(std::move(result.annotations), mesh->mesh, mesh.file());
     }
 
-    MeshInput mesh;
-    AnnotationsInput annotations;
     FileInput vocabulary;
     AnnotationsOutput output;
 };

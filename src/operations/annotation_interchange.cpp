@@ -11,10 +11,9 @@ void describe_format(Parameters& p, std::optional<std::string>& format) {
     p.options("format", format, "format of the file, if its ending does not tell", Choices(interchange_formats()));
 }
 
-struct AnnotationExport final : Operation {
+struct AnnotationExport final : AnnotatedMeshOperation {
     void describe(Parameters& p) override {
-        p.input("mesh", Kind::mesh, mesh, "mesh file");
-        p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)");
+        describe_inputs(p);
         p.output("output", Kind::text, output, "file to write");
         describe_format(p, format);
         options.describe(p.options);
@@ -23,20 +22,18 @@ struct AnnotationExport final : Operation {
 
     void run(Context& context, Report& report) override {
         if (!format) format = guess_interchange_format(output.file());
-        const AnnotationSet& set = annotations.on(mesh->mesh);
+        const AnnotationSet& known = set();
         const ExportedAnnotations exported =
-            export_annotations(mesh->mesh, set, *format, mesh.file(), context.provenance(), options);
+            export_annotations(mesh->mesh, known, *format, mesh.file(), context.provenance(), options);
         report.notes(exported.notes);
         report("format", *format)("annotations", exported.annotations)("bytes", exported.bytes.size())("sha256",
                                                                                                        sha256(exported.bytes));
-        const std::size_t all = set.annotations.size(), written = exported.annotations;
+        const std::size_t all = known.annotations.size(), written = exported.annotations;
         report.line((written == all ? "" : std::to_string(written) + " of ") + counted(all, "annotation") + " as " + *format +
                     ", " + std::to_string(exported.bytes.size()) + " bytes");
         output.write(exported.bytes);
     }
 
-    MeshInput mesh;
-    AnnotationsInput annotations;
     FileOutput output;
     std::optional<std::string> format;
     ExportOptions options;

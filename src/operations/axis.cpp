@@ -75,13 +75,9 @@ struct FindAxis final : Operation {
         report("found", axis.found, axis.found ? "found" : "none");
         if (axis.found) {
             report("point", three(axis.point))("direction", three(axis.direction));
-            JsonValue lines(rapidjson::kArrayType);
-            for (const auto& line : axis.lines) {
-                JsonValue points(rapidjson::kArrayType);
-                for (const auto& p : line) points.PushBack(json_value(three(p), allocator), allocator);
-                lines.PushBack(points, allocator);
-            }
-            report("polylines", std::move(lines));
+            const auto point = [&](const Point& p) { return json_value(three(p), allocator); };
+            report("polylines",
+                   json_list(axis.lines, allocator, [&](const auto& line) { return json_list(line, allocator, point); }));
         } else {
             report("reason", axis.reason);
             report.answer_no();

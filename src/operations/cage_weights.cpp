@@ -115,7 +115,7 @@ struct CageInfluence final : Operation {
         } else if (on_cage) {
             const Annotation& chosen = find_annotation(annotations.on(subject), annotation, annotations.file());
             values = influence_on(coordinates, touched_vertices(subject, chosen), by);
-            what = (by == "max" ? "largest weight on '" : "sum of the weights on '") + chosen.tag + "'";
+            what = (by == InfluenceBy::max ? "largest weight on '" : "sum of the weights on '") + chosen.tag + "'";
         } else {
             for (const Index count : carriers(coordinates.vertex)) values.push_back(count);
             what = "cage vertices that carry 95 %";
@@ -155,7 +155,8 @@ struct CageInfluence final : Operation {
     AnnotationsInput annotations;
     MeshOutput output;
     std::optional<Index> cage_vertex;
-    std::string annotation, by = "max";
+    std::string annotation;
+    InfluenceBy by = InfluenceBy::max;
     std::optional<double> threshold;
 };
 

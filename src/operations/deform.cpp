@@ -65,8 +65,9 @@ struct Deform final : Operation {
         if (cage_out && subject.coordinates == nullptr) fail_without_cage();
         const HandleSpace space{subject.object->mesh, *subject.set, subject.around ? &subject.around->mesh : nullptr,
                                 subject.coordinates};
-        const DeformResult result = deform(space, *subject.relations, *edit, edit.file(), options, tolerances,
-                                           graph ? graph.file() : "the template's graph");
+        static const RelationGraph none;
+        const DeformResult result = deform(space, subject.relations ? *subject.relations : none, *edit, edit.file(), options,
+                                           tolerances, graph ? graph.file() : "the template's graph");
         report.run("seconds", stopwatch.seconds());
 
         const Mesh shaped = with_points(space.mesh, result.points);
@@ -104,14 +105,9 @@ struct Deform final : Operation {
     struct Subject {
         const MeshFile* object = nullptr;
         const AnnotationSet* set = nullptr;
-        const RelationGraph* relations = &none();
+        const RelationGraph* relations = nullptr;
         const MeshFile* around = nullptr;
         const Coordinates* coordinates = nullptr;
-
-        static const RelationGraph& none() {
-            static const RelationGraph graph;
-            return graph;
-        }
     };
 
     [[noreturn]] static void fail_without_cage() {

@@ -4,6 +4,7 @@
 #include "ostraka/core/words.h"
 
 #include <algorithm>
+#include <span>
 
 namespace ostraka {
 
@@ -66,18 +67,17 @@ JsonValue size_json(const MeshDiagnosis& d, JsonAllocator& allocator) {
 
 JsonValue to_json(const MeshDiagnosis& d, JsonAllocator& allocator) {
     JsonValue result = json_object(allocator, "sound", d.defects().empty(), "defects", d.defects());
-    JsonValue components(rapidjson::kArrayType), loops(rapidjson::kArrayType), pairs(rapidjson::kArrayType);
     for (const auto& [name, count] : diagnosis_counts) add_members(result, allocator, name, d.*count);
-    for (const auto& [a, b] : d.self_intersection_examples) pairs.PushBack(json_value(std::array{a, b}, allocator), allocator);
-    for (std::size_t i = 0; i < std::min(max_listed, d.components.size()); ++i)
-        components.PushBack(component_json(d.components[i], allocator), allocator);
-    for (std::size_t i = 0; i < std::min(max_listed, d.border_loops.size()); ++i)
-        loops.PushBack(json_object(allocator, "edges", d.border_loops[i].edges, "length", d.border_loops[i].length), allocator);
+    const auto pair = [&](const auto& of) { return json_value(std::array{of.first, of.second}, allocator); };
+    const auto component = [&](const ComponentDiagnosis& part) { return component_json(part, allocator); };
+    const auto loop = [&](const auto& one) { return json_object(allocator, "edges", one.edges, "length", one.length); };
+    const auto first = [](const auto& list) { return std::span(list).first(std::min(max_listed, list.size())); };
     add_members(result, allocator, "closed", d.closed(), "manifold", d.manifold(), "oriented", d.oriented(), "euler", d.euler(),
                 "self_intersections", d.self_intersections_checked ? std::optional(d.self_intersections) : std::nullopt,
-                "self_intersections_complete", d.self_intersections_complete, "self_intersection_examples", std::move(pairs),
-                "component_count", d.components.size(), "components", std::move(components), "border_loop_count",
-                d.border_loops.size(), "border_loops", std::move(loops), "size", size_json(d, allocator));
+                "self_intersections_complete", d.self_intersections_complete, "self_intersection_examples",
+                json_list(d.self_intersection_examples, allocator, pair), "component_count", d.components.size(), "components",
+                json_list(first(d.components), allocator, component), "border_loop_count", d.border_loops.size(), "border_loops",
+                json_list(first(d.border_loops), allocator, loop), "size", size_json(d, allocator));
     return result;
 }
 
@@ -139,11 +139,6 @@ void declare_diagnosis(ReportLayout& layout) {
     layout.values(integer("euler"), integer("component_count"), integer("border_loop_count"), boolean("closed"),
                   boolean("manifold"), boolean("oriented"), boolean("self_intersections_complete"), any("self_intersections"),
                   any("self_intersection_examples"), any("components"), any("border_loops"), any("size"));
-}
-
-void add_diagnosis(Report& report, const MeshDiagnosis& diagnosis) {
-    JsonValue all = to_json(diagnosis, report.allocator());
-    for (auto& member : all.GetObject()) report(member.name.GetString(), std::move(member.value));
 }
 
 }  // namespace ostraka

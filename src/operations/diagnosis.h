@@ -6,13 +6,10 @@
 
 namespace ostraka {
 
-/// The values that `add_diagnosis` adds.
+/// The values that `to_json` has.
 void declare_diagnosis(ReportLayout& layout);
 
-/// Counts, topology, size and defects as values of a result; lists (components, border loops) are cut after the first hundred,
-/// and say so.
-void add_diagnosis(Report& report, const MeshDiagnosis& diagnosis);
-/// The same as one structure.
+/// Counts, topology, size and defects; lists (components, border loops) are cut after the first hundred, and say so.
 JsonValue to_json(const MeshDiagnosis& diagnosis, JsonAllocator& allocator);
 
 /// "what" and "value", for people.

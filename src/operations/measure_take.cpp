@@ -1,7 +1,6 @@
 // measure take: a ruler, a tape, or two planes.
 #include "measured_object.h"
 
-#include "ostraka/core/ids.h"
 #include "ostraka/core/limits.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/measure/measure.h"
@@ -125,12 +124,7 @@ struct MeasureTake final : Operation {
                         std::to_string(other->id) +
                         ") already, and both are kept: give another --name, remove one with 'annotation edit "
                         "--remove-attribute ID', or join pickings with 'measure refresh --merge-pickings'");
-        Attribute attribute;
-        attribute.name = called();
-        attribute.type = AttributeType::measure;
-        attribute.measure = measure;
-        attribute.id = next_free_id(holder.attributes);
-        holder.attributes.push_back(std::move(attribute));
+        add_measure(holder, called(), measure);
     }
 
     void report_result(Report& report, const Annotation& holder, const Measure& measure, const Evaluated& taken) const {

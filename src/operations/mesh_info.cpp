@@ -56,7 +56,7 @@ struct MeshInfo final : Operation {
         const MeshDiagnosis diagnosis = in_file(input.file(), [&] { return diagnose(triangles.soup, options); });
         seconds.insert(seconds.end(), diagnosis.seconds.begin(), diagnosis.seconds.end());
         context.notes("", triangles.notes);
-        add_diagnosis(report, diagnosis);
+        report.values(to_json(diagnosis, report.allocator()));
         const bool sound = diagnosis.defects().empty() && degenerate == 0;
         report("sound", sound)("polygons", polygon_count)("degenerate_polygons", degenerate)("holds", extras);
         for (const auto& [part, time] : seconds) report.run("seconds." + part, time);

@@ -13,11 +13,7 @@ namespace ostraka {
 namespace {
 
 /// What all of them read and tell.
-struct RelationOperation : Operation {
-    void describe_inputs(Parameters& p) {
-        p.input("mesh", Kind::mesh, mesh, "mesh file");
-        p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)");
-    }
+struct RelationOperation : AnnotatedMeshOperation {
     void describe_graph(Parameters& p) { p.input("graph", Kind::graph, graph, "graph (.graph.json)"); }
     void describe_output(Parameters& p) { p.output("output", Kind::graph, output, "graph to write (.graph.json)"); }
     /// The table of relationships, with what became of each where they were checked.
@@ -31,7 +27,6 @@ struct RelationOperation : Operation {
         report.table("relationships", std::move(columns));
     }
 
-    [[nodiscard]] const AnnotationSet& set() const { return annotations.on(mesh->mesh); }
     [[nodiscard]] RelationGraph read_relations() const {
         RelationGraph relations;
         if (graph) relations.relationships = graph.on(set()).relationships;
@@ -53,8 +48,6 @@ struct RelationOperation : Operation {
             report_result(report, relationship).shown("origin", relationship.origin);
     }
 
-    MeshInput mesh;
-    AnnotationsInput annotations;
     GraphInput graph;
     GraphOutput output;
 

@@ -151,9 +151,7 @@ private:
         fail_usage(name + " '" + printable(text, 60) + "' is not a pick", "give an index, a point x,y,z or a pixel @x,y");
     }
     [[nodiscard]] JsonValue picks(const std::vector<std::string>& texts, const char* option) const {
-        JsonValue value(rapidjson::kArrayType);
-        for (const auto& text : texts) value.PushBack(pick(text, option), a_);
-        return value;
+        return json_list(texts, a_, [&](const auto& text) { return pick(text, option); });
     }
     void need_seed(const std::string& what) const {
         if (step_.seed.empty()) fail_usage(what + " needs a seed", "add --seed PICK, a place within it");

@@ -144,9 +144,7 @@ struct SliceObject final : Operation {
     }
 
     static std::string listed(const std::vector<double>& numbers) {
-        std::string text;
-        for (const double x : numbers) text += (text.empty() ? "" : ",") + number(x);
-        return text;
+        return joined(numbers, ",", [](double x) { return number(x); });
     }
 
     [[nodiscard]] std::optional<AxisMethod> own_axis() const {
@@ -202,10 +200,7 @@ struct SliceObject final : Operation {
         if (!plane.empty()) {
             cut = cut_parallel(mesh->mesh, frame_of_plane(), {0}, faces);
         } else {
-            CutOptions options;
-            options.up = upwards;
-            options.places = {heights, spacing, count.value_or(50), range[0], range[1]};
-            options.direction = own_axis();
+            CutOptions options{own_axis(), upwards, {heights, spacing, count.value_or(50), range[0], range[1]}, {}};
             if (!options.direction && direction != "up") {
                 const auto along = asked_direction();
                 options.up = {along[0], along[1], along[2]};
@@ -220,7 +215,7 @@ struct SliceObject final : Operation {
         context.check_output(file);
         switch (form) {
             case SliceForm::json:
-                write_json(file, document(context, report));
+                write_json(file, document_of("slices", report.result(), context.provenance()));  // the result so far
                 break;
             case SliceForm::csv:
                 write_file(file, slice_table(cut, unit_of_lengths));
@@ -228,9 +223,7 @@ struct SliceObject final : Operation {
             case SliceForm::mesh: {
                 MeshExtras extras;
                 extras.face_colours = slice_colours(mesh->mesh, cut, colour_by);
-                WriteOptions options;
-                options.comment = context.provenance().to_line();
-                context.notes({}, write_mesh(file, mesh->mesh, extras, options));
+                context.notes({}, write_mesh(file, mesh->mesh, extras, {.comment = context.provenance().to_line()}));
                 break;
             }
             case SliceForm::sheet:
@@ -239,16 +232,6 @@ struct SliceObject final : Operation {
             case SliceForm::profile:
                 if (is_drawable(file.filename().string(), cut, report)) draw_profile(file, false, cut, report);
         }
-    }
-
-    /// The result so far, as a file.
-    static Json document(const Context& context, const Report& report) {
-        Json document = json_document("slices");
-        auto& allocator = document.GetAllocator();
-        for (const auto& member : report.result().GetObject())
-            add_members(document, allocator, member.name.GetString(), member.value);
-        add_members(document, allocator, "provenance", context.provenance().to_json(allocator));
-        return document;
     }
 
     /// Nothing is drawn where nothing was met.
@@ -263,7 +246,7 @@ struct SliceObject final : Operation {
     [[nodiscard]] SliceSheet sheet(const CutObject& cut) const {
         const std::size_t n = cut.slices.size(), maximum = static_cast<std::size_t>(drawn);
         SliceSheet content;
-        content.title = name_of_drawing() + ": " + std::to_string(n) + (n == 1 ? " slice" : " slices");
+        content.title = name_of_drawing() + ": " + counted(n, "slice");
         content.unit = unit_of_lengths;
         for (std::size_t k = 0; k < std::min(n, maximum); ++k) {
             const std::size_t i = n <= maximum ? k : k * (n - 1) / std::max<std::size_t>(1, maximum - 1);

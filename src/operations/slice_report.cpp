@@ -2,6 +2,7 @@
 
 #include "ostraka/core/csv.h"
 #include "ostraka/core/json_build.h"
+#include "ostraka/core/text.h"
 #include "ostraka/render/colour_scale.h"
 
 #include <algorithm>
@@ -55,9 +56,7 @@ JsonValue slice_list(const std::vector<double>& values, JsonAllocator& allocator
     return json_value(list, allocator);
 }
 JsonValue slice_points(const std::vector<Eigen::Vector2d>& points, JsonAllocator& allocator) {
-    JsonValue list(rapidjson::kArrayType);
-    for (const auto& p : points) list.PushBack(slice_list({p.x(), p.y()}, allocator), allocator);
-    return list;
+    return json_list(points, allocator, [&](const auto& p) { return slice_list({p.x(), p.y()}, allocator); });
 }
 
 JsonValue slice_json(const SliceFrame& frame, JsonAllocator& allocator) {
@@ -81,17 +80,14 @@ JsonValue slice_json(const Contour& contour, JsonAllocator& allocator) {
 }
 
 JsonValue slice_json(const MedialAxis& medial, JsonAllocator& allocator) {
-    JsonValue levels(rapidjson::kArrayType);
-    for (const auto& level : medial.levels) {
-        JsonValue branches(rapidjson::kArrayType);
-        for (const auto& branch : level.branches)
-            branches.PushBack(json_object(allocator, "points", slice_points(branch.points, allocator), "radii",
-                                          slice_list(branch.radii, allocator)),
-                              allocator);
-        levels.PushBack(json_object(allocator, "residue", level.residue, "length", level.length, "branches", std::move(branches)),
-                        allocator);
-    }
-    return levels;
+    const auto branch_json = [&](const MedialAxis::Branch& branch) {
+        return json_object(allocator, "points", slice_points(branch.points, allocator), "radii",
+                           slice_list(branch.radii, allocator));
+    };
+    return json_list(medial.levels, allocator, [&](const MedialAxis::Level& level) {
+        return json_object(allocator, "residue", level.residue, "length", level.length, "branches",
+                           json_list(level.branches, allocator, branch_json));
+    });
 }
 
 void add_slice_completeness(Report::Row& row, const Slice& slice) {
@@ -124,9 +120,7 @@ void add_one_slice(Report& report, const CutObject& cut, std::size_t i) {
     add_slice_descriptors(row, cut.descriptors[i]);
     if (const auto profile = thickness_profile(slice, 72); !profile.empty())
         row("thickness_profile", slice_list(profile, allocator));
-    JsonValue contours(rapidjson::kArrayType);
-    for (const auto& contour : slice.contours) contours.PushBack(slice_json(contour, allocator), allocator);
-    row("contours", std::move(contours));
+    row("contours", json_list(slice.contours, allocator, [&](const auto& contour) { return slice_json(contour, allocator); }));
     if (!cut.medial.empty()) row("medial_axis", slice_json(cut.medial[i], allocator));
 }
 
@@ -141,9 +135,8 @@ void add_compared_axis(Report& report, const ComparedAxis& axis) {
     if (axis.polyline.empty()) {
         row("point", slice_triple(axis.line.point))("direction", slice_triple(axis.line.direction));
     } else {
-        JsonValue points(rapidjson::kArrayType);
-        for (const auto& p : axis.polyline) points.PushBack(slice_list(slice_triple(p), allocator), allocator);
-        row("polyline", std::move(points));
+        const auto point = [&](const Point& p) { return slice_list(slice_triple(p), allocator); };
+        row("polyline", json_list(axis.polyline, allocator, point));
     }
     const Straightness& s = axis.straightness;
     row("straightness.mean_distance", s.mean)("straightness.deviation", s.deviation)("straightness.largest_distance", s.maximum)(
@@ -241,11 +234,7 @@ std::string slice_table(const CutObject& cut, const std::string& unit) {
                                     "turned_contours", "doubtful_share"};
     for (const auto& entry : list_descriptors({})) header.emplace_back(entry.name);
     std::string text = csv_row(header);
-    const auto cell = [](double value) {
-        char buffer[32];
-        std::snprintf(buffer, sizeof buffer, "%.12g", value);
-        return std::isfinite(value) ? std::string(buffer) : std::string();
-    };
+    const auto cell = [](double value) { return std::isfinite(value) ? digits(value, 12) : std::string(); };
     for (std::size_t i = 0; i < cut.slices.size(); ++i) {
         const Slice& slice = cut.slices[i];
         const auto open = std::count_if(slice.contours.begin(), slice.contours.end(), [](const Contour& c) { return !c.closed; });

@@ -10,7 +10,7 @@ void StudyFiles::describe(Parameters& p, bool labels, const std::string& collect
              "folder for tables, plots and the report; what is done is kept there and not done again")
         .flag();
     p.options("plots", plots_, "format of the plots", Choices{"svg", "png"}).unrecorded();
-    declare_failures(p.report);
+    p.report.table("failed", text("name"), text("problem"));
     if (!labels) return;
     p.input_option("truth", Kind::table, truth_, "known answers: CSV with the columns name and label");
     p.options("truth-column", truth_column_, "the column of the answers, if not 'label'");
@@ -35,8 +35,6 @@ Collection StudyFiles::read(Context& context) const {
     context.notes("", result.notes);
     return result;
 }
-
-void declare_failures(ReportLayout& layout) { layout.table("failed", text("name"), text("problem")); }
 
 std::size_t report_failures(Report& report, const Collection& collection, const std::vector<ObjectResult>& results) {
     std::size_t count = 0;
@@ -74,10 +72,7 @@ void KnownAnswers::add_to(Report& report) const {
 }
 
 void write_study_report(const Path& file, const std::string& kind, const JsonValue& result, const Provenance& provenance) {
-    Json document = json_document(kind);
-    auto& allocator = document.GetAllocator();
-    for (const auto& member : result.GetObject()) add_members(document, allocator, member.name.GetString(), member.value);
-    add_members(document, allocator, "provenance", provenance.to_json(allocator));
+    const Json document = document_of(kind, result, provenance);
     validate(document, kind, file.string());
     write_json(file, document);
 }

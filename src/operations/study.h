@@ -34,8 +34,14 @@ private:
     PlotFormat plots_ = PlotFormat::svg;
 };
 
+/// An operation on a collection.
+struct StudyOperation : Operation {
+    void check() const override { files.check(); }
+
+    StudyFiles files;
+};
+
 /// The table result.failed: the objects that failed or were left out, also as notes. Returns how many.
-void declare_failures(ReportLayout& layout);
 std::size_t report_failures(Report& report, const Collection& collection, const std::vector<ObjectResult>& results);
 
 /// How many of the objects that were studied have a known answer.
@@ -51,7 +57,7 @@ struct KnownAnswers {
     void add_to(Report& report) const;
 };
 
-/// {"format": "ostraka-KIND", "version", members of `result`, "provenance"}, checked against the schema KIND.
+/// `document_of` these, checked against the schema KIND.
 void write_study_report(const Path& file, const std::string& kind, const JsonValue& result, const Provenance& provenance);
 
 }  // namespace ostraka

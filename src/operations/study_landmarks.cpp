@@ -14,7 +14,7 @@ namespace ostraka {
 
 namespace {
 
-struct StudyLandmarks final : Operation {
+struct StudyLandmarks final : StudyOperation {
     void describe(Parameters& p) override {
         files.describe(p, true);
         p.options("components", components, "principal components to write", Range{1, 1000});
@@ -23,8 +23,6 @@ struct StudyLandmarks final : Operation {
         for (const char* size : {"meanCentroidSize", "meanNorm", "sumOfSquares"}) p.report.values(number(size));
         p.report.values(boolean("converged"), numbers("components"));
     }
-
-    void check() const override { files.check(); }
 
     void run(Context& context, Report& report) override {
         const Collection collection = files.read(context);
@@ -95,7 +93,6 @@ struct StudyLandmarks final : Operation {
         write_plot(files.plot("components"), plot);
     }
 
-    StudyFiles files;
     int components = 5;
     ProcrustesOptions options;
 };

@@ -33,9 +33,7 @@ struct StudyMake : Operation {
     }
 
     void write(const std::string& name, const Mesh& mesh, const MeshExtras& extras, const Provenance& provenance) const {
-        WriteOptions writing;
-        writing.comment = provenance.to_line();
-        write_mesh(folder.in(name + ".ply"), mesh, extras, writing);
+        write_mesh(folder.in(name + ".ply"), mesh, extras, {.comment = provenance.to_line()});
     }
 
     FolderOutput folder;
@@ -43,11 +41,7 @@ struct StudyMake : Operation {
 
 /// Those that make statuettes.
 struct StudyMakeStatuettes : StudyMake {
-    /// "statuette-07" of more than nine.
-    static std::string name_of(std::size_t i, std::size_t count) {
-        const std::string number = std::to_string(i + 1);
-        return "statuette-" + std::string(std::to_string(count).size() - number.size(), '0') + number;
-    }
+    static std::string name_of(std::size_t i, std::size_t count) { return "statuette-" + padded(i + 1, count); }
     /// Writes mesh and annotations, whose provenance is what the one statuette was made of.
     void make_one(const std::string& name, const StatuetteParameters& parameters, const std::string& command, bool coloured,
                   const std::function<void(const Statuette&)>& look = {}) const {

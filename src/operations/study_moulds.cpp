@@ -14,7 +14,7 @@ namespace ostraka {
 
 namespace {
 
-struct StudyMoulds final : Operation {
+struct StudyMoulds final : StudyOperation {
     void describe(Parameters& p) override {
         files.describe(p, true);
         p.options("similarity", similarity, "what the groups are found by", Choices(mould_similarities()));
@@ -30,8 +30,6 @@ struct StudyMoulds final : Operation {
         p.report.table("heads", text("name"), integer("group"), number("silhouette"), integer("secondGroup"),
                        number("relativeSize"), text("label"));
     }
-
-    void check() const override { files.check(); }
 
     void run(Context& context, Report& report) override {
         const Collection collection = files.read(context);
@@ -245,9 +243,7 @@ struct StudyMoulds final : Operation {
             plot.x.label = "eigenvector " + std::to_string(second == 1 ? 1 : 2);
             plot.y.label = "eigenvector " + std::to_string(second + 1);
             for (int each = 0; each < study.group_count(); ++each) {
-                PlotSeries series;
-                series.joined = false;
-                series.name = "group " + std::to_string(each + 1);
+                PlotSeries series{.name = "group " + std::to_string(each + 1), .joined = false};
                 for (std::size_t i = 0; i < names.size(); ++i) {
                     if (study.groups.labels[i] != each) continue;
                     const auto row = static_cast<Eigen::Index>(i);
@@ -260,7 +256,6 @@ struct StudyMoulds final : Operation {
         }
     }
 
-    StudyFiles files;
     std::string similarity = "combined";
     std::vector<int> leave_out;
     bool choices = false;

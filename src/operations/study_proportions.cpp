@@ -9,7 +9,6 @@
 #include "ostraka/report/table.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace ostraka {
 
@@ -105,7 +104,7 @@ Plot variation_plot(const ProportionStudy& study, const std::string& title) {
     return plot;
 }
 
-struct StudyProportions final : Operation {
+struct StudyProportions final : StudyOperation {
     void describe(Parameters& p) override {
         files.describe(p, false, "folder of meshes, a list of objects (.study.json), or a table of measures (.csv)");
         p.input_option("measures", Kind::text, measures, "the measures to take on every object (.measures.json)");
@@ -132,7 +131,7 @@ struct StudyProportions final : Operation {
     }
 
     void check() const override {
-        files.check();
+        StudyOperation::check();
         if (from_table() && measures) fail_usage("--measures with a table", "a table holds the measures already");
         if (!from_table() && !measures) fail_usage("--measures is missing", "name the measures to be taken (.measures.json)");
         if (!graph && (mesh || annotations || annotations_out || graph_in))
@@ -248,7 +247,6 @@ struct StudyProportions final : Operation {
         write_plot(files.plot("variation"), variation_plot(study, "How much each ratio varies, with 95 % intervals"));
         HeatMap map{"Standard deviation of the logarithm of each ratio", {}, {}, {}, "standard deviation"};
         map.values.setConstant(m, m, std::numeric_limits<double>::quiet_NaN());
-        bool complete = true;
         for (const RatioRow& ratio : study.ratios) {
             const auto a = rows[ratio.numerator], b = rows[ratio.denominator];
             if (ratio.row.summary && ratio.row.summary->count > 1) map.values(a, b) = map.values(b, a) = ratio.log_deviation;
@@ -260,15 +258,13 @@ struct StudyProportions final : Operation {
         map.minimum = 0;
         write_plot(files.plot("deviations"), map);
         for (Eigen::Index j = 0; j < m; ++j) map.values(j, j) = 0;
-        complete = map.values.allFinite();
-        if (complete && m > 1)
+        if (map.values.allFinite() && m > 1)
             write_plot(files.plot("measures"),
                        Dendrogram{"Measures by how fixed their ratios are (average linkage)", linkage(map.values),
                                   map.rows, "standard deviation of the logarithm of ratios"});
         else report.note("no plot 'measures': not each two measures have a ratio known of two objects or more");
     }
 
-    StudyFiles files;
     FileInput measures;
     MeshInput mesh;
     AnnotationsInput annotations;

@@ -98,11 +98,11 @@ struct StudySegments final : Operation {
     }
 
     void draw(const SliceSegments& segments) const {
-        Plot plot;
         const bool gap = options.count.criterion == ClusterCountOptions::Criterion::gap;
-        plot.title = "Number of clusters: " + std::to_string(segments.count.proposed) + " proposed";
-        plot.x = {"clusters"};
-        plot.y = {gap ? "gap statistic" : "mean silhouette"};
+        Plot plot{"Number of clusters: " + std::to_string(segments.count.proposed) + " proposed",
+                  {"clusters"},
+                  {gap ? "gap statistic" : "mean silhouette"},
+                  {}};
         PlotSeries series;
         for (const ClusterCount::Row& row : segments.count.rows) {
             if (!gap && row.clusters < 2) continue;

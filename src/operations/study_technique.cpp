@@ -11,7 +11,7 @@ namespace ostraka {
 
 namespace {
 
-struct StudyOfTechnique final : Operation {
+struct StudyOfTechnique final : StudyOperation {
     void describe(Parameters& p) override {
         files.describe(p, true);
         up.describe(
@@ -33,8 +33,6 @@ struct StudyOfTechnique final : Operation {
                        text("certainty"), text("words"), integer("slices.asked"), integer("slices.used"), integer("slices.open"),
                        integer("slices.tooOpen"), integer("slices.empty"));
     }
-
-    void check() const override { files.check(); }
 
     void run(Context& context, Report& report) override {
         const Collection collection = files.read(context);
@@ -195,7 +193,6 @@ struct StudyOfTechnique final : Operation {
             report.line("unlike the labelled objects, so that they get no answer (see answers.md): " + listed(unlike));
     }
 
-    StudyFiles files;
     DirectionOption up;
     TechniqueOptions slices;
     TechniqueStudyOptions options;

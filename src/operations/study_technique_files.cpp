@@ -72,15 +72,10 @@ namespace {
 void draw_technique_scatter(const StudyFiles& files, const TechniqueStudy& study, const std::vector<TechniqueObject>& objects,
                             const std::string& file, const std::string& title, const std::string& x, const std::string& y,
                             bool logarithmic) {
-    Plot plot;
-    plot.title = title;
-    plot.x = {x, logarithmic};
-    plot.y = {y, true};
+    Plot plot{.title = title, .x = {x, logarithmic}, .y = {y, true}};
     std::vector<std::string> classes{study.positive, study.negative, study.learned ? "not known" : "no answer"};
     for (std::size_t c = 0; c < classes.size(); ++c) {
-        PlotSeries series;
-        series.name = classes[c];
-        series.joined = false;
+        PlotSeries series{.name = classes[c], .joined = false};
         for (std::size_t i = 0; i < objects.size(); ++i) {
             const std::string& kind = study.learned ? objects[i].label : study.answers[i].answer;
             const std::size_t number = kind == study.positive ? 0 : kind == study.negative ? 1 : 2;
@@ -111,16 +106,11 @@ void draw_technique(const StudyFiles& files, const TechniqueStudy& study, const 
     draw_technique_scatter(files, study, objects, "ovality", "Ovality and finger marks, relative to the radius", "ovality",
                            "marks", true);
     if (!study.learned) return;
-    Plot bars;
-    bars.title = "F1 of " + study.positive + " under cross-validation; 95 % over objects drawn anew";
-    bars.y = {"F1"};
-    bars.y.minimum = 0;
-    bars.y.maximum = 1;
-    bars.width = 980;
-    bars.height = 560;
-    PlotSeries series;
-    series.joined = false;
-    series.mark = Mark::bars;
+    Plot bars{.title = "F1 of " + study.positive + " under cross-validation; 95 % over objects drawn anew",
+              .y = {.label = "F1", .minimum = 0, .maximum = 1},
+              .width = 980,
+              .height = 560};
+    PlotSeries series{.joined = false, .mark = Mark::bars};
     for (const ClassifierResult& each : study.classifiers) {
         if (!each.validated) continue;
         bars.x.names.push_back(each.classifier.name);
@@ -133,22 +123,16 @@ void draw_technique(const StudyFiles& files, const TechniqueStudy& study, const 
     bars.series.push_back(std::move(series));
     write_plot(files.plot("classifiers"), bars);
 
-    Plot roc;
-    roc.title = "Receiver operating characteristics";
-    roc.x = {"hand-made taken for wheel-made"};
-    roc.x.label = "share of " + study.negative + " called " + study.positive;
-    roc.y = {"share of " + study.positive + " called so"};
-    roc.x.minimum = roc.y.minimum = 0;
-    roc.x.maximum = roc.y.maximum = 1;
-    roc.square = true;
-    roc.width = 760;
-    roc.height = 560;
+    Plot roc{.title = "Receiver operating characteristics",
+             .x = {.label = "share of " + study.negative + " called " + study.positive, .minimum = 0, .maximum = 1},
+             .y = {.label = "share of " + study.positive + " called so", .minimum = 0, .maximum = 1},
+             .width = 760,
+             .height = 560,
+             .square = true};
     for (const ClassifierResult& each : study.classifiers) {
         const auto& name = each.classifier.name;
         if (!each.validated || (name != "roundness" && name != "eccentricity" && name != "both" && name != "outside")) continue;
-        PlotSeries curve;
-        curve.name = name + " (area " + fixed(each.roc.area, 3) + ")";
-        curve.marked = false;
+        PlotSeries curve{.name = name + " (area " + fixed(each.roc.area, 3) + ")", .marked = false};
         // Thinner from curve to curve, so that each is seen where they coincide.
         curve.thickness = 7.5 - 2 * static_cast<double>(roc.series.size());
         for (const RocPoint& point : each.roc.points)

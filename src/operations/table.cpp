@@ -3,8 +3,6 @@
 
 #include "ostraka/core/nearest_name.h"
 
-#include <algorithm>
-
 namespace ostraka {
 
 // clang-format off

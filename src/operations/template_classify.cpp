@@ -89,9 +89,8 @@ struct TemplateClassify final : Operation {
     void report_result(Report& report, const std::vector<Classification>& answers) const {
         Json document = json_document("classification");
         auto& allocator = document.GetAllocator();
-        JsonValue objects(rapidjson::kArrayType);
-        for (const Classification& one : answers) objects.PushBack(classification_to_json(one, allocator), allocator);
-        add_members(document, allocator, "objects", std::move(objects));
+        const auto object_json = [&](const auto& one) { return classification_to_json(one, allocator); };
+        add_members(document, allocator, "objects", json_list(answers, allocator, object_json));
         report.values(document);
         if (answer) answer.write(std::move(document));
         for (const Classification& object : answers)

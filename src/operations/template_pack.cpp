@@ -60,10 +60,7 @@ struct TemplatePack final : Operation {
 
     void run(Context& context, Report& report) override {
         const Path place(output.file()), folder = place.has_parent_path() ? place.parent_path() : Path(".");
-        TemplateFile file;
-        file.object_class = object_class;
-        file.unit = unit;
-        file.up = up.value();
+        TemplateFile file{object_class, unit, up.value(), {}};
         std::vector<Path> inputs, outputs{place};
         std::map<Path, Path> copies;  // and what they are of
         for (const std::string& role : template_roles())

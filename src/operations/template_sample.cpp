@@ -28,10 +28,8 @@ struct TemplateSample final : Operation {
         replace_outputs(output.open(0, false), "template-sample-" + known.learnt.name);
         const Sampling result = sample_class(known.learnt, known.known(), options);
         std::vector<std::string> names;
-        for (std::size_t i = 0; i < result.samples.size(); ++i) {
-            const std::string last = std::to_string(result.samples.size()), here = std::to_string(i + 1);
-            names.push_back(known.learnt.name + "-" + std::string(last.size() - here.size(), '0') + here);
-        }
+        for (std::size_t i = 0; i < result.samples.size(); ++i)
+            names.push_back(known.learnt.name + "-" + padded(i + 1, result.samples.size()));
         write(known, result, names, report);
         report_result(report, known.learnt.name, result);
         if (names.size() < static_cast<std::size_t>(options.count)) report.answer_no();

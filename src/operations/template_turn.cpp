@@ -1,9 +1,8 @@
 // template turn: a whole vessel from its sherds.
 #include "operations.h"
 
+#include "ostraka/core/text.h"
 #include "ostraka/revolution/surface_of_revolution.h"
-
-#include <sstream>
 
 namespace ostraka {
 
@@ -48,12 +47,8 @@ struct TemplateTurn final : Operation {
 
     void write(Context& context, const RevolutionTemplate& turned) const {
         const Provenance provenance = context.provenance();
-        TemplateFile file;
-        file.object_class = turned.annotations.object_class;
-        file.unit = unit;
-        file.up = turned.annotations.up;
-        WriteOptions how;
-        how.comment = provenance.to_line();
+        TemplateFile file{turned.annotations.object_class, unit, turned.annotations.up, {}};
+        const WriteOptions how{.comment = provenance.to_line()};
         // Written in memory first: the template names the checksums of its parts.
         const auto part = [&](const std::string& role, const std::string& name, const std::function<void(const Path&)>& writer) {
             const Path draft = context.memory(name);
@@ -70,11 +65,9 @@ struct TemplateTurn final : Operation {
         part("mesh", "turned.ply", [&](const Path& path) { write_mesh(path, turned.mesh, {}, how); });
         part("annotations", "turned.ant.json",
              [&](const Path& path) { write_annotations(path, turned.annotations, turned.mesh, "turned.ply", provenance); });
-        std::ostringstream csv;
-        csv.precision(10);
-        csv << "radius,height\n";
-        for (const auto& p : turned.profile) csv << p.x() << ',' << p.y() << '\n';
-        write_file(output.in("profile.csv"), csv.str());
+        std::string csv = "radius,height\n";
+        for (const auto& p : turned.profile) csv += digits(p.x(), 10) + "," + digits(p.y(), 10) + "\n";
+        write_file(output.in("profile.csv"), csv);
         write_json(output.in("turned.template.json"), template_to_json(file, provenance));
     }
 

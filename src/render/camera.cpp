@@ -63,17 +63,10 @@ Camera fit_camera(std::size_t count, const std::function<Eigen::Vector3d(std::si
 
 PictureCamera in_mesh_coordinates(const Camera& camera, const std::array<double, 3>& middle, double unit) {
     const auto direction = [](const Eigen::Vector3d& v) { return Vector(v.x(), v.y(), v.z()); };
-    PictureCamera result;
-    result.right = direction(camera.right);
-    result.up = direction(camera.up);
-    result.toward = direction(camera.toward);
-    result.centre =
-        Point(middle[0] + unit * camera.centre.x(), middle[1] + unit * camera.centre.y(), middle[2] + unit * camera.centre.z());
-    result.scale = camera.scale / unit;
-    result.distance = camera.distance * unit;
-    result.middle_x = camera.middle_x;
-    result.middle_y = camera.middle_y;
-    return result;
+    const Point centre(middle[0] + unit * camera.centre.x(), middle[1] + unit * camera.centre.y(),
+                       middle[2] + unit * camera.centre.z());
+    return {direction(camera.right), direction(camera.up),   direction(camera.toward), centre,
+            camera.scale / unit,     camera.distance * unit, camera.middle_x,          camera.middle_y};
 }
 
 double mark_size(int width, int height) { return std::clamp(std::min(width, height) / 900.0, 0.4, 8.0); }

@@ -2,6 +2,7 @@
 
 #include "ostraka/core/angles.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/text.h"
 
 #include <cstring>
 
@@ -16,26 +17,6 @@ extern "C" const char* __lsan_default_options() { return "print_suppressions=0";
 namespace ostraka::detail {
 
 namespace {
-/// Length of the well-formed UTF-8 sequence at `place` (RFC 3629), 0 if there is none; `code` gets the character.
-std::size_t decode(const std::string& text, std::size_t place, char32_t& code) {
-    const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
-    const unsigned first = byte(place);
-    if (first < 0x80) {
-        code = first;
-        return 1;
-    }
-    const std::size_t length = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
-    if (first < 0xC2 || first > 0xF4 || place + length > text.size()) return 0;
-    code = first & (0xFFU >> (length + 1));
-    for (std::size_t i = 1; i < length; ++i) {
-        if ((byte(place + i) & 0xC0U) != 0x80) return 0;
-        code = code << 6 | (byte(place + i) & 0x3FU);
-    }
-    const char32_t smallest = length == 4 ? 0x10000 : length == 3 ? 0x800 : 0x80;
-    if (code < smallest || code > 0x10FFFF || (code >= 0xD800 && code <= 0xDFFF)) return 0;
-    return length;
-}
-
 bool invisible(char32_t code) {
     return code < 0x20 || (code >= 0x7F && code < 0xA0) || (code >= 0x200B && code <= 0x200F) ||
            (code >= 0x2028 && code <= 0x202E) || (code >= 0x2060 && code <= 0x206F) || code == 0xFEFF;
@@ -45,19 +26,11 @@ bool invisible(char32_t code) {
 std::string clean_text(const std::string& text) {
     std::string clean;
     for (std::size_t i = 0; i < text.size();) {
-        char32_t code = 0;
-        const std::size_t length = decode(text, i, code);
-        if (length == 0) {
-            clean += "\xEF\xBF\xBD";
-            ++i;
-            continue;
-        }
-        if (code == '\t' || code == '\n') {
-            clean += ' ';
-        } else if (!invisible(code)) {
-            clean.append(text, i, length);
-        }
-        i += length;
+        const Character here = character_at(text, i);
+        if (here.code == 0xFFFD) clean += "\xEF\xBF\xBD";
+        else if (here.code == '\t' || here.code == '\n') clean += ' ';
+        else if (!invisible(here.code)) clean.append(text, i, here.length);
+        i += here.length;
     }
     return clean;
 }

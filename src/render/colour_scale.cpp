@@ -1,6 +1,7 @@
 #include "ostraka/render/colour_scale.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/text.h"
 
 #include <algorithm>
 #include <array>
@@ -90,9 +91,7 @@ double round_length(double length) {
     for (int e = exponent - 1; e <= exponent + 1; ++e)
         for (const int digit : {1, 2, 5}) {
             // Read from text: the double nearest to the decimal number, so that it is printed with one digit.
-            char text[32];
-            std::snprintf(text, sizeof text, "%de%d", digit, e);
-            const double candidate = std::strtod(text, nullptr);
+            const double candidate = std::strtod((std::to_string(digit) + "e" + std::to_string(e)).c_str(), nullptr);
             if (std::isfinite(candidate) && candidate <= length * (1 + 1e-12)) best = std::max(best, candidate);
         }
     return best;
@@ -116,15 +115,12 @@ std::vector<double> ticks(const ColourScale& scale, int count) {
 }
 
 std::string tick_text(double value, double step) {
-    char text[64];
     const double size = std::max(std::abs(value), std::abs(step));
     if (size == 0) return "0";
-    if (size >= 1e6 || size < 1e-4 || !(step > 0)) {
-        std::snprintf(text, sizeof text, "%.4g", value);
-        return text;
-    }
-    const int digits = std::clamp(-static_cast<int>(std::floor(std::log10(step) + 1e-9)), 0, 12);
-    std::snprintf(text, sizeof text, "%.*f", digits, value);
+    if (size >= 1e6 || size < 1e-4 || !(step > 0)) return digits(value, 4);
+    const int after_point = std::clamp(-static_cast<int>(std::floor(std::log10(step) + 1e-9)), 0, 12);
+    char text[64];
+    std::snprintf(text, sizeof text, "%.*f", after_point, value);
     return text;
 }
 

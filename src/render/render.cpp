@@ -1,7 +1,8 @@
 #include "ostraka/render/render.h"
-#include "ostraka/core/angles.h"
 
+#include "ostraka/core/angles.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/text.h"
 #include "overlay.h"
 #include "shading.h"
 
@@ -144,11 +145,9 @@ void add_scale_bar(Canvas& canvas, Plan& plan, const Scene& scene, double unit_l
         pane.bar_length = pane.bar_pixels = 0;
         return;
     }
-    char number[32];
-    std::snprintf(number, sizeof number, "%.6g", pane.bar_length);
     const std::string unit = detail::clean_text(scene.unit);
     const std::string text =
-        (plan.camera.distance > 0 ? "\xE2\x89\x88 " : "") + std::string(number) + (unit.empty() ? "" : " " + unit);
+        (plan.camera.distance > 0 ? "\xE2\x89\x88 " : "") + digits(pane.bar_length, 6) + (unit.empty() ? "" : " " + unit);
     detail::draw_scale_bar(canvas, pane.left + 14 * style.size, pane.top + pane.height + strip - 8 * style.size, pane.bar_pixels,
                            text, style);
 }
@@ -261,11 +260,10 @@ Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options)
 }
 
 void RenderOptions::describe(OptionList& visit) {
-    visit("size", size, "width and height of the picture in pixels", Anything{});
-    visit("view", view, "front, back, left, right, top, bottom, iso, or azimuth,elevation in degrees", Anything{});
+    visit("size", size, "width and height of the picture in pixels");
+    visit("view", view, "front, back, left, right, top, bottom, iso, or azimuth,elevation in degrees");
     visit("views", views, "'six': front, right, back, left, top and bottom on one sheet", Choices{"", "six"});
-    visit("up", up, "the object's upward axis: x, y, z, -x, -y, -z or three numbers; auto: as the annotations say, else z",
-          Anything{});
+    visit("up", up, "the object's upward axis: x, y, z, -x, -y, -z or three numbers; auto: as the annotations say, else z");
     visit("projection", projection, "orthographic or perspective", Choices{"orthographic", "perspective"});
     visit("zoom", zoom, "magnification about the middle, 1 shows the whole object", Range{0.01, 1000});
     visit("fit", fit, "several objects: all at one scale, or each as large as fits", Choices{"all", "each"});
@@ -273,11 +271,11 @@ void RenderOptions::describe(OptionList& visit) {
     visit("crease", crease, "smooth shading: edges sharper than this stay sharp", Range{0, 180}, "degrees");
     visit("ambient-occlusion", ambient_occlusion, "rays a pixel that darken hollows, 0 for none", Range{0, 1024});
     visit("samples", samples, "rays a pixel where colours change, 1 for none extra", Range{1, 64});
-    visit("edges", edges, "draw the edges of the mesh", Anything{});
-    visit("background", background, "#rrggbb, white, black or grey", Anything{});
-    visit("transparent", transparent, "no background", Anything{});
-    visit("no-scale-bar", no_scale_bar, "leave out the scale bar", Anything{});
-    visit("no-legend", no_legend, "leave out the legend and the colour bar", Anything{});
+    visit("edges", edges, "draw the edges of the mesh");
+    visit("background", background, "#rrggbb, white, black or grey");
+    visit("transparent", transparent, "no background");
+    visit("no-scale-bar", no_scale_bar, "leave out the scale bar");
+    visit("no-legend", no_legend, "leave out the legend and the colour bar");
 }
 
 }  // namespace ostraka

@@ -2,6 +2,7 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/npy.h"
+#include "ostraka/core/text.h"
 
 #include <charconv>
 #include <cmath>
@@ -26,11 +27,8 @@ std::vector<double> parse_lines(std::string_view text, const std::string& where)
     while (!text.empty()) {
         ++line;
         const auto end = text.find('\n');
-        std::string_view words = text.substr(0, end);
+        std::string_view words = trimmed(text.substr(0, end));
         text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-        constexpr std::string_view blanks = " \t\r";
-        words.remove_prefix(std::min(words.find_first_not_of(blanks), words.size()));
-        words = words.substr(0, words.find_last_not_of(blanks) + 1);
         if (words.empty() || words.front() == '#') continue;
         if (words.front() == '+') words.remove_prefix(1);
         double value = 0;

@@ -5,7 +5,6 @@
 #include "sheet.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <tuple>
 
@@ -134,8 +133,6 @@ std::string draw(const Dendrogram& d, Sheet::Format format) {
 }
 
 }  // namespace
-
-std::string svg_bytes(const Dendrogram& dendrogram) { return draw(dendrogram, report::Sheet::Format::svg); }
 
 void write_plot(const Path& file, const Dendrogram& dendrogram) {
     report::write_sheet(file, [&](report::Sheet::Format format) { return draw(dendrogram, format); });

@@ -1,6 +1,7 @@
 #include "ostraka/report/heat_map.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/text.h"
 #include "ostraka/render/colour_scale.h"
 #include "sheet.h"
 
@@ -36,12 +37,6 @@ ColourScale colours(const HeatMap& map) {
 
 double lightness(const Rgb& c) { return (0.299 * c.red + 0.587 * c.green + 0.114 * c.blue) / 255; }
 
-std::string number_text(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.2g", value);
-    return text;
-}
-
 std::string draw(const HeatMap& map, Sheet::Format format) {
     check(map);
     const ColourScale scale = colours(map);
@@ -76,7 +71,7 @@ std::string draw(const HeatMap& map, Sheet::Format format) {
         for (Eigen::Index i = 0; i < map.values.rows(); ++i)
             for (Eigen::Index j = 0; j < map.values.cols(); ++j)
                 if (std::isfinite(map.values(i, j)))
-                    sheet.text(number_text(map.values(i, j)), left + (static_cast<double>(j) + 0.5) * cell,
+                    sheet.text(digits(map.values(i, j), 2), left + (static_cast<double>(j) + 0.5) * cell,
                                top + (static_cast<double>(i) + 0.5) * cell + 3.5, 0.5, 10,
                                lightness(colour_of(scale, map.values(i, j))) > 0.55 ? ink : paper);
     for (std::size_t i = 0; i + 1 < map.groups.size(); ++i)
@@ -110,8 +105,6 @@ std::string draw(const HeatMap& map, Sheet::Format format) {
 }
 
 }  // namespace
-
-std::string svg_bytes(const HeatMap& map) { return draw(map, report::Sheet::Format::svg); }
 
 void write_plot(const Path& file, const HeatMap& map) {
     report::write_sheet(file, [&](report::Sheet::Format format) { return draw(map, format); });

@@ -18,14 +18,11 @@ constexpr Rgb leader{150, 150, 150};
 
 void check(const Plot& plot) {
     for (const PlotSeries& series : plot.series) {
-        if (!series.labels.empty() && series.labels.size() != series.points.size())
-            fail_usage("series '" + series.name + "' of a plot has " + std::to_string(series.labels.size()) + " labels for " +
-                           std::to_string(series.points.size()) + " points",
-                       "give one a point, or none");
-        if (!series.intervals.empty() && series.intervals.size() != series.points.size())
-            fail_usage("series '" + series.name + "' of a plot has " + std::to_string(series.intervals.size()) +
-                           " intervals for " + std::to_string(series.points.size()) + " points",
-                       "give one a point, or none");
+        for (const auto& [what, count] : {std::pair{" labels", series.labels.size()}, {" intervals", series.intervals.size()}})
+            if (count != 0 && count != series.points.size())
+                fail_usage("series '" + series.name + "' of a plot has " + std::to_string(count) + what + " for " +
+                               std::to_string(series.points.size()) + " points",
+                           "give one a point, or none");
     }
 }
 
@@ -238,8 +235,6 @@ std::string draw(const Plot& plot, Sheet::Format format) {
 }
 
 }  // namespace
-
-std::string svg_bytes(const Plot& plot) { return draw(plot, report::Sheet::Format::svg); }
 
 void write_plot(const Path& file, const Plot& plot) {
     report::write_sheet(file, [&](report::Sheet::Format format) { return draw(plot, format); });

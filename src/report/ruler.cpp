@@ -1,6 +1,7 @@
 #include "ruler.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/text.h"
 #include "ostraka/render/colour_scale.h"
 
 #include <algorithm>
@@ -13,9 +14,9 @@ namespace ostraka::report {
 namespace {
 
 std::string power_text(double value) {
+    if (value >= 1e-3 && value < 1e6) return digits(value, 12);
     char text[32];
-    if (value >= 1e-3 && value < 1e6) std::snprintf(text, sizeof text, "%.12g", value);
-    else std::snprintf(text, sizeof text, "%.0e", value);
+    std::snprintf(text, sizeof text, "%.0e", value);
     return text;
 }
 

@@ -38,15 +38,7 @@ std::string without_surface_numbers(const std::string& svg) {
     return result;
 }
 
-}  // namespace
-
-Rgb series_colour(std::size_t index) { return index < colours.size() ? colours[index] : category_colour(index); }
-
-Rgb lighter(const Rgb& colour, double share) {
-    const auto mix = [&](std::uint8_t part) { return static_cast<std::uint8_t>(std::lround(part + share * (255 - part))); };
-    return {mix(colour.red), mix(colour.green), mix(colour.blue)};
-}
-
+/// What characters can be drawn: damaged and steering ones become U+FFFD or blanks.
 std::string drawable(const std::string& words) {
     std::string result;
     for (std::size_t at = 0; at < words.size();) {
@@ -57,6 +49,15 @@ std::string drawable(const std::string& words) {
         at += character.length;
     }
     return result;
+}
+
+}  // namespace
+
+Rgb series_colour(std::size_t index) { return index < colours.size() ? colours[index] : category_colour(index); }
+
+Rgb lighter(const Rgb& colour, double share) {
+    const auto mix = [&](std::uint8_t part) { return static_cast<std::uint8_t>(std::lround(part + share * (255 - part))); };
+    return {mix(colour.red), mix(colour.green), mix(colour.blue)};
 }
 
 Sheet::Sheet(double width, double height, Format format)

@@ -74,9 +74,6 @@ private:
     std::unique_ptr<_cairo, void (*)(_cairo*)> context_;
 };
 
-/// What characters can be drawn: damaged and steering ones become U+FFFD or blanks.
-std::string drawable(const std::string& words);
-
 /// Writes what `draw` makes in the format that the file's ending names, folders and all.
 void write_sheet(const Path& file, const std::function<std::string(Sheet::Format)>& draw);
 

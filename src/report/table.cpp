@@ -22,9 +22,50 @@ bool is_number(const std::string& cell) {
     return number_of(bare).has_value();
 }
 
-}  // namespace
+/// Text that stays text in a cell of a Markdown table.
+std::string markdown_text(const std::string& text) {
+    std::string result;
+    for (const char c : one_line(text)) {
+        if (c == '<') result += "&lt;";
+        else if (c == '>') result += "&gt;";
+        else if (c == '&') result += "&amp;";
+        else {
+            if (std::string_view("\\|`*_[]#~").find(c) != std::string_view::npos) result += '\\';
+            result += c;
+        }
+    }
+    return result;
+}
 
-namespace {
+/// Text that LaTeX sets as it stands.
+std::string latex_text(const std::string& text) {
+    static const std::map<char, std::string> names{{'\\', "\\textbackslash{}"},
+                                                   {'{', "\\{"},
+                                                   {'}', "\\}"},
+                                                   {'$', "\\$"},
+                                                   {'&', "\\&"},
+                                                   {'#', "\\#"},
+                                                   {'%', "\\%"},
+                                                   {'_', "\\_"},
+                                                   {'~', "\\textasciitilde{}"},
+                                                   {'^', "\\textasciicircum{}"},
+                                                   {'<', "\\textless{}"},
+                                                   {'>', "\\textgreater{}"},
+                                                   {'|', "\\textbar{}"},
+                                                   {'"', "\\textquotedbl{}"},
+                                                   {'`', "\\textasciigrave{}"},
+                                                   {'-', "{-}"}};
+    std::string result;
+    const std::string line = one_line(text);
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        const auto found = names.find(line[i]);
+        // Hyphens in a row would be joined to a dash; one by itself stays.
+        const bool alone = line[i] == '-' && (i == 0 || line[i - 1] != '-') && (i + 1 == line.size() || line[i + 1] != '-');
+        if (found == names.end() || alone) result += line[i];
+        else result += found->second;
+    }
+    return result;
+}
 
 TableCell finite_cell(const std::optional<double>& value, const std::function<std::string(double)>& shown) {
     if (!value || !std::isfinite(*value)) return {"-", {""}};
@@ -98,20 +139,6 @@ std::string TextTable::csv() const {
     return text;
 }
 
-std::string markdown_text(const std::string& text) {
-    std::string result;
-    for (const char c : one_line(text)) {
-        if (c == '<') result += "&lt;";
-        else if (c == '>') result += "&gt;";
-        else if (c == '&') result += "&amp;";
-        else {
-            if (std::string_view("\\|`*_[]#~").find(c) != std::string_view::npos) result += '\\';
-            result += c;
-        }
-    }
-    return result;
-}
-
 std::string TextTable::markdown() const {
     const std::vector<bool> right = numeric();
     std::string text = "|", line = "|";
@@ -124,35 +151,6 @@ std::string TextTable::markdown() const {
         text += '\n';
     }
     return text;
-}
-
-std::string latex_text(const std::string& text) {
-    static const std::map<char, std::string> names{{'\\', "\\textbackslash{}"},
-                                                   {'{', "\\{"},
-                                                   {'}', "\\}"},
-                                                   {'$', "\\$"},
-                                                   {'&', "\\&"},
-                                                   {'#', "\\#"},
-                                                   {'%', "\\%"},
-                                                   {'_', "\\_"},
-                                                   {'~', "\\textasciitilde{}"},
-                                                   {'^', "\\textasciicircum{}"},
-                                                   {'<', "\\textless{}"},
-                                                   {'>', "\\textgreater{}"},
-                                                   {'|', "\\textbar{}"},
-                                                   {'"', "\\textquotedbl{}"},
-                                                   {'`', "\\textasciigrave{}"},
-                                                   {'-', "{-}"}};
-    std::string result;
-    const std::string line = one_line(text);
-    for (std::size_t i = 0; i < line.size(); ++i) {
-        const auto found = names.find(line[i]);
-        // Hyphens in a row would be joined to a dash; one by itself stays.
-        const bool alone = line[i] == '-' && (i == 0 || line[i - 1] != '-') && (i + 1 == line.size() || line[i + 1] != '-');
-        if (found == names.end() || alone) result += line[i];
-        else result += found->second;
-    }
-    return result;
 }
 
 std::string TextTable::latex(const std::string& caption, const std::string& label) const {
@@ -215,11 +213,7 @@ std::string fixed(double value, int after_point) {
     return text.find_first_not_of("-0.") == std::string::npos && text.front() == '-' ? text.substr(1) : text;
 }
 
-std::string significant(double value, int digits) {
-    char text[64];
-    std::snprintf(text, sizeof text, "%.*g", digits, value);
-    return text;
-}
+std::string significant(double value, int digits) { return ostraka::digits(value, digits); }
 
 std::string significant(const std::optional<double>& value, int digits) { return value ? significant(*value, digits) : "-"; }
 

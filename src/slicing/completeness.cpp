@@ -1,5 +1,5 @@
 // What is there of a slice's outline.
-#include "completeness.h"
+#include "settling.h"
 
 #include "ostraka/core/angles.h"
 #include "ostraka/geom/circle.h"
@@ -11,6 +11,9 @@ namespace ostraka::detail {
 
 using Eigen::Vector2d;
 
+namespace {
+
+/// What the contours cover of the full turn around a place, radians.
 double angle_covered(const std::vector<Contour>& contours, const Vector2d& centre) {
     constexpr double turn = 2 * pi;
     std::vector<std::pair<double, double>> arcs;
@@ -35,6 +38,8 @@ double angle_covered(const std::vector<Contour>& contours, const Vector2d& centr
     }
     return std::min(sum, turn);
 }
+
+}  // namespace
 
 Completeness completeness(const std::vector<Contour>& contours) {
     Completeness result;

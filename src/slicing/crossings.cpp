@@ -1,6 +1,6 @@
 // Contours that cross one another, or themselves.
-#include "crossings.h"
 #include "ostraka/core/angles.h"
+#include "settling.h"
 
 #include "segment_tree.h"
 #include "strips.h"

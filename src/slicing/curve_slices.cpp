@@ -1,7 +1,6 @@
 // Planes across a curve, and what of each belongs to it.
 #include "ostraka/slicing/curve_slices.h"
 
-#include "completeness.h"
 #include "joining.h"
 #include "plane_search.h"
 #include "settling.h"

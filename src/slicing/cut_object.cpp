@@ -59,13 +59,12 @@ CutObject cut_parallel(const Mesh& mesh, const SliceFrame& frame, const std::vec
 CutObject cut_across(const Mesh& mesh, const std::vector<Point>& curve, int count, const std::vector<Index>& faces) {
     require_surface(mesh, faces);
     CurveSlices found = slice_along(mesh, curve, count, faces);
-    CutObject cut;
-    cut.parallel = false;
-    cut.frames = std::move(found.frames);
-    cut.slices = std::move(found.slices);
-    cut.reversed = found.reversed;
-    cut.highest = found.length;
-    cut.curve = curve;
+    CutObject cut{.parallel = false,
+                  .reversed = found.reversed,
+                  .frames = std::move(found.frames),
+                  .slices = std::move(found.slices),
+                  .curve = curve,
+                  .highest = found.length};
     cut.descriptors = describe_slices(cut.slices);
     return cut;
 }

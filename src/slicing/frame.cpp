@@ -3,8 +3,7 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/limits.h"
-
-#include <sstream>
+#include "ostraka/core/text.h"
 
 namespace ostraka {
 
@@ -12,16 +11,10 @@ namespace {
 
 constexpr double max_planes = 1e6;
 
-std::string text(double value) {
-    std::ostringstream stream;
-    stream.precision(4);
-    stream << value;
-    return stream.str();
-}
-
 void check_range(double lowest, double highest) {
     if (!(lowest <= highest) || !std::isfinite(highest - lowest))
-        fail_usage("there is no range of heights from " + text(lowest) + " to " + text(highest), "give the lower height first");
+        fail_usage("there is no range of heights from " + digits(lowest, 4) + " to " + digits(highest, 4),
+                   "give the lower height first");
 }
 
 }  // namespace
@@ -64,12 +57,12 @@ std::vector<double> slice_heights(double lowest, double highest, int count) {
 std::vector<double> slice_heights_spaced(double lowest, double highest, double spacing) {
     check_range(lowest, highest);
     if (!(spacing > 0 && spacing <= largest_coordinate))
-        fail_usage("the spacing of the slices is " + text(spacing), "use a length above 0");
+        fail_usage("the spacing of the slices is " + digits(spacing, 4), "use a length above 0");
     if (const double height = highest - lowest; !(height / spacing < max_planes))
-        fail_usage(
-            "a spacing of " + text(spacing) + " gives " + text(height / spacing) + " slices over a height of " + text(height),
-            "use at least " + text(1.001 * height / max_planes) + " for the most there may be, a million; " + text(height / 200) +
-                " gives two hundred");
+        fail_usage("a spacing of " + digits(spacing, 4) + " gives " + digits(height / spacing, 4) + " slices over a height of " +
+                       digits(height, 4),
+                   "use at least " + digits(1.001 * height / max_planes, 4) + " for the most there may be, a million; " +
+                       digits(height / 200, 4) + " gives two hundred");
     // The last one may be missed by rounding only.
     const double steps = std::floor((highest - lowest) / spacing * (1 + 1e-12));
     std::vector<double> heights;

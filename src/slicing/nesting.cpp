@@ -1,10 +1,9 @@
 // Which contours contain which, by votes of their points.
-#include "nesting.h"
+#include "settling.h"
 
 #include "strips.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace ostraka::detail {
 

@@ -1,17 +1,15 @@
 // The faces near a plane.
 #include "plane_search.h"
 
+#include "ostraka/geom/eigen.h"
+
 #include <algorithm>
-#include <numeric>
 
 namespace ostraka::detail {
 
 using Eigen::Vector3d;
 
 namespace {
-
-Vector3d eigen(const Vector& v) { return {v.x(), v.y(), v.z()}; }
-Vector3d eigen(const Point& p) { return {p.x(), p.y(), p.z()}; }
 
 /// The bits of 21-bit numbers spread out to every third place.
 std::uint64_t spread(std::uint64_t x) {
@@ -60,45 +58,41 @@ PlaneSearch::PlaneSearch(const Mesh& mesh, const std::vector<Index>& faces) : me
     for (std::size_t n = leaves_ - 1; n > 0; --n) boxes_[n] = boxes_[2 * n].merged(boxes_[2 * n + 1]);
 }
 
-std::vector<Index> PlaneSearch::near(const SliceFrame& frame, double search_radius) const {
-    std::vector<Index> found;
-    const auto meets = [&](const Box& box) {
-        if (box.isEmpty()) return false;
-        const auto [low, high] = heights(box, frame);
-        return low <= search_radius && high >= -search_radius;
-    };
+template <class Enter, class Visit>
+void PlaneSearch::each_face(const Enter& enter, const Visit& visit) const {
     std::vector<std::size_t> stack{1};
     while (!stack.empty()) {
         const std::size_t node = stack.back();
         stack.pop_back();
-        if (!meets(boxes_[node])) continue;
+        if (boxes_[node].isEmpty() || !enter(boxes_[node])) continue;
         if (node < leaves_) {
             stack.push_back(2 * node), stack.push_back(2 * node + 1);
             continue;
         }
         const std::size_t first = (node - leaves_) * leaf;
-        for (std::size_t i = first; i < std::min(first + leaf, faces_.size()); ++i)
-            if (meets(box_of(mesh_, faces_[i]))) found.push_back(faces_[i]);
+        for (std::size_t i = first; i < std::min(first + leaf, faces_.size()); ++i) visit(faces_[i]);
     }
+}
+
+std::vector<Index> PlaneSearch::near(const SliceFrame& frame, double search_radius) const {
+    std::vector<Index> found;
+    const auto meets = [&](const Box& box) {
+        const auto [low, high] = heights(box, frame);
+        return low <= search_radius && high >= -search_radius;
+    };
+    each_face(meets, [&](Index face) {
+        if (meets(box_of(mesh_, face))) found.push_back(face);
+    });
     std::sort(found.begin(), found.end());
     return found;
 }
 
 double PlaneSearch::lowest(const SliceFrame& frame) const {
     double minimum = std::numeric_limits<double>::infinity();
-    std::vector<std::size_t> stack{1};
-    while (!stack.empty()) {
-        const std::size_t node = stack.back();
-        stack.pop_back();
-        if (boxes_[node].isEmpty() || !(heights(boxes_[node], frame).first < minimum)) continue;
-        if (node < leaves_) {
-            stack.push_back(2 * node), stack.push_back(2 * node + 1);
-            continue;
-        }
-        const std::size_t first = (node - leaves_) * leaf;
-        for (std::size_t i = first; i < std::min(first + leaf, faces_.size()); ++i)
-            for (const Vertex v : corners(mesh_, Face(faces_[i]))) minimum = std::min(minimum, frame.height(mesh_.point(v)));
-    }
+    each_face([&](const Box& box) { return heights(box, frame).first < minimum; },
+              [&](Index face) {
+                  for (const Vertex v : corners(mesh_, Face(face))) minimum = std::min(minimum, frame.height(mesh_.point(v)));
+              });
     return minimum;
 }
 

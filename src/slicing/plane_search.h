@@ -22,6 +22,9 @@ private:
     using Box = Eigen::AlignedBox3d;
     static constexpr std::size_t leaf = 8;
     [[nodiscard]] static Box box_of(const Mesh& mesh, Index face);
+    /// Calls `visit(face)` for those in the boxes that, like all around them, are to be entered.
+    template <class Enter, class Visit>
+    void each_face(const Enter& enter, const Visit& visit) const;
 
     const Mesh& mesh_;
     std::vector<Index> faces_;

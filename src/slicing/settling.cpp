@@ -1,10 +1,7 @@
 // Order, orientation and soundness of contours.
 #include "settling.h"
 
-#include "completeness.h"
-#include "crossings.h"
 #include "joining.h"
-#include "nesting.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"

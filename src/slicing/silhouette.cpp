@@ -4,7 +4,9 @@
 #include "ostraka/core/error.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
 #include <unordered_map>
 
 namespace ostraka {
@@ -71,6 +73,11 @@ private:
     std::vector<bool> covered_;
 };
 
+/// From which side of a field to which a curve runs, in pairs (0 below, 1 right, 2 above, 3 left), by the corners that are
+/// covered (1, 2, 4, 8, counter-clockwise from the lower left one on). Covered corners are joined.
+constexpr std::array<std::string_view, 16> curve_pieces{"",   "03", "10",   "13", "21", "0123", "20", "23",
+                                                        "32", "02", "3012", "12", "31", "01",   "30", ""};
+
 /// Curves where the coverage is one half, with more of it to the left.
 std::vector<std::vector<Vector2d>> trace(const Mask& mask) {
     const int columns = mask.cell_columns(), rows = mask.cell_rows();
@@ -87,55 +94,13 @@ std::vector<std::vector<Vector2d>> trace(const Mask& mask) {
     std::vector<std::int64_t> starts;
     for (int r = 0; r + 1 < rows; ++r)
         for (int c = 0; c + 1 < columns; ++c) {
-            const bool a = value(c, r) >= 0.5, b = value(c + 1, r) >= 0.5, d = value(c + 1, r + 1) >= 0.5,
-                       e = value(c, r + 1) >= 0.5;
-            const std::int64_t bottom = right(c, r), side = above(c + 1, r), top = right(c, r + 1), left = above(c, r);
-            const auto join = [&](std::int64_t from, std::int64_t to) { next[from] = to, starts.push_back(from); };
-            switch (int(a) | int(b) << 1 | int(d) << 2 | int(e) << 3) {
-                case 1:
-                    join(bottom, left);
-                    break;
-                case 2:
-                    join(side, bottom);
-                    break;
-                case 3:
-                    join(side, left);
-                    break;
-                case 4:
-                    join(top, side);
-                    break;
-                case 5:
-                    join(bottom, side), join(top, left);
-                    break;  // covered corners are joined
-                case 6:
-                    join(top, bottom);
-                    break;
-                case 7:
-                    join(top, left);
-                    break;
-                case 8:
-                    join(left, top);
-                    break;
-                case 9:
-                    join(bottom, top);
-                    break;
-                case 10:
-                    join(left, bottom), join(side, top);
-                    break;
-                case 11:
-                    join(side, top);
-                    break;
-                case 12:
-                    join(left, side);
-                    break;
-                case 13:
-                    join(bottom, side);
-                    break;
-                case 14:
-                    join(left, bottom);
-                    break;
-                default:
-                    break;
+            const auto covered = [&](int column, int row) { return value(column, row) >= 0.5 ? 1U : 0U; };
+            const std::string_view piece =
+                curve_pieces[covered(c, r) | covered(c + 1, r) << 1 | covered(c + 1, r + 1) << 2 | covered(c, r + 1) << 3];
+            const std::int64_t sides[] = {right(c, r), above(c + 1, r), right(c, r + 1), above(c, r)};
+            for (std::size_t k = 0; k < piece.size(); k += 2) {
+                starts.push_back(sides[piece[k] - '0']);
+                next[starts.back()] = sides[piece[k + 1] - '0'];
             }
         }
     const auto place = [&](std::int64_t key) {

@@ -1,6 +1,7 @@
 // `ostraka render` as people run it.
 #include "ostraka/core/json.h"
 #include "ostraka/render/colour_scale.h"
+#include "read_png.h"
 #include "scenes.h"
 #include "scratch.h"
 
@@ -34,7 +35,7 @@ protected:
     test::CommandResult run(const std::string& words) {
         return run_command("render " + cube.string() + " " + words + " " + png.string());
     }
-    Picture picture() { return read_png(png); }
+    Picture picture() { return test::read_png(png); }
     void refused(const test::CommandResult& result, int code, const std::string& words) {
         EXPECT_EQ(result.code, code) << result.err;
         EXPECT_NE(result.err.find(words), std::string::npos) << result.err;

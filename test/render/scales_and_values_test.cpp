@@ -4,6 +4,7 @@
 #include "ostraka/render/picture.h"
 #include "ostraka/render/values.h"
 #include "ostraka/render/view.h"
+#include "read_png.h"
 #include "scratch.h"
 
 #include <gtest/gtest.h>
@@ -108,13 +109,9 @@ TEST(PictureFile, PngComesBackAsItWas) {
     const Path file = folder / "a.png";
     write_png(file, picture);
     EXPECT_EQ(read_file(file).substr(0, 8), "\x89PNG\r\n\x1a\n");
-    const Picture back = read_png(file);
+    const Picture back = test::read_png(file);
     EXPECT_EQ(back.width, 5);
     EXPECT_EQ(back.argb, picture.argb);
-    write_file(folder / "b.png", "no picture");
-    EXPECT_THROW((void)read_png(folder / "b.png"), Error);
-    write_file(folder / "c.png", read_file(file).substr(0, 40));
-    EXPECT_THROW((void)read_png(folder / "c.png"), Error);
 }
 
 std::string npy(const std::string& type, const std::string& shape, const std::string& data) {

@@ -4,6 +4,7 @@
 #include "ostraka/render/colour_scale.h"
 #include "ostraka/report/dendrogram.h"
 #include "ostraka/report/heat_map.h"
+#include "read_png.h"
 #include "scratch.h"
 
 #include <gtest/gtest.h>
@@ -41,7 +42,13 @@ template <class Drawing>
 Picture picture_of(const Drawing& drawing) {
     const Scratch scratch;
     write_plot(scratch / "plot.png", drawing);
-    return read_png(scratch / "plot.png");
+    return test::read_png(scratch / "plot.png");
+}
+
+template <class Drawing>
+std::string svg_bytes(const Drawing& drawing) {
+    write_plot("memory:plot.svg", drawing);
+    return read_file("memory:plot.svg");
 }
 
 TEST(Plot, IsTheSameWhereverAndWheneverItIsDrawn) {
@@ -147,7 +154,7 @@ TEST(Plot, IsWrittenAsItsNameEnds) {
     const Scratch scratch;
     EXPECT_THROW(write_plot(scratch / "plot.pdf", simple()), Error);
     write_plot(scratch / "plot.png", simple());
-    EXPECT_EQ(read_png(scratch / "plot.png").width, 2 * 760);
+    EXPECT_EQ(test::read_png(scratch / "plot.png").width, 2 * 760);
 }
 
 TEST(Plot, OfARateAgainstARateIsSquare) {

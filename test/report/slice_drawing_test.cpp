@@ -5,6 +5,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/render/picture.h"
 #include "ostraka/slicing/silhouette.h"
+#include "read_png.h"
 #include "scratch.h"
 
 #include <gtest/gtest.h>
@@ -48,7 +49,7 @@ TEST(SliceSheet, OfOneAndOfManySlices) {
         EXPECT_TRUE(svg == read_file(scratch / "b.svg"));
         EXPECT_NE(svg.find("</svg>"), std::string::npos);
         write_slice_sheet(scratch / "a.png", cut.sheet(count));
-        const Picture picture = read_png(scratch / "a.png");
+        const Picture picture = test::read_png(scratch / "a.png");
         EXPECT_NEAR(picture.width, 2 * width_of(svg), 2);
         // Clay is there, and paper.
         std::size_t clay = 0, white = 0;

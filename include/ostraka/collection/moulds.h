@@ -35,15 +35,6 @@ struct PreparedHead {
 /// Throws Error (input) for a mesh without area or with fewer than three salient points.
 PreparedHead prepare_head(const Mesh& mesh, const CompareOptions& options);
 
-/// What two heads have in common.
-struct PairComparison {
-    int matches_ab = 0, matches_ba = 0;        ///< MeshSIFT's count, from each side
-    int consistent_ab = 0, consistent_ba = 0;  ///< of them, what one motion explains
-    double distance = 0;                       ///< of the registration
-    double overlap = 0, scale = 1;             ///< of the registration; b is `scale` times as large as a
-};
-PairComparison compare_pair(const PreparedHead& a, const PreparedHead& b, const CompareOptions& options);
-
 /// Matrices over all pairs of heads. Row i, column j: matches from i to j; the diagonal is a head with itself.
 struct MouldMatrices {
     std::vector<std::string> names;

@@ -6,7 +6,6 @@
 
 #include <functional>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,9 +28,6 @@ struct Collection {
     std::vector<std::pair<std::string, std::string>> left_out;  ///< files that can be no object: name as it can be shown, why
     std::vector<std::string> notes;                             ///< what is there twice, which labels are missing, in words
 };
-
-/// Whether `read_collection` of its folder would take the file for an object's: by its ending a mesh, annotations or markups.
-bool is_object_file(const Path& file);
 
 /// Throws Error (failure) where the folder holds files of objects or tables already, with which synthetic objects would be mixed.
 /// It may be missing.

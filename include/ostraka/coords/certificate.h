@@ -19,9 +19,9 @@ struct CoordinateCertificate {
 
     /// The kind in this cage, evaluated on it; absent for kinds that are not defined there. Weights of vertices at one place
     /// count as one.
-    std::optional<double> lagrange;  ///< at the vertices: largest deviation of a weight from 1 (its own) or 0
-    std::optional<double> edges;     ///< at three points on each edge: largest deviation from linear weights
-    std::optional<double> on_faces;  ///< at three points on each face
+    std::optional<double> lagrange = {};  ///< at the vertices: largest deviation of a weight from 1 (its own) or 0
+    std::optional<double> edges = {};     ///< at three points on each edge: largest deviation from linear weights
+    std::optional<double> on_faces = {};  ///< at three points on each face
 
     double negative = 0;       ///< share of the vertex weights that are below zero
     double negative_rows = 0;  ///< share of the points that have one

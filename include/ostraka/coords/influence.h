@@ -3,15 +3,16 @@
 
 #include "ostraka/coords/coordinates.h"
 
-#include <string>
 #include <vector>
 
 namespace ostraka {
 
-/// For each cage vertex its largest weight (`by` "max": what the thesis, section 5.2.3, compares with a threshold) or the sum of
-/// its weights ("sum") over the given points. Throws Error (usage) for an index out of range or another `by`, Error (input) if
-/// there are no points.
-std::vector<double> influence_on(const Coordinates& coordinates, const std::vector<Index>& points, const std::string& by = "max");
+enum class InfluenceBy { max, sum };
+
+/// For each cage vertex its largest weight (what the thesis, section 5.2.3, compares with a threshold) or the sum of its weights
+/// over the given points. Throws Error (usage) for an index out of range, Error (input) if there are no points.
+std::vector<double> influence_on(const Coordinates& coordinates, const std::vector<Index>& points,
+                                 InfluenceBy by = InfluenceBy::max);
 
 /// The weights of one cage vertex, one a point. Throws Error (usage) for an index out of range.
 std::vector<double> influence_of(const Coordinates& coordinates, Index cage_vertex);

@@ -64,13 +64,6 @@ JsonValue json_object(JsonAllocator& allocator, Members&&... members) {
     if constexpr (sizeof...(members) > 0) add_members(object, allocator, std::forward<Members>(members)...);
     return object;
 }
-/// [make(one), ...] of the list's entries in turn.
-template <class List, class Make>
-JsonValue json_list(const List& list, JsonAllocator& allocator, Make&& make) {
-    JsonValue array(rapidjson::kArrayType);
-    for (const auto& one : list) array.PushBack(make(one), allocator);
-    return array;
-}
 /// {"format": "ostraka-KIND", "version": 1}
 Json json_document(std::string_view kind);
 

@@ -1,9 +1,13 @@
-// Lists and counts in words.
+// Lists, counts and texts from outside in words.
 #pragma once
 
+#include "ostraka/core/text.h"
+
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace ostraka {
 
@@ -21,6 +25,32 @@ std::string joined(const Texts& texts, std::string_view between = ", ") {
 template <class Enumeration, std::size_t count>
 const char* word_for(Enumeration value, const char* const (&words)[count]) {
     return words[static_cast<std::size_t>(value)];
+}
+/// The same of what `say(entry)` is of each entry, or of a member of each.
+template <class Entries, class TextOf>
+std::string joined(const Entries& entries, std::string_view between, const TextOf& say) {
+    std::vector<std::string> texts;
+    for (const auto& entry : entries) texts.push_back(std::invoke(say, entry));
+    return joined(texts, between);
+}
+/// "07" for the seventh of ten or more: all numbers from 1 to `count` are equally long.
+inline std::string padded(std::size_t number, std::size_t count) {
+    const std::string digits = std::to_string(number);
+    return std::string(std::to_string(count).size() - digits.size(), '0') + digits;
+}
+/// Text of files is data: no control character reaches a terminal, at most so many columns.
+inline std::string printable(const std::string& text, std::size_t maximum = 10000) {
+    std::string clean;
+    std::size_t columns = 0;
+    for (std::size_t at = 0; at < text.size();) {
+        const Character here = character_at(text, at);
+        if (++columns > maximum) return clean + "...";
+        // A byte that begins no character may steer a terminal that does not read UTF-8.
+        const bool odd = is_control(here.code) || (here.code == 0xFFFD && here.length == 1);
+        clean += odd ? "?" : text.substr(at, here.length);
+        at += here.length;
+    }
+    return clean;
 }
 /// "1 slice", "2 slices".
 inline std::string counted(std::size_t count, std::string_view what) {

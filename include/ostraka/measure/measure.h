@@ -44,6 +44,9 @@ std::string descriptor_unit(const std::string& descriptor, const std::string& un
 /// Throws Error (input) for an annotation without elements.
 std::array<Index, 2> extremes(const Mesh& mesh, const Annotation& annotation, const std::array<double, 3>& direction);
 
+/// Adds it as an attribute of this name, under a free id.
+Attribute& add_measure(Annotation& annotation, const std::string& name, Measure measure);
+
 struct RefreshResult {
     std::size_t computed = 0;        ///< values computed anew
     std::size_t stale = 0;           ///< values that could not be, and are marked so

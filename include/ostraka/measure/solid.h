@@ -3,7 +3,6 @@
 
 #include "ostraka/core/mesh.h"
 
-#include <array>
 #include <vector>
 
 namespace ostraka {

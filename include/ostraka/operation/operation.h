@@ -16,7 +16,6 @@
 #include "ostraka/operation/report.h"
 
 #include <functional>
-#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -125,7 +124,6 @@ private:
     struct Kept;
     std::unique_ptr<Kept> kept_;
     std::vector<Path> memory_;
-    std::size_t memories_ = 0;
 };
 
 /// An operation with what it is to be run on.
@@ -167,8 +165,10 @@ public:
     /// Name, help, inputs, outputs and options, with types, ranges, defaults and units.
     [[nodiscard]] JsonValue declaration(JsonAllocator& allocator) const;
 
+    /// Throws Error (usage) with the nearest name of an option or object, or of these flags beside them.
+    [[noreturn]] void no_such_name(const std::string& name, const std::vector<std::string>& flags = {}) const;
+
 private:
-    [[noreturn]] void no_such_name(const std::string& name) const;
     void check_given() const;
 
     const OperationEntry* entry_;

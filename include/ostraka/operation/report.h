@@ -3,6 +3,7 @@
 
 #include "ostraka/core/finding.h"
 #include "ostraka/core/provenance.h"
+#include "ostraka/core/words.h"
 
 #include <concepts>
 #include <deque>
@@ -234,13 +235,7 @@ private:
     bool holds_ = true;
 };
 
-/// A table for terminals: columns padded, numbers right-aligned, no text cut.
-std::string plain_table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows);
-/// Names and values, one a line, the values below each other.
-std::string plain_values(const std::vector<std::pair<std::string, std::string>>& rows);
 /// A number for people: so many significant digits.
 std::string number(double value, int digits = 5);
-/// Text of files is data: no control character reaches a terminal, at most so many columns.
-std::string printable(const std::string& text, std::size_t maximum = 10000);
 
 }  // namespace ostraka

@@ -1,11 +1,10 @@
-// Pictures: pixels in memory, PNG files.
+// Pictures: pixels in memory, written as PNG files.
 #pragma once
 
 #include "ostraka/core/file.h"
 
 #include <cstdint>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace ostraka {
@@ -29,11 +28,7 @@ struct Picture {
 /// "#rrggbb", "white", "black" or "grey". Throws Error (usage) for anything else.
 Rgb parse_colour(const std::string& text);
 
-/// The picture as a PNG file's bytes. Throws Error (failure) if memory runs out.
-std::string png_bytes(const Picture& picture);
-/// Writes a PNG file atomically.
+/// Writes a PNG file atomically. Throws Error (failure) if memory runs out.
 void write_png(const Path& file, const Picture& picture);
-/// Reads a PNG file. Throws Error (input) if it is none.
-Picture read_png(const Path& file);
 
 }  // namespace ostraka

@@ -21,12 +21,10 @@ struct Dendrogram {
     std::vector<std::string> classes = {};  ///< known answers, a coloured mark beside each name; empty, or one a sample
 };
 
-/// The tree as an SVG file's bytes: a row a sample, merges to the right. Branches within a group are strong, and its number
-/// stands at each; they have colours of their own where no classes are shown, whose colours would be mistaken for theirs. Throws
-/// Error (input) for a tree without samples or whose merges are none, Error (usage) where names, classes or groups are not one a
-/// sample.
-std::string svg_bytes(const Dendrogram& dendrogram);
-/// Writes it atomically, folders and all; a PNG of twice the size where the file's name ends in .png.
+/// Writes it as an SVG, or as a PNG of twice the size where the file's name ends in .png, atomically, folders and all: a row a
+/// sample, merges to the right. Branches within a group are strong, and its number stands at each; they have colours of their own
+/// where no classes are shown, whose colours would be mistaken for theirs. Throws Error (input) for a tree without samples or
+/// whose merges are none, Error (usage) where names, classes or groups are not one a sample.
 void write_plot(const Path& file, const Dendrogram& dendrogram);
 
 }  // namespace ostraka

@@ -21,10 +21,9 @@ struct HeatMap {
     std::vector<int> groups = {};  ///< of rows and columns, or none: lines are drawn between different neighbours
 };
 
-/// The picture as an SVG file's bytes: square fields, as small as it takes to keep the map at about 800 points. Throws Error
-/// (input) for a matrix without a finite value, Error (usage) where names or groups are not one a row and column.
-std::string svg_bytes(const HeatMap& map);
-/// Writes it atomically, folders and all; a PNG of twice the size where the file's name ends in .png.
+/// Writes it as an SVG, or as a PNG of twice the size where the file's name ends in .png, atomically, folders and all: square
+/// fields, as small as it takes to keep the map at about 800 points. Throws Error (input) for a matrix without a finite value,
+/// Error (usage) where names or groups are not one a row and column.
 void write_plot(const Path& file, const HeatMap& map);
 
 }  // namespace ostraka

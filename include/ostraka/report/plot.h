@@ -11,7 +11,7 @@
 namespace ostraka {
 
 struct PlotAxis {
-    std::string label;  ///< with the unit
+    std::string label = {};  ///< with the unit
     bool logarithmic = false;
     std::optional<double> minimum = {}, maximum = {};  ///< else what the points need
     std::vector<std::string> names = {};               ///< instead of numbers: of the places 0, 1, 2 ...
@@ -20,9 +20,9 @@ struct PlotAxis {
 enum class Mark { dots, bars };
 
 struct PlotSeries {
-    std::string name;                           ///< for the legend; without one it stands not there
-    std::vector<std::array<double, 2>> points;  ///< x, y; the line is broken where a point has no place on the axes
-    bool marked = true;                         ///< a mark at each point: of another form for each class of unjoined points
+    std::string name = {};                           ///< for the legend; without one it stands not there
+    std::vector<std::array<double, 2>> points = {};  ///< x, y; the line is broken where a point has no place on the axes
+    bool marked = true;                              ///< a mark at each point: of another form for each class of unjoined points
     bool dashed = false;
     bool joined = true;                                                ///< by a line
     std::vector<std::string> labels = {};                              ///< written beside the points; empty, or one a point
@@ -41,18 +41,17 @@ struct PlotLine {
 
 struct Plot {
     std::string title;
-    PlotAxis x, y;
-    std::vector<PlotSeries> series;
+    PlotAxis x = {}, y = {};
+    std::vector<PlotSeries> series = {};
     int width = 760, height = 480;
     bool square = false;  ///< the area of the axes is a square, as for receiver operating characteristics
     bool equal = false;   ///< a unit is as long along x as along y: for places
     std::vector<PlotLine> lines = {};
 };
 
-/// The plot as an SVG file's bytes, the same for the same plot. Throws Error (input) where no point has a place on the axes, and
-/// Error (usage) where there are labels or intervals but not one a point.
-std::string svg_bytes(const Plot& plot);
-/// Writes it atomically, folders and all; a PNG of twice the size where the file's name ends in .png.
+/// Writes it as an SVG, or as a PNG of twice the size where the file's name ends in .png, atomically, folders and all; the same
+/// bytes for the same plot. Throws Error (input) where no point has a place on the axes, and Error (usage) where there are labels
+/// or intervals but not one a point.
 void write_plot(const Path& file, const Plot& plot);
 
 }  // namespace ostraka

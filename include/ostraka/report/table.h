@@ -78,11 +78,6 @@ std::string aligned_rows(const std::vector<std::vector<std::string>>& rows,
 /// Columns on a terminal, not bytes: continuation bytes of UTF-8 take no room.
 std::size_t shown_width(const std::string& text);
 
-/// Text that LaTeX sets as it stands.
-std::string latex_text(const std::string& text);
-/// Text that stays text in a cell of a Markdown table.
-std::string markdown_text(const std::string& text);
-
 /// With as many digits after the point.
 std::string fixed(double value, int after_point);
 /// With as many significant digits, without trailing zeros; powers of ten where the number is very large or small.

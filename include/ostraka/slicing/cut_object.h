@@ -17,11 +17,11 @@ struct CutObject {
     bool reversed = false;  ///< as in SliceStack
     std::vector<SliceFrame> frames;
     std::vector<Slice> slices;
-    std::vector<SliceDescriptors> descriptors;
-    std::vector<MedialAxis> medial;  ///< one a slice, or none
-    std::vector<Point> curve;        ///< what was cut across, if not parallel
-    double lowest = 0, highest = 0;  ///< heights of the object over the frames' origin; of a curve its length
-    std::string reason;              ///< why there is nothing to cut by; empty: it was cut
+    std::vector<SliceDescriptors> descriptors = {};
+    std::vector<MedialAxis> medial = {};  ///< one a slice, or none
+    std::vector<Point> curve;             ///< what was cut across, if not parallel
+    double lowest = 0, highest = 0;       ///< heights of the object over the frames' origin; of a curve its length
+    std::string reason = {};              ///< why there is nothing to cut by; empty: it was cut
 
     /// Of the material, of all slices that have a barycentre.
     [[nodiscard]] std::vector<Point> centres() const;
