@@ -6,7 +6,7 @@
 #include "ostraka/core/file.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/reconstruction/reconstruct.h"
-#include "ostraka/synthetic/shatter.h"
+#include "shatter.h"
 
 #include <cmath>
 #include <iostream>

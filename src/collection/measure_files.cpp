@@ -16,12 +16,6 @@ namespace {
 
 constexpr double no_measure = std::numeric_limits<double>::quiet_NaN();
 
-std::string lower_case(std::string text) {
-    for (char& c : text)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return text;
-}
-
 /// A heading "name [unit]": the measure, and the unit of lengths where the brackets hold one.
 struct Heading {
     MeasureColumn column;

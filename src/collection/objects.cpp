@@ -7,8 +7,6 @@
 #include "ostraka/core/text.h"
 #include "ostraka/core/words.h"
 
-#include "json_text.h"
-
 #include <algorithm>
 #include <array>
 #include <set>
@@ -106,7 +104,7 @@ Collection from_file(const Path& file) {
     for (rapidjson::SizeType i = 0; i < objects.Size(); ++i) {
         const std::string at = "/objects/" + std::to_string(i);
         const auto file_of = [&](const char* member) {
-            const std::string name = text_of(objects[i], member);
+            const std::string name = text_in(objects[i], member);
             if (name.empty()) return Path();
             require_file_name(name, file.string(), at + "/" + member);
             return folder / name;
@@ -115,11 +113,11 @@ Collection from_file(const Path& file) {
         object.mesh = file_of("mesh");
         object.annotations = file_of("annotations");
         object.landmarks = file_of("landmarks");
-        object.unit = text_of(objects[i], "unit");
-        object.label = text_of(objects[i], "label");
+        object.unit = text_in(objects[i], "unit");
+        object.label = text_in(objects[i], "label");
         if (object.mesh.empty() && object.landmarks.empty())
             fail_input(file.string(), "at " + at + ": neither a mesh nor landmarks", "give one of both");
-        object.name = text_of(objects[i], "name");
+        object.name = text_in(objects[i], "name");
         if (object.name.empty()) object.name = (object.mesh.empty() ? object.landmarks : object.mesh).stem().string();
         if (!is_name(object.name))
             fail_input(file.string() + ", at " + at, "'" + printable(object.name, 60) + "' cannot be the name of an object",

@@ -6,8 +6,6 @@
 #include "ostraka/core/progress.h"
 #include "ostraka/core/provenance.h"
 
-#include "json_text.h"
-
 #include <new>
 
 namespace ostraka {
@@ -38,9 +36,9 @@ std::optional<Json> ResultStore::find(const std::string& name, const std::string
     if (!file_exists(file)) return {};
     try {
         Json document = read_json(file);
-        if (!document.IsObject() || text_of(document, "key") != key) return {};
+        if (!document.IsObject() || text_in(document, "key") != key) return {};
         const JsonValue* result = find_member(document, "result");
-        if (result == nullptr || text_of(document, "checksum") != sha256(to_text(*result))) return {};
+        if (result == nullptr || text_in(document, "checksum") != sha256(to_text(*result))) return {};
         Json copy;
         copy.CopyFrom(*result, copy.GetAllocator());
         return copy;

@@ -1,6 +1,4 @@
-#include "arguments.h"
-
-#include "ostraka/operation/operation.h"
+#include "operations.h"
 
 #include <charconv>
 #include <cmath>

@@ -1,9 +1,7 @@
-// What the files of operations share.
+// What the files of operations share; arguments that are texts: lists of numbers, directions, names of annotations.
 #pragma once
 
 #include "ostraka/operations/table.h"
-
-#include "arguments.h"
 
 #include "ostraka/core/json_build.h"
 #include "ostraka/core/stopwatch.h"
@@ -33,6 +31,30 @@ inline Json document_of(std::string_view kind, const JsonValue& result, const Pr
     add_members(document, allocator, "provenance", provenance.to_json(allocator));
     return document;
 }
+
+/// The numbers of "12,88"; Error (usage) names the option.
+template <class Number>
+std::vector<Number> numbers_of(const std::string& text, const std::string& option);
+extern template std::vector<double> numbers_of<double>(const std::string&, const std::string&);
+extern template std::vector<std::uint32_t> numbers_of<std::uint32_t>(const std::string&, const std::string&);
+
+/// The direction "0,0,1", or the axis "z" or "-z"; Error (usage) names the option.
+std::array<double, 3> direction_of(const std::string& text, const std::string& option);
+
+/// --up: a direction as `direction_of` takes it, checked before any work.
+class DirectionOption {
+public:
+    void describe(Parameters& p, const std::string& help);
+    explicit operator bool() const { return !text_.empty(); }
+    /// Empty where none was given.
+    [[nodiscard]] std::optional<std::array<double, 3>> value() const;
+
+private:
+    std::string text_;
+};
+
+/// The annotation of this id, or of this tag if exactly one has it. Throws Error (input) that names the file.
+const Annotation& find_annotation(const AnnotationSet& set, const std::string& name, const std::string& file);
 
 /// How the table (table.cpp) makes an operation; defined in the file of its name.
 template <class Work>

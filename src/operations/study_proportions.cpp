@@ -260,8 +260,8 @@ struct StudyProportions final : StudyOperation {
         for (Eigen::Index j = 0; j < m; ++j) map.values(j, j) = 0;
         if (map.values.allFinite() && m > 1)
             write_plot(files.plot("measures"),
-                       Dendrogram{"Measures by how fixed their ratios are (average linkage)", linkage(map.values),
-                                  map.rows, "standard deviation of the logarithm of ratios"});
+                       Dendrogram{"Measures by how fixed their ratios are (average linkage)", linkage(map.values), map.rows,
+                                  "standard deviation of the logarithm of ratios"});
         else report.note("no plot 'measures': not each two measures have a ratio known of two objects or more");
     }
 

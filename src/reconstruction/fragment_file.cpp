@@ -6,7 +6,6 @@
 #include "ostraka/measure/descriptors.h"
 
 #include <algorithm>
-#include <cctype>
 
 namespace ostraka {
 

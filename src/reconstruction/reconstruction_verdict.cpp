@@ -12,7 +12,9 @@ std::string to_string(ObjectionKind kind) {
     return word_for(kind, {"placement", "size", "landmarks", "surface", "overlap", "constraint"});
 }
 
-std::string to_string(Compatibility compatibility) { return word_for(compatibility, {"compatible", "incompatible", "undecided"}); }
+std::string to_string(Compatibility compatibility) {
+    return word_for(compatibility, {"compatible", "incompatible", "undecided"});
+}
 
 namespace {
 

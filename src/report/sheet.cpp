@@ -7,7 +7,6 @@
 
 #include <cairo-svg.h>
 
-#include <algorithm>
 #include <cmath>
 
 namespace ostraka::report {

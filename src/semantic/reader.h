@@ -80,11 +80,8 @@ public:
                                    std::initializer_list<const char*> known) const {
         const JsonValue* value = given(name);
         const std::string text = value == nullptr ? otherwise : value->IsString() ? value->GetString() : "?";
-        if (std::none_of(known.begin(), known.end(), [&](const char* k) { return text == k; })) {
-            std::string list;
-            for (const char* k : known) list += (list.empty() ? "" : ", ") + std::string(k);
-            fail(std::string(name) + " is '" + text + "'", "use one of: " + list);
-        }
+        if (std::none_of(known.begin(), known.end(), [&](const char* k) { return text == k; }))
+            fail(std::string(name) + " is '" + text + "'", "use one of: " + joined(known));
         return text;
     }
     [[nodiscard]] std::optional<Vector3d> vector(const char* name) const {

@@ -47,18 +47,9 @@ JsonValue range_to_json(const LearntRange& range, JsonAllocator& allocator) {
     return object;
 }
 
-std::string text_of(const JsonValue& object, const char* name) {
-    const JsonValue* value = find_member(object, name);
-    return value != nullptr && value->IsString() ? value->GetString() : "";
-}
-std::optional<double> number_in(const JsonValue& object, const char* name) {
-    const JsonValue* value = find_member(object, name);
-    return value != nullptr && value->IsNumber() ? std::optional<double>(value->GetDouble()) : std::nullopt;
-}
 std::vector<std::string> texts_in(const JsonValue& object, const char* name) {
     std::vector<std::string> list;
-    if (const JsonValue* value = find_member(object, name))
-        for (const auto& item : value->GetArray()) list.emplace_back(item.GetString());
+    for (const auto& item : list_in(object, name)) list.push_back(text_of(item));
     return list;
 }
 
@@ -67,8 +58,8 @@ LearntRange range_from(const JsonValue& object, std::size_t members, const std::
     range.quantity.kind = quantity_kind(object["kind"].GetString());
     if (const JsonValue* id = find_member(object, "id")) range.quantity.id = id->GetInt();
     range.quantity.name = object["name"].GetString();
-    range.quantity.of = text_of(object, "of");
-    range.quantity.unit = text_of(object, "unit");
+    range.quantity.of = text_in(object, "of");
+    range.quantity.unit = text_in(object, "unit");
     range.quantity.one_sided = object["oneSided"].GetBool();
     range.count = object["count"].GetUint64();
     range.logarithm = object["logarithm"].GetBool();

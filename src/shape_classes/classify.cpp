@@ -157,15 +157,6 @@ ClassAnswer compare_with(const ShapeClass& learnt, const LearntMember& object, c
     return answer;
 }
 
-ClassAnswer ask_class(const ShapeClass& learnt, const ClassTemplate& known, const WholeObject& object,
-                      const ClassifyOptions& options) {
-    LearnOptions how;
-    how.fit = options.fit;
-    how.correspondence = options.correspondence;
-    how.modes.sizes = learnt.sizes;
-    return compare_with(learnt, learn_member(known, object, how), options);
-}
-
 Classification decide(std::string object, std::vector<ClassAnswer> answers, const ClassifyOptions& options) {
     if (answers.empty()) fail_usage("there is no class to ask", "give one or more");
     Classification result;

@@ -49,20 +49,24 @@ struct SparseCholesky::State {
 
 namespace {
 
-cholmod_sparse view(const LowerTriangle& matrix) {
+/// The lower triangle of a square matrix by columns; without values its pattern.
+cholmod_sparse view(std::size_t size, std::size_t entries, const int* columns, const int* rows, const double* values) {
     cholmod_sparse view{};
-    view.nrow = view.ncol = static_cast<std::size_t>(matrix.rows());
-    view.nzmax = static_cast<std::size_t>(matrix.nonZeros());
-    view.p = const_cast<int*>(matrix.outerIndexPtr());
-    view.i = const_cast<int*>(matrix.innerIndexPtr());
-    view.x = const_cast<double*>(matrix.valuePtr());
+    view.nrow = view.ncol = size;
+    view.nzmax = entries;
+    view.p = const_cast<int*>(columns);
+    view.i = const_cast<int*>(rows);
+    view.x = const_cast<double*>(values);
     view.stype = -1;
     view.itype = CHOLMOD_INT;
-    view.xtype = CHOLMOD_REAL;
+    view.xtype = values == nullptr ? CHOLMOD_PATTERN : CHOLMOD_REAL;
     view.dtype = CHOLMOD_DOUBLE;
-    view.sorted = 1;
-    view.packed = 1;
+    view.sorted = view.packed = 1;
     return view;
+}
+cholmod_sparse view(const LowerTriangle& matrix) {
+    return view(static_cast<std::size_t>(matrix.rows()), static_cast<std::size_t>(matrix.nonZeros()), matrix.outerIndexPtr(),
+                matrix.innerIndexPtr(), matrix.valuePtr());
 }
 
 /// Unknowns with more neighbours than this spoil an ordering; as last ones they cost a row of the factor each.
@@ -94,17 +98,7 @@ std::vector<int> elimination_order(const LowerTriangle& matrix, cholmod_common& 
             if (index[entry.row()] >= 0) rows.push_back(index[entry.row()]);
         columns.push_back(static_cast<int>(rows.size()));
     }
-    cholmod_sparse pattern{};
-    pattern.nrow = pattern.ncol = sparse.size();
-    pattern.nzmax = rows.size();
-    pattern.p = columns.data();
-    pattern.i = rows.data();
-    pattern.stype = -1;
-    pattern.itype = CHOLMOD_INT;
-    pattern.xtype = CHOLMOD_PATTERN;
-    pattern.dtype = CHOLMOD_DOUBLE;
-    pattern.sorted = 1;
-    pattern.packed = 1;
+    cholmod_sparse pattern = view(sparse.size(), rows.size(), columns.data(), rows.data(), nullptr);
     std::vector<int> order(sparse.size());
     done = true;
     if (!sparse.empty()) {

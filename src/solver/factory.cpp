@@ -1,6 +1,8 @@
 // Constraints by name.
 #include "kinds.h"
 
+#include "ostraka/core/words.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -123,11 +125,9 @@ std::unique_ptr<Constraint> make_constraint(std::string_view kind, std::vector<i
                                             const ConstraintParameters& parameters, const Points& rest) {
     const auto& table = solver::table();
     const auto found = std::find_if(table.begin(), table.end(), [&](const auto& entry) { return entry.kind.name == kind; });
-    if (found == table.end()) {
-        std::string names;
-        for (const auto& entry : table) names += (names.empty() ? "" : ", ") + std::string(entry.kind.name);
-        throw Error(ErrorKind::usage, "constraint " + std::string(kind), "there is no such kind", "use one of: " + names);
-    }
+    if (found == table.end())
+        throw Error(ErrorKind::usage, "constraint " + std::string(kind), "there is no such kind",
+                    "use one of: " + joined(table, ", ", [](const auto& entry) { return std::string(entry.kind.name); }));
     const int count = static_cast<int>(ids.size());
     solver::Making making{found->kind.name, std::move(ids), weight, parameters, Points(3, count)};
     if (count < found->kind.min_ids || (found->kind.max_ids > 0 && count > found->kind.max_ids))

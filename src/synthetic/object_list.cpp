@@ -2,8 +2,8 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/nearest_name.h"
+#include "ostraka/core/words.h"
 
-#include <algorithm>
 #include <map>
 
 namespace ostraka {
@@ -36,13 +36,8 @@ const SyntheticObject& synthetic_object(const std::string& name) {
     }();
     const auto found = made.find(name);
     if (found != made.end()) return *found->second;
-    std::string nearest, all;
-    std::size_t minimum = std::max<std::size_t>(3, name.size() / 2 + 1);
-    for (const auto& [known, maker] : makers()) {
-        all += (all.empty() ? "" : ", ") + known;
-        const std::size_t distance = name.size() > 64 ? 64 : edit_distance(name, known, minimum - 1);
-        if (distance < minimum) minimum = distance, nearest = known;
-    }
+    const std::vector<std::string> names = synthetic_object_names();
+    const std::string nearest = name.size() > 64 ? "" : nearest_name(name, names), all = joined(names);
     fail_usage("there is no made object '" + name + "'",
                nearest.empty() ? "use one of: " + all : "did you mean '" + nearest + "'? All: " + all);
 }

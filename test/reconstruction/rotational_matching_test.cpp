@@ -8,7 +8,7 @@
 #include "ostraka/geom/eigen.h"
 #include "ostraka/reconstruction/open_rotations.h"
 #include "ostraka/stats/random.h"
-#include "ostraka/synthetic/shatter.h"
+#include "shatter.h"
 
 #include <gtest/gtest.h>
 

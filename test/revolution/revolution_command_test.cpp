@@ -2,8 +2,8 @@
 
 #include "ostraka/core/json.h"
 #include "ostraka/io/mesh_file.h"
-#include "ostraka/synthetic/shatter.h"
 #include "ostraka/template_package/template.h"
+#include "shatter.h"
 
 #include <gtest/gtest.h>
 

@@ -11,6 +11,7 @@
 namespace ostraka {
 namespace {
 
+using test::ask_class;
 using test::class_of;
 using test::member_of;
 using test::Tower;

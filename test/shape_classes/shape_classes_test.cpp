@@ -16,6 +16,7 @@
 namespace ostraka {
 namespace {
 
+using test::ask_class;
 using test::class_of;
 using test::member_of;
 using test::Tower;

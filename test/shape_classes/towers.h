@@ -3,6 +3,7 @@
 
 #include "meshes.h"
 
+#include "ostraka/shape_classes/classify.h"
 #include "ostraka/shape_classes/sample.h"
 
 namespace ostraka::test {
@@ -13,6 +14,13 @@ struct Tower {
     RelationGraph graph;
     [[nodiscard]] ClassTemplate known() const { return {mesh, set, graph}; }
 };
+
+/// What a class says of an object.
+inline ClassAnswer ask_class(const ShapeClass& learnt, const ClassTemplate& known, const WholeObject& object) {
+    LearnOptions how;
+    how.modes.sizes = learnt.sizes;
+    return compare_with(learnt, learn_member(known, object, how));
+}
 
 inline Annotation half(const Mesh& mesh, int id, const std::string& tag, bool upper) {
     Annotation annotation;

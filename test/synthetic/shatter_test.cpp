@@ -1,4 +1,4 @@
-#include "ostraka/synthetic/shatter.h"
+#include "shatter.h"
 
 #include "meshes.h"
 

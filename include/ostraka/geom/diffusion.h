@@ -6,7 +6,6 @@
 #include <Eigen/Geometry>
 
 #include <memory>
-#include <vector>
 
 namespace ostraka {
 

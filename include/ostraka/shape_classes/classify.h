@@ -44,10 +44,7 @@ struct ClassAnswer {
     [[nodiscard]] std::vector<std::string> reasons() const;
 };
 
-/// Lays the class's template onto the object and compares.
-ClassAnswer ask_class(const ShapeClass& learnt, const ClassTemplate& known, const WholeObject& object,
-                      const ClassifyOptions& options = {});
-/// The same for what was fitted and measured already.
+/// What an object that was fitted and measured is to the class.
 ClassAnswer compare_with(const ShapeClass& learnt, const LearntMember& object, const ClassifyOptions& options = {});
 
 struct Classification {

@@ -7,11 +7,12 @@
 
 namespace ostraka {
 
-/// DBSCAN (Ester, Kriegel, Sander and Xu 1996) of the rows of `samples`. A sample with at least `minimum` samples (itself counted) at distances of at most `epsilon` is in the inside of a cluster. Returns a label a
-/// sample: 0, 1, ... in the order of the clusters' first inner samples, and -1 for noise; a sample on the rim of two clusters
-/// belongs to the first. With minimum 1 there is no noise, and clusters are what steps of `epsilon` connect. Quadratic in the
-/// number of samples. Throws Error (input) for no sample, values that are not finite, a matrix that is not symmetric or negative,
-/// and Error (usage) for an epsilon below 0 or a minimum below 1.
+/// DBSCAN (Ester, Kriegel, Sander and Xu 1996) of the rows of `samples`. A sample with at least `minimum` samples (itself
+/// counted) at distances of at most `epsilon` is in the inside of a cluster. Returns a label a sample: 0, 1, ... in the order of
+/// the clusters' first inner samples, and -1 for noise; a sample on the rim of two clusters belongs to the first. With minimum 1
+/// there is no noise, and clusters are what steps of `epsilon` connect. Quadratic in the number of samples. Throws Error (input)
+/// for no sample, values that are not finite, a matrix that is not symmetric or negative, and Error (usage) for an epsilon below
+/// 0 or a minimum below 1.
 std::vector<int> dbscan(const Eigen::MatrixXd& samples, double epsilon, int minimum);
 
 /// The radius at which as many samples, spread evenly over the box that holds them, would have `minimum` of them within reach

@@ -1,4 +1,4 @@
-#include "ostraka/synthetic/shatter.h"
+#include "shatter.h"
 #include "ostraka/core/angles.h"
 
 #include "ostraka/core/error.h"
