@@ -1,6 +1,7 @@
 // The only file that knows CLI11.
 #include "command_line.h"
 
+#include "ostraka/core/file.h"
 #include "ostraka/core/nearest_name.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
@@ -12,6 +13,8 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <cctype>
 #include <csignal>
 #include <cstdio>
 #include <iostream>
@@ -28,11 +31,92 @@ std::vector<std::string> words_of(const std::string& name) {
     return words;
 }
 
+/// What stands behind a flag.
+enum class FlagValue { unknown, none, one };
+
+bool begins_a_flag(const std::string& word) {
+    return word.size() > 1 && word[0] == '-' && !number_of(word) && std::isdigit(static_cast<unsigned char>(word[1])) == 0;
+}
+std::string name_of_flag(const std::string& word) {
+    const std::size_t begin = std::min(word.find_first_not_of('-'), word.size());
+    return word.substr(begin, word.find('=') - begin);
+}
+
+FlagValue value_of_flag(const Call& call, const std::string& name) {
+    for (const char* common : {"json", "quiet", "help", "help-all"})
+        if (name == common) return FlagValue::none;
+    if (name == "show" || name == "threads") return FlagValue::one;
+    for (const Option& option : call.parameters().options) {
+        if (option.is_positional) continue;
+        const bool is_switch = option.type() == OptionType::boolean;
+        if (option.name == name) return is_switch ? FlagValue::none : FlagValue::one;
+        if (is_switch && option.initial == "true" && name == "no-" + option.name) return FlagValue::none;
+    }
+    const Slot* slot = call.parameters().slot(name);
+    return slot == nullptr || slot->is_positional ? FlagValue::unknown : FlagValue::one;
+}
+
 /// Names the nearest option: the operation's or one that all have.
-[[noreturn]] void refuse_option(const Call& call, const std::string& written) {
-    const std::size_t begin = written.find_first_not_of('-');
-    const std::string name = begin == std::string::npos ? written : written.substr(begin, written.find('=') - begin);
-    call.no_such_name(name, {"json", "show", "quiet", "threads", "help"});
+[[noreturn]] void refuse_option(const Call& call, const std::string& name) {
+    const Slot* slot = call.parameters().slot(name);
+    if (slot != nullptr && slot->is_positional)
+        throw Error(ErrorKind::usage, call.entry().name, name + " is given without a flag",
+                    "'ostraka " + std::string(call.entry().name) + " --help' shows the order");
+    std::vector<std::string> names{"json", "show", "quiet", "threads", "help"};
+    for (const Option& option : call.parameters().options)
+        if (option.type() == OptionType::boolean && option.initial == "true") names.push_back("no-" + option.name);
+    call.no_such_name(name, names);
+}
+
+/// The words behind the operation's name as the parser takes them: each flag is one of the operation's, and has its value. What
+/// begins with a dash is a value only behind "=", and an argument only behind "--".
+std::vector<std::string> checked_words(const Call& call, const std::vector<std::string>& words) {
+    const auto refuse = [&](const std::string& what, const std::string& remedy) {
+        throw Error(ErrorKind::usage, call.entry().name, what, remedy);
+    };
+    std::vector<std::string> checked, arguments;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        const std::string& word = words[i];
+        if (word == "--") {
+            for (std::size_t k = i + 1; k < words.size(); ++k)
+                arguments.push_back(begins_a_flag(words[k]) ? "./" + words[k] : words[k]);
+            break;
+        }
+        checked.push_back(word);
+        if (word == "-h" || !begins_a_flag(word)) continue;
+        const std::string name = name_of_flag(word);
+        const FlagValue value = word.starts_with("--") ? value_of_flag(call, name) : FlagValue::unknown;
+        if (value == FlagValue::unknown && file_exists(word))
+            refuse("'" + printable(word, 60) + "' is read as an option", "write ./" + printable(word, 60));
+        if (value == FlagValue::unknown) refuse_option(call, name);
+        const std::size_t equals = word.find('=');
+        if (value == FlagValue::none) {
+            if (equals == std::string::npos) continue;
+            const std::string given = word.substr(equals + 1);
+            if (given != "true" && given != "false")
+                refuse("--" + name + " is '" + printable(given, 60) + "'", "give --" + name + " alone, or =true or =false");
+        } else if (equals != std::string::npos) {
+            // The parser would take the next word for an empty value.
+            if (equals + 1 == word.size()) checked.back().pop_back(), checked.emplace_back();
+        } else if (i + 1 == words.size() ||
+                   (begins_a_flag(words[i + 1]) && value_of_flag(call, name_of_flag(words[i + 1])) != FlagValue::unknown)) {
+            refuse("--" + name + " has no value",
+                   i + 1 == words.size() ? "give it one"
+                                         : "give it one; --" + name + "=" + printable(words[i + 1], 40) + " for that word");
+        } else {
+            checked.push_back(words[++i]);
+        }
+    }
+    checked.insert(checked.end(), arguments.begin(), arguments.end());
+    return checked;
+}
+
+/// A file of the command line is a file.
+void set_file(Call& call, const std::string& name, const std::string& file) {
+    if (is_memory(file))
+        throw Error(ErrorKind::usage, call.entry().name, name + " is '" + printable(file, 60) + "', which is for programs",
+                    "write ./" + printable(file, 60) + " for a file of that name");
+    call.set_file(name, file);
 }
 
 /// The operation whose words begin the arguments; null where they name a group or nothing. Throws where they name neither.
@@ -74,9 +158,10 @@ void add_option(CLI::App& command, Option& option) {
     const std::string flag = "--" + option.name, help = option.help + (option.unit.empty() ? "" : " (" + option.unit + ")");
     CLI::Option* added = nullptr;
     if (option.type() == OptionType::boolean) {
-        const std::string names = option.initial == "true" ? flag + ",!--no-" + option.name : flag;
-        added = command.add_flag_function(
-            names, [&option](std::int64_t count) { option.set(count > 0); }, help);
+        const bool is_on = option.initial == "true";
+        const auto set = [&option](std::int64_t count) { option.set(count > 0); };
+        added = command.add_flag_function(flag, set, is_on ? help + "; on unless --no-" + option.name + " is given" : help);
+        if (is_on) command.add_flag_function("!--no-" + option.name, set)->group("");
     } else {
         added = command.add_option_function<std::vector<std::string>>(
             option.is_positional ? option.name : flag, [&option](const std::vector<std::string>& words) { option.set(words); },
@@ -101,7 +186,7 @@ void add_slot(CLI::App& command, Call& call, const Slot& slot) {
     auto* added = command.add_option_function<std::vector<std::string>>(
         slot.is_positional ? name : "--" + name,
         [&call, name](const std::vector<std::string>& files) {
-            for (const auto& file : files) call.set_file(name, file);
+            for (const auto& file : files) set_file(call, name, file);
         },
         slot.help);
     added->type_name("FILE");
@@ -168,7 +253,7 @@ void take_positionals(Call& call, const std::vector<std::string>& words) {
         const std::size_t take = is_repeated(call, (*order)[i]) ? words.size() - order->size() + 1 : 1;
         const std::vector<std::string> mine(words.begin() + static_cast<long>(at), words.begin() + static_cast<long>(at + take));
         if (call.parameters().slot((*order)[i]) != nullptr)
-            for (const auto& file : mine) call.set_file((*order)[i], file);
+            for (const auto& file : mine) set_file(call, (*order)[i], file);
         else call.option((*order)[i]).set(mine);
         at += take;
     }
@@ -209,9 +294,12 @@ void check_standard_output() {
 }
 
 Watch* watch_of_signals = nullptr;
-void cancel_on_signal(int signal) {
+void handle_signals(void (*handler)(int)) {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, handler);
+}
+void cancel_on_signal(int /*signal*/) {
     if (watch_of_signals != nullptr) watch_of_signals->cancel();
-    std::signal(signal, SIG_DFL);  // a second one ends the process
+    handle_signals(SIG_DFL);  // a second one ends the process
 }
 
 int run_call(Call& call, const Common& common) {
@@ -225,8 +313,7 @@ int run_call(Call& call, const Common& common) {
             else std::fprintf(stderr, "\r\033[K");
         };
     watch_of_signals = &context.watch;
-    std::signal(SIGINT, cancel_on_signal);
-    std::signal(SIGTERM, cancel_on_signal);
+    handle_signals(cancel_on_signal);
     bool shown = false;
     const auto show = [&](const Report& report) {
         const ReportFormat format = common.json || common.show == "json" ? ReportFormat::json
@@ -295,20 +382,31 @@ int run_command_line(int argc, char** argv) {
         by_count = add_parameters(*command, *call, words);
         command->allow_extras();
     }
+    std::vector<std::string> given(argv + 1, argv + argc);
+    if (call) {
+        const auto behind = given.begin() + static_cast<long>(words_of(call->entry().name).size());
+        const std::vector<std::string> checked = checked_words(*call, {behind, given.end()});
+        given.erase(behind, given.end());
+        given.insert(given.end(), checked.begin(), checked.end());
+    } else if (!given.empty() && given[0].starts_with("-") && given[0] != "-h" && given[0] != "--help" &&
+               given[0] != "--version") {
+        fail_usage("'" + printable(given[0], 60) + "' stands before a command", "flags follow it: ostraka mesh info FILE --json");
+    }
     try {
-        tool.parse(argc, argv);
+        std::reverse(given.begin(), given.end());  // as the parser wants them
+        tool.parse(given);
     } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() != 0 && call)
+            throw Error(ErrorKind::usage, call->entry().name, error.what(),
+                        "'ostraka " + std::string(call->entry().name) + " --help' shows what it takes");
         if (tool.exit(error) != 0) return wrong_usage;
         std::cout.flush();
         return std::cout ? done : failed;
     }
     if (running == nullptr) return wrong_usage;
-    for (const std::string& extra : running->remaining()) {
-        if (extra.size() < 2 || extra[0] != '-')
-            throw Error(ErrorKind::usage, call->entry().name, "'" + printable(extra, 60) + "' is one argument too many",
-                        "'ostraka " + std::string(call->entry().name) + " --help' shows what it takes");
-        refuse_option(*call, extra);
-    }
+    for (const std::string& extra : running->remaining())
+        throw Error(ErrorKind::usage, call->entry().name, "'" + printable(extra, 60) + "' is one argument too many",
+                    "'ostraka " + std::string(call->entry().name) + " --help' shows what it takes");
     if (by_count) take_positionals(*call, words);
     for (const Slot* slot : call->parameters().slots())
         if (slot->needed && slot->sources.empty())

@@ -83,7 +83,7 @@ Eigen::MatrixXd centred_columns(const Eigen::MatrixXd& logs) {
         }
     }
     // The sizes may take a constant from the columns: of all solutions the one with the least squares.
-    const Eigen::VectorXd centre = solve_least_squares<Eigen::Dynamic>(normal, right);
+    const Eigen::VectorXd centre = solve_least_squares(normal, right);
     return x.rowwise() - centre.transpose();
 }
 

@@ -68,17 +68,12 @@ template Eigen::Matrix<double, 4, 1> solve_ldlt<4>(const Eigen::Matrix4d&, const
 template Eigen::Matrix<double, 6, 1> solve_ldlt<6>(const Eigen::Matrix<double, 6, 6>&, const Eigen::Matrix<double, 6, 1>&);
 template Eigen::VectorXd solve_ldlt<Eigen::Dynamic>(const Eigen::MatrixXd&, const Eigen::VectorXd&);
 
-template <int N>
-Eigen::Matrix<double, N, 1> solve_least_squares(const Eigen::Matrix<double, N, N>& a, const Eigen::Matrix<double, N, 1>& b,
-                                                double threshold) {
-    Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix<double, N, N>> solver(a.rows(), a.cols());
+Eigen::VectorXd solve_least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, double threshold) {
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(a.rows(), a.cols());
     if (threshold > 0) solver.setThreshold(threshold);
     solver.compute(a);
     return solver.solve(b);
 }
-template Eigen::Matrix<double, 3, 1> solve_least_squares<3>(const Eigen::Matrix3d&, const Eigen::Vector3d&, double);
-template Eigen::Matrix<double, 4, 1> solve_least_squares<4>(const Eigen::Matrix4d&, const Eigen::Vector4d&, double);
-template Eigen::VectorXd solve_least_squares<Eigen::Dynamic>(const Eigen::MatrixXd&, const Eigen::VectorXd&, double);
 
 Eigen::MatrixXd solve_full_rank(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) { return a.householderQr().solve(b); }
 

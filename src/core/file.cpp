@@ -56,9 +56,9 @@ thread_local OutputTransaction* open_transaction = nullptr;
 thread_local std::vector<Path> kept_files;
 
 /// Several threads may write into one transaction.
+std::mutex waiting_mutex;
 void add_waiting(std::vector<std::pair<Path, Path>>& waiting, const Path& temporary, const Path& file) {
-    static std::mutex mutex;
-    const std::lock_guard lock(mutex);
+    const std::lock_guard lock(waiting_mutex);
     waiting.emplace_back(temporary, file);
 }
 
@@ -127,6 +127,8 @@ void rename_file(const Path& from, const Path& to) {
 Path behind_links(Path file) {
     std::error_code code;
     for (int step = 0; step < 40 && std::filesystem::is_symlink(file, code); ++step) {
+        // A device or a pipe has no name behind that of its link.
+        if (std::filesystem::exists(file, code) && !std::filesystem::is_regular_file(file, code)) break;
         const Path target = std::filesystem::read_symlink(file, code);
         if (code) break;
         file = target.is_absolute() ? target : file.parent_path() / target;
@@ -183,7 +185,13 @@ std::vector<std::string> files_in(const Path& folder, std::vector<std::string>* 
 void make_folder(const Path& folder) {
     if (is_memory(folder) || folder.empty()) return;
     std::error_code code;
+    std::vector<Path> made;
+    for (Path one = folder; !one.empty() && !std::filesystem::exists(one, code); one = one.parent_path()) made.push_back(one);
     std::filesystem::create_directories(folder, code);
+    if (open_transaction != nullptr) {
+        const std::lock_guard lock(waiting_mutex);
+        open_transaction->made_.insert(open_transaction->made_.end(), made.rbegin(), made.rend());
+    }
     if (code || !std::filesystem::is_directory(folder, code))
         fail_work(folder.string(), "the folder cannot be made" + (code ? ": " + code.message() : ""), "name another one");
 }
@@ -256,6 +264,15 @@ AtomicFile::AtomicFile(Path file) : file_(is_memory(file) ? std::move(file) : be
         if (stream_ == nullptr) fail_work(file_.string(), "cannot be written: " + reason(), "check its rights");
         return;
     }
+    if (std::filesystem::is_symlink(file_, code)) fail_work(file_.string(), "is a link that leads to itself", "remove the link");
+    const mode_t mask = ::umask(0);
+    ::umask(mask);
+    mode_t rights = 0666 & ~mask;
+    if (struct stat present{}; ::stat(file_.c_str(), &present) == 0) {
+        rights = present.st_mode & 0777;
+        if (::access(file_.c_str(), W_OK) != 0)
+            fail_work(file_.string(), "cannot be written: " + reason(), "check its rights, or choose another name");
+    }
     // Not the file's own name with an ending: that may be as long as names can be.
     std::string pattern = (file_.parent_path() / ".ostraka-XXXXXX").string();
     const int descriptor = ::mkstemp(pattern.data());
@@ -264,9 +281,7 @@ AtomicFile::AtomicFile(Path file) : file_(is_memory(file) ? std::move(file) : be
         fail_work(file_.string(), "cannot be written: " + why, "check that its folder exists and may be written to");
     }
     temporary_ = pattern;
-    const mode_t mask = ::umask(0);
-    ::umask(mask);
-    ::fchmod(descriptor, 0666 & ~mask);
+    ::fchmod(descriptor, rights);
     stream_ = ::fdopen(descriptor, "wb");
     if (stream_ == nullptr) {
         ::close(descriptor);
@@ -317,6 +332,8 @@ OutputTransaction::OutputTransaction() : outer_(open_transaction) { open_transac
 OutputTransaction::~OutputTransaction() {
     open_transaction = outer_;
     for (const auto& [temporary, file] : waiting_) remove_file(temporary);
+    std::error_code code;  // of those that are not empty
+    for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder) std::filesystem::remove(*folder, code);
 }
 
 OutputTransaction* current_transaction() { return open_transaction; }
@@ -325,16 +342,51 @@ TransactionScope::~TransactionScope() { open_transaction = outer_; }
 KeptFiles::KeptFiles(std::vector<Path> files) : outer_(std::move(kept_files)) { kept_files = std::move(files); }
 KeptFiles::~KeptFiles() { kept_files = std::move(outer_); }
 
+namespace {
+/// What stood under a name that is about to be taken, under a second one.
+struct Replaced {
+    explicit Replaced(Path name) : file(std::move(name)) {
+        struct stat present {};
+        if (is_memory(file) || ::lstat(file.c_str(), &present) != 0) return;
+        existed = true;
+        std::string pattern = (file.parent_path() / ".ostraka-XXXXXX").string();
+        const int descriptor = ::mkstemp(pattern.data());
+        if (descriptor < 0) return;
+        ::close(descriptor);
+        ::unlink(pattern.c_str());
+        if (::link(file.c_str(), pattern.c_str()) == 0) aside = pattern;
+    }
+    void restore() const {
+        if (!aside.empty()) ::rename(aside.c_str(), file.c_str());
+        else if (!existed) remove_file(file);
+    }
+
+    Path file, aside;
+    bool existed = false;
+};
+}  // namespace
+
 void OutputTransaction::commit() {
     std::vector<OutputSweep> sweeps;
     for (const auto& [folder, owner] : replaced_) sweeps.emplace_back(folder, owner, waiting_, kept_files);
     replaced_.clear();
     for (const OutputSweep& sweep : sweeps) sweep.write_list();
-    while (!waiting_.empty()) {
-        const auto& [temporary, file] = waiting_.front();
-        rename_file(temporary, file);
-        waiting_.erase(waiting_.begin());
+    std::vector<Replaced> replaced;
+    try {
+        while (!waiting_.empty()) {
+            const auto& [temporary, file] = waiting_.front();
+            replaced.emplace_back(file);
+            rename_file(temporary, file);
+            waiting_.erase(waiting_.begin());
+        }
+    } catch (...) {
+        remove_file(replaced.back().aside);
+        replaced.pop_back();
+        for (auto one = replaced.rbegin(); one != replaced.rend(); ++one) one->restore();
+        throw;
     }
+    for (const Replaced& one : replaced) remove_file(one.aside);
+    made_.clear();
     for (OutputSweep& sweep : sweeps) sweep.remove_rest();
 }
 
@@ -353,7 +405,7 @@ namespace {
 /// The same text for every spelling of a place, whether anything stands there or not.
 Path one_spelling(const Path& file) {
     std::error_code code;
-    const Path whole = std::filesystem::absolute(file, code);
+    const Path whole = behind_links(std::filesystem::absolute(file, code));
     const Path place = std::filesystem::weakly_canonical(whole, code);
     return code ? whole.lexically_normal() : place.lexically_normal();
 }

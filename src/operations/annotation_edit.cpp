@@ -69,6 +69,8 @@ struct AnnotationEditing final : AnnotatedMeshOperation {
                 "one annotation or a list of edits",
                 "name an annotation with --annotation, or give --edits FILE, not both; or --set-class, --set-unit, --set-up");
         static_cast<void>(direction());
+        if (tag && (trimmed(*tag).empty() || printable(*tag) != *tag))
+            fail_usage("--tag is '" + printable(*tag, 60) + "'", "give a word that can be read");
         if (!annotation.empty()) static_cast<void>(by_options());
     }
 

@@ -99,11 +99,16 @@ std::vector<std::string> completions(const std::vector<std::string>& words) {
         const Call call(*named);
         list.clear();
         const std::string& before = words[words.size() - 2];
-        const std::string flag = before.starts_with("--") ? before.substr(2) : "";
+        const auto flag_of = [](const std::string& word) { return word.starts_with("--") ? word.substr(2) : std::string(); };
+        const std::string flag = flag_of(before);
         const Option* option = flag.empty() ? nullptr : call.parameters().options.find(flag);
         const Slot* slot = flag.empty() ? nullptr : call.parameters().slot(flag);
         if (begun.starts_with("-")) {
             add_flags(list, call);
+        } else if (flag == "show") {
+            list = {"table", "json", "csv", "markdown"};
+        } else if (flag == "threads") {
+            list.clear();
         } else if (slot != nullptr) {
             add_files(list, begun, endings_of(slot->kind));
         } else if (option != nullptr && option->type() != OptionType::boolean) {
@@ -114,9 +119,9 @@ std::vector<std::string> completions(const std::vector<std::string>& words) {
             std::size_t place = 0;
             for (std::size_t i = length; i + 1 < words.size(); ++i) {
                 if (!words[i].starts_with("-")) ++place;
-                else if (const Option* other = words[i].size() > 2 ? call.parameters().options.find(words[i].substr(2)) : nullptr;
+                else if (const Option* other = call.parameters().options.find(flag_of(words[i]));
                          (other != nullptr && other->type() != OptionType::boolean) ||
-                         call.parameters().slot(words[i].substr(2)) != nullptr)
+                         call.parameters().slot(flag_of(words[i])) != nullptr)
                     ++i;
             }
             const auto& order = call.parameters().orders.front();
@@ -124,7 +129,8 @@ std::vector<std::string> completions(const std::vector<std::string>& words) {
             if (next != nullptr) add_files(list, begun, endings_of(next->kind));
         }
     }
-    std::erase_if(list, [&](const std::string& one) { return !one.starts_with(begun); });
+    // A word with a control character cannot be typed.
+    std::erase_if(list, [&](const std::string& one) { return !one.starts_with(begun) || printable(one) != one; });
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());
     return list;
@@ -136,9 +142,9 @@ std::string completion_script(Shell shell) {
             return "# bash completion for ostraka\n"
                    "_ostraka() {\n"
                    "    local IFS=$'\\n'\n"
-                   "    COMPREPLY=($(ostraka --complete \"${COMP_WORDS[@]:1:COMP_CWORD}\" 2>/dev/null))\n"
+                   "    mapfile -t COMPREPLY < <(ostraka --complete \"${COMP_WORDS[@]:1:COMP_CWORD}\" 2>/dev/null)\n"
                    "    [[ ${#COMPREPLY[@]} == 1 && ${COMPREPLY[0]} == */ ]] && compopt -o nospace\n"
-                   "    [[ ${#COMPREPLY[@]} -gt 0 ]] && COMPREPLY=($(printf '%q\\n' \"${COMPREPLY[@]}\"))\n"
+                   "    [[ ${#COMPREPLY[@]} -gt 0 ]] && mapfile -t COMPREPLY < <(printf '%q\\n' \"${COMPREPLY[@]}\")\n"
                    "}\n"
                    "complete -o default -F _ostraka ostraka\n";
         case Shell::zsh:

@@ -58,6 +58,14 @@ struct TemplatePack final : Operation {
             fail_usage("there is no folder to copy the parts to", "give the template's file, or leave --copy out");
     }
 
+    /// As a part of the template that is written anew.
+    [[nodiscard]] bool is_packed(const Path& place, const Path& part) const {
+        if (!file_exists(place)) return false;
+        const auto parts_before = read_template(place, options).contents;
+        return std::any_of(parts_before.begin(), parts_before.end(),
+                           [&](const PackagedFile& one) { return same_place(one.file, part); });
+    }
+
     void run(Context& context, Report& report) override {
         const Path place(output.file()), folder = place.has_parent_path() ? place.parent_path() : Path(".");
         TemplateFile file{object_class, unit, up.value(), {}};
@@ -71,7 +79,11 @@ struct TemplatePack final : Operation {
                     fail_usage("two parts are called '" + part.filename().string() + "'", "rename one of the files");
                 file.contents.push_back({role, part_name(folder, here), part, sha256_of_file(part)});
             }
-        for (const auto& [here, part] : copies) outputs.push_back(here);
+        for (const auto& [here, part] : copies) {
+            if (file_exists(here) && sha256_of_file(here) != sha256_of_file(part) && !is_packed(place, here))
+                fail_usage("another file is called '" + here.string() + "'", "rename it, or the part " + part.string());
+            outputs.push_back(here);
+        }
         check_outputs(inputs, outputs);
         // The file as it will be read: names that lead out of the folder are refused here.
         if (!place.empty()) static_cast<void>(template_from_json(template_to_json(file, {}), folder, place.string(), options));

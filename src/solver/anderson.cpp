@@ -60,9 +60,8 @@ void Anderson::next(const Points& x, const Points& g, Points& accelerated) {
         const Eigen::MatrixXd normal = products_.topLeftCorner(used_, used_);
         Eigen::VectorXd scale(used_);
         for (int i = 0; i < used_; ++i) scale[i] = normal(i, i) > 0 ? 1 / std::sqrt(normal(i, i)) : 0.0;
-        const Eigen::VectorXd theta =
-            scale.asDiagonal() * solve_least_squares<Eigen::Dynamic>(scale.asDiagonal() * normal * scale.asDiagonal(),
-                                                                     scale.asDiagonal() * right, 1e-12);
+        const Eigen::VectorXd theta = scale.asDiagonal() * solve_least_squares(scale.asDiagonal() * normal * scale.asDiagonal(),
+                                                                               scale.asDiagonal() * right, 1e-12);
         if (theta.allFinite())
             by_blocks(x.cols(), [&](Eigen::Index first, Eigen::Index n) {
                 for (int i = 0; i < used_; ++i) accelerated.middleCols(first, n) -= theta[i] * dg_[i].middleCols(first, n);

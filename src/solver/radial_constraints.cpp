@@ -63,7 +63,7 @@ protected:
             normal += row * row.transpose();
             right += row * x.col(i).squaredNorm();
         }
-        const Eigen::Matrix<double, D + 1, 1> found = solve_least_squares<D + 1>(normal, right);
+        const Eigen::Matrix<double, D + 1, 1> found = solve_least_squares(normal, right);
         return found.template head<D>();
     }
 };

@@ -74,6 +74,38 @@ TEST(OutputTransaction, ShowsAllFilesOrNone) {
     EXPECT_EQ(test::count_files(scratch.path()), 2U);
 }
 
+TEST(OutputTransaction, OldFilesComeBackWhereOneCannotBeReplaced) {
+    const test::Scratch folder;
+    const Path first = folder / "first", fresh = folder / "fresh", last = folder / "last";
+    write_file(first, "old");
+    {
+        OutputTransaction outputs;
+        write_file(first, "new");
+        write_file(fresh, "new");
+        write_file(last, "new");
+        std::filesystem::create_directory(last);  // meanwhile
+        EXPECT_THROW(outputs.commit(), Error);
+    }
+    EXPECT_EQ(read_file(first), "old");
+    EXPECT_FALSE(std::filesystem::exists(fresh));
+    EXPECT_EQ(test::count_files(folder.path()), 2U) << "nothing waits beside them";
+}
+
+TEST(OutputTransaction, FoldersGoWithWhatWasToBeInThem) {
+    const test::Scratch folder;
+    const Path outer = folder / "outer", inner = outer / "inner";
+    {
+        const OutputTransaction broken;
+        make_folder(inner);
+        write_file(inner / "x", "x");
+    }
+    EXPECT_FALSE(std::filesystem::exists(outer));
+    OutputTransaction whole;
+    make_folder(inner);
+    whole.commit();
+    EXPECT_TRUE(std::filesystem::exists(inner)) << "made, and meant to be empty";
+}
+
 TEST(OutputTransaction, HoldsWhatParallelLoopsWrite) {
     const Scratch scratch;
     const auto write_all = [&] {

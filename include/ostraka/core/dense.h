@@ -90,14 +90,9 @@ extern template Eigen::Matrix<double, 4, 1> solve_ldlt<4>(const Eigen::Matrix4d&
 extern template Eigen::Matrix<double, 6, 1> solve_ldlt<6>(const Eigen::Matrix<double, 6, 6>&, const Eigen::Matrix<double, 6, 1>&);
 extern template Eigen::VectorXd solve_ldlt<Eigen::Dynamic>(const Eigen::MatrixXd&, const Eigen::VectorXd&);
 
-/// The smallest of the x that minimise |A x - b|, by a complete orthogonal decomposition. N: 3, 4 or Eigen::Dynamic. `threshold`:
-/// pivots below this share of the largest count as zero; 0: as Eigen takes it.
-template <int N>
-Eigen::Matrix<double, N, 1> solve_least_squares(const Eigen::Matrix<double, N, N>& a, const Eigen::Matrix<double, N, 1>& b,
-                                                double threshold = 0);
-extern template Eigen::Matrix<double, 3, 1> solve_least_squares<3>(const Eigen::Matrix3d&, const Eigen::Vector3d&, double);
-extern template Eigen::Matrix<double, 4, 1> solve_least_squares<4>(const Eigen::Matrix4d&, const Eigen::Vector4d&, double);
-extern template Eigen::VectorXd solve_least_squares<Eigen::Dynamic>(const Eigen::MatrixXd&, const Eigen::VectorXd&, double);
+/// The smallest of the x that minimise |A x - b|, by a complete orthogonal decomposition. `threshold`: pivots below this share of
+/// the largest count as zero; 0: as Eigen takes it.
+Eigen::VectorXd solve_least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, double threshold = 0);
 
 /// The X that minimises |A X - B| for an A of full rank with more rows than columns (Householder).
 Eigen::MatrixXd solve_full_rank(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);

@@ -78,7 +78,8 @@ private:
 
 /// Several outputs that appear together or not at all: while one is open on this thread, files that AtomicFile commits on it and
 /// in parallel loops that it starts are on the disk but wait under their temporary names until `commit` renames them all; without
-/// it they are removed.
+/// it they are removed, and so are folders that were made and are empty. Where a name cannot be taken, what stood under the
+/// others comes back (but on file systems without hard links).
 class OutputTransaction {
 public:
     OutputTransaction();
@@ -91,7 +92,9 @@ public:
 private:
     friend class AtomicFile;
     friend void replace_outputs(const Path&, const std::string&);
+    friend void make_folder(const Path&);
     std::vector<std::pair<Path, Path>> waiting_;          ///< temporary name, name
+    std::vector<Path> made_;                              ///< folders, each after the one that it is in
     std::vector<std::pair<Path, std::string>> replaced_;  ///< folder, owner
     OutputTransaction* outer_;
 };

@@ -1,0 +1,104 @@
+// What stands on the command line, right and wrong, whatever the operation.
+#include "ostraka/core/json.h"
+#include "scratch.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+namespace ostraka {
+namespace {
+using test::run_command;
+using test::Scratch;
+
+const std::string vase = std::string(OSTRAKA_SOURCE_DIR) + "/data/vase.ply";
+const std::string annotations = std::string(OSTRAKA_SOURCE_DIR) + "/data/vase.ant.json";
+
+void expect_refusal(const std::string& words, const std::string& message) {
+    const auto result = run_command(words);
+    EXPECT_EQ(result.code, 2) << words << result.err;
+    EXPECT_NE(result.err.find(message), std::string::npos) << words << '\n' << result.err;
+}
+
+TEST(CommandLine, WrongFlagsAreNamedWithTheNearest) {
+    const Scratch scratch;
+    const std::string out = (scratch / "x.ply").string();
+    expect_refusal("mesh simplify " + vase + " " + out + " --verticess 500", "did you mean 'vertices'");
+    expect_refusal("mesh simplify " + vase + " " + out + " -vertices 500", "options begin with --");
+    expect_refusal("annotation transfer --no-overlop a b c d", "did you mean 'no-overlap'");
+    expect_refusal("mesh info " + vase + " --input x", "input is given without a flag");
+    expect_refusal("mesh info " + vase + " more", "one argument too many");
+    expect_refusal("--quiet mesh info " + vase, "stands before a command");
+    expect_refusal("mesh info " + vase + " --threads 1 --threads 2", "ostraka: mesh info: --threads");
+}
+
+TEST(CommandLine, AFlagHasItsValue) {
+    const Scratch scratch;
+    const std::string out = (scratch / "x.ply").string();
+    expect_refusal("mesh convert " + vase + " " + out + " --map --quiet", "--map has no value");
+    expect_refusal("mesh convert " + vase + " " + out + " --map", "--map has no value");
+    expect_refusal("mesh info " + vase + " --skip-self-intersections=banana", "=true or =false");
+    EXPECT_FALSE(std::filesystem::exists(out));
+    const Path edited = scratch / "e.ant.json";
+    const std::string edit = "annotation edit " + vase + " " + annotations + " ";
+    ASSERT_EQ(run_command(edit + "--set-unit= " + edited.string()).code, 0);
+    EXPECT_EQ(find_member(read_json(edited), "unit"), nullptr);
+    expect_refusal(edit + edited.string() + " --annotation 1 --tag ''", "--tag is ''");
+}
+
+TEST(CommandLine, NamesThatBeginWithADash) {
+    const Scratch scratch;
+    std::filesystem::copy_file(vase, scratch / "-dash.ply");
+    const std::string there = "cd " + scratch.path().string() + " && ";
+    EXPECT_EQ(run_command("mesh info --quiet -- -dash.ply", there).code, 0);
+    const auto result = run_command("mesh info -dash.ply", there);
+    EXPECT_EQ(result.code, 2);
+    EXPECT_NE(result.err.find("write ./-dash.ply"), std::string::npos) << result.err;
+    expect_refusal("mesh convert " + vase + " memory:x.ply", "which is for programs");
+}
+
+TEST(CommandLine, LinksDoNotHideThatTwoOutputsAreOne) {
+    const Scratch scratch;
+    std::filesystem::create_symlink("map.ply", scratch / "link.ply");
+    expect_refusal("mesh convert " + vase + " " + (scratch / "link.ply").string() + " --map " + (scratch / "map.ply").string(),
+                   "two outputs have the name");
+    std::filesystem::create_symlink("b.ply", scratch / "a.ply");
+    std::filesystem::create_symlink("a.ply", scratch / "b.ply");
+    EXPECT_EQ(run_command("mesh convert " + vase + " " + (scratch / "a.ply").string()).code, 1);
+    EXPECT_TRUE(std::filesystem::is_symlink(scratch / "a.ply"));
+}
+
+TEST(CommandLine, ReplacedFilesKeepTheirRights) {
+    const Scratch scratch;
+    const Path out = scratch / "private.ply";
+    ASSERT_EQ(run_command("mesh convert " + vase + " " + out.string()).code, 0);
+    const auto rights = std::filesystem::perms::owner_read | std::filesystem::perms::owner_write;
+    std::filesystem::permissions(out, rights);
+    ASSERT_EQ(run_command("mesh convert " + vase + " " + out.string()).code, 0);
+    EXPECT_EQ(std::filesystem::status(out).permissions(), rights);
+}
+
+TEST(CommandLine, PackingReplacesNoOtherFile) {
+    const Scratch scratch;
+    std::filesystem::create_directories(scratch / "from");
+    std::filesystem::create_directories(scratch / "to");
+    const Path mesh = scratch / "from/x.ply", other = scratch / "to/x.ply", package = scratch / "to/v.template.json";
+    std::filesystem::copy_file(vase, mesh);
+    write_file(other, "precious");
+    const std::string pack = "template pack " + package.string() + " --copy --mesh " + mesh.string();
+    expect_refusal(pack, "another file is called");
+    EXPECT_EQ(read_file(other), "precious");
+    std::filesystem::remove(other);
+    ASSERT_EQ(run_command(pack).code, 0);
+    ASSERT_EQ(run_command("mesh simplify " + vase + " " + mesh.string() + " --vertices 1000").code, 0);
+    EXPECT_EQ(run_command(pack).code, 0) << "what the template holds already is its own";
+}
+
+TEST(CommandLine, CompletionKnowsWhatAllCommandsHave) {
+    EXPECT_EQ(run_command("--complete mesh info --show ''").out, "csv\njson\nmarkdown\ntable\n");
+    EXPECT_EQ(run_command("--complete mesh info --threads ''").out, "");
+    EXPECT_EQ(run_command("--complete mesh info - x").code, 0);
+}
+
+}  // namespace
+}  // namespace ostraka
