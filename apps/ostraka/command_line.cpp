@@ -43,9 +43,8 @@ std::string name_of_flag(const std::string& word) {
 }
 
 FlagValue value_of_flag(const Call& call, const std::string& name) {
-    for (const char* common : {"json", "quiet", "help", "help-all"})
-        if (name == common) return FlagValue::none;
-    if (name == "show" || name == "threads") return FlagValue::one;
+    for (const CommonFlag& common : common_flags)
+        if (name == common.name) return common.has_value ? FlagValue::one : FlagValue::none;
     for (const Option& option : call.parameters().options) {
         if (option.is_positional) continue;
         const bool is_switch = option.type() == OptionType::boolean;
@@ -62,14 +61,15 @@ FlagValue value_of_flag(const Call& call, const std::string& name) {
     if (slot != nullptr && slot->is_positional)
         throw Error(ErrorKind::usage, call.entry().name, name + " is given without a flag",
                     "'ostraka " + std::string(call.entry().name) + " --help' shows the order");
-    std::vector<std::string> names{"json", "show", "quiet", "threads", "help"};
+    std::vector<std::string> names;
+    for (const CommonFlag& common : common_flags) names.emplace_back(common.name);
     for (const Option& option : call.parameters().options)
         if (option.type() == OptionType::boolean && option.initial == "true") names.push_back("no-" + option.name);
     call.no_such_name(name, names);
 }
 
-/// The words behind the operation's name as the parser takes them: each flag is one of the operation's, and has its value. What
-/// begins with a dash is a value only behind "=", and an argument only behind "--".
+/// The words behind the operation's name as the parser takes them: each flag is one of the operation's, and has its value. A
+/// word that is a flag of the operation is a value only behind "=", and what begins with a dash an argument only behind "--".
 std::vector<std::string> checked_words(const Call& call, const std::vector<std::string>& words) {
     const auto refuse = [&](const std::string& what, const std::string& remedy) {
         throw Error(ErrorKind::usage, call.entry().name, what, remedy);

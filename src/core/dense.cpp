@@ -7,6 +7,21 @@
 
 namespace ostraka {
 
+// One rotation of Jacobi.
+template <>
+SymmetricEigen<2>::SymmetricEigen(const Matrix& symmetric)
+    : found_(symmetric.triangularView<Eigen::Lower>().toDenseMatrix().allFinite()) {
+    Eigen::JacobiRotation<double> rotation;
+    rotation.makeJacobi(symmetric(0, 0), symmetric(1, 0), symmetric(1, 1));
+    vectors_.setIdentity();
+    vectors_.applyOnTheRight(0, 1, rotation);
+    const Matrix whole = symmetric.selfadjointView<Eigen::Lower>();
+    values_ = (vectors_.transpose() * whole * vectors_).diagonal();
+    if (values_[0] <= values_[1]) return;
+    std::swap(values_[0], values_[1]);
+    vectors_.col(0).swap(vectors_.col(1));
+}
+
 template <int N>
 SymmetricEigen<N>::SymmetricEigen(const Matrix& symmetric) {
     const Eigen::SelfAdjointEigenSolver<Matrix> solver(symmetric);
@@ -14,9 +29,7 @@ SymmetricEigen<N>::SymmetricEigen(const Matrix& symmetric) {
     vectors_ = solver.eigenvectors();
     found_ = solver.info() == Eigen::Success;
 }
-template class SymmetricEigen<2>;
 template class SymmetricEigen<3>;
-template class SymmetricEigen<4>;
 template class SymmetricEigen<Eigen::Dynamic>;
 
 Eigen::Vector3d symmetric_eigenvalues(const Eigen::Matrix3d& symmetric) {

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <deque>
 #include <map>
 #include <mutex>
 #include <new>
@@ -343,11 +344,11 @@ KeptFiles::KeptFiles(std::vector<Path> files) : outer_(std::move(kept_files)) { 
 KeptFiles::~KeptFiles() { kept_files = std::move(outer_); }
 
 namespace {
-/// What stood under a name that is about to be taken, under a second one.
+/// What stands under a name that is about to be taken, kept under a second one while this lives.
 struct Replaced {
     explicit Replaced(Path name) : file(std::move(name)) {
         struct stat present {};
-        if (is_memory(file) || ::lstat(file.c_str(), &present) != 0) return;
+        if (::lstat(file.c_str(), &present) != 0) return;
         existed = true;
         std::string pattern = (file.parent_path() / ".ostraka-XXXXXX").string();
         const int descriptor = ::mkstemp(pattern.data());
@@ -356,13 +357,16 @@ struct Replaced {
         ::unlink(pattern.c_str());
         if (::link(file.c_str(), pattern.c_str()) == 0) aside = pattern;
     }
+    ~Replaced() { remove_file(aside); }
+    Replaced(const Replaced&) = delete;
+    Replaced& operator=(const Replaced&) = delete;
     void restore() const {
         if (!aside.empty()) ::rename(aside.c_str(), file.c_str());
         else if (!existed) remove_file(file);
     }
 
     Path file, aside;
-    bool existed = false;
+    bool existed = false, taken = false;
 };
 }  // namespace
 
@@ -371,21 +375,21 @@ void OutputTransaction::commit() {
     for (const auto& [folder, owner] : replaced_) sweeps.emplace_back(folder, owner, waiting_, kept_files);
     replaced_.clear();
     for (const OutputSweep& sweep : sweeps) sweep.write_list();
-    std::vector<Replaced> replaced;
+    // Names in memory last: they can always be taken, so none of them has to come back.
+    std::stable_partition(waiting_.begin(), waiting_.end(), [](const auto& names) { return !is_memory(names.second); });
+    std::deque<Replaced> replaced;
     try {
-        while (!waiting_.empty()) {
+        for (; !waiting_.empty(); waiting_.erase(waiting_.begin())) {
             const auto& [temporary, file] = waiting_.front();
-            replaced.emplace_back(file);
+            if (!is_memory(file)) replaced.emplace_back(file);
             rename_file(temporary, file);
-            waiting_.erase(waiting_.begin());
+            if (!is_memory(file)) replaced.back().taken = true;
         }
     } catch (...) {
-        remove_file(replaced.back().aside);
-        replaced.pop_back();
-        for (auto one = replaced.rbegin(); one != replaced.rend(); ++one) one->restore();
+        for (auto one = replaced.rbegin(); one != replaced.rend(); ++one)
+            if (one->taken) one->restore();
         throw;
     }
-    for (const Replaced& one : replaced) remove_file(one.aside);
     made_.clear();
     for (OutputSweep& sweep : sweeps) sweep.remove_rest();
 }

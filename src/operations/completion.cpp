@@ -68,7 +68,7 @@ void add_flags(std::vector<std::string>& list, const Call& call) {
     for (const Option& option : call.parameters().options)
         if (!option.is_positional)
             list.push_back((option.type() == OptionType::boolean && option.initial == "true" ? "--no-" : "--") + option.name);
-    for (const char* common : {"--json", "--show", "--quiet", "--threads", "--help"}) list.emplace_back(common);
+    for (const CommonFlag& common : common_flags) list.push_back(std::string("--") + common.name);
 }
 
 }  // namespace

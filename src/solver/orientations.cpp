@@ -56,7 +56,7 @@ Matrix3d rotation_to_angle(const Vector3d& a, const Vector3d& d, double angle, c
     const Matrix4d near = (Matrix4d::Identity() + c) / 2, far = (Matrix4d::Identity() - c) / 2;
     const double wanted = std::pow(std::sin(angle / 2), 2);
     const auto too_far = [&](const Vector4d& q) { return (far * q).squaredNorm() > wanted * q.squaredNorm(); };
-    const auto top = [&](double l) -> Vector4d { return SymmetricEigen4(n + l * c).eigenvectors().col(3); };
+    const auto top = [&](double l) -> Vector4d { return SymmetricEigenX(n + l * c).eigenvectors().col(3); };
     constexpr double maximum = 1e12;
     double low = -1, high = 1;
     while (low > -maximum && !too_far(top(low))) low *= 2;

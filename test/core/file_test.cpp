@@ -77,9 +77,12 @@ TEST(OutputTransaction, ShowsAllFilesOrNone) {
 TEST(OutputTransaction, OldFilesComeBackWhereOneCannotBeReplaced) {
     const test::Scratch folder;
     const Path first = folder / "first", fresh = folder / "fresh", last = folder / "last";
+    const Path held = "memory:held";
     write_file(first, "old");
+    write_file(held, "old");
     {
         OutputTransaction outputs;
+        write_file(held, "new");
         write_file(first, "new");
         write_file(fresh, "new");
         write_file(last, "new");
@@ -87,6 +90,8 @@ TEST(OutputTransaction, OldFilesComeBackWhereOneCannotBeReplaced) {
         EXPECT_THROW(outputs.commit(), Error);
     }
     EXPECT_EQ(read_file(first), "old");
+    EXPECT_EQ(read_file(held), "old");
+    forget_memory(held);
     EXPECT_FALSE(std::filesystem::exists(fresh));
     EXPECT_EQ(test::count_files(folder.path()), 2U) << "nothing waits beside them";
 }

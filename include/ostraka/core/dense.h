@@ -13,7 +13,7 @@ class SymmetricEigen;
 /// Eigenvalues (ascending) and vectors of A x = lambda B x, A symmetric, B symmetric and positive definite.
 SymmetricEigen<Eigen::Dynamic> generalised_eigen(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
-/// Eigenvalues (ascending) and eigenvectors (columns) of a symmetric matrix, of which the lower triangle is read. N: 2, 3, 4 or
+/// Eigenvalues (ascending) and eigenvectors (columns) of a symmetric matrix, of which the lower triangle is read. N: 2, 3 or
 /// Eigen::Dynamic.
 template <int N>
 class SymmetricEigen {
@@ -36,11 +36,10 @@ private:
 };
 using SymmetricEigen2 = SymmetricEigen<2>;
 using SymmetricEigen3 = SymmetricEigen<3>;
-using SymmetricEigen4 = SymmetricEigen<4>;
 using SymmetricEigenX = SymmetricEigen<Eigen::Dynamic>;
-extern template class SymmetricEigen<2>;
+template <>
+SymmetricEigen<2>::SymmetricEigen(const Matrix& symmetric);
 extern template class SymmetricEigen<3>;
-extern template class SymmetricEigen<4>;
 extern template class SymmetricEigen<Eigen::Dynamic>;
 
 /// The eigenvalues alone, ascending.

@@ -15,6 +15,13 @@ std::vector<std::string> command_pages();
 std::string manual_name(const OperationEntry& entry);
 std::string manual_page(const OperationEntry& entry);
 
+/// Flags that the command has for every operation.
+struct CommonFlag {
+    const char* name;
+    bool has_value;
+};
+inline constexpr CommonFlag common_flags[]{{"json", false}, {"show", true}, {"quiet", false}, {"threads", true}, {"help", false}};
+
 enum class Shell { bash, zsh, fish };
 /// What a shell reads to complete the words of `ostraka`: it asks `ostraka --complete WORD...`.
 std::string completion_script(Shell shell);
