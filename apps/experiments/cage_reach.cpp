@@ -39,12 +39,12 @@ std::string deviations(const ConstraintReport& report, bool before) {
 struct SpaceVariant {
     std::string name, about;
     std::string space;
-    double closeness;
+    double spread;
 };
-/// With the default closeness of 0.001 a cage is hardly held where no constraint is.
-const std::vector<SpaceVariant> variants{{"by-mesh", "mesh", "mesh", DeformOptions().closeness},
-                                         {"by-cage", "cage", "cage", DeformOptions().closeness},
-                                         {"by-held-cage", "cage, closeness 1", "cage", 1}};
+/// A short spread holds a cage where no constraint is.
+const std::vector<SpaceVariant> variants{{"by-mesh", "mesh", "mesh", DeformOptions().spread},
+                                         {"by-cage", "cage", "cage", DeformOptions().spread},
+                                         {"by-held-cage", "cage, spread 0.03", "cage", 0.03}};
 
 }  // namespace
 
@@ -59,7 +59,7 @@ void cage_reach(const CageReachOptions& options) {
                     "| edit | cage | control points | solved over | constraint: after the edit -> solved | solved - edited, mean "
                     "(most), % of the diagonal | s |\n|---|---|---|---|---|---|---|\n",
                 rows =
-                    "edit,cage,cage_vertices,control_points,space,closeness,seconds,relationship,quantity,before,after,tolerance,"
+                    "edit,cage,cage_vertices,control_points,space,spread,seconds,relationship,quantity,before,after,tolerance,"
                     "unit,verdict,mean_moved,max_moved\n";
     for (const std::string& edit_item : options.edits) {
         const auto [edit_name, edit_file] = named(edit_item);
@@ -75,7 +75,7 @@ void cage_reach(const CageReachOptions& options) {
             for (const SpaceVariant& way : variants) {
                 DeformOptions deforming;
                 set_option(deforming, "space", way.space);
-                deforming.closeness = way.closeness;
+                deforming.spread = way.spread;
                 deforming.conflicts = false;
                 deforming.solve.iterations = options.iterations;
                 const Stopwatch watch;
@@ -91,7 +91,7 @@ void cage_reach(const CageReachOptions& options) {
                     for (std::size_t i = 0; i < constraint.deviations.size(); ++i) {
                         const Deviation& d = constraint.deviations[i];
                         rows += edit_name + ',' + cage_name + format(",%u,%ld,", cage.number_of_vertices(), handles) + way.space +
-                                format(",%g,%.4g,%d,", way.closeness, seconds, constraint.id) + d.quantity +
+                                format(",%g,%.4g,%d,", way.spread, seconds, constraint.id) + d.quantity +
                                 format(",%.6g,%.6g,%.6g,", constraint.before_values.at(i), d.value.value_or(-1),
                                        d.tolerance.value_or(-1)) +
                                 d.unit + ',' + to_string(constraint.verdict) + format(",%.6g,%.6g\n", mean, maximum);

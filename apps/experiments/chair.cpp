@@ -157,7 +157,7 @@ RelationGraph continuity_graph(const Chair& chair, bool hard, bool shape) {
 DeformOptions continuity_options(const SolveOptions& solve) {
     DeformOptions options;
     options.solve = solve;
-    options.handles = options.closeness;  // the edit says where the support is to go, not that it must
+    options.handles = 0.001;  // the edit says where the support is to go, not that it must
     return options;
 }
 

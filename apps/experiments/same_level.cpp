@@ -169,7 +169,7 @@ private:
         DeformOptions options;
         set_option(options, "details", variant.details);
         options.laplacian = variant.laplacian;
-        options.handles = options.closeness;  // all vertices are moved by the edit
+        options.handles = 0.001;  // all vertices are moved by the edit
         options.solve.iterations = variant.iterations;
         if (!variant.accelerated) options.solve.window = 0;
         return options;

@@ -234,14 +234,30 @@ private:
     Call& call_;
 };
 
-/// Arguments without flags where the order depends on how many there are.
+/// How many of the files end as those of the slots that they would fill.
+std::size_t agreeing_endings(Call& call, const std::vector<std::string>& order, const std::vector<std::string>& files) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < std::min(order.size(), files.size()); ++i) {
+        const Slot* slot = call.parameters().slot(order[i]);
+        if (slot == nullptr) continue;
+        const std::string file = lower_case(files[i]);
+        const auto endings = endings_of(slot->kind);
+        count += std::any_of(endings.begin(), endings.end(), [&](const auto& ending) { return file.ends_with(ending); }) ? 1 : 0;
+    }
+    return count;
+}
+
+/// Arguments without flags where the order depends on how many there are and, of as many, on the files' endings.
 void take_positionals(Call& call, const std::vector<std::string>& words) {
     const auto& orders = call.parameters().orders;
     const auto fits = [&](const std::vector<std::string>& order) {
         const bool open = std::any_of(order.begin(), order.end(), [&](const auto& name) { return is_repeated(call, name); });
         return open ? words.size() >= order.size() : words.size() == order.size();
     };
-    const auto order = std::find_if(orders.begin(), orders.end(), fits);
+    auto order = orders.end();
+    for (auto one = orders.begin(); one != orders.end(); ++one)
+        if (fits(*one) && (order == orders.end() || agreeing_endings(call, *one, words) > agreeing_endings(call, *order, words)))
+            order = one;
     if (order == orders.end()) {
         std::vector<std::string> ways;
         for (const auto& one : orders) ways.push_back(shown_order(call, one));

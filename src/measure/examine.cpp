@@ -70,6 +70,11 @@ public:
                 else if (now.measure.stale) defect(here, name + " cannot be measured: its pins are not joined");
                 else if (attribute.measure.value) compare(*attribute.measure.value, *now.measure.value, here, name);
                 else remark(here, name + " has no value; measured here: " + digits(*now.measure.value, 9));
+                if (now.measure.direction && now.measure.repeats.empty() && !now.measure.stale &&
+                    !is_extent(mesh_, annotation, now.measure))
+                    remark(here, name +
+                                     " is not the extent of its annotation along its direction: if it was meant to be, "
+                                     "take it again");
             } else if (attribute.type == AttributeType::descriptor) {
                 if (attribute.descriptor.stale) defect(here, name + " is marked stale");
                 else if (attribute.descriptor.values.empty() && attribute.descriptor.file.empty())

@@ -285,6 +285,27 @@ std::array<Index, 2> extremes(const Mesh& mesh, const Annotation& annotation, co
     return result;
 }
 
+bool is_extent(const Mesh& mesh, const Annotation& annotation, const Measure& measure) {
+    if (!measure.direction || !measure.repeats.empty() || touched_vertices(mesh, annotation).empty()) return false;
+    Measure whole = measure;
+    const auto pins = extremes(mesh, annotation, *measure.direction);
+    whole.points.assign(pins.begin(), pins.end());
+    whole.locations.clear();
+    const double extent = evaluate(mesh, annotation, whole);
+    return std::abs(evaluate(mesh, annotation, measure) - extent) <= 1e-9 * extent;
+}
+
+void move_extents(const Mesh& before, const Mesh& after, AnnotationSet& set) {
+    for (Annotation& annotation : set.annotations)
+        for (Attribute& attribute : annotation.attributes) {
+            Measure& measure = attribute.measure;
+            if (attribute.type != AttributeType::measure || !is_extent(before, annotation, measure)) continue;
+            const auto pins = extremes(after, annotation, *measure.direction);
+            measure.points.assign(pins.begin(), pins.end());
+            measure.locations.clear();
+        }
+}
+
 Attribute& add_measure(Annotation& annotation, const std::string& name, Measure measure) {
     annotation.attributes.push_back(
         {next_free_id(annotation.attributes), name, AttributeType::measure, {}, std::move(measure), {}});

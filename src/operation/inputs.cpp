@@ -71,6 +71,25 @@ T taken(const Slot& slot, std::size_t i, const T& object) {
 
 }  // namespace
 
+std::vector<std::string> endings_of(Kind kind) {
+    static const std::map<Kind, std::vector<std::string>> endings{
+        {Kind::mesh, {".ply", ".obj", ".off", ".stl", ".glb"}},
+        {Kind::cage, {".ply", ".obj", ".off", ".stl", ".glb"}},
+        {Kind::annotations, {".ant.json", ".ant"}},
+        {Kind::graph, {".graph.json"}},
+        {Kind::edit, {".edit.json", ".json"}},
+        {Kind::recipe, {".recipe.json"}},
+        {Kind::rules, {".rules.json"}},
+        {Kind::template_package, {".template.json"}},
+        {Kind::vocabulary, {".vocabulary.json", ".ttl", ".rdf"}},
+        {Kind::shape_class, {".class.json"}},
+        {Kind::assembly, {".assembly.json"}},
+        {Kind::coordinates, {".npy"}},
+    };
+    const auto known = endings.find(kind);
+    return known == endings.end() ? std::vector<std::string>() : known->second;
+}
+
 std::string to_string(Kind kind) {
     static constexpr const char* names[]{"mesh",       "annotations", "graph",     "cage",     "coordinates", "values",
                                          "labels",     "index map",   "edit",      "recipe",   "rules",       "template",

@@ -1,32 +1,11 @@
 #include "ostraka/operations/pages.h"
 
 #include <algorithm>
-#include <map>
 #include <sstream>
 
 namespace ostraka {
 
 namespace {
-
-/// Endings of the files of a kind; none: any file.
-std::vector<std::string> endings_of(Kind kind) {
-    static const std::map<Kind, std::vector<std::string>> endings{
-        {Kind::mesh, {".ply", ".obj", ".off", ".stl", ".glb"}},
-        {Kind::cage, {".ply", ".obj", ".off", ".stl", ".glb"}},
-        {Kind::annotations, {".ant.json", ".ant"}},
-        {Kind::graph, {".graph.json"}},
-        {Kind::edit, {".edit.json", ".json"}},
-        {Kind::recipe, {".recipe.json"}},
-        {Kind::rules, {".rules.json"}},
-        {Kind::template_package, {".template.json"}},
-        {Kind::vocabulary, {".vocabulary.json", ".ttl", ".rdf"}},
-        {Kind::shape_class, {".class.json"}},
-        {Kind::assembly, {".assembly.json"}},
-        {Kind::coordinates, {".npy"}},
-    };
-    const auto known = endings.find(kind);
-    return known == endings.end() ? std::vector<std::string>() : known->second;
-}
 
 /// Files and folders whose names begin with what was written.
 void add_files(std::vector<std::string>& list, const std::string& begun, const std::vector<std::string>& endings) {

@@ -2,8 +2,8 @@
 #include "constraint_report.h"
 
 #include "ostraka/geom/with_points.h"
-#include "ostraka/io/diagnose.h"
 #include "ostraka/measure/measure.h"
+#include "ostraka/semantic/edit_words.h"
 
 namespace ostraka {
 
@@ -16,10 +16,13 @@ struct Deform final : Operation {
             .optional();
         p.input("mesh", Kind::mesh, mesh, "mesh file").optional();
         p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)").optional();
-        p.input("edit", Kind::edit, edit, "the edit (.edit.json)");
+        p.input("edit", Kind::edit, edit, "the edit (.edit.json); or say it in words: --stretch, --raise, --rotate").optional();
         p.output("output", Kind::mesh, output, "the deformed mesh to write");
         p.order({"mesh", "annotations", "edit", "output"});
+        p.order({"mesh", "annotations", "output"});
+        p.order({"mesh", "edit", "output"});
         p.order({"template", "edit", "output"});
+        p.order({"template", "output"});
         p.input_option("graph", Kind::graph, graph,
                        "relationships (.graph.json): those that are constraints are kept; instead of the template's");
         p.input_option("cage", Kind::cage, cage, "cage whose vertices are the handles; without it, the mesh's own are");
@@ -28,35 +31,53 @@ struct Deform final : Operation {
                         "annotations of the deformed mesh, measures taken anew");
         p.output_option("cage-out", Kind::cage, cage_out, "the cage after the deformation");
         p.options("states", states, "also write the shape after each step of the edit, before constraints: output-step1 ...");
+        words.describe(p.options);
         options.describe(p.options);
+        // Tighter than what relations ask of scans: a wobbling chair shows.
+        tolerances.distance = 0.002;
+        tolerances.angle = 1;
         tolerances.describe(p.options);
-        p.report.values(boolean("acceptable"), integer("iterations"), integer("rounds"), text("stopped"), integer("passes"),
-                        integer("selfIntersections"));
+        p.report.values(boolean("acceptable"), texts("objections"), number("followed.share"), integer("followed.vertices"),
+                        number("followed.mean"), number("followed.largest"), integer("selfIntersections"),
+                        integer("selfIntersectionsBefore"), integer("folds"), integer("iterations"), integer("rounds"),
+                        text("stopped"), integer("passes"));
         p.report.table("constraints", integer("id", "id"), text("type", "constraint"), number("weight", "weight"),
                        boolean("hard"), boolean("used"), text("before"), text("verdict", "verdict"), text("text"),
                        any("deviations", "how well"), number("residual.mean"), number("residual.median"), number("residual.min"),
                        number("residual.max"), number("residual.greatest distance"), integer("residual.constraints"));
         p.report.table("conflicts", integer("id"), numbers("freed"), any("deviations"));
+        p.report.table("moved", integer("id", "id"), text("tag", "moved, though the edit did not ask it to"),
+                       number("share", "mean, % of the diagonal"));
     }
 
     void check() const override {
-        if (package ? mesh || annotations : !mesh || !annotations)
+        if (package ? mesh || annotations : !mesh)
             fail_usage("what to deform is not clear", "give a mesh and its annotations, or a template");
+        const bool named = words.is_edit() || !words.keep.empty() || !words.level.empty();
+        if (!edit && !named && !graph && !package)
+            fail_usage("nothing is to be done", "give an edit (.edit.json), or say it: --stretch back=1.2 --level legs");
+        if (!package && !annotations && (named || graph || annotations_out))
+            fail_usage("parts are named, and there are no annotations", "give the mesh's annotations (.ant.json)");
         if (static_cast<bool>(cage) != static_cast<bool>(weights))
             fail_usage("--cage and --weights belong together", "give both: see 'cage weights'");
         if (cage_out && !package && !cage) fail_without_cage();
     }
 
     void run(Context& context, Report& report) override {
-        validate(*edit, "edit", edit.file());
+        const std::string where = edit ? edit.file() : "the command line";
+        if (edit) validate(*edit, "edit", where);
         const auto step = [](std::size_t i) { return "-step" + std::to_string(i + 1); };
+        const Stopwatch stopwatch;
+        static const AnnotationSet no_annotations;
+        Subject subject = package       ? of_template(context)
+                          : annotations ? Subject{&*mesh, &annotations.on(mesh->mesh)}
+                                        : Subject{&*mesh, &no_annotations};
+        const Json steps = all_steps(*subject.set);
         if (states) {
             std::vector<Path> files;
-            for (std::size_t i = 0; i < (*edit)["steps"].Size(); ++i) files.emplace_back(output.part_file(step(i)));
+            for (std::size_t i = 0; i < steps["steps"].Size(); ++i) files.emplace_back(output.part_file(step(i)));
             context.check_outputs(files);
         }
-        const Stopwatch stopwatch;
-        Subject subject = package ? of_template(context) : Subject{&*mesh, &annotations.on(mesh->mesh)};
         if (cage) {
             subject.around = &*cage;
             subject.coordinates = &weights.of(subject.object->mesh, cage->mesh);
@@ -65,38 +86,35 @@ struct Deform final : Operation {
         if (cage_out && subject.coordinates == nullptr) fail_without_cage();
         const HandleSpace space{subject.object->mesh, *subject.set, subject.around ? &subject.around->mesh : nullptr,
                                 subject.coordinates};
-        static const RelationGraph none;
-        const DeformResult result = deform(space, subject.relations ? *subject.relations : none, *edit, edit.file(), options,
-                                           tolerances, graph ? graph.file() : "the template's graph");
+        RelationGraph relations;
+        if (subject.relations != nullptr) relations.relationships = subject.relations->relationships;
+        add_constraints(words, *subject.set, relations);
+        const DeformResult result = deform(space, relations, steps, where, options, tolerances,
+                                           graph               ? graph.file()
+                                           : subject.relations ? "the template's graph"
+                                                               : "the command line");
         report.run("seconds", stopwatch.seconds());
 
         const Mesh shaped = with_points(space.mesh, result.points);
         if (cage_out) cage_out.write(with_points(*space.cage, result.cage), subject.around->extras);
         if (annotations_out) {
             AnnotationSet set = space.set;
+            move_extents(space.mesh, shaped, set);
             report.notes(refresh_measures(shaped, set).notes);
             annotations_out.write(std::move(set), shaped, output.file());
         }
-        // Constraints say nothing of what else became of the surface.
-        const auto crossings = [](const Mesh& one) { return self_intersections(to_soup(one), 100'000).pairs.size(); };
-        const std::size_t crossing = crossings(shaped), before = crossing > 0 ? crossings(space.mesh) : 0;
         output.write(shaped, subject.object->extras);
         if (states) {
-            const auto followed = follow_edit(*edit, space, edit.file());
+            const auto followed = follow_edit(steps, space, where);
             for (std::size_t i = 0; i < followed.size(); ++i) {
-                const std::vector<Point>& handles = followed[i].handles;
-                const auto points = space.cage != nullptr ? deformed(*space.coordinates, *space.cage, handles) : handles;
-                output.write_part(step(i), with_points(space.mesh, points), subject.object->extras);
+                const Mesh state = with_points(space.mesh, shape_of_edit(space, followed[i], options));
+                output.write_part(step(i), state, subject.object->extras);
             }
         }
-        if (crossing > before)
-            report.note("the deformed surface crosses itself in " + std::to_string(crossing) + " pairs of faces (" +
-                        std::to_string(before) + " before): look at it; 'mesh info' tells where");
         const std::string handles = std::to_string((space.cage != nullptr ? *space.cage : space.mesh).number_of_vertices()) +
                                     (space.cage != nullptr ? " cage vertices" : " vertices");
         for (std::size_t i = 0; i < result.selected.size(); ++i)
             report.note("step " + std::to_string(i + 1) + ": " + std::to_string(result.selected[i]) + " of " + handles);
-        report("selfIntersections", crossing);
         report_result(report, result);
         if (!result.acceptable) report.answer_no();
     }
@@ -112,6 +130,17 @@ struct Deform final : Operation {
 
     [[noreturn]] static void fail_without_cage() {
         fail_usage("--cage-out without a cage", "add --cage and --weights, or a cage and its coordinates to the template");
+    }
+
+    /// Those of the edit, and then those that were said in words.
+    [[nodiscard]] Json all_steps(const AnnotationSet& set) const {
+        Json steps = edit_of(words, set);
+        if (!edit) return steps;
+        Json all;
+        all.CopyFrom(*edit, all.GetAllocator());
+        for (const JsonValue& one : steps["steps"].GetArray())
+            all["steps"].PushBack(JsonValue(one, all.GetAllocator()), all.GetAllocator());
+        return all;
     }
 
     Subject of_template(Context& context) {
@@ -168,9 +197,27 @@ struct Deform final : Operation {
         for (const ConstraintConflict& conflict : result.conflicts) report_result(report, result, conflict);
         if (result.untried > 0)
             report.line(std::to_string(result.untried) + " constraints were not left out to see: raise --conflicts to try them");
-        report.line(result.constraints.empty() ? "no constraints"
-                    : result.acceptable        ? "acceptable: every constraint holds"
-                                               : "not acceptable: a constraint does not hold");
+        report_edit(report, result);
+        report.line(!result.acceptable           ? "not acceptable: " + joined(result.objections, "; ")
+                    : result.constraints.empty() ? "acceptable; no constraints"
+                                                 : "acceptable: every constraint holds");
+        report("objections", result.objections);
+    }
+
+    static void report_edit(Report& report, const DeformResult& result) {
+        const EditFollowed& followed = result.followed;
+        report("followed.share", followed.share)("followed.vertices", followed.vertices)("followed.mean", followed.mean)(
+            "followed.largest", followed.largest);
+        const SurfaceChange& surface = result.surface;
+        report("selfIntersections", surface.crossings)("selfIntersectionsBefore", surface.crossings_before)("folds",
+                                                                                                            surface.folds);
+        report.empty_table("moved", false);
+        for (const EditFollowed::Moved& part : followed.others)
+            report.row("moved")("id", part.annotation)("tag", part.tag)("share", 100 * part.share);
+        if (followed.vertices > 0)
+            report.line("the edit is followed by " + number(100 * followed.share, 3) + " %: its " +
+                        std::to_string(followed.vertices) + " vertices are " + number(followed.mean, 3) +
+                        " beside their places in the mean, " + number(followed.largest, 3) + " at most");
     }
 
     static void report_result(Report& report, const ConstraintReport& constraint) {
@@ -226,6 +273,7 @@ struct Deform final : Operation {
     MeshOutput output, cage_out;
     AnnotationsOutput annotations_out;
     bool states = false;
+    EditWords words;
     DeformOptions options;
     RelationOptions tolerances;
     MeshFile own_cage;  ///< of the template, with its coordinates

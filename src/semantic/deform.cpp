@@ -2,9 +2,13 @@
 
 #include "statement.h"
 
+#include "ostraka/core/angles.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/text.h"
+#include "ostraka/core/words.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/with_points.h"
+#include "ostraka/io/diagnose.h"
 
 #include <algorithm>
 #include <map>
@@ -15,6 +19,30 @@ namespace ostraka {
 namespace {
 
 using semantic::list_of;
+
+/// Weight of the positions of points an edge apart, so that changes fade out over the spread, and over three edges at least.
+double closeness(const DeformOptions& options, const Mesh& mesh, double edge) {
+    return options.laplacian * std::pow(std::min(edge / (options.spread * box_diagonal(mesh)), 1.0 / 3), 4);
+}
+
+void add_closeness(const std::vector<int>& ids, double weight, const Points& targets, int offset, const Points& rest,
+                   std::vector<std::unique_ptr<Constraint>>& list) {
+    if (ids.empty() || weight == 0) return;
+    ConstraintParameters parameters;
+    parameters.target.emplace(3, static_cast<Eigen::Index>(ids.size()));
+    for (std::size_t i = 0; i < ids.size(); ++i)
+        parameters.target->col(static_cast<Eigen::Index>(i)) = targets.col(ids[i] - offset);
+    list.push_back(make_constraint("Closeness", ids, weight, parameters, rest));
+}
+
+/// On every vertex, those that `shape` has.
+void add_displacements(const Mesh& mesh, double weight, const Points& shape, const std::set<Index>& others,
+                       std::vector<std::unique_ptr<Constraint>>& list) {
+    if (weight == 0) return;
+    for (const Vertex v : mesh.vertices())
+        if (!mesh.is_isolated(v) && others.count(v.idx()) == 0)
+            list.push_back(make_constraint("LaplacianDisplacement", semantic::star_of(mesh, v), weight, {}, shape));
+}
 
 /// What solving for some of the constraints gives.
 struct Outcome {
@@ -47,12 +75,18 @@ public:
         DeformResult result;
         last_.handles = points_of(space_.cage != nullptr ? *space_.cage : space_.mesh);
         last_.touched.assign(last_.handles.size(), false);
+        last_.named.assign(space_.mesh.number_of_vertices(), false);
         for (auto& state : follow_edit(edit, space_, where_)) {
             last_ = std::move(state);
             result.selected.push_back(last_.selected.size());
         }
-        result.edited = space_.cage != nullptr ? deformed(*space_.coordinates, *space_.cage, last_.handles) : last_.handles;
-        return finish(std::move(result));
+        result.edited = shape_of_edit(space_, last_, options_);
+        result = finish(std::move(result));
+        result.followed = followed(result.points);
+        if (result.followed.share < options_.followed)
+            result.objections.push_back("the edit is followed by " + percent(result.followed.share) + ", " +
+                                        percent(options_.followed) + " are asked");
+        return judged(std::move(result));
     }
 
     DeformResult restore(const std::vector<Point>& points, const std::vector<bool>& held) {
@@ -60,10 +94,76 @@ public:
         last_.touched = held;
         DeformResult result;
         result.edited = points;
-        return finish(std::move(result));
+        return judged(finish(std::move(result)));
     }
 
 private:
+    static std::string percent(double share) { return digits(100 * share, 3) + " %"; }
+
+    DeformResult judged(DeformResult result) const {
+        result.surface = surface_change(result.points);
+        const auto& [crossings, before, folds] = result.surface;
+        if (crossings > before)
+            result.objections.push_back(counted(crossings, "pair") + " of faces cross, " + std::to_string(before) + " at rest");
+        if (folds > 0) result.objections.push_back(counted(folds, "edge") + (folds == 1 ? " is" : " are") + " folded over");
+        result.acceptable = result.objections.empty();
+        return result;
+    }
+
+    [[nodiscard]] EditFollowed followed(const std::vector<Point>& points) const {
+        EditFollowed result;
+        const Points now = columns_of(points);
+        const Eigen::VectorXd wanted = (edited_ - rest_).colwise().norm(), off = (now - edited_).colwise().norm();
+        const double half = wanted.size() > 0 ? wanted.maxCoeff() / 2 : 0;
+        std::vector<bool> asked(space_.mesh.number_of_vertices());
+        double square_wanted = 0, square_off = 0;
+        for (std::size_t i = 0; i < asked.size(); ++i) {
+            const auto v = static_cast<Eigen::Index>(i);
+            asked[i] =
+                space_.cage == nullptr ? last_.touched[i] : last_.named[i] || (last_.by_handles && half > 0 && wanted[v] >= half);
+            if (!asked[i]) continue;
+            ++result.vertices;
+            square_wanted += wanted[v] * wanted[v];
+            square_off += off[v] * off[v];
+            result.mean += off[v];
+            result.largest = std::max(result.largest, off[v]);
+        }
+        if (result.vertices > 0) result.mean /= static_cast<double>(result.vertices);
+        if (square_wanted > 0) result.share = std::max(0.0, 1 - std::sqrt(square_off / square_wanted));
+        const double diagonal = box_diagonal(space_.mesh);
+        for (const Annotation& annotation : space_.set.annotations) {
+            const std::vector<Index> vertices = vertices_of(space_.mesh, annotation);
+            if (vertices.empty() || std::any_of(vertices.begin(), vertices.end(), [&](Index v) { return asked[v]; })) continue;
+            double sum = 0;
+            // Handles of a cage say not which parts they are to move.
+            for (const Index v : vertices) sum += last_.by_handles ? off[v] : (now.col(v) - rest_.col(v)).norm();
+            const double share = sum / (static_cast<double>(vertices.size()) * diagonal);
+            if (share > 1e-3) result.others.push_back({annotation.id, annotation.tag, share});
+        }
+        std::stable_sort(result.others.begin(), result.others.end(),
+                         [](const auto& a, const auto& b) { return a.share > b.share; });
+        return result;
+    }
+
+    [[nodiscard]] SurfaceChange surface_change(const std::vector<Point>& points) const {
+        SurfaceChange change;
+        const Mesh now = with_points(space_.mesh, points);
+        const auto crossings = [](const Mesh& mesh) { return self_intersections(to_soup(mesh), 100'000).pairs.size(); };
+        change.crossings = crossings(now);
+        if (change.crossings > 0) change.crossings_before = crossings(space_.mesh);
+        const auto bend = [](const Mesh& mesh, Halfedge h) {
+            const Vector a = area_vector(mesh, mesh.face(h)), b = area_vector(mesh, mesh.face(mesh.opposite(h)));
+            const double cross = std::sqrt(CGAL::cross_product(a, b).squared_length());
+            return std::atan2(cross, a * b) * 180 / pi;
+        };
+        for (const Edge e : now.edges()) {
+            if (now.is_border(e)) continue;
+            const Halfedge h = now.halfedge(e);
+            if (const double after = bend(now, h); after > 150 && after > bend(space_.mesh, h) + 30) ++change.folds;
+        }
+        return change;
+    }
+
     DeformResult finish(DeformResult result) {
         edited_ = columns_of(result.edited);
         if (!edited_.allFinite() || edited_.cwiseAbs().maxCoeff() > 1e60)
@@ -80,7 +180,7 @@ private:
         result.passes = outcome.passes;
         result.solved = outcome.solved;
         report(result, outcome);
-        if (!result.acceptable && options_.conflicts > 0) find_conflicts(result, all);
+        if (!result.objections.empty() && options_.conflicts > 0) find_conflicts(result, all);
         return result;
     }
 
@@ -121,6 +221,7 @@ private:
         for (std::size_t i = 0; i < statements_.size(); ++i) follows = follows || (active[i] && statements_[i].follows);
         const double still = 1e-4 * box_diagonal(space_.mesh);
         while (outcome.passes < (follows ? options_.passes : 1)) {
+            if (outcome.passes > 0 && !another_pass(active, outcome)) break;
             const Points before = outcome.points;
             if (!solve_once(active, outcome)) break;
             outcome.solved = true;
@@ -142,6 +243,17 @@ private:
         for (const semantic::Statement& statement : statements_)
             outcome.measured.push_back(statement.unknown.empty() ? statement.measure(state) : semantic::Measured());
         return outcome;
+    }
+
+    /// Whether what a constraint follows may have moved.
+    [[nodiscard]] bool another_pass(const std::vector<bool>& active, const Outcome& outcome) const {
+        const Mesh mesh = with_points(space_.mesh, list_of(outcome.points));
+        const semantic::State now(mesh);
+        for (std::size_t i = 0; i < statements_.size(); ++i)
+            if (active[i] && statements_[i].follows &&
+                !(statements_[i].until_it_holds && statements_[i].measure(now).verdict == Verdict::holds))
+                return true;
+        return false;
     }
 
     /// Starts from the outcome; parts that others refer to are as it has them. False if there is nothing to solve.
@@ -188,32 +300,23 @@ private:
         return others;
     }
 
-    static void add_closeness(const std::vector<int>& ids, double weight, const Points& targets, int offset, const Points& rest,
-                              std::vector<std::unique_ptr<Constraint>>& list) {
-        if (ids.empty() || weight == 0) return;
-        ConstraintParameters parameters;
-        parameters.target.emplace(3, static_cast<Eigen::Index>(ids.size()));
-        for (std::size_t i = 0; i < ids.size(); ++i)
-            parameters.target->col(static_cast<Eigen::Index>(i)) = targets.col(ids[i] - offset);
-        list.push_back(make_constraint("Closeness", ids, weight, parameters, rest));
-    }
-
     void solve_mesh(Outcome& outcome) {
         std::vector<std::unique_ptr<Constraint>> list;
-        std::vector<int> used, moved;
+        std::vector<bool> constrained(space_.mesh.number_of_vertices(), false);
+        for (const auto& constraint : lowered_)
+            for (const int v : constraint->ids()) constrained[static_cast<std::size_t>(v)] = true;
+        std::vector<int> free, held, yielding;
         for (const Vertex v : space_.mesh.vertices()) {
             if (space_.mesh.is_isolated(v)) continue;
-            const bool handle = (space_.cage == nullptr && last_.touched[v]) || anchors_.count(v.idx()) > 0;
-            (handle ? moved : used).push_back(static_cast<int>(v.idx()));
+            const bool handle = space_.cage == nullptr && last_.touched[v], anchor = anchors_.count(v.idx()) > 0;
+            (anchor || (handle && !constrained[v]) ? held : handle ? yielding : free).push_back(static_cast<int>(v.idx()));
         }
-        add_closeness(used, options_.closeness, edited_, 0, rest_, list);
-        add_closeness(moved, options_.handles, edited_, 0, rest_, list);
-        if (options_.laplacian > 0)
-            for (const Vertex v : space_.mesh.vertices()) {
-                if (space_.mesh.is_isolated(v) || rotating_.count(v.idx()) > 0) continue;
-                list.push_back(make_constraint("LaplacianDisplacement", semantic::star_of(space_.mesh, v), options_.laplacian, {},
-                                               options_.details == DeformOptions::Details::rest ? rest_ : edited_));
-            }
+        const double edge = mean_edge_length(space_.mesh);
+        add_closeness(free, closeness(options_, space_.mesh, edge), edited_, 0, rest_, list);
+        add_closeness(yielding, std::min(options_.handles, 81 * closeness(options_, space_.mesh, edge)), edited_, 0, rest_, list);
+        add_closeness(held, options_.handles, edited_, 0, rest_, list);
+        add_displacements(space_.mesh, options_.laplacian, options_.details == DeformOptions::Details::rest ? rest_ : edited_,
+                          rotating_, list);
         const bool any_hard = std::any_of(owner_.begin(), owner_.end(), [&](std::size_t i) { return statements_[i].hard; });
         auto all = take(std::move(list));
         if (any_hard) {
@@ -251,8 +354,9 @@ private:
             std::vector<int> ids;
             for (Eigen::Index j = 0; j < c; ++j)
                 if (last_.touched[static_cast<std::size_t>(j)] == touched) ids.push_back(static_cast<int>(n + j));
-            add_closeness(ids, touched ? options_.handles : share * options_.closeness, edited_cage, static_cast<int>(n), rest,
-                          list);
+            const double weight = closeness(options_, space_.mesh, mean_edge_length(*space_.cage));
+            add_closeness(ids, touched ? options_.handles : std::min(options_.handles, share * weight), edited_cage,
+                          static_cast<int>(n), rest, list);
         }
         // What the cage tends to between constraints; else its points fly off for little.
         Points shape = rest;
@@ -286,12 +390,16 @@ private:
         }
     }
 
+    static std::string name_of(const ConstraintReport& report) {
+        return "constraint " + std::to_string(report.id) + " (" + report.type + ")";
+    }
+
     void report(DeformResult& result, const Outcome& outcome) const {
         const semantic::State before(edited_mesh_);
         for (std::size_t i = 0; i < result.constraints.size(); ++i) {
             ConstraintReport& report = result.constraints[i];
             if (!report.used) {
-                result.acceptable = result.acceptable && report.weight == 0;
+                if (report.weight != 0) result.objections.push_back(name_of(report) + " is left out");
                 continue;
             }
             const semantic::Measured then = statements_[i].measure(before), &now = outcome.measured[i];
@@ -301,15 +409,17 @@ private:
             report.deviations = now.deviations;
             report.text = now.text;
             if (!outcome.texts[i].empty()) report.text += (report.text.empty() ? "" : "; ") + outcome.texts[i];
-            result.acceptable = result.acceptable && now.verdict == Verdict::holds;
+            if (now.verdict != Verdict::holds)
+                result.objections.push_back(name_of(report) +
+                                            (now.verdict == Verdict::fails ? " does not hold" : " is not known to hold"));
             if (i >= outcome.residuals.size() || outcome.residuals[i].of_low_level.empty()) continue;
             auto list = outcome.residuals[i].of_low_level;
             std::sort(list.begin(), list.end());
             report.distance = outcome.residuals[i].distance;
             if (report.hard && options_.space == DeformOptions::Space::cage && report.verdict != Verdict::holds)
-                report.text += (report.text.empty() ? "" : "; ") + std::string("this cage brings it no nearer than ") +
-                               std::to_string(report.distance) + (space_.set.unit.empty() ? "" : " ") + space_.set.unit +
-                               " at its worst point";
+                report.text += (report.text.empty() ? "" : "; ") + std::string("off by ") + std::to_string(report.distance) +
+                               (space_.set.unit.empty() ? "" : " ") + space_.set.unit +
+                               " at its worst point, with these weights in this cage";
             report.low_level = list.size();
             report.minimum = list.front();
             report.maximum = list.back();
@@ -361,6 +471,29 @@ private:
 
 }  // namespace
 
+std::vector<Point> shape_of_edit(const HandleSpace& space, const EditState& state, const DeformOptions& options) {
+    if (space.cage != nullptr) return deformed(*space.coordinates, *space.cage, state.handles);
+    std::vector<int> moved, others;
+    for (const Vertex v : space.mesh.vertices())
+        if (!space.mesh.is_isolated(v)) (state.touched[v] ? moved : others).push_back(static_cast<int>(v.idx()));
+    if (moved.empty() || others.empty()) return state.handles;
+    const Points rest = columns_of(space.mesh);
+    Points targets = rest, points = rest;
+    for (const int v : moved) targets.col(v) = eigen(state.handles[static_cast<std::size_t>(v)]);
+    std::vector<std::unique_ptr<Constraint>> list;
+    const double laplacian = std::max(options.laplacian, 1e-3);
+    add_closeness(moved, 1e5 * laplacian, targets, 0, rest, list);
+    DeformOptions smooth = options;
+    smooth.laplacian = laplacian;
+    add_closeness(others, closeness(smooth, space.mesh, mean_edge_length(space.mesh)), targets, 0, rest, list);
+    add_displacements(space.mesh, laplacian, rest, {}, list);
+    MeshSpaceSolver solver(std::move(list), rest);
+    solver.solve(points, {2, 0, 0, 0});
+    std::vector<Point> shape = list_of(points);
+    for (const int v : moved) shape[static_cast<std::size_t>(v)] = state.handles[static_cast<std::size_t>(v)];
+    return shape;
+}
+
 DeformResult deform(const HandleSpace& space, const RelationGraph& graph, const JsonValue& edit, const std::string& edit_name,
                     const DeformOptions& options, const RelationOptions& tolerances, const std::string& graph_name) {
     check_options(options, "deform");
@@ -403,10 +536,13 @@ void DeformOptions::describe(OptionList& visit) {
           "rest (those of the "
           "shape before it, as in the thesis)",
           Choices{"edited", "rest"});
-    visit("closeness", closeness, "weight of the edited position of each vertex", Range{0, 1e9});
+    visit("spread", spread, "length over which a change fades out", Range{1e-4, 1e4}, "share of the diagonal");
     visit("laplacian", laplacian, "weight of the Laplacian displacement of each vertex", Range{0, 1e9});
-    visit("handles", handles, "weight of the positions of the handles that the edit moves, and of joints that parts stretch from",
+    visit("handles", handles,
+          "weight of the positions of the handles that the edit moves, and of joints that parts stretch from; handles that a "
+          "constraint moves as well give way",
           Range{0, 1e9});
+    visit("followed", followed, "share of the edit that an acceptable result follows", Range{0, 1});
     solve.describe(visit);
     visit("rounds", rounds, "rounds in which hard constraints are enforced", Range{1, 1e6});
     visit("passes", passes, "solutions in which constraints on axes and measures of other parts follow those", Range{1, 100});

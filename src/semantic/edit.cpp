@@ -19,6 +19,7 @@ public:
     Follower(const HandleSpace& space, const std::string& where) : space_(space), where_(where) {
         state_.handles = ostraka::points_of(space.cage != nullptr ? *space.cage : space.mesh);
         state_.touched.assign(state_.handles.size(), false);
+        state_.named.assign(space.mesh.number_of_vertices(), false);
     }
 
     EditState step(const JsonValue& step, const std::string& at) {
@@ -60,6 +61,7 @@ private:
         std::set<Index> chosen;
         int ways = 0;
         const auto add_mesh_vertices = [&](const std::vector<Index>& vertices, const std::string& what) {
+            for (const Index v : vertices) state_.named[v] = true;
             if (space_.cage == nullptr) {
                 chosen.insert(vertices.begin(), vertices.end());
                 return;
@@ -67,7 +69,9 @@ private:
             const JsonValue* threshold = find_member(select, "threshold");
             const JsonValue* scope = find_member(select, "scope");
             const bool here = scope != nullptr && std::string(scope->GetString()) == "selection";
-            if (threshold == nullptr) state_.threshold = 0.4;  // as in the thesis, figure 5.11
+            // As in the thesis, figure 5.11, or less where the cage is so dense that a vertex of the part would have no handle.
+            if (threshold == nullptr)
+                state_.threshold = std::min(0.4, influence_threshold(space_.coordinates->vertex, "auto-mesh", vertices));
             else if (threshold->IsNumber()) state_.threshold = threshold->GetDouble();
             else
                 state_.threshold = influence_threshold(space_.coordinates->vertex, threshold->GetString(),
@@ -86,6 +90,13 @@ private:
             ++ways;
             const Annotation& annotation = named(*name);
             add_mesh_vertices(vertices_of(space_.mesh, annotation), "annotation " + std::to_string(annotation.id));
+        }
+        if (const JsonValue* list = find_member(select, "annotations")) {
+            ++ways;
+            for (const JsonValue& name : list->GetArray()) {
+                const Annotation& annotation = named(name);
+                add_mesh_vertices(vertices_of(space_.mesh, annotation), "annotation " + std::to_string(annotation.id));
+            }
         }
         if (const JsonValue* list = find_member(select, "vertices")) {
             ++ways;
@@ -110,8 +121,12 @@ private:
             ++ways;
             for (Index v = 0; v < state_.handles.size(); ++v) chosen.insert(v);
         }
+        bool names = false;
+        for (const char* way : {"annotation", "annotations", "vertices"}) names = names || find_member(select, way) != nullptr;
+        state_.by_handles = state_.by_handles || (space_.cage != nullptr && !names);
         if (ways != 1)
-            fail("selects in " + std::to_string(ways) + " ways", "use one of annotation, vertices, cageVertices, box, all");
+            fail("selects in " + std::to_string(ways) + " ways",
+                 "use one of annotation, annotations, vertices, cageVertices, box, all");
         if (chosen.empty()) fail("selects nothing", "choose another box");
         return {chosen.begin(), chosen.end()};
     }

@@ -16,68 +16,67 @@ double percent_out(double value, const Range& range) {
     return value > range.max ? 100 * (value - range.max) / range.max : 0;
 }
 
-/// A measure by the vertices it depends on: two pins, or the way of a tape over the shape at rest.
-struct Gauge {
-    std::vector<int> way;
-    std::optional<Vector3d> direction;  ///< of a bounding measure
-    std::vector<int> pins;              ///< of a bounding measure: all of them
-    bool tape = false;
-    double factor = 1;  ///< the measure / the length of its way, at rest: an exact tape is shorter than edges
-
-    [[nodiscard]] double value(const Points& points) const {
-        if (direction) {
-            double low = std::numeric_limits<double>::infinity(), high = -low;
-            for (const int v : pins) {
-                low = std::min(low, direction->dot(points.col(v)));
-                high = std::max(high, direction->dot(points.col(v)));
-            }
-            return high - low;
+/// A measure of a part: as `measure take` has it on the shape as it is.
+class Gauge {
+public:
+    Gauge(const Reader& read, const char* name, std::size_t member)
+        : annotation_(&read.member(member)), measure_(read.measure(name, *annotation_)) {
+        const Mesh& mesh = read.shape().mesh;
+        const std::string who = "annotation " + std::to_string(annotation_->id);
+        if (measure_.points.size() < 2) read.fail(who + " has a measure with fewer than two pins", "take it again");
+        for (const Index v : measure_.points)
+            if (v >= mesh.number_of_vertices())
+                read.fail(who + " has a measure with pin " + std::to_string(v) + ", which the mesh does not have",
+                          "take it again");
+        if (measure_.direction) {
+            const Vector3d given((*measure_.direction)[0], (*measure_.direction)[1], (*measure_.direction)[2]);
+            direction_ = Vector3d((given / given.cwiseAbs().maxCoeff()).normalized());
         }
-        double length = 0;
-        for (std::size_t i = 1; i < way.size(); ++i) length += (points.col(way[i]) - points.col(way[i - 1])).norm();
-        return factor * length;
+        extent_ = is_extent(mesh, *annotation_, measure_);
+        at_rest_ = evaluate(mesh, *annotation_, measure_);
+        if (!(at_rest_ > 0)) read.fail("the measure of " + who + " has no length", "move its pins apart");
     }
+
+    [[nodiscard]] double at_rest() const { return at_rest_; }
+    /// A ruler over several pins is a line of its own, as a tape is.
+    [[nodiscard]] bool is_tape() const { return measure_.tool == "tape" || (!direction_ && measure_.points.size() > 2); }
+    [[nodiscard]] const std::optional<Vector3d>& direction() const { return direction_; }
+    [[nodiscard]] double value(const State& state) const {
+        Measure now = measure_;
+        if (extent_) now.points = extent_pins(state), now.locations.clear();
+        return evaluate(state.mesh, *annotation_, now);
+    }
+    /// The vertices that it depends on: of a bounding measure the outermost two, of a tape its way.
+    [[nodiscard]] std::vector<int> way(const State& state) const {
+        if (direction_) {
+            const auto pins = extent_ ? extent_pins(state) : measure_.points;
+            const auto height = [&](Index v) { return direction_->dot(state.points.col(v)); };
+            const auto [low, high] =
+                std::minmax_element(pins.begin(), pins.end(), [&](Index a, Index b) { return height(a) < height(b); });
+            return {static_cast<int>(*low), static_cast<int>(*high)};
+        }
+        if (measure_.tool == "ruler") return ids_of(measure_.points);
+        PathSearch search(state.mesh);
+        std::vector<int> way{static_cast<int>(measure_.points.front())};
+        for (std::size_t i = 1; i < measure_.points.size(); ++i) {
+            const auto path = search.find(Vertex(measure_.points[i - 1]), Vertex(measure_.points[i]), {});
+            for (std::size_t k = 1; k < path.size(); ++k) way.push_back(static_cast<int>(path[k]));
+        }
+        return way;
+    }
+
+private:
+    [[nodiscard]] std::vector<Index> extent_pins(const State& state) const {
+        const auto pins = extremes(state.mesh, *annotation_, *measure_.direction);
+        return {pins.begin(), pins.end()};
+    }
+
+    const Annotation* annotation_;
+    Measure measure_;
+    std::optional<Vector3d> direction_;  ///< of a bounding measure
+    bool extent_ = false;                ///< of the whole part: its pins are found anew on every shape
+    double at_rest_ = 0;
 };
-
-Gauge gauge_of(const Reader& read, const char* name, std::size_t member) {
-    const Annotation& annotation = read.member(member);
-    const Measure& measure = read.measure(name, annotation);
-    const Mesh& mesh = read.shape().mesh;
-    Gauge gauge;
-    // A ruler over several pins is a line of its own, as a tape is.
-    gauge.tape = measure.tool == "tape" || (!measure.direction && measure.points.size() > 2);
-    if (measure.points.size() < 2)
-        read.fail("annotation " + std::to_string(annotation.id) + " has a measure with fewer than two pins", "take it again");
-    for (const Index v : measure.points)
-        if (v >= mesh.number_of_vertices())
-            read.fail("annotation " + std::to_string(annotation.id) + " has a measure with pin " + std::to_string(v) +
-                          ", which the mesh does not have",
-                      "take it again");
-    if (measure.direction) {
-        const Vector3d given((*measure.direction)[0], (*measure.direction)[1], (*measure.direction)[2]);
-        gauge.direction = Vector3d((given / given.cwiseAbs().maxCoeff()).normalized());
-        gauge.pins.assign(measure.points.begin(), measure.points.end());
-        // Its extremes on the shape as it is.
-        const auto height = [&](Index v) { return gauge.direction->dot(read.shape().rest.col(v)); };
-        const auto [low, high] = std::minmax_element(measure.points.begin(), measure.points.end(),
-                                                     [&](Index a, Index b) { return height(a) < height(b); });
-        gauge.way = {static_cast<int>(*low), static_cast<int>(*high)};
-    } else if (measure.tool == "ruler") {
-        gauge.way.assign(measure.points.begin(), measure.points.end());
-    } else {
-        PathSearch search(mesh);
-        gauge.way = {static_cast<int>(measure.points.front())};
-        for (std::size_t i = 1; i < measure.points.size(); ++i) {
-            const auto path = search.find(Vertex(measure.points[i - 1]), Vertex(measure.points[i]), {});
-            for (std::size_t k = 1; k < path.size(); ++k) gauge.way.push_back(static_cast<int>(path[k]));
-        }
-    }
-    const double length = gauge.value(read.shape().rest);
-    if (!(length > 0))
-        read.fail("the measure of annotation " + std::to_string(annotation.id) + " has no length", "move its pins apart");
-    if (measure.tool == "tape") gauge.factor = evaluate(mesh, annotation, measure) / length;
-    return gauge;
-}
 
 /// Vertices of a region that other faces use as well: where it joins the rest.
 std::vector<Index> joint(const Mesh& mesh, const Annotation& annotation) {
@@ -98,16 +97,12 @@ public:
         : read_(read), gauge_(std::move(gauge)), uniform_(read->word("mode", "stretch", {"stretch", "scale"}) == "scale") {
         const Points& rest = read->shape().rest;
         const std::vector<Index> joined = joint(read->shape().mesh, read->member(member)), own = read->vertices(member);
-        if (!gauge_.tape) {
-            for (const Index v : own) place(static_cast<int>(v));
-            parameters_.pins = {place(gauge_.way.front()), place(gauge_.way.back())};
-            parameters_.split = static_cast<int>(ids_.size());
-            parameters_.direction = gauge_.direction;
-            parameters_.uniform = uniform_;
-        }
+        if (!gauge_.is_tape())
+            for (const Index v : own) place(static_cast<int>(v), ids_, places_);
         // The joint stays in its place, if it is at one end of the part. A part between others moves them on all sides.
-        const Vector3d edge = rest.col(gauge_.way.back()) - rest.col(gauge_.way.front());
-        const Vector3d axis = gauge_.direction ? *gauge_.direction : Vector3d(edge.normalized());
+        const std::vector<int> way = gauge_.way(State(read->shape().mesh));
+        const Vector3d edge = rest.col(way.back()) - rest.col(way.front());
+        const Vector3d axis = gauge_.direction() ? *gauge_.direction() : Vector3d(edge.normalized());
         const auto extent = [&](const std::vector<Index>& vertices) {
             double low = std::numeric_limits<double>::infinity(), high = -low;
             for (const Index v : vertices)
@@ -121,42 +116,60 @@ public:
     [[nodiscard]] const Gauge& gauge() const { return gauge_; }
 
     /// The measure within a range, in the mesh's unit. A tape's line changes and the surface follows.
-    [[nodiscard]] std::unique_ptr<Constraint> to(const Range& range, const State& edited) const {
-        ConstraintParameters parameters = gauge_.tape ? ConstraintParameters() : parameters_;
-        parameters.min = range.min / gauge_.factor;
-        parameters.max = range.max / gauge_.factor;
+    [[nodiscard]] std::unique_ptr<Constraint> to(const Range& range, const State& edited, const State& now) const {
+        if (!gauge_.is_tape()) {
+            auto [ids, parameters] = placed(edited, now);
+            parameters.min = range.min;
+            parameters.max = range.max;
+            parameters.absolute = true;
+            return read_->make("Proportion", ids, parameters);
+        }
+        // What a measure is shorter than the edges along its way, as an exact tape is.
+        const std::vector<int> way = gauge_.way(now);
+        double length = 0;
+        for (std::size_t i = 1; i < way.size(); ++i) length += (now.points.col(way[i]) - now.points.col(way[i - 1])).norm();
+        const double factor = gauge_.value(now) / length;
+        ConstraintParameters parameters;
+        parameters.min = range.min / factor;
+        parameters.max = range.max / factor;
         parameters.absolute = true;
-        if (gauge_.tape) return read_->make("PolylineLength", gauge_.way, parameters);
-        parameters.target = shape(edited);
-        return read_->make("Proportion", ids_, parameters);
+        return read_->make("PolylineLength", way, parameters);
     }
 
     /// The measure against another one, which is free to change as well. Neither is a tape.
-    [[nodiscard]] std::unique_ptr<Constraint> against(const Gauge& other, const Range& ratio, const State& edited) const {
-        ConstraintParameters parameters = parameters_;
-        std::vector<int> ids = ids_;
+    [[nodiscard]] std::unique_ptr<Constraint> against(const Gauge& other, const Range& ratio, const State& edited,
+                                                      const State& now) const {
+        auto [ids, parameters] = placed(edited, now);
+        std::unordered_map<int, int> places = places_;
+        for (std::size_t i = places_.size(); i < ids.size(); ++i) places.emplace(ids[i], static_cast<int>(i));
         parameters.min = ratio.min;
         parameters.max = ratio.max;
-        parameters.target = shape(edited);
-        parameters.second_direction = other.direction;
-        for (const int v : {other.way.front(), other.way.back()}) {
-            const auto known = places_.find(v);
-            parameters.pins.push_back(known != places_.end() ? known->second : static_cast<int>(ids.size()));
-            if (known == places_.end()) ids.push_back(v);
-        }
+        parameters.second_direction = other.direction();
+        const std::vector<int> way = other.way(now);
+        for (const int v : {way.front(), way.back()}) parameters.pins.push_back(place(v, ids, places));
         return read_->make("Proportion", ids, parameters);
     }
 
 private:
-    int place(int v) {
-        const auto [entry, fresh] = places_.try_emplace(v, static_cast<int>(ids_.size()));
-        if (fresh) ids_.push_back(v);
+    static int place(int v, std::vector<int>& ids, std::unordered_map<int, int>& places) {
+        const auto [entry, fresh] = places.try_emplace(v, static_cast<int>(ids.size()));
+        if (fresh) ids.push_back(v);
         return entry->second;
     }
-    [[nodiscard]] Points shape(const State& edited) const {
-        Points points(3, static_cast<Eigen::Index>(ids_.size()));
-        for (std::size_t i = 0; i < ids_.size(); ++i) points.col(static_cast<Eigen::Index>(i)) = edited.points.col(ids_[i]);
-        return points;
+    /// The part and its pins as they are `now`, and the shape that the edit gave it.
+    [[nodiscard]] std::pair<std::vector<int>, ConstraintParameters> placed(const State& edited, const State& now) const {
+        std::vector<int> ids = ids_;
+        std::unordered_map<int, int> places = places_;
+        ConstraintParameters parameters;
+        const std::vector<int> way = gauge_.way(now);
+        parameters.pins = {place(way.front(), ids, places), place(way.back(), ids, places)};
+        parameters.split = static_cast<int>(ids.size());
+        parameters.direction = gauge_.direction();
+        parameters.uniform = uniform_;
+        parameters.target.emplace(3, static_cast<Eigen::Index>(ids.size()));
+        for (std::size_t i = 0; i < ids.size(); ++i)
+            parameters.target->col(static_cast<Eigen::Index>(i)) = edited.points.col(ids[i]);
+        return {std::move(ids), std::move(parameters)};
     }
 
     ReaderPtr read_;
@@ -165,12 +178,11 @@ private:
     std::vector<Index> anchors_;
     std::vector<int> ids_;
     std::unordered_map<int, int> places_;
-    ConstraintParameters parameters_;
 };
 
-std::function<Measured(const State&)> within(const Range& range, std::function<double(const Points&)> value) {
+std::function<Measured(const State&)> within(const Range& range, std::function<double(const State&)> value) {
     return [=](const State& deformed) {
-        const double now = value(deformed.points);
+        const double now = value(deformed);
         Measured result = verdict_of({{"out of range", std::isfinite(now) ? percent_out(now, range) : 1e9, 0.1, "%"}});
         result.text = std::to_string(now) + " in " + std::to_string(range.min) + " to " + std::to_string(range.max);
         return result;
@@ -181,29 +193,31 @@ std::function<Measured(const State&)> within(const Range& range, std::function<d
 
 Statement proportion(const ReaderPtr& read, const RelationOptions&) {
     read->need(2, 2);
-    const Range range = read->range();
-    const auto part = std::make_shared<const Stretch>(read, 0, gauge_of(*read, "measure1", 0));
-    const Gauge other = gauge_of(*read, "measure2", 1);
-    const bool tapes = part->gauge().tape || other.tape;
+    const auto part = std::make_shared<const Stretch>(read, 0, Gauge(*read, "measure1", 0));
+    const Gauge other(*read, "measure2", 1);
+    const Range range = read->range(part->gauge().at_rest() / other.at_rest());
+    const bool tapes = part->gauge().is_tape() || other.is_tape();
     Statement statement;
     statement.anchors = part->anchors();
-    statement.follows = tapes;
+    statement.follows = statement.until_it_holds = true;
     statement.lower = [=](const State& edited, const State& now) {
-        const double size = other.value(now.points);
-        return only(tapes ? part->to({range.min * size, range.max * size}, edited) : part->against(other, range, edited));
+        const double size = other.value(now);
+        return only(tapes ? part->to({range.min * size, range.max * size}, edited, now)
+                          : part->against(other, range, edited, now));
     };
-    statement.measure = within(range, [=](const Points& p) { return part->gauge().value(p) / other.value(p); });
+    statement.measure = within(range, [=](const State& s) { return part->gauge().value(s) / other.value(s); });
     return statement;
 }
 
 Statement keep_measure(const ReaderPtr& read, const RelationOptions&) {
     read->need(1, 1);
-    const Range range = read->range();
-    const auto part = std::make_shared<const Stretch>(read, 0, gauge_of(*read, "measure", 0));
+    const auto part = std::make_shared<const Stretch>(read, 0, Gauge(*read, "measure", 0));
+    const Range range = read->range(part->gauge().at_rest());
     Statement statement;
     statement.anchors = part->anchors();
-    statement.lower = [=](const State& edited, const State&) { return only(part->to(range, edited)); };
-    statement.measure = within(range, [=](const Points& p) { return part->gauge().value(p); });
+    statement.follows = statement.until_it_holds = true;
+    statement.lower = [=](const State& edited, const State& now) { return only(part->to(range, edited, now)); };
+    statement.measure = within(range, [=](const State& s) { return part->gauge().value(s); });
     return statement;
 }
 
@@ -211,29 +225,28 @@ Statement same_measure(const ReaderPtr& read, const RelationOptions& tolerances)
     read->need(2, 0);
     std::vector<std::shared_ptr<const Stretch>> parts;
     Statement statement;
-    statement.follows = true;
+    statement.follows = statement.until_it_holds = true;
     for (std::size_t i = 0; i < read->members(); ++i) {
-        parts.push_back(std::make_shared<const Stretch>(read, i, gauge_of(*read, "measure", i)));
+        parts.push_back(std::make_shared<const Stretch>(read, i, Gauge(*read, "measure", i)));
         statement.anchors.insert(statement.anchors.end(), parts.back()->anchors().begin(), parts.back()->anchors().end());
     }
-    const auto mean = [parts](const Points& points) {
+    const auto mean = [parts](const State& state) {
         double sum = 0;
-        for (const auto& part : parts) sum += part->gauge().value(points);
+        for (const auto& part : parts) sum += part->gauge().value(state);
         return sum / static_cast<double>(parts.size());
     };
     statement.lower = [=](const State& edited, const State& now) {
-        const double size = mean(now.points);
+        const double size = mean(now);
         Statement::Constraints list;
-        for (const auto& part : parts) list.push_back(part->to({size, size}, edited));
+        for (const auto& part : parts) list.push_back(part->to({size, size}, edited, now));
         return list;
     };
     const Deviation tolerance{"difference from their mean", 0.0, tolerances.ratio, "%"};
     statement.measure = [=](const State& deformed) {
         Deviation worst = tolerance;
-        const double size = mean(deformed.points);
+        const double size = mean(deformed);
         for (const auto& part : parts)
-            worst.value =
-                std::max(*worst.value, size > 0 ? 100 * std::abs(part->gauge().value(deformed.points) / size - 1) : 1e9);
+            worst.value = std::max(*worst.value, size > 0 ? 100 * std::abs(part->gauge().value(deformed) / size - 1) : 1e9);
         return verdict_of({worst});
     };
     return statement;

@@ -9,6 +9,11 @@ namespace ostraka::semantic {
 
 namespace {
 
+/// How far apart what belongs together may be at rest, in the mesh's unit: however tight a constraint is.
+double near(const Reader& read, const RelationOptions& tolerances) {
+    return std::max(tolerances.distance, 0.01) * box_diagonal(read.shape().mesh);
+}
+
 /// All vertices together as one kind would have them.
 Statement all_on(const char* kind, const ReaderPtr& read, const RelationOptions& tolerances) {
     read->need(1, 0);
@@ -116,7 +121,7 @@ Statement mirror_symmetry(const ReaderPtr& read, const RelationOptions& toleranc
         parameters.point = Vector3d(plane.point[0], plane.point[1], plane.point[2]);
         parameters.direction = Vector3d(plane.direction[0], plane.direction[1], plane.direction[2]);
     }
-    const double tolerance = length_tolerance(*read, tolerances), search_radius = 3 * tolerance;
+    const double tolerance = length_tolerance(*read, tolerances), search_radius = 3 * near(*read, tolerances);
     const Partners partners = partners_of(*read, *parameters.point, *parameters.direction, search_radius);
     if (2 * partners.gaps.size() < read->vertices(0).size())
         read->fail("has a mirror image for less than half of annotation " + std::to_string(read->member(0).id),
@@ -148,14 +153,13 @@ Statement mirror_symmetry(const ReaderPtr& read, const RelationOptions& toleranc
 
 Statement adjacency(const ReaderPtr& read, const RelationOptions& tolerances) {
     read->need(2, 2);
-    const double search_radius = length_tolerance(*read, tolerances);
+    const double search_radius = near(*read, tolerances);
     const auto first = read->vertices(0), second = read->vertices(1);
     std::vector<Index> shared;
     std::set_intersection(first.begin(), first.end(), second.begin(), second.end(), std::back_inserter(shared));
     // Parts with common vertices cannot come apart; others keep the gap that they have where they are near each other.
     std::vector<std::array<int, 2>> pairs;
     if (shared.empty()) {
-        if (!(search_radius > 0)) read->fail("needs a tolerance of distances", "give --distance");
         add_nearest(read->shape().rest, first, second, search_radius, pairs);
         add_nearest(read->shape().rest, second, first, search_radius, pairs);
         std::sort(pairs.begin(), pairs.end());
@@ -174,7 +178,7 @@ Statement adjacency(const ReaderPtr& read, const RelationOptions& tolerances) {
         }
         return list;
     };
-    const Deviation opened{"change of the gap", 0.0, search_radius, read->shape().set.unit};
+    const Deviation opened{"change of the gap", 0.0, length_tolerance(*read, tolerances), read->shape().set.unit};
     const Points rest = read->shape().rest;
     statement.measure = [=](const State& deformed) {
         Deviation worst = opened;

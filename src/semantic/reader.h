@@ -117,16 +117,14 @@ public:
                  "mend it");
         return value->GetDouble();
     }
-    /// As the solver has them.
-    inline std::vector<int> ids_of(const std::vector<Index>& vertices) { return {vertices.begin(), vertices.end()}; }
-
-    /// minValue and maxValue (Appendix B.2), positive.
-    [[nodiscard]] Range range() const {
+    /// minValue and maxValue (Appendix B.2), positive; without both, what there is `at_rest`.
+    [[nodiscard]] Range range(double at_rest) const {
+        if (!has("minValue") && !has("maxValue")) return {at_rest, at_rest};
         const auto number = [&](const char* name) {
             const JsonValue* value = given(name);
             if (value == nullptr || !value->IsNumber() || !(value->GetDouble() > 0 && value->GetDouble() < 1e60))
                 fail(std::string(name) + (value == nullptr ? " is missing" : " is not a positive number"),
-                     "give minValue and maxValue");
+                     "give minValue and maxValue, or neither: it stays as it is at rest");
             return value->GetDouble();
         };
         const Range r{number("minValue"), number("maxValue")};

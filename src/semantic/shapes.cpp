@@ -31,6 +31,18 @@ Statement::Constraints kept(const Reader& read, const char* kind) {
     return list;
 }
 
+/// The mean of each member's vertices.
+std::vector<Vector3d> means_of(const Reader& read, const Points& points) {
+    std::vector<Vector3d> means;
+    for (std::size_t i = 0; i < read.members(); ++i) {
+        const std::vector<Index> vertices = read.vertices(i);
+        Vector3d sum = Vector3d::Zero();
+        for (const Index v : vertices) sum += points.col(v) - points.col(vertices.front());
+        means.push_back(points.col(vertices.front()) + sum / static_cast<double>(vertices.size()));
+    }
+    return means;
+}
+
 Reattachment reattachment_of(const Reader& read, std::optional<Vector3d> up) {
     Reattachment reattachment;
     std::vector<bool> taken(read.shape().mesh.number_of_vertices(), false);
@@ -85,6 +97,13 @@ Statement same_level(const ReaderPtr& read, const RelationOptions& tolerances) {
     ConstraintParameters level;
     level.direction = read->up();
     const std::string shapes = read->word("shapes", "keep", {"keep", "free", "seat"});
+    Relationship stated = read->relationship();
+    stated.parameters.up = {(*level.direction)[0], (*level.direction)[1], (*level.direction)[2]};
+    const auto related = as_related(read, stated, tolerances);
+    const Mesh& mesh = read->shape().mesh;
+    // Parts that stand on one level keep what they are off at rest; others are brought to one.
+    const bool is_level = related(State(mesh)).verdict == Verdict::holds;
+    const bool as_at_rest = shapes != "seat" && read->word("heights", is_level ? "rest" : "equal", {"rest", "equal"}) == "rest";
     // The thesis takes a reference vertex of each part, whose place on the part is as fine as the mesh: at rest such vertices are
     // not on one level themselves. Means of parts are.
     const bool means = read->word("reference", "mean", {"mean", "vertex"}) == "mean";
@@ -100,6 +119,11 @@ Statement same_level(const ReaderPtr& read, const RelationOptions& tolerances) {
             references.push_back(static_cast<int>(reference_vertex(read->shape().rest, vertices)));
         }
     }
+    const std::vector<Vector3d> places = means_of(*read, read->shape().rest);
+    if (as_at_rest && means) {
+        level.target.emplace(3, static_cast<Eigen::Index>(places.size()));
+        for (std::size_t i = 0; i < places.size(); ++i) level.target->col(static_cast<Eigen::Index>(i)) = places[i];
+    }
     Statement statement;
     if (shapes == "seat") {
         statement.reattachment = reattachment_of(*read, level.direction);
@@ -114,9 +138,23 @@ Statement same_level(const ReaderPtr& read, const RelationOptions& tolerances) {
             return list;
         };
     }
-    Relationship stated = read->relationship();
-    stated.parameters.up = {(*level.direction)[0], (*level.direction)[1], (*level.direction)[2]};
-    statement.measure = as_related(read, stated, tolerances);
+    if (!level.target) {
+        statement.measure = related;
+        return statement;
+    }
+    const Deviation change{"change of the heights against each other", 0.0, length_tolerance(*read, tolerances),
+                           read->shape().set.unit};
+    statement.measure = [read, places, change, up = *level.direction](const State& deformed) {
+        double low = std::numeric_limits<double>::infinity(), high = -low;
+        const std::vector<Vector3d> now = means_of(*read, deformed.points);
+        for (std::size_t i = 0; i < now.size(); ++i) {
+            const double risen = up.dot(now[i] - places[i]);
+            low = std::min(low, risen), high = std::max(high, risen);
+        }
+        Deviation worst = change;
+        worst.value = high - low;
+        return verdict_of({worst});
+    };
     return statement;
 }
 

@@ -45,6 +45,7 @@ struct Statement {
     std::vector<Index> anchors;                ///< vertices that are to stay where the edit leaves them
     std::optional<Reattachment> reattachment;  ///< features that are put back on the deformed base
     bool follows = false;                      ///< lower gives others when the shape has moved
+    bool until_it_holds = false;               ///< follows only as long as it does not hold
     bool hard = false;
     std::string unknown;  ///< why it is left out, if it is
 };

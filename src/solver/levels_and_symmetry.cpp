@@ -61,17 +61,29 @@ private:
     Vector3d direction_, point_;
 };
 
-/// The closest common height of the means is the mean of theirs.
+/// The closest common height of the means is the mean of theirs. With a target, a point a group, the differences of height are
+/// those of the target's points.
 class MeansOnLevel final : public StationMeans {
 public:
-    MeansOnLevel(const Making& m, const Vector3d& up) : StationMeans(m, {}), up_(up) {}
+    MeansOnLevel(const Making& m, const Vector3d& up) : StationMeans(m, {}), up_(up) {
+        heights_ = Eigen::VectorXd::Zero(map_.rows);
+        if (!m.parameters.target) return;
+        const Points& target = *m.parameters.target;
+        if (target.cols() != map_.rows)
+            m.fail("the target has " + std::to_string(target.cols()) + " points instead of " + std::to_string(map_.rows));
+        if (!target.allFinite()) m.fail("the target is not finite");
+        for (Index i = 0; i < target.cols(); ++i) heights_[i] = up.dot(target.col(i) - target.col(0));
+        heights_.array() -= heights_.mean();
+    }
     void project(const RowsIn& rows, RowsOut projected) const override {
         const double level = up_.dot(rows.rowwise().mean());
-        for (Index i = 0; i < rows.cols(); ++i) projected.col(i) = rows.col(i) + up_ * (level - up_.dot(rows.col(i)));
+        for (Index i = 0; i < rows.cols(); ++i)
+            projected.col(i) = rows.col(i) + up_ * (level + heights_[i] - up_.dot(rows.col(i)));
     }
 
 private:
     Vector3d up_;
+    Eigen::VectorXd heights_;  ///< of each group above their mean
 };
 
 /// Pairs of points that mirror each other: in a given plane (rows: the points), or in the best one (rows: the centred points),

@@ -163,7 +163,7 @@ TEST(DeformCommand, ATemplateIsAllItNeeds) {
                   .code,
               2);
     EXPECT_EQ(run_command("deform " + pot + folder.at("lift.edit.json") + " " + folder.at("b.ply")).code, 1);
-    EXPECT_EQ(run_command("deform " + folder.at("lift.edit.json") + " " + folder.at("b.ply")).code, 2);
+    EXPECT_EQ(run_command("deform " + folder.at("lift.edit.json")).code, 2);
 }
 
 TEST(DeformCommand, StatesAndEditedCages) {
@@ -205,10 +205,11 @@ TEST(DeformCommand, StatesInMemory) {
     for (const std::size_t i : {0, 2}) EXPECT_NEAR(x(i).y(), rest.point(Vertex(5)).y() + 2, 1e-9);
     EXPECT_THROW(static_cast<void>(call.object("output", 3)), Error);
     EXPECT_NE(call.object("annotations-out").as<AnnotationSet>(), nullptr);
-    // A mesh without annotations, or a template beside a mesh, is not clear.
+    // Nothing is asked; or a part is named, and there are no annotations.
     Call half(find_operation("deform"));
     half.set_file("mesh", data + "teapot.ply");
-    half.set_file("edit", data + "teapot-stretch.edit.json");
+    EXPECT_THROW(static_cast<void>(half.run(context)), Error);
+    half.set("stretch", "spout=1.2,x");
     EXPECT_THROW(static_cast<void>(half.run(context)), Error);
 }
 

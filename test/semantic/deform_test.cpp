@@ -319,7 +319,7 @@ TEST(Deform, PartsThatAreNearStayNear) {
                            constraint(1, "adjacency", {0, 1}, R"({"hard": true})")};
     DeformOptions options;
     options.conflicts = 0;
-    options.closeness = 1e-6;
+    options.spread = 10;
     RelationOptions tolerances;
     tolerances.distance = 0.02;
     const double away = 0.2 * width;

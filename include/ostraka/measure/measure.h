@@ -44,6 +44,13 @@ std::string descriptor_unit(const std::string& descriptor, const std::string& un
 /// Throws Error (input) for an annotation without elements.
 std::array<Index, 2> extremes(const Mesh& mesh, const Annotation& annotation, const std::array<double, 3>& direction);
 
+/// Whether a bounding measure is the extent of its annotation: its pins are as far apart along its direction as the annotation's
+/// vertices are (to 1e-9 of that).
+bool is_extent(const Mesh& mesh, const Annotation& annotation, const Measure& measure);
+
+/// Bounding measures that are extents on `before` get the pins of the extents on `after`, the same mesh with other points.
+void move_extents(const Mesh& before, const Mesh& after, AnnotationSet& set);
+
 /// Adds it as an attribute of this name, under a free id.
 Attribute& add_measure(Annotation& annotation, const std::string& name, Measure measure);
 

@@ -49,6 +49,8 @@ enum class Kind {
     folder,  ///< several files, described where the operation is
 };
 std::string to_string(Kind kind);
+/// Endings of the files of a kind, lower case; none: any file.
+std::vector<std::string> endings_of(Kind kind);
 
 /// An object in memory, shared, with what it is called and which bytes it was read from.
 class Object {

@@ -11,9 +11,14 @@ namespace ostraka {
 struct DeformOptions {
     enum class Space { mesh, cage } space = Space::mesh;            ///< where constraints are solved: the points of which
     enum class Details { edited, rest } details = Details::edited;  ///< what the surface tends to between constraints
-    double closeness = 0.001;                                       ///< weight of the edited positions, on every vertex
-    double laplacian = 2;  ///< weight of the Laplacian displacements, on every vertex (mesh space)
-    double handles = 100;  ///< weight of the handles that the edit moves, and of the joints that parts stretch from
+    /// Over what length a change fades out, as a share of the diagonal. Each vertex tends to its edited position with the weight
+    /// laplacian (edge / length)^4, edge the mean edge: what it is does not depend on the resolution. Three edges at least.
+    double spread = 0.1;
+    double laplacian = 2;  ///< weight of the Laplacian displacements, on every vertex
+    /// Weight of the handles that the edit moves, and of the joints that parts stretch from. Handles that a constraint moves as
+    /// well are held as by a third of the spread.
+    double handles = 100;
+    double followed = 0.9;  ///< share of the edit that an acceptable result follows
     SolveOptions solve;
     int rounds = 100;   ///< of the loop that enforces hard constraints
     int passes = 5;     ///< in which constraints on the axes and measures of other parts follow those
@@ -45,28 +50,59 @@ struct ConstraintConflict {
     std::vector<Deviation> deviations;  ///< how far off it is then: what it would have to give
 };
 
+/// How far a result does what the edit asked, over the vertices that it asked to move: its handles; through a cage those of the
+/// parts that it names, and where it names handles of the cage itself those that it moves by half as much as any.
+struct EditFollowed {
+    std::size_t vertices = 0;
+    double share = 1;  ///< 1 - root mean square of the deviations / that of the displacements that were asked; not below 0
+    double mean = 0, largest = 0;  ///< deviations, in the mesh's unit
+    /// An annotation moved that was not asked: its vertices' mean displacement beside that which the edit gave them, as a share
+    /// of the diagonal.
+    struct Moved {
+        int annotation = 0;
+        std::string tag;
+        double share = 0;
+    };
+    std::vector<Moved> others;  ///< by more than 0.1 % of the diagonal, the largest first
+};
+
+/// What became of the surface as such.
+struct SurfaceChange {
+    std::size_t crossings = 0, crossings_before = 0;  ///< pairs of faces that cross each other, after and at rest
+    std::size_t folds = 0;  ///< edges whose faces turn away from each other by more than 150 degrees, 30 more than at rest
+};
+
 struct DeformResult {
     std::vector<Point> points;  ///< of the mesh
     std::vector<Point> edited;  ///< as the edit alone leaves them
-    std::vector<Point> cage;    ///< handles after solving, if there is a cage
+    EditFollowed followed;
+    SurfaceChange surface;
+    std::vector<Point> cage;  ///< handles after solving, if there is a cage
     std::vector<ConstraintReport> constraints;
-    SolveSummary summary;    ///< with hard constraints in mesh space: of the last round
-    int rounds = 0;          ///< in which hard constraints were enforced
-    bool solved = false;     ///< there were constraints to solve
-    bool acceptable = true;  ///< every constraint holds
-    int passes = 0;          ///< solutions until the parts that constraints refer to stood still
+    SolveSummary summary;  ///< with hard constraints in mesh space: of the last round
+    int rounds = 0;        ///< in which hard constraints were enforced
+    bool solved = false;   ///< there were constraints to solve
+    /// Every constraint holds, the edit is followed, and no faces cross or fold over that did not at rest.
+    bool acceptable = true;
+    std::vector<std::string> objections;  ///< why it is not acceptable
+    int passes = 0;                       ///< solutions until the parts that constraints refer to stood still
     std::vector<ConstraintConflict> conflicts;
     std::vector<std::size_t> selected;  ///< handles that each step selected
     std::size_t untried = 0;            ///< constraints that were not left out, since there are so many
 };
 
 /// Follows the edit and solves for the constraints of the graph (relationships that are constraints). With a cage the edit moves
-/// its vertices and the mesh by the weights; constraints are then solved over the mesh's points or over the cage's. Throws Error
+/// its vertices and the mesh by the weights; without one it moves vertices of the mesh, and those around follow (shape_of_edit).
+/// Constraints are then solved over the mesh's points or over the cage's. Throws Error
 /// as follow_edit does, (input) for constraints that cannot be made sense of: a missing annotation, attribute or measure, a range
 /// upside down, an empty region, a part without an axis; (usage) for cage space without a cage.
 DeformResult deform(const HandleSpace& space, const RelationGraph& graph, const JsonValue& edit, const std::string& edit_name,
                     const DeformOptions& options = {}, const RelationOptions& tolerances = {},
                     const std::string& graph_name = "graph");
+
+/// The mesh's points as a step of an edit alone leaves them: through a cage by its coordinates; without one the vertices that it
+/// moves where it puts them and the others by the smoothest displacement that fades out over the spread.
+std::vector<Point> shape_of_edit(const HandleSpace& space, const EditState& state, const DeformOptions& options = {});
 
 /// The same from positions that stand already (of a fit, say) instead of an edit: `held` vertices count as handles that were
 /// moved there, the others tend to their positions. Constraints refer to `mesh` as the shape at rest. Throws Error (usage) unless

@@ -20,6 +20,8 @@ struct EditState {
     std::vector<Point> handles;
     std::vector<bool> touched;
     std::vector<Index> selected;  ///< by this step
+    std::vector<bool> named;      ///< vertices of the mesh that steps so far named, by annotation or index
+    bool by_handles = false;      ///< a step so far selected handles of a cage themselves
     double threshold = 0;         ///< that selected cage vertices by influence, 0 if none did
 };
 

@@ -113,7 +113,8 @@ struct ConstraintParameters {
     std::optional<double> min, max;
     bool absolute = false;
     /// Positions or displacements aimed at, reference shape; without it, the rest points'. Of MirrorSymmetry with coefficients:
-    /// for each group the mirrored point less its partner, zero without it.
+    /// for each group the mirrored point less its partner, zero without it. Of MeansOnLevel: a point for each group, whose
+    /// differences of height the means keep; without it, none.
     std::optional<Points> target;
     /// Normal of planes, direction of axes and measures; need not have unit length.
     std::optional<Eigen::Vector3d> direction;

@@ -1,0 +1,174 @@
+#include "ostraka/semantic/edit_words.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/ids.h"
+#include "ostraka/core/json_build.h"
+#include "ostraka/core/nearest_name.h"
+#include "ostraka/core/text.h"
+#include "ostraka/core/words.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace ostraka {
+
+namespace {
+
+constexpr double weight = 50;
+
+bool ends_in_word(const std::string& tag, const std::string& word) { return tag == word || tag.ends_with(" " + word); }
+
+std::vector<const Annotation*> parts_of_word(const AnnotationSet& set, const std::string& word) {
+    std::vector<const Annotation*> parts;
+    const auto take = [&](auto&& is_meant) {
+        if (!parts.empty() || word.empty()) return;
+        for (const Annotation& annotation : set.annotations)
+            if (is_meant(annotation)) parts.push_back(&annotation);
+    };
+    take([&](const Annotation& one) { return std::to_string(one.id) == word; });
+    take([&](const Annotation& one) { return one.tag == word; });
+    take([&](const Annotation& one) { return ends_in_word(one.tag, word); });
+    if (word.ends_with("s"))
+        take([&, single = word.substr(0, word.size() - 1)](const Annotation& one) { return ends_in_word(one.tag, single); });
+    return parts;
+}
+
+struct Amount {
+    std::string parts;
+    double number = 0;
+    std::array<double, 3> axis{0, 0, 1};
+};
+
+/// PARTS=NUMBER or PARTS=NUMBER,AXIS.
+Amount amount_of(const std::string& text, const char* option, const AnnotationSet& set) {
+    const auto fail = [&](const std::string& what, const std::string& remedy) {
+        fail_usage(std::string(option) + " " + printable(text, 60) + ": " + what, remedy);
+    };
+    const std::size_t equals = text.rfind('='), comma = text.find(',', equals == std::string::npos ? 0 : equals);
+    if (equals == std::string::npos || equals == 0) fail("says no amount", "give PART=NUMBER, like back=1.2");
+    Amount amount;
+    amount.parts = text.substr(0, equals);
+    const auto number = number_of(text.substr(equals + 1, comma == std::string::npos ? comma : comma - equals - 1));
+    if (!number || !std::isfinite(*number)) fail("the amount is no number", "give PART=NUMBER, like back=1.2");
+    amount.number = *number;
+    if (comma == std::string::npos) {
+        if (!set.up) fail("no direction is up", "add the axis, like " + text + ",z, or up to the annotations");
+        amount.axis = *set.up;
+        return amount;
+    }
+    const std::string axis = text.substr(comma + 1);
+    const std::size_t k = axis.empty() ? std::string::npos : std::string("xyz").find(axis.back());
+    if (k == std::string::npos || (axis.size() == 2 ? axis[0] != '-' : axis.size() != 1))
+        fail("'" + printable(axis, 20) + "' is no axis", "use x, y, z, -x, -y or -z");
+    amount.axis = {0, 0, 0};
+    amount.axis.at(k) = axis.size() == 2 ? -1 : 1;
+    return amount;
+}
+
+}  // namespace
+
+void EditWords::describe(OptionList& visit) {
+    visit("stretch", stretch, "PART=FACTOR or PART=FACTOR,AXIS: stretch parts along an axis (up) from their base; repeatable");
+    visit("raise", raise, "PART=LENGTH or PART=LENGTH,AXIS: move parts along an axis (up); repeatable");
+    visit("rotate", rotate,
+          "PART=DEGREES or PART=DEGREES,AXIS: rotate parts about an axis (up) through their middle; repeatable");
+    visit("keep", keep, "PART MEASURE or PART: keep a measure of parts as it is at rest, or their shape; repeatable");
+    visit("level", level, "PARTS: keep parts (tags with commas between, or a word like legs) on one level; repeatable");
+}
+
+std::vector<const Annotation*> parts_named(const AnnotationSet& set, const std::string& words) {
+    std::vector<const Annotation*> all;
+    for (std::size_t begin = 0; begin <= words.size();) {
+        const std::size_t end = std::min(words.find(',', begin), words.size());
+        const std::string word(trimmed(std::string_view(words).substr(begin, end - begin)));
+        const auto parts = parts_of_word(set, word);
+        if (parts.empty()) {
+            std::vector<std::string> tags;
+            for (const Annotation& annotation : set.annotations) tags.push_back(annotation.tag);
+            const std::string near = nearest_name(word, tags);
+            fail_input("annotations", "no part is called '" + printable(word, 60) + "'",
+                       near.empty() ? "see 'annotation list'" : "did you mean '" + near + "'?");
+        }
+        for (const Annotation* part : parts)
+            if (std::find(all.begin(), all.end(), part) == all.end()) all.push_back(part);
+        begin = end + 1;
+    }
+    return all;
+}
+
+Json edit_of(const EditWords& words, const AnnotationSet& set) {
+    Json edit = json_document("edit");
+    auto& allocator = edit.GetAllocator();
+    JsonValue steps(rapidjson::kArrayType);
+    const auto add = [&](const std::vector<std::string>& texts, const char* option, auto&& operation) {
+        for (const std::string& text : texts) {
+            const Amount amount = amount_of(text, option, set);
+            std::vector<int> ids;
+            for (const Annotation* part : parts_named(set, amount.parts)) ids.push_back(part->id);
+            JsonValue step = json_object(allocator, "select", json_object(allocator, "annotations", ids));
+            operation(step, amount);
+            steps.PushBack(step, allocator);
+        }
+    };
+    add(words.stretch, "--stretch", [&](JsonValue& step, const Amount& amount) {
+        add_members(step, allocator, "stretch", json_object(allocator, "direction", amount.axis, "factor", amount.number));
+    });
+    add(words.raise, "--raise", [&](JsonValue& step, const Amount& amount) {
+        std::array<double, 3> by = amount.axis;
+        double size = 0;
+        for (const double x : by) size = std::hypot(size, x);
+        for (double& x : by) x *= amount.number / size;
+        add_members(step, allocator, "translate", by);
+    });
+    add(words.rotate, "--rotate", [&](JsonValue& step, const Amount& amount) {
+        add_members(step, allocator, "rotate", json_object(allocator, "axis", amount.axis, "angle", amount.number));
+    });
+    add_members(edit, allocator, "steps", std::move(steps));
+    return edit;
+}
+
+void add_constraints(const EditWords& words, const AnnotationSet& set, RelationGraph& graph) {
+    const auto add = [&](const char* type, std::vector<int> members, const std::string& parameters) {
+        Relationship relationship;
+        relationship.id = next_free_id(graph.relationships);
+        relationship.type = type;
+        relationship.annotations = std::move(members);
+        relationship.is_constraint = true;
+        relationship.weight = weight;
+        relationship.constraint = parameters;
+        relationship.origin = "stated";
+        graph.relationships.push_back(std::move(relationship));
+    };
+    for (const std::string& text : words.keep) {
+        // The parts' words come first; the longest name of a measure counts.
+        std::size_t space = text.find(' ');
+        while (space != std::string::npos && parts_of_word(set, text.substr(0, space)).empty()) space = text.find(' ', space + 1);
+        const bool whole = !parts_of_word(set, text).empty() || space == std::string::npos;
+        const std::string measure = whole ? "" : text.substr(space + 1);
+        for (const Annotation* part : parts_named(set, whole ? text : text.substr(0, space))) {
+            if (whole) {
+                add("keep shape", {part->id}, "");
+                continue;
+            }
+            std::vector<std::string> names;
+            for (const Attribute& attribute : part->attributes)
+                if (attribute.type == AttributeType::measure) names.push_back(attribute.name);
+            if (std::find(names.begin(), names.end(), measure) == names.end())
+                fail_input("annotations", "'" + part->tag + "' has no measure '" + printable(measure, 60) + "'",
+                           "take it with 'measure take'" + (names.empty() ? "" : ", or name one of: " + joined(names)));
+            Json parameters;
+            parameters.SetObject();
+            add_members(parameters, parameters.GetAllocator(), "measure", measure);
+            add("keep measure", {part->id}, to_text(parameters));
+        }
+    }
+    for (const std::string& text : words.level) {
+        std::vector<int> ids;
+        for (const Annotation* part : parts_named(set, text)) ids.push_back(part->id);
+        if (ids.size() < 2) fail_usage("--level " + printable(text, 60) + " names one part", "name two or more");
+        add("same level", std::move(ids), R"({"shapes": "free", "heights": "rest"})");
+    }
+}
+
+}  // namespace ostraka
