@@ -206,6 +206,20 @@ void Call::set(const JsonValue& values, const std::string& where) {
     }
 }
 
+namespace {
+/// Arguments in the wrong order: a mesh where a JSON document is expected.
+void refuse_mesh(const Slot& slot, const Path& file) {
+    const auto ends_as = [&](Kind kind) {
+        const auto endings = endings_of(kind);
+        return std::find(endings.begin(), endings.end(), extension(file)) != endings.end();
+    };
+    const auto expected = endings_of(slot.kind);
+    if (ends_as(Kind::mesh) && !expected.empty() && expected.front().ends_with(".json"))
+        fail_input(file.string(), "is a mesh by its name, and " + slot.name + " is expected here",
+                   "give " + slot.help + "; mind the order of the files");
+}
+}  // namespace
+
 void Call::check_given() const {
     for (const Option& option : parameters_.options)
         if (option.needed && !option.given)
@@ -219,6 +233,7 @@ void Call::check_given() const {
             const Path& file = slot->sources[i].file;
             if (file.empty()) continue;
             if (slot->role == Role::input) {
+                refuse_mesh(*slot, file);
                 if (!parameters_.updated_in_place(*slot)) inputs.push_back(file);
             } else if (!slot->fills_folder(i)) {
                 outputs.push_back(file);

@@ -17,7 +17,7 @@ struct Deform final : Operation {
         p.input("mesh", Kind::mesh, mesh, "mesh file").optional();
         p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)").optional();
         p.input("edit", Kind::edit, edit, "the edit (.edit.json); or say it in words: --stretch, --raise, --rotate").optional();
-        p.output("output", Kind::mesh, output, "the deformed mesh to write");
+        p.output("output", Kind::mesh, output, "the deformed mesh to write, acceptable or not");
         p.order({"mesh", "annotations", "edit", "output"});
         p.order({"mesh", "annotations", "output"});
         p.order({"mesh", "edit", "output"});
@@ -41,10 +41,11 @@ struct Deform final : Operation {
                         number("followed.mean"), number("followed.largest"), integer("selfIntersections"),
                         integer("selfIntersectionsBefore"), integer("folds"), integer("iterations"), integer("rounds"),
                         text("stopped"), integer("passes"));
-        p.report.table("constraints", integer("id", "id"), text("type", "constraint"), number("weight", "weight"),
-                       boolean("hard"), boolean("used"), text("before"), text("verdict", "verdict"), text("text"),
-                       any("deviations", "how well"), number("residual.mean"), number("residual.median"), number("residual.min"),
-                       number("residual.max"), number("residual.greatest distance"), integer("residual.constraints"));
+        p.report.table("constraints", integer("id", "id"), text("type", "constraint"), texts("parts", "parts"),
+                       number("weight", "weight"), boolean("hard"), boolean("used"), text("before"), text("verdict", "verdict"),
+                       text("text"), any("deviations", "how well"), number("residual.mean"), number("residual.median"),
+                       number("residual.min"), number("residual.max"), number("residual.greatest distance"),
+                       integer("residual.constraints"));
         p.report.table("conflicts", integer("id"), numbers("freed"), any("deviations"));
         p.report.table("moved", integer("id", "id"), text("tag", "moved, though the edit did not ask it to"),
                        number("share", "mean, % of the diagonal"));
@@ -72,6 +73,11 @@ struct Deform final : Operation {
         Subject subject = package       ? of_template(context)
                           : annotations ? Subject{&*mesh, &annotations.on(mesh->mesh)}
                                         : Subject{&*mesh, &no_annotations};
+        if (!words.keep.empty()) {
+            own_set = *subject.set;
+            take_measures(words, subject.object->mesh, own_set);
+            subject.set = &own_set;
+        }
         const Json steps = all_steps(*subject.set);
         if (states) {
             std::vector<Path> files;
@@ -114,8 +120,8 @@ struct Deform final : Operation {
         const std::string handles = std::to_string((space.cage != nullptr ? *space.cage : space.mesh).number_of_vertices()) +
                                     (space.cage != nullptr ? " cage vertices" : " vertices");
         for (std::size_t i = 0; i < result.selected.size(); ++i)
-            report.note("step " + std::to_string(i + 1) + ": " + std::to_string(result.selected[i]) + " of " + handles);
-        report_result(report, result);
+            report.note("step " + std::to_string(i + 1) + " moves " + std::to_string(result.selected[i]) + " of " + handles);
+        report_result(report, result, *subject.set);
         if (!result.acceptable) report.answer_no();
     }
 
@@ -180,12 +186,13 @@ struct Deform final : Operation {
         return deviation;
     }
 
-    static void report_result(Report& report, const DeformResult& result) {
+    static void report_result(Report& report, const DeformResult& result, const AnnotationSet& set) {
+        const std::string& unit = set.unit;
         report("acceptable", result.acceptable)("iterations", result.summary.iterations)("rounds", result.rounds);
         const std::string stopped = result.passes > 0 ? std::string(ostraka::describe(result.summary.stop)) : "nothing to solve";
         report("stopped", stopped)("passes", result.passes);
         report.empty_table("constraints", false);
-        for (const ConstraintReport& constraint : result.constraints) report_result(report, constraint);
+        for (const ConstraintReport& constraint : result.constraints) report_result(report, constraint, set);
         if (result.passes > 0)
             report.line(
                 (result.rounds > 0
@@ -197,14 +204,14 @@ struct Deform final : Operation {
         for (const ConstraintConflict& conflict : result.conflicts) report_result(report, result, conflict);
         if (result.untried > 0)
             report.line(std::to_string(result.untried) + " constraints were not left out to see: raise --conflicts to try them");
-        report_edit(report, result);
+        report_edit(report, result, unit.empty() ? unit : " " + unit);
         report.line(!result.acceptable           ? "not acceptable: " + joined(result.objections, "; ")
                     : result.constraints.empty() ? "acceptable; no constraints"
                                                  : "acceptable: every constraint holds");
         report("objections", result.objections);
     }
 
-    static void report_edit(Report& report, const DeformResult& result) {
+    static void report_edit(Report& report, const DeformResult& result, const std::string& unit) {
         const EditFollowed& followed = result.followed;
         report("followed.share", followed.share)("followed.vertices", followed.vertices)("followed.mean", followed.mean)(
             "followed.largest", followed.largest);
@@ -215,12 +222,12 @@ struct Deform final : Operation {
         for (const EditFollowed::Moved& part : followed.others)
             report.row("moved")("id", part.annotation)("tag", part.tag)("share", 100 * part.share);
         if (followed.vertices > 0)
-            report.line("the edit is followed by " + number(100 * followed.share, 3) + " %: its " +
-                        std::to_string(followed.vertices) + " vertices are " + number(followed.mean, 3) +
-                        " beside their places in the mean, " + number(followed.largest, 3) + " at most");
+            report.line("the edit is followed by " + number(100 * followed.share, 3) + " %: the " +
+                        std::to_string(followed.vertices) + " vertices that it moves are " + number(followed.mean, 3) + unit +
+                        " from where it puts them in the mean, " + number(followed.largest, 3) + unit + " at most");
     }
 
-    static void report_result(Report& report, const ConstraintReport& constraint) {
+    static void report_result(Report& report, const ConstraintReport& constraint, const AnnotationSet& set) {
         JsonValue deviations(rapidjson::kArrayType);
         for (std::size_t i = 0; i < constraint.deviations.size(); ++i)
             deviations.PushBack(
@@ -230,7 +237,9 @@ struct Deform final : Operation {
         std::vector<std::string> words = deviation_texts(constraint);
         if (!constraint.text.empty()) words.push_back(constraint.text);
         Report::Row row = report.row("constraints");
-        row("id", constraint.id)("type", constraint.type);
+        std::vector<std::string> parts;
+        for (const int id : constraint.annotations) parts.push_back(set.find(id)->tag);
+        row("id", constraint.id)("type", constraint.type)("parts", parts);
         row("weight", constraint.weight, number(constraint.weight) + (constraint.hard ? ", hard" : ""));
         row("hard", constraint.hard)("used", constraint.used)("before", to_string(constraint.before));
         row("verdict", to_string(constraint.verdict), constraint.used ? to_string(constraint.verdict) : "left out");
@@ -276,7 +285,8 @@ struct Deform final : Operation {
     EditWords words;
     DeformOptions options;
     RelationOptions tolerances;
-    MeshFile own_cage;  ///< of the template, with its coordinates
+    AnnotationSet own_set;  ///< with measures that the words keep
+    MeshFile own_cage;      ///< of the template, with its coordinates
     Coordinates own_weights;
 };
 

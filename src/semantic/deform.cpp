@@ -81,6 +81,7 @@ public:
             result.selected.push_back(last_.selected.size());
         }
         result.edited = shape_of_edit(space_, last_, options_);
+        asked_ = asked(result.edited);
         result = finish(std::move(result));
         result.followed = followed(result.points);
         if (result.followed.share < options_.followed)
@@ -110,18 +111,26 @@ private:
         return result;
     }
 
+    /// The vertices that the edit asks to move.
+    [[nodiscard]] std::vector<bool> asked(const std::vector<Point>& edited) const {
+        if (space_.cage == nullptr) return last_.touched;
+        std::vector<bool> flags = last_.named;
+        if (!last_.by_handles) return flags;
+        const Eigen::VectorXd wanted = (columns_of(edited) - rest_).colwise().norm();
+        const double half = wanted.size() > 0 ? wanted.maxCoeff() / 2 : 0;
+        for (std::size_t i = 0; i < flags.size(); ++i)
+            flags[i] = flags[i] || (half > 0 && wanted[static_cast<Eigen::Index>(i)] >= half);
+        return flags;
+    }
+
     [[nodiscard]] EditFollowed followed(const std::vector<Point>& points) const {
         EditFollowed result;
         const Points now = columns_of(points);
         const Eigen::VectorXd wanted = (edited_ - rest_).colwise().norm(), off = (now - edited_).colwise().norm();
-        const double half = wanted.size() > 0 ? wanted.maxCoeff() / 2 : 0;
-        std::vector<bool> asked(space_.mesh.number_of_vertices());
         double square_wanted = 0, square_off = 0;
-        for (std::size_t i = 0; i < asked.size(); ++i) {
+        for (std::size_t i = 0; i < asked_.size(); ++i) {
             const auto v = static_cast<Eigen::Index>(i);
-            asked[i] =
-                space_.cage == nullptr ? last_.touched[i] : last_.named[i] || (last_.by_handles && half > 0 && wanted[v] >= half);
-            if (!asked[i]) continue;
+            if (!asked_[i]) continue;
             ++result.vertices;
             square_wanted += wanted[v] * wanted[v];
             square_off += off[v] * off[v];
@@ -132,12 +141,18 @@ private:
         if (square_wanted > 0) result.share = std::max(0.0, 1 - std::sqrt(square_off / square_wanted));
         const double diagonal = box_diagonal(space_.mesh);
         for (const Annotation& annotation : space_.set.annotations) {
-            const std::vector<Index> vertices = vertices_of(space_.mesh, annotation);
-            if (vertices.empty() || std::any_of(vertices.begin(), vertices.end(), [&](Index v) { return asked[v]; })) continue;
             double sum = 0;
+            std::size_t all = 0, others = 0;
             // Handles of a cage say not which parts they are to move.
-            for (const Index v : vertices) sum += last_.by_handles ? off[v] : (now.col(v) - rest_.col(v)).norm();
-            const double share = sum / (static_cast<double>(vertices.size()) * diagonal);
+            for (const Index v : vertices_of(space_.mesh, annotation)) {
+                ++all;
+                if (asked_[v]) continue;
+                ++others;
+                sum += last_.by_handles ? off[v] : (now.col(v) - rest_.col(v)).norm();
+            }
+            // Nor what holds all that was asked, such as the whole object.
+            if (2 * others <= all || all - others == result.vertices) continue;
+            const double share = sum / (static_cast<double>(others) * diagonal);
             if (share > 1e-3) result.others.push_back({annotation.id, annotation.tag, share});
         }
         std::stable_sort(result.others.begin(), result.others.end(),
@@ -217,9 +232,13 @@ private:
         outcome.points = edited_;
         if (space_.cage != nullptr) outcome.cage = columns_of(last_.handles);
         outcome.texts.resize(statements_.size());
-        bool follows = false;
-        for (std::size_t i = 0; i < statements_.size(); ++i) follows = follows || (active[i] && statements_[i].follows);
-        const double still = 1e-4 * box_diagonal(space_.mesh);
+        bool follows = false, gauges = false;
+        for (std::size_t i = 0; i < statements_.size(); ++i) {
+            follows = follows || (active[i] && statements_[i].follows);
+            gauges = gauges || (active[i] && statements_[i].until_it_holds);
+        }
+        // Measures are held to a thousandth of a part.
+        const double still = (gauges ? 1e-6 : 1e-4) * box_diagonal(space_.mesh);
         while (outcome.passes < (follows ? options_.passes : 1)) {
             if (outcome.passes > 0 && !another_pass(active, outcome)) break;
             const Points before = outcome.points;
@@ -264,7 +283,9 @@ private:
         anchors_.clear();
         rotating_.clear();
         const Mesh mesh = with_points(space_.mesh, list_of(outcome.points));
-        const semantic::State now(mesh), edited(edited_mesh_);
+        const semantic::State now(mesh);
+        semantic::State edited(edited_mesh_);
+        edited.asked = asked_;
         for (std::size_t i = 0; i < statements_.size(); ++i) {
             if (!active[i]) continue;
             anchors_.insert(statements_[i].anchors.begin(), statements_[i].anchors.end());
@@ -325,10 +346,13 @@ private:
             HardSolver solver(std::move(all), hard, rest_);
             HardOptions options;
             options.inner = options_.solve;
+            options.inner.iterations = std::min(options.inner.iterations, HardOptions().inner.iterations);
             options.rounds = options_.rounds;
+            options.start = hard_scale_;
             const HardSummary summary = solver.solve(outcome.points, options);
             outcome.summary = summary.last;
             outcome.rounds += summary.rounds;
+            hard_scale_ = std::sqrt(summary.scale);
             keep_residuals(outcome, outcome.points, [&](std::size_t i) -> const Constraint& { return solver.constraint(i); });
         } else {
             MeshSpaceSolver solver(std::move(all), rest_);
@@ -459,6 +483,7 @@ private:
     std::string where_, graph_where_;
     Points rest_;
     EditState last_;
+    std::vector<bool> asked_;  ///< vertices that the edit asks to move; empty: none is told from others
     Mesh edited_mesh_;
     Points edited_;
     std::vector<semantic::Statement> statements_;  ///< of the constraints in the report
@@ -467,6 +492,7 @@ private:
     std::vector<std::size_t> owner_;  ///< of each lowered constraint, in the report
     std::size_t first_ = 0;           ///< its place in the solver's list
     std::set<Index> anchors_, rotating_;
+    double hard_scale_ = 1;  ///< from which hard constraints are enforced, as passes so far tell
 };
 
 }  // namespace

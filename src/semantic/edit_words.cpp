@@ -6,6 +6,7 @@
 #include "ostraka/core/nearest_name.h"
 #include "ostraka/core/text.h"
 #include "ostraka/core/words.h"
+#include "ostraka/measure/measure.h"
 
 #include <algorithm>
 #include <array>
@@ -15,9 +16,14 @@ namespace ostraka {
 
 namespace {
 
-constexpr double weight = 50;
+constexpr double weight = 1000;
 
-bool ends_in_word(const std::string& tag, const std::string& word) { return tag == word || tag.ends_with(" " + word); }
+/// "front left leg" and "leg 2" end in "leg".
+bool ends_in_word(std::string tag, const std::string& word) {
+    if (const std::size_t space = tag.rfind(' '); space != std::string::npos && number_of(tag.substr(space + 1)))
+        tag.resize(space);
+    return tag == word || tag.ends_with(" " + word);
+}
 
 std::vector<const Annotation*> parts_of_word(const AnnotationSet& set, const std::string& word) {
     std::vector<const Annotation*> parts;
@@ -28,9 +34,12 @@ std::vector<const Annotation*> parts_of_word(const AnnotationSet& set, const std
     };
     take([&](const Annotation& one) { return std::to_string(one.id) == word; });
     take([&](const Annotation& one) { return one.tag == word; });
-    take([&](const Annotation& one) { return ends_in_word(one.tag, word); });
-    if (word.ends_with("s"))
-        take([&, single = word.substr(0, word.size() - 1)](const Annotation& one) { return ends_in_word(one.tag, single); });
+    const std::string single = word.ends_with("s") ? word.substr(0, word.size() - 1) : word;
+    // Regions before lines and points: "arms" are not "ends of the arms".
+    for (const AnnotationType type : {AnnotationType::region, AnnotationType::line, AnnotationType::point})
+        take([&](const Annotation& one) {
+            return one.type == type && !single.empty() && (ends_in_word(one.tag, word) || ends_in_word(one.tag, single));
+        });
     return parts;
 }
 
@@ -112,6 +121,9 @@ Json edit_of(const EditWords& words, const AnnotationSet& set) {
         }
     };
     add(words.stretch, "--stretch", [&](JsonValue& step, const Amount& amount) {
+        if (!(amount.number > 0 && amount.number < 1e6))
+            fail_usage("--stretch " + printable(amount.parts, 60) + " has the factor " + digits(amount.number, 6),
+                       "give a positive factor; 1 changes nothing");
         add_members(step, allocator, "stretch", json_object(allocator, "direction", amount.axis, "factor", amount.number));
     });
     add(words.raise, "--raise", [&](JsonValue& step, const Amount& amount) {
@@ -128,6 +140,49 @@ Json edit_of(const EditWords& words, const AnnotationSet& set) {
     return edit;
 }
 
+namespace {
+
+/// The parts and the measure (empty: the shape) of a text of "keep".
+struct Kept {
+    std::vector<const Annotation*> parts;
+    std::string measure;
+};
+Kept kept_by(const std::string& text, const AnnotationSet& set) {
+    // The parts' words come first; the longest name of a measure counts.
+    std::size_t space = text.find(' ');
+    while (space != std::string::npos && parts_of_word(set, text.substr(0, space)).empty()) space = text.find(' ', space + 1);
+    if (!parts_of_word(set, text).empty() || space == std::string::npos) return {parts_named(set, text), ""};
+    return {parts_named(set, text.substr(0, space)), text.substr(space + 1)};
+}
+
+bool has_measure(const Annotation& part, const std::string& name) {
+    return std::any_of(part.attributes.begin(), part.attributes.end(), [&](const Attribute& attribute) {
+        return attribute.type == AttributeType::measure && attribute.name == name;
+    });
+}
+
+}  // namespace
+
+void take_measures(const EditWords& words, const Mesh& mesh, AnnotationSet& set) {
+    for (const std::string& text : words.keep) {
+        const Kept kept = kept_by(text, set);
+        if (!set.up || (kept.measure != "height" && kept.measure != "thickness")) continue;
+        for (const Annotation* part : kept.parts) {
+            if (has_measure(*part, kept.measure)) continue;
+            Measure extent;
+            extent.tool = "bounding";
+            extent.direction = set.up;
+            extent.unit = set.unit;
+            const auto pins = extremes(mesh, *part, *set.up);
+            extent.points.assign(pins.begin(), pins.end());
+            const auto own =
+                std::find_if(set.annotations.begin(), set.annotations.end(), [&](auto& one) { return &one == part; });
+            extent.value = evaluate(mesh, *own, extent);
+            add_measure(*own, kept.measure, std::move(extent));
+        }
+    }
+}
+
 void add_constraints(const EditWords& words, const AnnotationSet& set, RelationGraph& graph) {
     const auto add = [&](const char* type, std::vector<int> members, const std::string& parameters) {
         Relationship relationship;
@@ -141,33 +196,32 @@ void add_constraints(const EditWords& words, const AnnotationSet& set, RelationG
         graph.relationships.push_back(std::move(relationship));
     };
     for (const std::string& text : words.keep) {
-        // The parts' words come first; the longest name of a measure counts.
-        std::size_t space = text.find(' ');
-        while (space != std::string::npos && parts_of_word(set, text.substr(0, space)).empty()) space = text.find(' ', space + 1);
-        const bool whole = !parts_of_word(set, text).empty() || space == std::string::npos;
-        const std::string measure = whole ? "" : text.substr(space + 1);
-        for (const Annotation* part : parts_named(set, whole ? text : text.substr(0, space))) {
-            if (whole) {
+        const Kept kept = kept_by(text, set);
+        for (const Annotation* part : kept.parts) {
+            if (kept.measure.empty()) {
                 add("keep shape", {part->id}, "");
                 continue;
             }
-            std::vector<std::string> names;
-            for (const Attribute& attribute : part->attributes)
-                if (attribute.type == AttributeType::measure) names.push_back(attribute.name);
-            if (std::find(names.begin(), names.end(), measure) == names.end())
-                fail_input("annotations", "'" + part->tag + "' has no measure '" + printable(measure, 60) + "'",
+            if (!has_measure(*part, kept.measure)) {
+                std::vector<std::string> names;
+                for (const Attribute& attribute : part->attributes)
+                    if (attribute.type == AttributeType::measure) names.push_back(attribute.name);
+                fail_input("annotations", "'" + part->tag + "' has no measure '" + printable(kept.measure, 60) + "'",
                            "take it with 'measure take'" + (names.empty() ? "" : ", or name one of: " + joined(names)));
+            }
             Json parameters;
             parameters.SetObject();
-            add_members(parameters, parameters.GetAllocator(), "measure", measure);
+            add_members(parameters, parameters.GetAllocator(), "measure", kept.measure);
             add("keep measure", {part->id}, to_text(parameters));
         }
     }
     for (const std::string& text : words.level) {
         std::vector<int> ids;
         for (const Annotation* part : parts_named(set, text)) ids.push_back(part->id);
-        if (ids.size() < 2) fail_usage("--level " + printable(text, 60) + " names one part", "name two or more");
-        add("same level", std::move(ids), R"({"shapes": "free", "heights": "rest"})");
+        if (ids.size() < 2)
+            fail_usage("--level " + printable(text, 60) + " names one part, '" + printable(set.find(ids[0])->tag, 60) + "'",
+                       "name two or more");
+        add("same level", std::move(ids), R"({"shapes": "free", "heights": "rest", "reference": "base"})");
     }
 }
 

@@ -156,7 +156,7 @@ private:
         if (fresh) ids.push_back(v);
         return entry->second;
     }
-    /// The part and its pins as they are `now`, and the shape that the edit gave it.
+    /// The part and its pins as they are `now`, and its shape.
     [[nodiscard]] std::pair<std::vector<int>, ConstraintParameters> placed(const State& edited, const State& now) const {
         std::vector<int> ids = ids_;
         std::unordered_map<int, int> places = places_;
@@ -166,9 +166,12 @@ private:
         parameters.split = static_cast<int>(ids.size());
         parameters.direction = gauge_.direction();
         parameters.uniform = uniform_;
+        // A part that only gave way to its neighbours is as it was.
+        std::size_t asked = 0;
+        for (const int v : ids_) asked += edited.asked.empty() || edited.asked[static_cast<std::size_t>(v)] ? 1 : 0;
+        const Points& shape = 2 * asked >= ids_.size() ? edited.points : read_->shape().rest;
         parameters.target.emplace(3, static_cast<Eigen::Index>(ids.size()));
-        for (std::size_t i = 0; i < ids.size(); ++i)
-            parameters.target->col(static_cast<Eigen::Index>(i)) = edited.points.col(ids[i]);
+        for (std::size_t i = 0; i < ids.size(); ++i) parameters.target->col(static_cast<Eigen::Index>(i)) = shape.col(ids[i]);
         return {std::move(ids), std::move(parameters)};
     }
 

@@ -31,16 +31,25 @@ Statement::Constraints kept(const Reader& read, const char* kind) {
     return list;
 }
 
-/// The mean of each member's vertices.
-std::vector<Vector3d> means_of(const Reader& read, const Points& points) {
+/// The mean of each group of vertices.
+std::vector<Vector3d> means_of(const std::vector<std::vector<Index>>& groups, const Points& points) {
     std::vector<Vector3d> means;
-    for (std::size_t i = 0; i < read.members(); ++i) {
-        const std::vector<Index> vertices = read.vertices(i);
+    for (const auto& vertices : groups) {
         Vector3d sum = Vector3d::Zero();
         for (const Index v : vertices) sum += points.col(v) - points.col(vertices.front());
         means.push_back(points.col(vertices.front()) + sum / static_cast<double>(vertices.size()));
     }
     return means;
+}
+
+/// The lowest twentieth of a part's height.
+std::vector<Index> base_of(const Points& rest, const std::vector<Index>& vertices, const Vector3d& up) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Index v : vertices) low = std::min(low, up.dot(rest.col(v))), high = std::max(high, up.dot(rest.col(v)));
+    std::vector<Index> base;
+    for (const Index v : vertices)
+        if (up.dot(rest.col(v)) <= low + 0.05 * (high - low)) base.push_back(v);
+    return base;
 }
 
 Reattachment reattachment_of(const Reader& read, std::optional<Vector3d> up) {
@@ -106,10 +115,15 @@ Statement same_level(const ReaderPtr& read, const RelationOptions& tolerances) {
     const bool as_at_rest = shapes != "seat" && read->word("heights", is_level ? "rest" : "equal", {"rest", "equal"}) == "rest";
     // The thesis takes a reference vertex of each part, whose place on the part is as fine as the mesh: at rest such vertices are
     // not on one level themselves. Means of parts are.
-    const bool means = read->word("reference", "mean", {"mean", "vertex"}) == "mean";
+    const std::string reference = read->word("reference", "mean", {"mean", "vertex", "base"});
+    const bool means = reference != "vertex";
+    std::vector<std::vector<Index>> groups;
+    for (std::size_t i = 0; i < read->members(); ++i)
+        groups.push_back(reference == "base" ? base_of(read->shape().rest, read->vertices(i), *level.direction)
+                                             : read->vertices(i));
     std::vector<int> references;
     for (std::size_t i = 0; i < read->members(); ++i) {
-        const auto vertices = read->vertices(i);
+        const auto& vertices = groups[i];
         if (means) {
             for (const Index v : vertices) {
                 references.push_back(static_cast<int>(v));
@@ -119,7 +133,7 @@ Statement same_level(const ReaderPtr& read, const RelationOptions& tolerances) {
             references.push_back(static_cast<int>(reference_vertex(read->shape().rest, vertices)));
         }
     }
-    const std::vector<Vector3d> places = means_of(*read, read->shape().rest);
+    const std::vector<Vector3d> places = means_of(groups, read->shape().rest);
     if (as_at_rest && means) {
         level.target.emplace(3, static_cast<Eigen::Index>(places.size()));
         for (std::size_t i = 0; i < places.size(); ++i) level.target->col(static_cast<Eigen::Index>(i)) = places[i];
@@ -144,9 +158,9 @@ Statement same_level(const ReaderPtr& read, const RelationOptions& tolerances) {
     }
     const Deviation change{"change of the heights against each other", 0.0, length_tolerance(*read, tolerances),
                            read->shape().set.unit};
-    statement.measure = [read, places, change, up = *level.direction](const State& deformed) {
+    statement.measure = [groups, places, change, up = *level.direction](const State& deformed) {
         double low = std::numeric_limits<double>::infinity(), high = -low;
-        const std::vector<Vector3d> now = means_of(*read, deformed.points);
+        const std::vector<Vector3d> now = means_of(groups, deformed.points);
         for (std::size_t i = 0; i < now.size(); ++i) {
             const double risen = up.dot(now[i] - places[i]);
             low = std::min(low, risen), high = std::max(high, risen);

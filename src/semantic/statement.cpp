@@ -78,6 +78,7 @@ Statement understand(const Shape& shape, const Relationship& relationship, const
 ConstraintReport report_of(const Relationship& relationship, const Statement& statement) {
     ConstraintReport report;
     report.id = relationship.id;
+    report.annotations = relationship.annotations;
     report.type = relationship.type;
     report.weight = relationship.weight;
     report.hard = statement.hard;

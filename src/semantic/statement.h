@@ -23,6 +23,7 @@ struct State {
     explicit State(const Mesh& deformed) : mesh(deformed), points(columns_of(deformed)) {}
     const Mesh& mesh;
     Points points;
+    std::vector<bool> asked = {};  ///< of an edited shape: vertices that the edit asked to move; empty: any
 };
 
 struct Measured {

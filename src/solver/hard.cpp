@@ -73,14 +73,16 @@ const Constraint& HardSolver::constraint(std::size_t i) const {
 
 HardSummary HardSolver::solve(Points& points, const HardOptions& options) {
     check_options(options, "solver");
+    if (!(options.start > 0 && options.start < 1e100)) fail_usage("the start of enforcement is not positive", "1 is the weights");
     HardSummary summary;
     summary.tolerance = options.tolerance * state_->diagonal;
     constexpr double raise = 4, maximum = 1e8;  // of weights, against where they start
     for (std::size_t i = 0; i < state_->hard.size(); ++i)
         if (state_->hard[i] != nullptr) {
             state_->hard[i]->u.setZero();
-            state_->solver->set_weight(i, constraint(i).weight());
+            state_->solver->set_weight(i, options.start * constraint(i).weight());
         }
+    summary.scale = options.start;
     summary.of_constraint.assign(state_->hard.size(), 0.0);
     std::vector<double> before(state_->hard.size(), std::numeric_limits<double>::infinity());
     // Contradictory constraints pull ever harder: the state that came nearest is kept, and what does not come nearer is ended.
@@ -103,6 +105,7 @@ HardSummary HardSolver::solve(Points& points, const HardOptions& options) {
             const double weight = hard->weight();
             if (now > summary.tolerance && now > fast_enough * before[i] && weight < maximum * constraint(i).weight()) {
                 state_->solver->set_weight(i, raise * weight);
+                summary.scale = std::max(summary.scale, raise * weight / constraint(i).weight());
                 hard->u /= raise;
             }
             before[i] = now;

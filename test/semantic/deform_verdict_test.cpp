@@ -163,6 +163,7 @@ TEST(EditWords, PartsByWords) {
     EXPECT_EQ(count("front left leg"), 1U);
     EXPECT_EQ(count("seat, back"), 2U);
     EXPECT_EQ(count("seat,seat"), 1U);
+    EXPECT_EQ(count("arms"), 2U) << "not the points at their ends";
     EXPECT_EQ(count("1"), 1U);
     for (const char* wrong : {"", "sea", "seat,", "eg"})
         EXPECT_THROW(static_cast<void>(parts_named(chair.set, wrong)), Error) << wrong;
@@ -176,7 +177,6 @@ TEST(EditWords, PartsByWords) {
 
 TEST(EditWords, StepsAndConstraints) {
     Annotated chair("chair", 2000);
-    chair.take("seat", "thickness", {0, 0, 1});
     EditWords words;
     words.stretch = {"back=1.2"};
     words.raise = {"seat=3,-x"};
@@ -187,6 +187,12 @@ TEST(EditWords, StepsAndConstraints) {
     ASSERT_EQ(steps["steps"].Size(), 3U);
     EXPECT_EQ(steps["steps"][1]["translate"][0].GetDouble(), -3);
     RelationGraph graph;
+    EXPECT_THROW(add_constraints(words, chair.set, graph), Error) << "the seat has no such measure yet";
+    graph.relationships.clear();
+    take_measures(words, chair.made.mesh, chair.set);
+    take_measures(words, chair.made.mesh, chair.set);
+    const auto& taken = chair.tagged("seat").attributes;
+    EXPECT_EQ(std::count_if(taken.begin(), taken.end(), [](const Attribute& one) { return one.name == "thickness"; }), 1);
     add_constraints(words, chair.set, graph);
     ASSERT_EQ(graph.relationships.size(), 2U);
     EXPECT_EQ(graph.relationships[0].type, "keep measure");
@@ -202,6 +208,7 @@ TEST(EditWords, StepsAndConstraints) {
             Error);
     };
     refused(&EditWords::stretch, "back");
+    refused(&EditWords::stretch, "back=0");
     refused(&EditWords::stretch, "back=much");
     refused(&EditWords::stretch, "=1.2");
     refused(&EditWords::raise, "back=1,w");

@@ -29,7 +29,8 @@ struct DeformOptions {
 
 /// What became of one constraint.
 struct ConstraintReport {
-    int id = 0;              ///< of the relationship
+    int id = 0;  ///< of the relationship
+    std::vector<int> annotations;
     std::string type, text;  ///< text: why it is left out, or what is wrong
     bool used = false;       ///< it took part in the solution
     bool hard = false;

@@ -16,8 +16,9 @@ struct EditWords {
     void describe(OptionList& visit);
 };
 
-/// The annotations that a word means, in the order of the set: the one of that id; those of that tag; those whose tag ends in it
-/// as a word ("leg": "front left leg"); the same for the word without a plural's "s". With commas between words, those of each.
+/// The annotations that a word means, in the order of the set: the one of that id; else those of that tag; else those whose tag
+/// ends in it as a word, or in it without a plural's "s" ("legs": "front left leg", "leg 2"), regions only where there are any,
+/// else lines. With commas between words, those of each.
 /// Throws Error (input), naming the nearest tag, where there are none.
 std::vector<const Annotation*> parts_named(const AnnotationSet& set, const std::string& words);
 
@@ -27,8 +28,11 @@ std::vector<const Annotation*> parts_named(const AnnotationSet& set, const std::
 /// parts_named.
 Json edit_of(const EditWords& words, const AnnotationSet& set);
 
+/// Adds the measures "height" and "thickness" that the words keep and parts have not: the extent along up.
+void take_measures(const EditWords& words, const Mesh& mesh, AnnotationSet& set);
+
 /// Adds constraints: "keep" a measure of the parts as it is at rest, or their shape where no measure is named; "level" parts
-/// among each other. All are soft, with a weight that counts against the surface's (50). Throws as edit_of.
+/// among each other, by their bases. All are soft, with a weight (1000) far above the surface's. Throws as edit_of.
 void add_constraints(const EditWords& words, const AnnotationSet& set, RelationGraph& graph);
 
 }  // namespace ostraka

@@ -9,6 +9,9 @@ namespace ostraka {
 struct HardOptions {
     SolveOptions inner{30, 1e-7, 0, 5};  ///< of each round
     int rounds = 100;
+    /// Enforcement starts from so many times the weights; an earlier solution of nearly the same system tells
+    /// (HardSummary::scale).
+    double start = 1;
     double tolerance = 1e-6;  ///< a hard constraint holds when none of its rows is farther off than this share of the diagonal
 
     void describe(OptionList& visit);
@@ -21,6 +24,7 @@ struct HardSummary {
         violation;  ///< greatest distance of a hard row from what is admissible, after each round, in the points' unit
     std::vector<double> of_constraint;  ///< the same at the end, of each constraint; 0 for the others
     double tolerance = 0;               ///< in the points' unit
+    double scale = 1;                   ///< greatest weight that was reached, as a multiple of the constraint's
     SolveSummary last;                  ///< of the last round
 };
 
