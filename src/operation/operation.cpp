@@ -4,6 +4,7 @@
 #include "ostraka/core/transaction.h"
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 
 namespace ostraka {
@@ -209,14 +210,13 @@ void Call::set(const JsonValue& values, const std::string& where) {
 namespace {
 /// Arguments in the wrong order: a mesh where a JSON document is expected.
 void refuse_mesh(const Slot& slot, const Path& file) {
-    const auto ends_as = [&](Kind kind) {
-        const auto endings = endings_of(kind);
-        return std::find(endings.begin(), endings.end(), extension(file)) != endings.end();
-    };
-    const auto expected = endings_of(slot.kind);
-    if (ends_as(Kind::mesh) && !expected.empty() && expected.front().ends_with(".json"))
-        fail_input(file.string(), "is a mesh by its name, and " + slot.name + " is expected here",
-                   "give " + slot.help + "; mind the order of the files");
+    constexpr std::array documents{Kind::annotations, Kind::graph, Kind::edit, Kind::recipe, Kind::rules};
+    const auto meshes = endings_of(Kind::mesh);
+    if (std::find(documents.begin(), documents.end(), slot.kind) == documents.end() ||
+        std::find(meshes.begin(), meshes.end(), extension(file)) == meshes.end())
+        return;
+    fail_input(file.string(), "is a mesh by its name, and it stands in the place of: " + slot.help,
+               "mind the order of the files");
 }
 }  // namespace
 
@@ -233,7 +233,6 @@ void Call::check_given() const {
             const Path& file = slot->sources[i].file;
             if (file.empty()) continue;
             if (slot->role == Role::input) {
-                refuse_mesh(*slot, file);
                 if (!parameters_.updated_in_place(*slot)) inputs.push_back(file);
             } else if (!slot->fills_folder(i)) {
                 outputs.push_back(file);
@@ -241,6 +240,9 @@ void Call::check_given() const {
         }
     }
     check_outputs(inputs, outputs);
+    for (const Slot* slot : parameters_.slots())
+        for (const Source& source : slot->sources)
+            if (slot->role == Role::input) refuse_mesh(*slot, source.file);
     in_operation(entry_->name, [&] {
         for (const auto& check : parameters_.checks) check();
         operation_->check();
