@@ -1,14 +1,13 @@
 #include "ostraka/semantic/deform.h"
 
 #include "statement.h"
+#include "verdict.h"
 
-#include "ostraka/core/angles.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/text.h"
 #include "ostraka/core/words.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/with_points.h"
-#include "ostraka/io/diagnose.h"
 
 #include <algorithm>
 #include <map>
@@ -20,9 +19,13 @@ namespace {
 
 using semantic::list_of;
 
+/// Without any, nothing would hold positions.
+constexpr double min_laplacian = 1e-3;
+
 /// Weight of the positions of points an edge apart, so that changes fade out over the spread, and over three edges at least.
 double closeness(const DeformOptions& options, const Mesh& mesh, double edge) {
-    return options.laplacian * std::pow(std::min(edge / (options.spread * box_diagonal(mesh)), 1.0 / 3), 4);
+    return std::max(options.laplacian, min_laplacian) *
+           std::pow(std::min(edge / (options.spread * box_diagonal(mesh)), 1.0 / 3), 4);
 }
 
 void add_closeness(const std::vector<int>& ids, double weight, const Points& targets, int offset, const Points& rest,
@@ -81,28 +84,13 @@ public:
             result.selected.push_back(last_.selected.size());
         }
         result.edited = shape_of_edit(space_, last_, options_);
-        asked_ = asked(result.edited);
+        asked_ = semantic::asked_vertices(space_, last_, columns_of(result.edited) - rest_);
         result = finish(std::move(result));
-        result.followed = followed(result.points);
+        result.followed = semantic::followed_edit(space_, last_, asked_, rest_, edited_, columns_of(result.points));
         if (result.followed.share < options_.followed)
             result.objections.push_back("the edit is followed by " + percent(result.followed.share) + ", " +
                                         percent(options_.followed) + " are asked");
-        return judged(std::move(result));
-    }
-
-    DeformResult restore(const std::vector<Point>& points, const std::vector<bool>& held) {
-        last_.handles = points;
-        last_.touched = held;
-        DeformResult result;
-        result.edited = points;
-        return judged(finish(std::move(result)));
-    }
-
-private:
-    static std::string percent(double share) { return digits(100 * share, 3) + " %"; }
-
-    DeformResult judged(DeformResult result) const {
-        result.surface = surface_change(result.points);
+        result.surface = semantic::surface_change(space_.mesh, with_points(space_.mesh, result.points));
         const auto& [crossings, before, folds] = result.surface;
         if (crossings > before)
             result.objections.push_back(counted(crossings, "pair") + " of faces cross, " + std::to_string(before) + " at rest");
@@ -111,73 +99,18 @@ private:
         return result;
     }
 
-    /// The vertices that the edit asks to move.
-    [[nodiscard]] std::vector<bool> asked(const std::vector<Point>& edited) const {
-        if (space_.cage == nullptr) return last_.touched;
-        std::vector<bool> flags = last_.named;
-        if (!last_.by_handles) return flags;
-        const Eigen::VectorXd wanted = (columns_of(edited) - rest_).colwise().norm();
-        const double half = wanted.size() > 0 ? wanted.maxCoeff() / 2 : 0;
-        for (std::size_t i = 0; i < flags.size(); ++i)
-            flags[i] = flags[i] || (half > 0 && wanted[static_cast<Eigen::Index>(i)] >= half);
-        return flags;
-    }
-
-    [[nodiscard]] EditFollowed followed(const std::vector<Point>& points) const {
-        EditFollowed result;
-        const Points now = columns_of(points);
-        const Eigen::VectorXd wanted = (edited_ - rest_).colwise().norm(), off = (now - edited_).colwise().norm();
-        double square_wanted = 0, square_off = 0;
-        for (std::size_t i = 0; i < asked_.size(); ++i) {
-            const auto v = static_cast<Eigen::Index>(i);
-            if (!asked_[i]) continue;
-            ++result.vertices;
-            square_wanted += wanted[v] * wanted[v];
-            square_off += off[v] * off[v];
-            result.mean += off[v];
-            result.largest = std::max(result.largest, off[v]);
-        }
-        if (result.vertices > 0) result.mean /= static_cast<double>(result.vertices);
-        if (square_wanted > 0) result.share = std::max(0.0, 1 - std::sqrt(square_off / square_wanted));
-        const double diagonal = box_diagonal(space_.mesh);
-        for (const Annotation& annotation : space_.set.annotations) {
-            double sum = 0;
-            std::size_t all = 0, others = 0;
-            // Handles of a cage say not which parts they are to move.
-            for (const Index v : vertices_of(space_.mesh, annotation)) {
-                ++all;
-                if (asked_[v]) continue;
-                ++others;
-                sum += last_.by_handles ? off[v] : (now.col(v) - rest_.col(v)).norm();
-            }
-            // Nor what holds all that was asked, such as the whole object.
-            if (2 * others <= all || all - others == result.vertices) continue;
-            const double share = sum / (static_cast<double>(others) * diagonal);
-            if (share > 1e-3) result.others.push_back({annotation.id, annotation.tag, share});
-        }
-        std::stable_sort(result.others.begin(), result.others.end(),
-                         [](const auto& a, const auto& b) { return a.share > b.share; });
+    DeformResult restore(const std::vector<Point>& points, const std::vector<bool>& held) {
+        last_.handles = points;
+        last_.touched = held;
+        DeformResult result;
+        result.edited = points;
+        result = finish(std::move(result));
+        result.acceptable = result.objections.empty();
         return result;
     }
 
-    [[nodiscard]] SurfaceChange surface_change(const std::vector<Point>& points) const {
-        SurfaceChange change;
-        const Mesh now = with_points(space_.mesh, points);
-        const auto crossings = [](const Mesh& mesh) { return self_intersections(to_soup(mesh), 100'000).pairs.size(); };
-        change.crossings = crossings(now);
-        if (change.crossings > 0) change.crossings_before = crossings(space_.mesh);
-        const auto bend = [](const Mesh& mesh, Halfedge h) {
-            const Vector a = area_vector(mesh, mesh.face(h)), b = area_vector(mesh, mesh.face(mesh.opposite(h)));
-            const double cross = std::sqrt(CGAL::cross_product(a, b).squared_length());
-            return std::atan2(cross, a * b) * 180 / pi;
-        };
-        for (const Edge e : now.edges()) {
-            if (now.is_border(e)) continue;
-            const Halfedge h = now.halfedge(e);
-            if (const double after = bend(now, h); after > 150 && after > bend(space_.mesh, h) + 30) ++change.folds;
-        }
-        return change;
-    }
+private:
+    static std::string percent(double share) { return digits(100 * share, 3) + " %"; }
 
     DeformResult finish(DeformResult result) {
         edited_ = columns_of(result.edited);
@@ -229,6 +162,7 @@ private:
     /// For the active constraints; all others are only measured.
     Outcome solve(const std::vector<bool>& active) {
         Outcome outcome;
+        hard_scale_ = 1;
         outcome.points = edited_;
         if (space_.cage != nullptr) outcome.cage = columns_of(last_.handles);
         outcome.texts.resize(statements_.size());
@@ -507,11 +441,9 @@ std::vector<Point> shape_of_edit(const HandleSpace& space, const EditState& stat
     Points targets = rest, points = rest;
     for (const int v : moved) targets.col(v) = eigen(state.handles[static_cast<std::size_t>(v)]);
     std::vector<std::unique_ptr<Constraint>> list;
-    const double laplacian = std::max(options.laplacian, 1e-3);
+    const double laplacian = std::max(options.laplacian, min_laplacian);
     add_closeness(moved, 1e5 * laplacian, targets, 0, rest, list);
-    DeformOptions smooth = options;
-    smooth.laplacian = laplacian;
-    add_closeness(others, closeness(smooth, space.mesh, mean_edge_length(space.mesh)), targets, 0, rest, list);
+    add_closeness(others, closeness(options, space.mesh, mean_edge_length(space.mesh)), targets, 0, rest, list);
     add_displacements(space.mesh, laplacian, rest, {}, list);
     MeshSpaceSolver solver(std::move(list), rest);
     solver.solve(points, {2, 0, 0, 0});

@@ -57,8 +57,8 @@ struct EditFollowed {
     std::size_t vertices = 0;
     double share = 1;  ///< 1 - root mean square of the deviations / that of the displacements that were asked; not below 0
     double mean = 0, largest = 0;  ///< deviations, in the mesh's unit
-    /// An annotation moved that was not asked: its vertices' mean displacement beside that which the edit gave them, as a share
-    /// of the diagonal.
+    /// A part moved of which most was not asked to: the mean displacement of those vertices (where the edit selects handles of a
+    /// cage, that beside where it leaves them), as a share of the diagonal.
     struct Moved {
         int annotation = 0;
         std::string tag;
@@ -83,7 +83,8 @@ struct DeformResult {
     SolveSummary summary;  ///< with hard constraints in mesh space: of the last round
     int rounds = 0;        ///< in which hard constraints were enforced
     bool solved = false;   ///< there were constraints to solve
-    /// Every constraint holds, the edit is followed, and no faces cross or fold over that did not at rest.
+    /// Every constraint holds, the edit is followed, and no faces cross or fold over that did not at rest (of restored positions,
+    /// which follow no edit: the constraints alone).
     bool acceptable = true;
     std::vector<std::string> objections;  ///< why it is not acceptable
     int passes = 0;                       ///< solutions until the parts that constraints refer to stood still

@@ -1,0 +1,75 @@
+#include "verdict.h"
+
+#include "ostraka/core/angles.h"
+#include "ostraka/io/diagnose.h"
+
+#include <algorithm>
+
+namespace ostraka::semantic {
+
+std::vector<bool> asked_vertices(const HandleSpace& space, const EditState& last, const Points& displacements) {
+    if (space.cage == nullptr) return last.touched;
+    std::vector<bool> flags = last.named;
+    if (!last.by_handles || flags.empty()) return flags;
+    const Eigen::VectorXd wanted = displacements.colwise().norm();
+    const double half = wanted.maxCoeff() / 2;
+    for (std::size_t i = 0; i < flags.size(); ++i)
+        flags[i] = flags[i] || (half > 0 && wanted[static_cast<Eigen::Index>(i)] >= half);
+    return flags;
+}
+
+EditFollowed followed_edit(const HandleSpace& space, const EditState& last, const std::vector<bool>& asked, const Points& rest,
+                           const Points& edited, const Points& now) {
+    EditFollowed result;
+    const Eigen::VectorXd wanted = (edited - rest).colwise().norm(), off = (now - edited).colwise().norm();
+    double square_wanted = 0, square_off = 0;
+    for (std::size_t i = 0; i < asked.size(); ++i) {
+        const auto v = static_cast<Eigen::Index>(i);
+        if (!asked[i]) continue;
+        ++result.vertices;
+        square_wanted += wanted[v] * wanted[v];
+        square_off += off[v] * off[v];
+        result.mean += off[v];
+        result.largest = std::max(result.largest, off[v]);
+    }
+    if (result.vertices > 0) result.mean /= static_cast<double>(result.vertices);
+    if (square_wanted > 0) result.share = std::max(0.0, 1 - std::sqrt(square_off / square_wanted));
+    const double diagonal = box_diagonal(space.mesh);
+    for (const Annotation& annotation : space.set.annotations) {
+        double sum = 0;
+        std::size_t all = 0, others = 0;
+        for (const Index v : vertices_of(space.mesh, annotation)) {
+            ++all;
+            if (asked[v]) continue;
+            ++others;
+            // Handles of a cage say not which parts they are to move.
+            sum += last.by_handles ? off[v] : (now.col(v) - rest.col(v)).norm();
+        }
+        // Nor what holds all that was asked, such as the whole object.
+        if (2 * others <= all || all - others == result.vertices) continue;
+        const double share = sum / (static_cast<double>(others) * diagonal);
+        if (share > 1e-3) result.others.push_back({annotation.id, annotation.tag, share});
+    }
+    std::stable_sort(result.others.begin(), result.others.end(), [](const auto& a, const auto& b) { return a.share > b.share; });
+    return result;
+}
+
+SurfaceChange surface_change(const Mesh& rest, const Mesh& now) {
+    SurfaceChange change;
+    const auto crossings = [](const Mesh& mesh) { return self_intersections(to_soup(mesh), 100'000).pairs.size(); };
+    change.crossings = crossings(now);
+    if (change.crossings > 0) change.crossings_before = crossings(rest);
+    const auto bend = [](const Mesh& mesh, Halfedge h) {
+        const Vector a = area_vector(mesh, mesh.face(h)), b = area_vector(mesh, mesh.face(mesh.opposite(h)));
+        const double cross = std::sqrt(CGAL::cross_product(a, b).squared_length());
+        return std::atan2(cross, a * b) * 180 / pi;
+    };
+    for (const Edge e : now.edges()) {
+        if (now.is_border(e)) continue;
+        const Halfedge h = now.halfedge(e);
+        if (const double after = bend(now, h); after > 150 && after > bend(rest, h) + 30) ++change.folds;
+    }
+    return change;
+}
+
+}  // namespace ostraka::semantic
