@@ -73,6 +73,15 @@ struct CageTableOptions {
 };
 void cages(const CageTableOptions& options);
 
+/// Combinations of defects made on closed meshes, and how many repair undoes.
+struct RepairExperiment {
+    std::vector<std::string> meshes;
+    int combinations = 20;  ///< a mesh
+    std::uint64_t seed = 1;
+    std::string csv;
+};
+void repairs(const RepairExperiment& options);
+
 /// Of the experiments on semantic constraints.
 struct SemanticOptions {
     std::string output;          ///< folder

@@ -92,6 +92,13 @@ void declare_cages(CLI::App& command, CageTableOptions& options) {
     command.add_option("--csv", options.csv, "raw rows");
 }
 
+void declare_repairs(CLI::App& command, RepairExperiment& options) {
+    command.add_option("meshes", options.meshes, "closed meshes; others are left out")->required();
+    ranged(command, "--combinations", options.combinations, "of defects, a mesh", 1, 100000);
+    command.add_option("--seed", options.seed, "of the defects");
+    command.add_option("--csv", options.csv, "raw rows");
+}
+
 void declare_fixed_proportions(CLI::App& command, FixedProportionsOptions& options) {
     command.add_option("output", options.output, "folder for table and plot")->capture_default_str();
     ranged(command, "--seeds", options.seeds, "populations of each kind", 1, 100000);
@@ -217,6 +224,7 @@ constexpr Experiment list[] = {
      declared<declare_cage_reach, cage_reach>},
     {"labels", "part labels carried to a remeshed version and back", declared<declare_label_transfer, label_transfer>},
     {"cages", "cages of many meshes: how many are sound, and how long they take", declared<declare_cages, cages>},
+    {"repairs", "combinations of defects on closed meshes, and how many are repaired", declared<declare_repairs, repairs>},
     {"proportions", "planted proportions found in made populations, and false ones",
      declared<declare_fixed_proportions, fixed_proportions>},
     {"pose-search", "pieces broken off objects, and where a search lays them", declared<declare_pose_search, pose_search>},

@@ -1,5 +1,6 @@
 #include "ostraka/io/diagnose.h"
 
+#include "repair_steps.h"
 #include "soup_edges.h"
 #include "soup_geometry.h"
 
@@ -351,6 +352,8 @@ MeshDiagnosis diagnose(const TriangleSoup& soup, const DiagnoseOptions& options)
     }
     return diagnosis;
 }
+
+double crack_width(const TriangleSoup& soup) { return detail::crack_width(soup); }
 
 void DiagnoseOptions::describe(OptionList& visit) {
     visit("skip-self-intersections", skip_self_intersections, "leave out the search for self-intersections", Anything{});

@@ -58,6 +58,23 @@ Format format_of_content(Format expected, std::string_view bytes) {
     return expected;
 }
 
+/// UTF-16 where a text of that encoding begins with its mark, UTF-16LE or UTF-16BE where letters and zeros stand in turn; else
+/// empty.
+std::string wide_encoding(std::string_view bytes) {
+    bytes = bytes.substr(0, 64);
+    const std::size_t mark = bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF") ? 2 : 0;
+    for (const std::size_t zero : {1, 0}) {
+        bool is_text = bytes.size() >= mark + 8;
+        for (std::size_t i = mark; i < bytes.size(); ++i) {
+            const auto c = static_cast<unsigned char>(bytes[i]);
+            const bool letter = (c >= ' ' && c < 127) || c == '\t' || c == '\n' || c == '\r';
+            is_text = is_text && (i % 2 == zero ? c == 0 : letter);
+        }
+        if (is_text) return mark > 0 ? "UTF-16" : zero == 1 ? "UTF-16LE" : "UTF-16BE";
+    }
+    return {};
+}
+
 std::string defects_in_words(const ManifoldDefects& defects) {
     std::string text;
     const auto add = [&text](std::size_t count, const char* what) {
@@ -80,6 +97,10 @@ PolygonSoup read_polygons(const Path& file) {
     std::string bytes = read_file(file);
     const std::string name = file.string();
     if (bytes.empty()) fail_input(name, "is empty", "export it again");
+    if (const std::string encoding = wide_encoding(bytes); !encoding.empty())
+        fail_input(name, "is text in UTF-16: convert to UTF-8",
+                   "run: iconv -f " + encoding + " -t UTF-8 " + name + " > " +
+                       (file.parent_path() / ("utf8-" + file.filename().string())).string());
     const Format format = format_of_content(named, bytes);
     PolygonSoup soup = format == Format::obj   ? read_obj(bytes, name)
                        : format == Format::off ? read_off(bytes, name)

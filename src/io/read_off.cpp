@@ -10,13 +10,16 @@ namespace ostraka::io {
 
 namespace {
 
-/// What stands in front of "OFF" in the first word: texture coordinates, colours, normals of the vertices.
+/// What stands in front of "OFF" in the first word: texture coordinates, colours, normals of the vertices. The number of vertices
+/// may follow without a blank.
 struct Header {
     bool texture = false, colours = false, normals = false;
+    std::size_t length = 0;  ///< of the keyword
 };
 
 std::optional<Header> parse_header(std::string_view word) {
     Header header;
+    const std::size_t whole = word.size();
     const auto take = [&word](std::string_view prefix) {
         if (!word.starts_with(prefix)) return false;
         word.remove_prefix(prefix.size());
@@ -25,7 +28,9 @@ std::optional<Header> parse_header(std::string_view word) {
     header.texture = take("ST");
     header.colours = take("C");
     header.normals = take("N");
-    if (word != "OFF") return std::nullopt;
+    if (!take("OFF") && !take("off")) return std::nullopt;
+    if (word.find_first_not_of("0123456789") != std::string_view::npos) return std::nullopt;
+    header.length = whole - word.size();
     return header;
 }
 
@@ -58,6 +63,7 @@ private:
         const std::string_view word = reader_.word();
         if (const auto header = parse_header(word)) {
             header_ = *header;
+            reader_.set_position(first + header_.length);
             if (reader_.skip_space() && reader_.position()[0] == 'B')
                 reader_.fail("binary OFF is not supported", "convert it to text OFF or PLY");
         } else if (!word.empty() && word.front() >= '0' && word.front() <= '9') {

@@ -2,10 +2,14 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/core/text.h"
 #include "ostraka/io/wrap.h"
 #include "repair_steps.h"
 #include "soup_geometry.h"
 #include "triangle_tree.h"
+
+#include <cmath>
+#include <limits>
 
 namespace ostraka {
 
@@ -131,6 +135,24 @@ void wrap(Worksoup& work, const TriangleSoup& original, const RepairOptions& opt
     work = std::move(made);
 }
 
+/// Says what removing self-intersections or wrapping changed besides.
+void note_losses(const MeshDiagnosis& before, const MeshDiagnosis& after, std::vector<std::string>& notes) {
+    if (before.components.size() != after.components.size())
+        notes.push_back("the number of components changed from " + std::to_string(before.components.size()) + " to " +
+                        std::to_string(after.components.size()));
+    else if (before.closed() && after.closed() && before.euler() != after.euler())
+        notes.push_back("the number of handles changed: the Euler number was " + std::to_string(before.euler()) + " and is " +
+                        std::to_string(after.euler()));
+    constexpr double visible = 0.01;
+    const auto compare = [&](const char* what, double was, double is) {
+        if (was != 0 && std::abs(is - was) > visible * std::abs(was))
+            notes.push_back(std::string("the ") + what + " changed by " + digits(100 * (is - was) / std::abs(was), 2) +
+                            " %, from " + digits(was, 5) + " to " + digits(is, 5));
+    };
+    compare("area", before.area, after.area);
+    if (before.closed() && after.closed()) compare("volume", before.volume, after.volume);
+}
+
 }  // namespace
 
 RepairResult repair(const TriangleSoup& original, const MeshExtras& extras, const RepairOptions& options) {
@@ -144,10 +166,13 @@ RepairResult repair(const TriangleSoup& original, const MeshExtras& extras, cons
     };
     Worksoup work(original);
     const double size = detail::diagonal(detail::box_of_triangles(original));
-    step("merge points", detail::merge_points(work, options.merge_distance * size));
+    double crack = 0;
+    step("merge points", detail::merge_points(work, {options.merge_distance * size, options.merge_gap}, crack));
     step("drop triangles", detail::drop_bad_triangles(work));
     if (work.soup.triangles.empty())
-        fail_input("mesh", "has no face left after points were merged", "use a smaller --merge-distance");
+        fail_input("mesh", "has no face left after points were merged", "use a smaller --merge-distance or --merge-gap");
+    // Points of text files have six digits.
+    step("T-junctions", detail::sew_junctions(work, std::max({1e-6 * size, crack, options.merge_distance * size})));
     const auto& orientation = step("orient", detail::orient_patches(work));
     if (count_of(orientation, "edges cut because the surface has one side only") > 0)
         result.notes.emplace_back("a part of the surface has one side only (a Moebius strip): it was cut open to be oriented");
@@ -166,7 +191,11 @@ RepairResult repair(const TriangleSoup& original, const MeshExtras& extras, cons
         if (count_of(flat, "border triangles dropped") > 0) detail::take_apart(work);
     }
     if (work.soup.triangles.empty()) fail_input("mesh", "has no face with an area left", "look at the file's coordinates");
-    if (options.remove_self_intersections) step("self-intersections", detail::remove_self_intersections(work, result.notes));
+    if (options.remove_self_intersections || options.wrap) result.before = diagnose(work.soup, {.skip_self_intersections = true});
+    if (options.remove_self_intersections) {
+        step("self-intersections", detail::remove_self_intersections(work, result.notes));
+        work.drop_isolated(options.keep_isolated);
+    }
     if (options.wrap) {
         wrap(work, original, options, result);
     } else {
@@ -179,9 +208,15 @@ RepairResult repair(const TriangleSoup& original, const MeshExtras& extras, cons
     result.vertex_source = std::move(work.vertex_source);
     result.face_source = std::move(work.face_source);
     result.after = diagnose(work.soup);
-    if (result.after.border_edges > 0)
-        result.notes.emplace_back(
-            "holes are left (close wider or longer ones with --fill-holes-size 1 --fill-holes N, or use --wrap)");
+    if (result.before) note_losses(*result.before, result.after, result.notes);
+    if (result.after.border_edges > 0) {
+        const double near = 1.1 * detail::crack_width(work.soup) / size;
+        result.notes.emplace_back(near > 0
+                                      ? "cracks are left: most points of the border have another one within " + digits(near, 2) +
+                                            " of the diagonal (join them with --merge-distance " + digits(near, 2) + ")"
+                                      : "holes are left (close wider or longer ones with --fill-holes-size 1 "
+                                        "--fill-holes N, or use --wrap)");
+    }
     if (result.after.self_intersections > 0)
         result.notes.emplace_back(options.remove_self_intersections
                                       ? "intersecting triangles are left (use --wrap)"
@@ -189,9 +224,84 @@ RepairResult repair(const TriangleSoup& original, const MeshExtras& extras, cons
     return result;
 }
 
+namespace {
+
+/// As a reader of STL sees it.
+TriangleSoup as_stl(const TriangleSoup& soup) {
+    TriangleSoup read;
+    std::vector<std::array<double, 3>> rounded = soup.points;
+    for (auto& p : rounded)
+        for (double& x : p) x = static_cast<double>(static_cast<float>(x));
+    const std::vector<Index> place = detail::same_place(rounded);
+    std::vector<Index> number_of(soup.points.size(), no_index);
+    for (auto t : soup.triangles) {
+        for (Index& v : t) {
+            Index& n = number_of[place[v]];
+            if (n == no_index) {
+                n = static_cast<Index>(read.points.size());
+                read.points.push_back(rounded[v]);
+            }
+            v = n;
+        }
+        read.triangles.push_back(t);
+    }
+    return read;
+}
+
+/// Moves vertices that share a place in single precision towards the middle of their triangles; returns how many.
+std::size_t move_apart(TriangleSoup& soup, double hair) {
+    std::vector<std::array<double, 3>> rounded = soup.points;
+    for (auto& p : rounded)
+        for (double& x : p) x = static_cast<double>(static_cast<float>(x));
+    const std::vector<Index> place = detail::same_place(rounded);
+    std::vector<std::uint8_t> shared(soup.points.size(), 0);
+    for (Index v = 0; v < place.size(); ++v)
+        if (place[v] != v) shared[v] = shared[place[v]] = 1;
+    std::vector<Vector> inwards(soup.points.size(), Vector(0, 0, 0));
+    for (Index t = 0; t < soup.triangles.size(); ++t)
+        for (const Index v : soup.triangles[t])
+            if (shared[v] != 0) inwards[v] += middle(soup, t) - detail::point(soup, v);
+    std::size_t moved = 0;
+    for (Index v = 0; v < inwards.size(); ++v) {
+        const double length = std::sqrt(inwards[v].squared_length());
+        if (length == 0) continue;
+        const Point p = detail::point(soup, v) + hair / length * inwards[v];
+        soup.points[v] = {p.x(), p.y(), p.z()};
+        ++moved;
+    }
+    return moved;
+}
+
+}  // namespace
+
+void prepare_for_stl(RepairResult& result) {
+    MeshDiagnosis read = diagnose(as_stl(to_soup(result.mesh)));
+    if (!read.manifold() && result.after.manifold()) {
+        TriangleSoup soup = to_soup(result.mesh);
+        const auto& box = result.after.box;
+        double farthest = 0;
+        for (int k = 0; k < 3; ++k) farthest = std::max({farthest, std::abs(box.min(k)), std::abs(box.max(k))});
+        const double hair =
+            std::max(1e-6 * result.after.diagonal, 8 * farthest * static_cast<double>(std::numeric_limits<float>::epsilon()));
+        const std::size_t moved = move_apart(soup, hair);
+        MeshDiagnosis apart = diagnose(as_stl(soup));
+        if (apart.defects().size() < read.defects().size()) {
+            for (Index v = 0; v < soup.points.size(); ++v) result.mesh.point(Vertex(v)) = detail::point(soup, v);
+            read = std::move(apart);
+            result.notes.push_back("STL joins vertices at one place: " + std::to_string(moved) +
+                                   " copies of vertices were moved apart by " + digits(hair, 2));
+        }
+        if (!read.manifold())
+            result.notes.emplace_back("STL joins vertices at one place, so that what is read again is no manifold (write PLY)");
+    }
+    result.after = std::move(read);
+}
+
 void RepairOptions::describe(OptionList& visit) {
     visit("merge-distance", merge_distance, "merge border points closer than this (0: only equal ones)", Range{0, 0.1},
           "share of the diagonal");
+    visit("merge-gap", merge_gap, "and those across cracks narrower than this (0: none)", Range{0, 0.5},
+          "share of the shortest edge at the points");
     visit("keep-isolated", keep_isolated, "keep vertices without a face", Anything{});
     visit("keep-largest", keep_largest, "keep only the component with the largest area", Anything{});
     visit("min-component-share", min_component_share, "drop components with less than this", Range{0, 1}, "share of the area");

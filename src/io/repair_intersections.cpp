@@ -1,4 +1,4 @@
-// Self-intersections removed by cutting out and closing again.
+// Self-intersections removed: folds are relaxed; what is left is cut out and the gaps are closed.
 #include "repair_steps.h"
 #include "soup_geometry.h"
 
@@ -10,12 +10,6 @@ double total_area(const TriangleSoup& soup) {
     double sum = 0;
     for (const auto& t : soup.triangles) sum += area(soup, t);
     return sum;
-}
-
-std::size_t count_border(const TriangleSoup& soup) {
-    std::size_t count = 0;
-    for (const Index o : pair_manifold(soup)) count += o == no_index;
-    return count;
 }
 
 /// 1 for the triangles in the pairs and those within so many rings of vertices around them.
@@ -72,6 +66,124 @@ std::size_t drop_walls(Worksoup& work) {
     return dropped;
 }
 
+using Pairs = std::vector<std::pair<Index, Index>>;
+constexpr std::size_t pair_limit = 1'000'000;
+
+/// Vertices of the pairs' surroundings, in sets of what hangs together; -1 elsewhere and on the border, which stays.
+struct Folds {
+    std::vector<Index> set;    ///< of each vertex
+    std::vector<Index> moved;  ///< vertices with a set
+    std::vector<std::vector<Index>> neighbours;
+};
+
+Folds find_folds(const TriangleSoup& soup, const Pairs& pairs, int rings) {
+    const auto chosen = neighbourhood(soup, pairs, rings);
+    DisjointSets sets(soup.points.size());
+    for (const auto& [a, b] : pairs) sets.unite(soup.triangles[a][0], soup.triangles[b][0]);
+    std::vector<std::uint8_t> inside(soup.points.size(), 0);
+    for (std::size_t t = 0; t < chosen.size(); ++t) {
+        if (chosen[t] == 0) continue;
+        for (const Index v : soup.triangles[t]) {
+            inside[v] = 1;
+            sets.unite(soup.triangles[t][0], v);
+        }
+    }
+    const std::vector<Index> opposite = pair_manifold(soup);
+    for (Index h = 0; h < opposite.size(); ++h)
+        if (opposite[h] == no_index) inside[origin(soup, h)] = inside[target(soup, h)] = 0;
+    Folds folds{std::vector<Index>(soup.points.size(), no_index), {}, {}};
+    std::vector<Index> number(soup.points.size(), no_index);
+    for (Index v = 0; v < inside.size(); ++v) {
+        if (inside[v] == 0) continue;
+        folds.set[v] = sets.find(v);
+        number[v] = static_cast<Index>(folds.moved.size());
+        folds.moved.push_back(v);
+    }
+    folds.neighbours.resize(folds.moved.size());
+    for (Index h = 0; h < opposite.size(); ++h)
+        if (const Index n = number[origin(soup, h)]; n != no_index) folds.neighbours[n].push_back(target(soup, h));
+    return folds;
+}
+
+/// Each vertex of the folds goes to the mean of its neighbours, a few times.
+void smooth(TriangleSoup& soup, const Folds& folds) {
+    constexpr int passes = 5;
+    std::vector<std::array<double, 3>> next(folds.moved.size());
+    for (int pass = 0; pass < passes; ++pass) {
+        for (std::size_t i = 0; i < next.size(); ++i) {
+            next[i] = {0, 0, 0};
+            for (const Index n : folds.neighbours[i])
+                for (std::size_t k = 0; k < 3; ++k)
+                    next[i][k] += soup.points[n][k] / static_cast<double>(folds.neighbours[i].size());
+        }
+        for (std::size_t i = 0; i < next.size(); ++i) soup.points[folds.moved[i]] = next[i];
+    }
+}
+
+/// By set, 1 where folds take a good part of a component: smoothed, it would shrink as a whole.
+std::vector<std::uint8_t> wide_folds(const TriangleSoup& soup, const Folds& folds) {
+    constexpr double wide = 0.2;
+    DisjointSets components = joined_vertices(soup);
+    std::vector<std::size_t> all(soup.points.size(), 0), folded(soup.points.size(), 0);
+    for (Index v = 0; v < all.size(); ++v) {
+        ++all[components.find(v)];
+        folded[components.find(v)] += folds.set[v] != no_index;
+    }
+    std::vector<std::uint8_t> result(soup.points.size(), 0);
+    for (const Index v : folds.moved)
+        if (const Index c = components.find(v); static_cast<double>(folded[c]) > wide * static_cast<double>(all[c]))
+            result[folds.set[v]] = 1;
+    return result;
+}
+
+/// Smooths folds away, without a change of the topology. Only where a whole fold is gone its vertices stay where they went.
+/// Returns how many vertices moved.
+std::size_t relax(Worksoup& work, Pairs& found) {
+    constexpr int max_rings = 2;
+    std::vector<std::uint8_t> moved(work.soup.points.size(), 0);
+    for (int rings = 0; rings <= max_rings && !found.empty(); ++rings) {
+        const Folds folds = find_folds(work.soup, found, rings);
+        TriangleSoup trial = work.soup;
+        smooth(trial, folds);
+        std::vector<std::uint8_t> stays_folded = wide_folds(work.soup, folds);
+        for (const auto& [a, b] : ostraka::self_intersections(trial, pair_limit).pairs)
+            for (const Index t : {a, b})
+                for (const Index v : trial.triangles[t])
+                    if (folds.set[v] != no_index) stays_folded[folds.set[v]] = 1;
+        for (const Index v : folds.moved)
+            if (stays_folded[folds.set[v]] != 0) trial.points[v] = work.soup.points[v];
+        auto left = ostraka::self_intersections(trial, pair_limit).pairs;
+        if (left.size() >= found.size()) continue;
+        for (const Index v : folds.moved)
+            if (stays_folded[folds.set[v]] == 0) moved[v] = 1;
+        work.soup.points = std::move(trial.points);
+        found = std::move(left);
+    }
+    return static_cast<std::size_t>(std::count(moved.begin(), moved.end(), 1));
+}
+
+/// What cutting out can change unasked.
+struct Topology {
+    std::size_t components = 0, border = 0;
+    long long euler = 0;
+};
+
+Topology topology(const TriangleSoup& soup) {
+    Topology result;
+    DisjointSets sets = joined_vertices(soup);
+    std::vector<std::uint8_t> used(soup.points.size(), 0);
+    for (const auto& t : soup.triangles)
+        for (const Index v : t) used[v] = 1;
+    for (Index v = 0; v < used.size(); ++v) {
+        result.components += used[v] != 0 && sets.find(v) == v;
+        result.euler += used[v];
+    }
+    const SoupEdges edges = group_edges(soup);
+    for (std::size_t e = 0; e < edges.count(); ++e) result.border += edges.valence(e) == 1;
+    result.euler += static_cast<long long>(soup.triangles.size()) - static_cast<long long>(edges.count());
+    return result;
+}
+
 struct Attempt {
     Worksoup work;
     std::size_t removed = 0;
@@ -105,35 +217,54 @@ Attempt cut_out(const Worksoup& work, const std::vector<std::pair<Index, Index>>
 
 }  // namespace
 
-Counts remove_self_intersections(Worksoup& work, std::vector<std::string>& notes) {
-    constexpr std::size_t limit = 1'000'000;
-    auto found = ostraka::self_intersections(work.soup, limit);
-    const std::size_t before = found.pairs.size();
-    std::size_t walls = 0, removed = 0;
-    if (before > 0 && (walls = drop_walls(work)) > 0) found = ostraka::self_intersections(work.soup, limit);
-    std::size_t border = work.soup.triangles.empty() ? 0 : count_border(work.soup);
-    // More rings only where fewer did not help; what did not help is forgotten.
-    for (int rings = 0, tries = 0; rings < 6 && tries < 12 && !found.pairs.empty(); ++tries) {
-        Attempt attempt = cut_out(work, found.pairs, rings);
+namespace {
+
+/// Cuts with 0 to 5 rings, more only where fewer did not help; an attempt counts if fewer pairs are left and the border has not
+/// grown, and with `same_topology` if components and Euler number are what they were. Returns how many triangles went.
+std::size_t cut_and_close(Worksoup& work, Pairs& found, bool same_topology, std::vector<std::string>& notes) {
+    constexpr int max_rings = 6, max_tries = 12;
+    std::size_t removed = 0;
+    Topology before = topology(work.soup);
+    for (int rings = 0, tries = 0; rings < max_rings && tries < max_tries && !found.empty(); ++tries) {
+        Attempt attempt = cut_out(work, found, rings);
         if (attempt.too_much) {
-            notes.emplace_back("self-intersections: cutting them out would take more than a fifth of the surface (use --wrap)");
+            if (!same_topology)
+                notes.emplace_back(
+                    "self-intersections: cutting them out would take more than a fifth of the surface (use --wrap)");
             break;
         }
-        auto left = ostraka::self_intersections(attempt.work.soup, limit);
-        const std::size_t border_left = count_border(attempt.work.soup);
-        if (left.pairs.size() >= found.pairs.size() || border_left > border) {
+        auto left = ostraka::self_intersections(attempt.work.soup, pair_limit);
+        const Topology after = topology(attempt.work.soup);
+        const bool changed = after.components != before.components || after.euler != before.euler;
+        if (left.pairs.size() >= found.size() || after.border > before.border || (same_topology && changed)) {
             ++rings;
             continue;
         }
         work = std::move(attempt.work);
-        found = std::move(left);
-        border = border_left;
+        found = std::move(left.pairs);
+        before = after;
         removed += attempt.removed;
     }
+    return removed;
+}
+
+}  // namespace
+
+Counts remove_self_intersections(Worksoup& work, std::vector<std::string>& notes) {
+    Pairs found = ostraka::self_intersections(work.soup, pair_limit).pairs;
+    const std::size_t before = found.size();
+    std::size_t walls = 0;
+    if (before > 0 && (walls = drop_walls(work)) > 0) found = ostraka::self_intersections(work.soup, pair_limit).pairs;
+    // The least destructive way first, unless there are more pairs than triangles: then there are no single folds.
+    const bool local = found.size() < work.soup.triangles.size();
+    const std::size_t moved = local ? relax(work, found) : 0;
+    std::size_t removed = local ? cut_and_close(work, found, true, notes) : 0;
+    removed += cut_and_close(work, found, false, notes);
     return {{"pairs found", before},
             {"walls between solids dropped", walls},
+            {"vertices moved to smooth folds", moved},
             {"triangles cut out", removed},
-            {"pairs left", found.pairs.size()}};
+            {"pairs left", found.size()}};
 }
 
 }  // namespace ostraka::detail

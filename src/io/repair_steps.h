@@ -34,7 +34,16 @@ using Counts = std::vector<std::pair<std::string, std::size_t>>;
 /// Opposite of each halfedge of a manifold soup, no_index on the border.
 std::vector<Index> pair_manifold(const TriangleSoup& soup);
 
-Counts merge_points(Worksoup& work, double distance);
+struct MergeDistances {
+    double distance;  ///< in the mesh's unit
+    double gap;       ///< share of the shortest edge at a point that cracks are narrower than
+};
+/// `crack`: how wide cracks along the edges are, 0 where there are none.
+Counts merge_points(Worksoup& work, const MergeDistances& limits, double& crack);
+/// How wide cracks are where nine in ten vertices of the border have a mate nearer than half of their shortest edge; else 0.
+double crack_width(const TriangleSoup& soup);
+/// Border vertices that lie on a side of a triangle beyond, to the tolerance, are inserted there (T-junctions).
+Counts sew_junctions(Worksoup& work, double tolerance);
 Counts drop_bad_triangles(Worksoup& work);
 Counts orient_patches(Worksoup& work);
 /// Joins triangles at edges, two by two, and gives each fan of triangles a vertex of its own.

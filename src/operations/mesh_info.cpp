@@ -37,7 +37,7 @@ struct MeshInfo final : Operation {
         p.input("input", Kind::mesh, input, "mesh to read: .ply, .obj, .off, .stl");
         options.describe(p.options);
         declare_diagnosis(p.report);
-        p.report.values(integer("polygons"), integer("degenerate_polygons"), texts("holds"));
+        p.report.values(integer("polygons"), integer("degenerate_polygons"), texts("holds"), number("crack_width"));
     }
 
     void run(Context& context, Report& report) override {
@@ -66,7 +66,20 @@ struct MeshInfo final : Operation {
                                        {"polygons with fewer than three corners", std::to_string(degenerate)}});
         rows.insert(rows.end() - 1, {"holds", extras.empty() ? "nothing but the geometry" : joined(extras)});
         for (const auto& [what, value] : rows) report.people(what, value);
+        if (diagnosis.border_edges > 0) note_cracks(triangles.soup, diagnosis, report);
         if (!sound) report.answer_no();
+    }
+
+    /// Says how far points that belong together are apart, and what joins them: the copies of a point lie farther from each other
+    /// than each from the nearest.
+    void note_cracks(const TriangleSoup& soup, const MeshDiagnosis& diagnosis, Report& report) const {
+        const double width = crack_width(soup);
+        if (!(width > 0)) return;
+        const double joining = std::max(width, std::min(2 * width, 0.3 * diagnosis.mean_edge));
+        report("crack_width", width);
+        report.note("the surface has cracks along its edges: most points of its border have another one within " +
+                    number(width, 2) + " (join them: ostraka mesh repair " + input.file() + " OUTPUT --merge-distance " +
+                    digits(joining / diagnosis.diagonal, 2) + ")");
     }
 
     MeshInput input;

@@ -2,7 +2,10 @@
 #include "diagnosis.h"
 #include "operations.h"
 
+#include "ostraka/core/file.h"
 #include "ostraka/io/repair.h"
+
+#include <algorithm>
 
 namespace ostraka {
 
@@ -18,26 +21,28 @@ struct MeshRepair final : Operation {
                         "JSON file to write: old triangle to new triangle, -1 for dropped");
         p.output_option("report", Kind::report, written, "JSON file to write: the report of --json");
         options.describe(p.options);
-        p.report.values(boolean("sound"), text("maps"), any("after"));
+        p.report.values(boolean("sound"), text("maps"), any("before"), any("after"));
         p.report.table("steps", text("step"), any("counts"));
         p.report.people_table("", {"step", "what", "count"});
     }
 
     void run(Context& context, Report& report) override {
         const TriangulatedSoup read = triangulate(input.take_polygons());
-        const RepairResult repaired = in_file(input.file(), [&] { return repair(read.soup, read.extras, options); });
+        RepairResult repaired = in_file(input.file(), [&] { return repair(read.soup, read.extras, options); });
+        if (extension(output.file()) == ".stl") prepare_for_stl(repaired);
         context.notes("", read.notes);
         report.notes(repaired.notes);
         const bool sound = repaired.after.defects().empty();
         if (!sound) report.answer_no();
         report("sound", sound)("maps", repaired.maps_by_distance ? "nearest" : "exact")(
             "after", to_json(repaired.after, report.allocator()));
+        if (repaired.before) report("before", to_json(*repaired.before, report.allocator()));
         report.empty_table("steps");
         for (const RepairStep& step : repaired.steps) report_result(report, step);
-        report.line("after");
-        for (const auto& [what, value] : rows_of(repaired.after))
-            for (const char* shown : {"vertices", "triangles", "components", "border loops", "area", "volume", "verdict"})
-                if (what == shown) report.people(what, value);
+        const std::vector<std::string> shown{"vertices", "triangles", "components", "genus", "border loops", "area", "volume"};
+        if (repaired.before) show(report, "before intersections were removed", *repaired.before, shown);
+        show(report, "after", repaired.after, shown);
+        report.people("verdict", rows_of(repaired.after).back().second);
 
         output.write(repaired.mesh, repaired.extras);
         const auto map = [&](const char* kind, const std::vector<Index>& to, std::size_t count) {
@@ -48,6 +53,12 @@ struct MeshRepair final : Operation {
         if (!written) return;
         report.set_provenance(context.provenance());
         written.write(report.to_json());
+    }
+
+    static void show(Report& report, const char* title, const MeshDiagnosis& diagnosis, const std::vector<std::string>& shown) {
+        report.line(title);
+        for (const auto& [what, value] : rows_of(diagnosis))
+            if (std::find(shown.begin(), shown.end(), what) != shown.end()) report.people(what, value);
     }
 
     static void report_result(Report& report, const RepairStep& step) {

@@ -213,8 +213,8 @@ TEST(Ply, RefusalsNameLineOrByte) {
 
 TEST(Off, HeaderInItsForms) {
     const std::string body = "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
-    for (const std::string header :
-         {"OFF\n3 1 0\n", "OFF 3 1 0\n", "# c\n\nOFF # c\n# c\n3 1\n", "3 1 3\n", "OFF\r\n3 1 0\r\n"}) {
+    for (const std::string header : {"OFF\n3 1 0\n", "OFF 3 1 0\n", "# c\n\nOFF # c\n# c\n3 1\n", "3 1 3\n", "OFF\r\n3 1 0\r\n",
+                                     "OFF3 1 0\n", "off 3 1\n", "OFF3 # c\n# c\n\n1 0 # c\n"}) {
         const auto soup = read("a.off", header + body);
         EXPECT_EQ(soup.points, (Points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})) << header;
         EXPECT_EQ(soup.corners, (Corners{0, 1, 2})) << header;
@@ -235,6 +235,30 @@ TEST(Off, ColoursNormalsAndTexture) {
     const auto undeclared = read("a.off", "OFF\n3 2 0\n0 0 0 1 2 3\n1 0 0 4 5 6\n0 1 0 7 8 9\n3 0 1 2\n3 0 2 1 5\n");
     EXPECT_EQ(undeclared.extras.vertex_colours[2], (Colour{7, 8, 9, 255}));
     EXPECT_TRUE(has_note(undeclared.notes, "palette"));
+}
+
+TEST(Off, KeywordAndCountsOnOneLine) {
+    for (const std::string header : {"COFF 3 1 0\n", "COFF3 1 0\n", "COFF # c\n 3 1 # c\n# c\n"})
+        EXPECT_EQ(read("a.off", header + "0 0 0 255 0 0\n# c\n1 0 0 0 255 0\n0 1 0 7 8 9\n3 0 1 2\n").extras.vertex_colours,
+                  (std::vector<Colour>{{255, 0, 0, 255}, {0, 255, 0, 255}, {7, 8, 9, 255}}))
+            << header;
+    for (const std::string header : {"NOFF 3 1 0\n", "NOFF3 1 0\n", "# c\nNOFF\n# c\n3 1 0\n"})
+        EXPECT_EQ(read("a.off", header + "0 0 0 0 0 1\n1 0 0 0 0 1 # c\n0 1 0 0 0 1\n3 0 1 2\n").points,
+                  (Points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}))
+            << header;
+    EXPECT_TRUE(has(refusal("a.off", "OFFset 1\n"), "OFFset"));
+}
+
+TEST(Text, InUtf16NamesTheCommandThatConverts) {
+    const std::string text = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    std::string little, big;
+    for (const char c : text) little += {c, '\0'}, big += {'\0', c};
+    for (const std::string& bytes : {"\xFF\xFE" + little, "\xFE\xFF" + big, little, big})
+        for (const char* file : {"a.off", "a.obj", "a.ply", "a.stl"}) {
+            const std::string message = refusal(file, bytes);
+            EXPECT_TRUE(has(message, "UTF-16: convert to UTF-8")) << message;
+            EXPECT_TRUE(has(message, "iconv -f UTF-16")) << message;
+        }
 }
 
 TEST(Off, RefusalsNameTheLine) {

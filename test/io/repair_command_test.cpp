@@ -87,6 +87,46 @@ TEST(MeshInfoCommand, TellsSoundFromBroken) {
     EXPECT_EQ(run(folder, "mesh info").code, 2);
 }
 
+TEST(MeshInfoCommand, CracksNameAMergeDistanceThatFits) {
+    const Folder folder;
+    // Every triangle on corners of its own, each off its place by up to a thousandth of the radius.
+    const TriangleSoup whole = sphere();
+    TriangleSoup torn;
+    std::uint32_t state = 1;
+    const auto jitter = [&state] {
+        state = state * 1664525U + 1013904223U;
+        return 1e-3 * (static_cast<double>(state >> 8) / (1U << 23) - 1);
+    };
+    for (const auto& triangle : whole.triangles) {
+        std::array<Index, 3> corners{};
+        for (std::size_t k = 0; k < 3; ++k) {
+            corners[k] = static_cast<Index>(torn.points.size());
+            Place place = whole.points[triangle[k]];
+            for (double& x : place) x += jitter();
+            torn.points.push_back(place);
+        }
+        torn.triangles.push_back(corners);
+    }
+    write_off(folder.file("torn.off"), torn);
+    const Outcome info = run(folder, "mesh info --skip-self-intersections " + folder.file("torn.off"));
+    EXPECT_EQ(info.code, 3);
+    const std::size_t at = info.err.find("--merge-distance ");
+    ASSERT_NE(at, std::string::npos) << info.err;
+    const std::string share = info.err.substr(at + 17, info.err.find(')', at) - at - 17);
+    EXPECT_GT(std::stod(share), 1e-3 / std::sqrt(12.0));
+    EXPECT_LT(std::stod(share), 0.02);
+    const Outcome repaired = run(folder, "mesh repair --json " + folder.file("torn.off") + " " + folder.file("whole.ply") +
+                                             " --merge-gap 0 --merge-distance " + share);
+    const Json report = parse_json(repaired.out, "stdout");
+    EXPECT_TRUE(report["result"]["after"]["closed"].GetBool()) << repaired.err;
+    EXPECT_EQ(report["result"]["after"]["component_count"].GetInt(), 1);
+    // Holes are no cracks.
+    TriangleSoup open = whole;
+    open.triangles.resize(open.triangles.size() - 30);
+    write_off(folder.file("open.off"), open);
+    EXPECT_EQ(run(folder, "mesh info " + folder.file("open.off")).err.find("--merge-distance"), std::string::npos);
+}
+
 TEST(MeshInfoCommand, ReportDoesNotDependOnThreads) {
     const Folder folder;
     write_off(folder.file("s.off"), both(sphere(40, 80), sphere(40, 80, 1, {0.4, 0.1, 0})));
@@ -125,6 +165,31 @@ TEST(MeshRepairCommand, WritesMeshMapsAndReport) {
     EXPECT_EQ(run(folder, "mesh repair " + folder.file("in.off") + " " + folder.file("out.xyz")).code, 2);
     EXPECT_EQ(run(folder, "mesh repair " + folder.file("in.off") + " " + folder.file("o.ply") + " --merge-distance 7").code, 2);
     EXPECT_FALSE(std::filesystem::exists(folder.file("o.ply")));
+}
+
+TEST(MeshRepairCommand, TheVerdictOnStlIsThatOfTheWrittenFile) {
+    const Folder folder;
+    for (const Place& at : {Place{1, 1, 0}, Place{1, 1, 1}}) {  // cubes that share an edge, and a vertex
+        write_off(folder.file("in.off"), welded(both(cube(), cube(at))));
+        const Outcome done = run(folder, "mesh repair " + folder.file("in.off") + " " + folder.file("out.stl"));
+        EXPECT_EQ(done.code, 0) << done.err << done.out;
+        EXPECT_NE(done.err.find("moved apart"), std::string::npos) << done.err;
+        const Outcome again = run(folder, "mesh info --json " + folder.file("out.stl"));
+        EXPECT_EQ(again.code, 0) << again.out;
+    }
+}
+
+TEST(MeshRepairCommand, BeforeAndAfterIntersectionsAreShown) {
+    const Folder folder;
+    write_off(folder.file("in.off"), both(sphere(16, 32), sphere(16, 32, 0.8, {0.9, 0, 0})));
+    const std::string files = folder.file("in.off") + " " + folder.file("out.ply") + " --remove-self-intersections";
+    const Json report = parse_json(run(folder, "mesh repair --json " + files).out, "stdout");
+    validate(report, "report", "stdout");
+    EXPECT_EQ(report["result"]["before"]["component_count"].GetInt(), 2);
+    EXPECT_GT(report["result"]["before"]["size"]["volume"].GetDouble(), 6);
+    const Outcome shown = run(folder, "mesh repair " + files);
+    EXPECT_NE(shown.out.find("before intersections were removed"), std::string::npos) << shown.out;
+    EXPECT_NE(shown.err.find("volume changed by"), std::string::npos) << shown.err;
 }
 
 TEST(MeshRepairCommand, RefusalLeavesTheOutputAlone) {

@@ -116,9 +116,18 @@ TEST(Repair, TriangleSoupIsJoined) {
     std::uniform_real_distribution<double> noise(-1e-6, 1e-6);
     for (auto& p : loose.points)
         for (auto& x : p) x += noise(random);
-    EXPECT_FALSE(repair(loose, {}, no_filling()).after.closed());
-    RepairOptions near;
-    near.merge_distance = 1e-5;
+    auto exact = no_filling();
+    exact.merge_gap = 0;
+    const auto cracked = repair(loose, {}, exact);
+    EXPECT_FALSE(cracked.after.closed());
+    EXPECT_TRUE(repair(loose).after.defects().empty()) << "cracks are far narrower than edges";
+    // What it says helps.
+    const std::string remedy = "--merge-distance ";
+    const std::string& note = cracked.notes.front();
+    ASSERT_NE(note.find(remedy), std::string::npos) << note;
+    RepairOptions near = exact;
+    near.merge_distance = std::stod(note.substr(note.find(remedy) + remedy.size()));
+    EXPECT_LT(near.merge_distance, 1e-5);
     const auto joined = repair(loose, {}, near);
     EXPECT_TRUE(joined.after.defects().empty()) << joined.after.defects().front();
     EXPECT_EQ(joined.mesh.number_of_vertices(), sphere().points.size());
@@ -161,6 +170,79 @@ TEST(Repair, DuplicatesAreDroppedAndMapToTheOneKept) {
     EXPECT_EQ(r.face_map[12], r.face_map[3]);
     EXPECT_EQ(r.face_map[13], r.face_map[4]);
     check_maps(s, r);
+}
+
+TEST(Repair, OppositeDuplicatesOfAClosedSurfaceGo) {
+    for (const int every : {40, 7, 5}) {  // alone, side by side at corners and at edges
+        auto s = sphere(20, 40);
+        const auto whole = s;
+        for (std::size_t t = 0; t < whole.triangles.size(); t += static_cast<std::size_t>(every)) {
+            s.triangles.push_back(whole.triangles[t]);
+            flip(s, s.triangles.size() - 1);
+            if (every == 5) {  // and the next one, which shares an edge
+                s.triangles.push_back(whole.triangles[t + 1 < whole.triangles.size() ? t + 1 : 0]);
+                flip(s, s.triangles.size() - 1);
+            }
+        }
+        if (every == 7) flip(s, 0), flip(s, 700);
+        const auto r = repair(s);
+        EXPECT_TRUE(r.after.defects().empty()) << every << " " << r.after.defects().front();
+        EXPECT_EQ(r.after.components.size(), 1u) << every;
+        EXPECT_EQ(r.mesh.number_of_faces(), whole.triangles.size()) << every;
+        EXPECT_NEAR(r.after.volume, diagnose(whole).volume, 1e-12);
+        check_maps(s, r);
+    }
+}
+
+TEST(Repair, VerticesOnASideAreInsertedThere) {
+    for (const double scale : {1e-9, 1.0, 1e9}) {
+        auto s = moved(sphere(20, 40), scale, {0, 0, 0});
+        const auto whole = diagnose(s);
+        const auto split = [&](std::size_t t, std::size_t k, double at) {
+            const auto corners = s.triangles[t];
+            const Index a = corners[k], b = corners[(k + 1) % 3], c = corners[(k + 2) % 3],
+                        m = static_cast<Index>(s.points.size());
+            Place place{};
+            for (std::size_t i = 0; i < 3; ++i) place[i] = (1 - at) * s.points[a][i] + at * s.points[b][i];
+            s.points.push_back(place);
+            s.triangles[t] = {a, m, c};
+            s.triangles.push_back({m, b, c});
+        };
+        for (std::size_t t = 100; t < 1000; t += 37) split(t, t % 3, 0.3);
+        // Both sides of one edge, at different places: triangles 200 and 201 share it.
+        const auto shared = s.triangles[201];
+        split(200, 2, 0.4);
+        for (std::size_t k = 0; k < 3; ++k)
+            if (shared == s.triangles[201]) split(201, k, 0.35);
+        const auto before = diagnose(s);
+        ASSERT_GT(before.border_edges, 50u);
+        const auto r = repair(s);
+        EXPECT_TRUE(r.after.defects().empty()) << scale << r.after.defects().front();
+        EXPECT_EQ(r.mesh.number_of_vertices(), s.points.size()) << "no point is lost or merged";
+        EXPECT_NEAR(r.after.volume / whole.volume, 1, 1e-12);
+        EXPECT_GT(counted(r, "T-junctions", "vertices inserted into sides beside them"), 20u);
+    }
+}
+
+TEST(Repair, VerdictOnStlIsThatOfTheFile) {
+    auto r = repair(welded(both(cube(), cube({1, 1, 0}))));
+    ASSERT_TRUE(r.after.defects().empty());
+    prepare_for_stl(r);
+    EXPECT_TRUE(r.after.manifold() && r.after.closed());
+    EXPECT_EQ(r.after.components.size(), 2u);
+    EXPECT_NEAR(r.after.volume, 2, 1e-4);
+    EXPECT_NE(r.notes.back().find("moved apart"), std::string::npos);
+    // Single precision is taken into account: far from the origin vertices fall together, and that is seen.
+    auto far = repair(moved(sphere(), 1e-6, {100, 100, 100}));
+    ASSERT_TRUE(far.after.defects().empty());
+    prepare_for_stl(far);
+    EXPECT_FALSE(far.after.defects().empty());
+    // Where nothing falls together nothing moves.
+    auto sound = repair(cube());
+    prepare_for_stl(sound);
+    EXPECT_TRUE(sound.after.defects().empty());
+    EXPECT_EQ(to_soup(sound.mesh).points, cube().points);
+    EXPECT_TRUE(sound.notes.empty());
 }
 
 TEST(Repair, SheetWrittenOnceForEachSideBecomesOneSheet) {
@@ -319,7 +401,40 @@ TEST(Repair, SelfIntersectionsAreCutOut) {
     const auto r = repair(s, {}, options);
     EXPECT_EQ(r.after.self_intersections, 0u) << "of " << before.self_intersections;
     EXPECT_TRUE(r.after.defects().empty());
-    check_maps(s, r);
+    // The least destructive way: spikes are smoothed, nothing is cut out.
+    EXPECT_EQ(counted(r, "self-intersections", "triangles cut out"), 0u);
+    EXPECT_EQ(r.mesh.number_of_vertices(), s.points.size());
+    ASSERT_TRUE(r.before);
+    EXPECT_EQ(r.before->components.size(), r.after.components.size());
+    std::size_t same = 0;
+    for (Index v = 0; v < s.points.size(); ++v) {
+        EXPECT_EQ(r.vertex_map[v], v);
+        same += place(r.mesh, v) == s.points[v];
+    }
+    EXPECT_EQ(same + counted(r, "self-intersections", "vertices moved to smooth folds"), s.points.size());
+}
+
+TEST(Repair, SmallBodiesAreNotSmoothedAway) {
+    const auto s = both(cube(), cube({0.5, 0.3, 0.2}));
+    RepairOptions options;
+    options.remove_self_intersections = true;
+    EXPECT_GT(repair(s, {}, options).after.area, 0.5 * diagnose(s).area);
+}
+
+TEST(Repair, WhatRemovingIntersectionsCostsIsSaid) {
+    RepairOptions options;
+    options.remove_self_intersections = true;
+    const auto r = repair(both(sphere(16, 32), sphere(16, 32, 0.8, {0.9, 0, 0})), {}, options);
+    ASSERT_TRUE(r.before);
+    const auto said = [&](const std::string& what) {
+        return std::any_of(r.notes.begin(), r.notes.end(),
+                           [&](const auto& note) { return note.find(what) != std::string::npos; });
+    };
+    EXPECT_EQ(said("the number of components changed"), r.before->components.size() != r.after.components.size());
+    EXPECT_EQ(said("the area changed"), std::abs(r.after.area - r.before->area) > 0.01 * r.before->area);
+    EXPECT_GT(std::abs(r.after.volume - r.before->volume) / r.before->volume, 0.01) << "or this test tells nothing";
+    EXPECT_TRUE(said("the volume changed"));
+    EXPECT_EQ(r.after.isolated_vertices, 0u);
 }
 
 TEST(Repair, WrapEnclosesTheSoupAndMapsByDistance) {

@@ -91,6 +91,10 @@ struct MeshDiagnosis {
 /// not finite or beyond 1e100.
 MeshDiagnosis diagnose(const TriangleSoup& soup, const DiagnoseOptions& options = {});
 
+/// The distance within which most points of the border have another one, and half as much again, where that is far less than the
+/// edges there are long: a surface that is torn along its edges. Else 0. O(n log n).
+double crack_width(const TriangleSoup& soup);
+
 struct SelfIntersections {
     std::vector<std::pair<Index, Index>> pairs;  ///< lower triangle first, sorted
     bool complete = true;                        ///< false: the search was given up
