@@ -295,15 +295,22 @@ bool is_extent(const Mesh& mesh, const Annotation& annotation, const Measure& me
     return std::abs(evaluate(mesh, annotation, measure) - extent) <= 1e-9 * extent;
 }
 
-void move_extents(const Mesh& before, const Mesh& after, AnnotationSet& set) {
-    for (Annotation& annotation : set.annotations)
+void move_extents(const Mesh& before, const AnnotationSet& from, const Mesh& after, AnnotationSet& to) {
+    for (Annotation& annotation : to.annotations) {
+        const Annotation* source = from.find(annotation.id);
+        if (source == nullptr || touched_vertices(after, annotation).empty()) continue;
         for (Attribute& attribute : annotation.attributes) {
+            const auto same = [&](const Attribute& one) { return one.id == attribute.id && one.type == AttributeType::measure; };
+            const auto was = std::find_if(source->attributes.begin(), source->attributes.end(), same);
+            if (attribute.type != AttributeType::measure || was == source->attributes.end() ||
+                !is_extent(before, *source, was->measure))
+                continue;
             Measure& measure = attribute.measure;
-            if (attribute.type != AttributeType::measure || !is_extent(before, annotation, measure)) continue;
             const auto pins = extremes(after, annotation, *measure.direction);
             measure.points.assign(pins.begin(), pins.end());
             measure.locations.clear();
         }
+    }
 }
 
 Attribute& add_measure(Annotation& annotation, const std::string& name, Measure measure) {

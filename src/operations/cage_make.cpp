@@ -20,7 +20,10 @@ struct CageMake final : Operation {
         p.options("levels", levels,
                   "numbers of vertices with commas: nested cages, each around the finer one, written as output-NUMBER",
                   Range{4, 1000000});
-        p.options("mirror", mirror, "a mirror-symmetric cage: auto, or a point and a normal as six numbers with commas");
+        p.options("mirror", mirror, "a mirror-symmetric cage about this plane; auto: about that of the object",
+                  Words{{"auto"}, "a point and a normal as six numbers with commas", [](const std::string& text) {
+                            if (text != "auto") static_cast<void>(plane_of(text));
+                        }});
         p.options("detail", details, "annotation=factor: so many times the vertices there, instead; may be given several times");
         p.report.table("cages", text("file", "cage"), integer("vertices", "vertices"), integer("faces", "faces"),
                        boolean("reached"), integer("genus", "genus"), number("clearance", "clearance", "length"),
@@ -45,6 +48,12 @@ struct CageMake final : Operation {
         CageDensity density;
         if (annotations) density = annotation_density(object, set, factors(set));
         report.set_unit(set.unit);
+        const auto border =
+            std::count_if(object.halfedges().begin(), object.halfedges().end(), [&](Halfedge h) { return object.is_border(h); });
+        if (border > 0)
+            report.note("the mesh is open (" + std::to_string(border) +
+                        " border edges): the cage goes around both sides of its surface, in through openings that are wider than "
+                        "--alpha; close it with 'mesh repair' where it stands for a solid");
         const auto sizes = wanted();
         const auto plane = mirror_of(object, set, report);
         auto results = in_file(mesh.file(), [&] { return make_nested_cages(object, sizes, options, density, plane); });
@@ -111,14 +120,16 @@ struct CageMake final : Operation {
         return list;
     }
 
+    static MirrorPlane plane_of(const std::string& text) {
+        const auto n = numbers_of<double>(text, "--mirror");
+        if (n.size() != 6)
+            fail_usage("--mirror is '" + printable(text, 60) + "'", "give auto, or six numbers: a point and a normal");
+        return {Point(n[0], n[1], n[2]), Vector(n[3], n[4], n[5])};
+    }
+
     [[nodiscard]] std::optional<MirrorPlane> mirror_of(const Mesh& object, const AnnotationSet& set, Report& report) const {
         if (mirror.empty()) return {};
-        if (mirror != "auto") {
-            const auto n = numbers_of<double>(mirror, "--mirror");
-            if (n.size() != 6)
-                fail_usage("--mirror is '" + printable(mirror, 60) + "'", "give auto, or six numbers: a point and a normal");
-            return MirrorPlane{Point(n[0], n[1], n[2]), Vector(n[3], n[4], n[5])};
-        }
+        if (mirror != "auto") return plane_of(mirror);
         const MirrorPlane plane = find_mirror_plane(object, set, mesh.file());
         const auto three = [](const auto& p) { return number(p.x()) + "," + number(p.y()) + "," + number(p.z()); };
         report.note("mirror plane through " + three(plane.point) + " with normal " + three(plane.normal));

@@ -1,6 +1,7 @@
 // cage weights, cage influence
 #include "operations.h"
 
+#include "ostraka/cage/cage.h"
 #include "ostraka/coords/influence.h"
 #include "ostraka/render/colour_scale.h"
 
@@ -27,7 +28,8 @@ struct CageCoordinates final : Operation {
         p.options("kind", kind, "mean-value, or green (strictly inside; without constraints only)", Choices(coordinate_kinds()));
         options.describe(p.options);
         p.report.values(text("kind", "coordinates"), integer("points", "points"), integer("cageVertices", "cage vertices"),
-                        integer("cageFaces", "cage faces"), any("certificate"), boolean("holds", "verdict"));
+                        integer("cageFaces", "cage faces"), any("certificate"), number("amplification"), integer("outside"),
+                        integer("crossed"), integer("cageIntersections"), texts("objections"), boolean("holds", "verdict"));
         p.report.people_table("", {"property", "value", "meaning"});
     }
 
@@ -40,11 +42,12 @@ struct CageCoordinates final : Operation {
             report.note(kind +
                         " coordinates serve deformation without constraints only: the constrained solve through the cage "
                         "leaves out their normal term");
-        report_result(report, certificate);
+        report_result(report, certificate, check_cage(around, subject), coordinates);
         output.write(std::move(coordinates), subject, around, certificate);
     }
 
-    static void report_result(Report& report, const CoordinateCertificate& c) {
+    static void report_result(Report& report, const CoordinateCertificate& c, const CageCheck& cage,
+                              const Coordinates& coordinates) {
         report("kind", c.kind)("points", c.points)("cageVertices", c.vertices)("cageFaces", c.faces)(
             "certificate", to_json(c, report.allocator()));
         const auto row = [&](const char* property, const std::string& value, const char* meaning) {
@@ -65,9 +68,15 @@ struct CageCoordinates final : Operation {
         row("negative sum", number(c.negative_sum), "largest of a point");
         row("locality", number(c.carriers_mean, 4) + " mean, " + std::to_string(c.carriers_max) + " most",
             "weights that carry 95 % at a point");
-        report("holds", c.holds(),
-               c.holds() ? "fit for deformation" : "not fit for deformation: partition or linear precision fails");
-        if (!c.holds()) report.answer_no();
+        row("amplification", number(amplification(coordinates), 3), "a point moves at most so many times as far as the cage");
+        report("amplification", amplification(coordinates))("outside", cage.outside.size())("crossed", cage.crossing.size())(
+            "cageIntersections", cage.intersections.size());
+        std::vector<std::string> objections = unfit_for_deformation(cage, coordinates);
+        if (!c.holds()) objections.emplace_back("partition of unity or linear precision fails");
+        report("objections", objections);
+        report("holds", objections.empty(),
+               objections.empty() ? "fit for deformation" : "not fit for deformation: " + joined(objections, "; "));
+        if (!objections.empty()) report.answer_no();
     }
 
     MeshInput mesh, cage;

@@ -21,12 +21,15 @@ struct Deform final : Operation {
         p.order({"mesh", "annotations", "edit", "output"});
         p.order({"mesh", "annotations", "output"});
         p.order({"mesh", "edit", "output"});
+        p.order({"mesh", "output"});
         p.order({"template", "edit", "output"});
         p.order({"template", "output"});
         p.input_option("graph", Kind::graph, graph,
                        "relationships (.graph.json): those that are constraints are kept; instead of the template's");
         p.input_option("cage", Kind::cage, cage, "cage whose vertices are the handles; without it, the mesh's own are");
         p.input_option("weights", Kind::coordinates, weights, "weights of 'cage weights' (.npy)");
+        p.input_option("deformed-cage", Kind::cage, deformed_cage,
+                       "the cage in another shape, a mesh with the same vertices: the first step of the edit moves them there");
         p.output_option("annotations-out", Kind::annotations, annotations_out,
                         "annotations of the deformed mesh, measures taken anew");
         p.output_option("cage-out", Kind::cage, cage_out, "the cage after the deformation");
@@ -55,7 +58,7 @@ struct Deform final : Operation {
         if (package ? mesh || annotations : !mesh)
             fail_usage("what to deform is not clear", "give a mesh and its annotations, or a template");
         const bool named = words.is_edit() || !words.keep.empty() || !words.level.empty();
-        if (!edit && !named && !graph && !package)
+        if (!edit && !named && !graph && !package && !deformed_cage)
             fail_usage("nothing is to be done", "give an edit (.edit.json), or say it: --stretch back=1.2 --level legs");
         if (!package && !annotations && (named || graph || annotations_out))
             fail_usage("parts are named, and there are no annotations", "give the mesh's annotations (.ant.json)");
@@ -78,15 +81,15 @@ struct Deform final : Operation {
             take_measures(words, subject.object->mesh, own_set);
             subject.set = &own_set;
         }
-        const Json steps = all_steps(*subject.set);
+        if (cage) {
+            subject.around = &*cage;
+            subject.coordinates = &weights.of(subject.object->mesh, cage->mesh);
+        }
+        const Json steps = all_steps(subject);
         if (states) {
             std::vector<Path> files;
             for (std::size_t i = 0; i < steps["steps"].Size(); ++i) files.emplace_back(output.part_file(step(i)));
             context.check_outputs(files);
-        }
-        if (cage) {
-            subject.around = &*cage;
-            subject.coordinates = &weights.of(subject.object->mesh, cage->mesh);
         }
         if (graph) subject.relations = &graph.on(*subject.set);
         if (cage_out && subject.coordinates == nullptr) fail_without_cage();
@@ -105,7 +108,7 @@ struct Deform final : Operation {
         if (cage_out) cage_out.write(with_points(*space.cage, result.cage), subject.around->extras);
         if (annotations_out) {
             AnnotationSet set = space.set;
-            move_extents(space.mesh, shaped, set);
+            move_extents(space.mesh, space.set, shaped, set);
             report.notes(refresh_measures(shaped, set).notes);
             annotations_out.write(std::move(set), shaped, output.file());
         }
@@ -138,15 +141,44 @@ struct Deform final : Operation {
         fail_usage("--cage-out without a cage", "add --cage and --weights, or a cage and its coordinates to the template");
     }
 
-    /// Those of the edit, and then those that were said in words.
-    [[nodiscard]] Json all_steps(const AnnotationSet& set) const {
-        Json steps = edit_of(words, set);
-        if (!edit) return steps;
+    /// That to the deformed cage, those of the edit, and then those that were said in words.
+    [[nodiscard]] Json all_steps(const Subject& subject) const {
+        Json said = edit_of(words, *subject.set);
+        if (!edit && !deformed_cage) return said;
         Json all;
-        all.CopyFrom(*edit, all.GetAllocator());
-        for (const JsonValue& one : steps["steps"].GetArray())
-            all["steps"].PushBack(JsonValue(one, all.GetAllocator()), all.GetAllocator());
+        all.CopyFrom(edit ? *edit : said, all.GetAllocator());
+        JsonValue steps(rapidjson::kArrayType);
+        if (deformed_cage) steps.PushBack(step_to_cage(subject, all.GetAllocator()), all.GetAllocator());
+        if (edit)
+            for (JsonValue& one : all["steps"].GetArray()) steps.PushBack(one, all.GetAllocator());
+        for (const JsonValue& one : said["steps"].GetArray())
+            steps.PushBack(JsonValue(one, all.GetAllocator()), all.GetAllocator());
+        all["steps"] = steps;
         return all;
+    }
+
+    /// Moves the vertices of the cage that are elsewhere in the deformed one.
+    [[nodiscard]] JsonValue step_to_cage(const Subject& subject, JsonAllocator& allocator) const {
+        if (subject.around == nullptr)
+            fail_usage("--deformed-cage without a cage",
+                       "add --cage and --weights, or a cage and its coordinates to the template");
+        const Mesh &from = subject.around->mesh, &to = deformed_cage->mesh;
+        if (from.number_of_vertices() != to.number_of_vertices())
+            fail_input(deformed_cage.file(),
+                       "has " + std::to_string(to.number_of_vertices()) + " vertices, the cage " +
+                           std::to_string(from.number_of_vertices()),
+                       "give the cage itself in another shape");
+        const double moved = 1e-9 * box_diagonal(from);
+        std::vector<Index> vertices;
+        JsonValue places(rapidjson::kArrayType);
+        for (const Vertex v : from.vertices()) {
+            const Point& p = to.point(v);
+            if (CGAL::squared_distance(from.point(v), p) <= moved * moved) continue;
+            vertices.push_back(v);
+            places.PushBack(json_value(std::array{p.x(), p.y(), p.z()}, allocator), allocator);
+        }
+        if (vertices.empty()) fail_input(deformed_cage.file(), "has the shape of the cage", "move some of its vertices");
+        return json_object(allocator, "select", json_object(allocator, "cageVertices", vertices), "moveTo", std::move(places));
     }
 
     Subject of_template(Context& context) {
@@ -274,7 +306,7 @@ struct Deform final : Operation {
     }
 
     TemplateInput package;
-    MeshInput mesh, cage;
+    MeshInput mesh, cage, deformed_cage;
     AnnotationsInput annotations;
     JsonInput edit;
     GraphInput graph;

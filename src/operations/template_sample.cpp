@@ -41,6 +41,7 @@ struct TemplateSample final : Operation {
         for (std::size_t i = 0; i < names.size(); ++i) {
             const Mesh mesh = with_points(of_class.mesh, result.samples[i].points);
             AnnotationSet set = of_class.set;
+            move_extents(of_class.mesh, of_class.set, mesh, set);
             static_cast<void>(refresh_measures(mesh, set));
             output.write(names[i] + ".ply", mesh);
             output.write(names[i] + ".ant.json", set, mesh, names[i] + ".ply");

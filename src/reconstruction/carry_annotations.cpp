@@ -1,4 +1,5 @@
 #include "ostraka/geom/with_points.h"
+#include "ostraka/measure/measure.h"
 #include "ostraka/reconstruction/reconstruct.h"
 #include "ostraka/transfer/transfer.h"
 
@@ -8,7 +9,12 @@ AnnotationSet carry_annotations(const Mesh& mesh, const AnnotationSet& set, cons
     TransferOptions options;
     options.overlap = false;
     options.force = true;  // the template stands where the object is: it was fitted to it
-    return transfer(with_points(mesh, result.points), set, SurfaceSearch(result.object.mesh), options).annotations;
+    const Mesh fitted = with_points(mesh, result.points);
+    AnnotationSet there = set;
+    move_extents(mesh, set, fitted, there);
+    AnnotationSet carried = transfer(fitted, there, SurfaceSearch(result.object.mesh), options).annotations;
+    move_extents(fitted, there, result.object.mesh, carried);
+    return carried;
 }
 
 }  // namespace ostraka

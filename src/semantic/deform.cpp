@@ -3,6 +3,7 @@
 #include "statement.h"
 #include "verdict.h"
 
+#include "ostraka/cage/cage.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/text.h"
 #include "ostraka/core/words.h"
@@ -95,6 +96,9 @@ public:
         if (crossings > before)
             result.objections.push_back(counted(crossings, "pair") + " of faces cross, " + std::to_string(before) + " at rest");
         if (folds > 0) result.objections.push_back(counted(folds, "edge") + (folds == 1 ? " is" : " are") + " folded over");
+        if (space_.cage != nullptr)
+            for (const std::string& reason : unfit_for_deformation(check_cage(*space_.cage, space_.mesh), *space_.coordinates))
+                result.objections.push_back("the cage is not fit for deformation: " + reason);
         result.acceptable = result.objections.empty();
         return result;
     }

@@ -34,6 +34,7 @@ Propagated propagate(const ClassTemplate& known, const WholeObject& member, cons
     }
     const Mesh fitted = with_points(known.mesh, result.fit.points);
     result.on_template = copy_of(known.set);
+    move_extents(known.mesh, known.set, fitted, result.on_template);
     for (std::string& note : refresh_measures(fitted, result.on_template).notes) result.notes.push_back(std::move(note));
     if (result.fit.placed_by == "correspondence") {
         result.on_member = copy_of(result.on_template);
@@ -46,6 +47,7 @@ Propagated propagate(const ClassTemplate& known, const WholeObject& member, cons
                                    (score.note.empty() ? "" : ": " + score.note));
     result.on_member = std::move(carried.annotations);
     result.lost = known.set.annotations.size() - std::min(known.set.annotations.size(), result.on_member->annotations.size());
+    move_extents(fitted, result.on_template, member.mesh, *result.on_member);
     static_cast<void>(refresh_measures(member.mesh, *result.on_member));
     return result;
 }

@@ -4,6 +4,7 @@
 #include "ostraka/operations/table.h"
 #include "scratch.h"
 
+#include <CGAL/boost/graph/Euler_operations.h>
 #include <gtest/gtest.h>
 
 using namespace ostraka;
@@ -104,6 +105,51 @@ TEST(DeformCommand, KeepsWhatIsAsked) {
             .code,
         1);
     EXPECT_EQ(run_command(base + folder.at("d.ply")).code, 0);
+}
+
+TEST(DeformCommand, ADeformedCageIsAnEdit) {
+    const Caged folder;
+    Mesh cage = read_mesh(folder.at("cage.ply")).mesh;
+    for (const Vertex v : cage.vertices()) cage.point(v) = cage.point(v) + Vector(3, -2, 1);
+    write_mesh(folder.at("there.obj"), cage);
+    const std::string base = "deform " + pot + folder.at("there.ply") + folder.handles() + " --deformed-cage ";
+    const auto moved = run_command(base + folder.at("there.obj"));
+    ASSERT_EQ(moved.code, 0) << moved.err << moved.out;
+    const Mesh was = read_mesh(data + "teapot.ply").mesh, is = read_mesh(folder.at("there.ply")).mesh;
+    for (const Vertex v : was.vertices())
+        EXPECT_LT(CGAL::squared_distance(was.point(v) + Vector(3, -2, 1), is.point(v)), 1e-16) << v;
+    EXPECT_NE(run_command(base + folder.at("cage.ply")).err.find("has the shape of the cage"), std::string::npos);
+    EXPECT_NE(run_command(base + data + "teapot.ply").err.find("the cage 80"), std::string::npos);
+    EXPECT_EQ(run_command("deform " + pot + folder.at("x.ply") + " --deformed-cage " + folder.at("there.obj")).code, 2);
+}
+
+TEST(DeformCommand, AnUnsoundCageIsCalledOne) {
+    const Caged folder;
+    // One vertex of the cage is drawn through the object: faces cross, and vertices of the mesh are outside.
+    Mesh cage = read_mesh(folder.at("cage.ply")).mesh;
+    const Mesh mesh = read_mesh(data + "teapot.ply").mesh;
+    const CGAL::Bbox_3 box = bounding_box(mesh);
+    const Point middle((box.xmin() + box.xmax()) / 2, (box.ymin() + box.ymax()) / 2, (box.zmin() + box.zmax()) / 2);
+    cage.point(Vertex(7)) = cage.point(Vertex(7)) + 1.5 * (middle - cage.point(Vertex(7)));
+    write_mesh(folder.at("bad.ply"), cage);
+    const auto weights = run_command("cage weights " + pot + folder.at("bad.ply") + " " + folder.at("bad.npy") + " --json");
+    EXPECT_EQ(weights.code, 3) << weights.err;
+    const Json report = parse_json(weights.out, "report");
+    validate(report, "report", "report");
+    EXPECT_FALSE(report["result"]["holds"].GetBool());
+    EXPECT_GT(report["result"]["outside"].GetInt(), 0);
+    EXPECT_GT(report["result"]["cageIntersections"].GetInt(), 0);
+    const auto bent = run_command("deform " + pot + parts + folder.at("lift.edit.json") + " " + folder.at("o.ply") + " --cage " +
+                                  folder.at("bad.ply") + " --weights " + folder.at("bad.npy"));
+    EXPECT_EQ(bent.code, 3) << bent.out;
+    EXPECT_NE(bent.out.find("the cage is not fit for deformation"), std::string::npos) << bent.out;
+    // An object with a hole may stand for a solid: it is told what the cage goes around.
+    Mesh open = mesh;
+    CGAL::Euler::remove_face(open.halfedge(Face(0)), open);
+    open.collect_garbage();
+    write_mesh(folder.at("open.ply"), open);
+    EXPECT_NE(run_command("cage make " + folder.at("open.ply") + " " + folder.at("oc.ply")).err.find("3 border edges"),
+              std::string::npos);
 }
 
 TEST(DeformCommand, EveryDocumentedConstraintCanBeStated) {

@@ -2,12 +2,15 @@
 // doc/cages.md).
 #pragma once
 
+#include "ostraka/coords/coordinates.h"
 #include "ostraka/core/finding.h"
 #include "ostraka/core/mesh.h"
 #include "ostraka/core/options.h"
 
 #include <functional>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace ostraka {
 
@@ -78,5 +81,14 @@ CageCheck check_cage(const Mesh& cage, const Mesh& mesh);
 
 /// The check in words: what is wrong, where, and what to do about it; lengths in `unit` ("" if unknown).
 std::vector<Finding> findings(const CageCheck& check, const std::string& unit);
+
+/// Largest sum of the absolute values of a point's weights: how many times as far as the cage's vertices it may move.
+double amplification(const Coordinates& coordinates);
+/// What is still fit for deformation: in cages that enclose their object it is below 1.5.
+inline constexpr double max_amplification = 3;
+
+/// Why a mesh should not be deformed through the cage by these coordinates, in words: the cage is not sound (`CageCheck::valid`)
+/// or the weights are large (`max_amplification`). Empty where nothing speaks against it.
+std::vector<std::string> unfit_for_deformation(const CageCheck& check, const Coordinates& coordinates);
 
 }  // namespace ostraka

@@ -48,8 +48,9 @@ std::array<Index, 2> extremes(const Mesh& mesh, const Annotation& annotation, co
 /// vertices are (to 1e-9 of that).
 bool is_extent(const Mesh& mesh, const Annotation& annotation, const Measure& measure);
 
-/// Bounding measures that are extents on `before` get the pins of the extents on `after`, the same mesh with other points.
-void move_extents(const Mesh& before, const Mesh& after, AnnotationSet& set);
+/// Bounding measures that are extents on `before` get the pins of the extents on `after`: the same mesh with other points and a
+/// copy of its annotations, or another mesh to which these were carried. Annotations and attributes by their ids.
+void move_extents(const Mesh& before, const AnnotationSet& from, const Mesh& after, AnnotationSet& to);
 
 /// Adds it as an attribute of this name, under a free id.
 Attribute& add_measure(Annotation& annotation, const std::string& name, Measure measure);

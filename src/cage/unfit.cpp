@@ -1,0 +1,38 @@
+#include "ostraka/cage/cage.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/core/text.h"
+#include "ostraka/core/words.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ostraka {
+
+double amplification(const Coordinates& coordinates) {
+    std::vector<double> sums(static_cast<std::size_t>(coordinates.vertex.rows()), 0);
+    parallel_for(sums.size(),
+                 [&](std::size_t i) { sums[i] = coordinates.vertex.row(static_cast<Eigen::Index>(i)).cwiseAbs().sum(); });
+    return sums.empty() ? 0 : *std::max_element(sums.begin(), sums.end());
+}
+
+std::vector<std::string> unfit_for_deformation(const CageCheck& check, const Coordinates& coordinates) {
+    if (check.components == 0) return {"the cage has no faces"};
+    std::vector<std::string> reasons;
+    if (!check.closed) reasons.emplace_back("the cage has a border");
+    if (check.flat) reasons.emplace_back("the cage has no face with an area");
+    if (check.closed && !check.flat && !check.outward) reasons.emplace_back("the cage is inside out");
+    if (!check.outside.empty())
+        reasons.push_back(std::to_string(check.outside.size()) +
+                          (check.outside.size() == 1 ? " vertex of the mesh is" : " vertices of the mesh are") +
+                          " not inside the cage");
+    if (!check.crossing.empty()) reasons.push_back("the cage crosses " + counted(check.crossing.size(), "face") + " of the mesh");
+    if (!check.intersections.empty())
+        reasons.push_back(counted(check.intersections.size(), "pair") + " of faces of the cage cross");
+    if (check.degenerate > 0) reasons.push_back(counted(check.degenerate, "face") + " of the cage without area");
+    if (const double factor = amplification(coordinates); factor > max_amplification)
+        reasons.push_back("a vertex of the mesh moves up to " + digits(factor, 3) + " times as far as the cage (weights from " +
+                          digits(coordinates.vertex.minCoeff(), 3) + " to " + digits(coordinates.vertex.maxCoeff(), 3) + ")");
+    return reasons;
+}
+
+}  // namespace ostraka
