@@ -29,7 +29,7 @@ struct RelationOperation : AnnotatedMeshOperation {
 
     [[nodiscard]] RelationGraph read_relations() const {
         RelationGraph relations;
-        if (graph) relations.relationships = graph.on(set()).relationships;
+        if (graph.exists()) relations.relationships = graph.on(set()).relationships;
         return relations;
     }
 
@@ -85,13 +85,15 @@ struct RelationExtract final : RelationOperation {
         describe_inputs(p);
         describe_output(p);
         p.input_option("graph", Kind::graph, graph, "graph whose stated relationships are kept");
-        p.options("type", types, "type to look for, once for each; all without it").words();
+        Words told;
+        for (const RelationType& type : relation_types())
+            if (type.geometric) told.names.push_back(type.name);
+        told.check = [](const std::string& name) { static_cast<void>(geometric_types({name})); };
+        p.options("type", types, "type to look for, once for each; all without it", std::move(told)).words();
         tolerances.describe(p.options);
         p.report.table("tree", integer("annotation"), text("tag"), integer("depth"), integer("parent"));
         describe_relationships(p.report);
     }
-
-    void check() const override { static_cast<void>(geometric_types(types)); }
 
     void run(Context&, Report& report) override {
         types = geometric_types(types);
@@ -128,10 +130,18 @@ struct RelationExtract final : RelationOperation {
 struct RelationAdd final : RelationOperation {
     void describe(Parameters& p) override {
         describe_inputs(p);
-        describe_output(p);
-        p.input_option("graph", Kind::graph, graph, "graph it is added to; without it a new one begins");
-        p.options("type", type, "type, e.g. adjacency, \"mirror symmetry\", proportion").required();
-        p.options("annotation", members, "id or tag of a member, once for each; the first is the subject").words().required();
+        p.input_option("graph", Kind::graph, graph, "graph it is added to; begun where the file is not there yet");
+        p.output("output", Kind::graph, output, "graph to write (.graph.json); without it the one of --graph")
+            .optional()
+            .updates(graph);
+        Words known{{}, "a type of your own with --own-type"};
+        for (const RelationType& one : relation_types()) known.names.push_back(one.name);
+        p.options("type", type, "what the relationship is", std::move(known));
+        p.options("annotation", members, "id or tag of a member, once for each; the first is the subject").words();
+        p.options("relation", several,
+                  "TYPE: A, B, ...: type and members in one, once for each of several relationships, which the other options are "
+                  "for; in place of --type and --annotation")
+            .words();
         p.options("own-type", own_type, "the type is one of your own");
         p.options("directed", directed, "the first annotation is the subject");
         p.options("constraint", is_constraint, "the relationship is a constraint on deformations");
@@ -146,28 +156,87 @@ struct RelationAdd final : RelationOperation {
     }
 
     void check() const override {
-        if (find_relation_type(type) == nullptr && !own_type)
-            fail_usage("'" + type + "' is not a known type of relationship",
-                       "did you mean '" + nearest_relation_type(type) + "'? --own-type adds a type of your own");
-        if (own_name() == "equal attributes" && attribute.empty())
-            fail_usage("nothing says which attribute is equal", "add --attribute NAME");
-        for (const std::string& text : tolerances) static_cast<void>(tolerance_of(text));
+        if (!output && !graph) fail_usage("nothing says where the graph goes", "give a file to write, or --graph");
+        if (graph && !graph.exists() && output.file() != graph.file())
+            fail_input(graph.file(), "cannot be opened for reading", "check the name; without an output it is begun");
+        if (!several.empty() && (!type.empty() || !members.empty()))
+            fail_usage("--relation with --type or --annotation", "say all in one way: --relation 'TYPE: A, B', once for each");
+        if (several.empty() && type.empty())
+            fail_usage("nothing says what the relationship is", "add --type, or --relation 'TYPE: A, B'");
+        if (several.empty() && members.empty())
+            fail_usage("nothing says between which annotations", "add --annotation, once for each member");
+        for (const Stated& one : stated()) {
+            if (find_relation_type(one.type) == nullptr && !own_type)
+                fail_usage("'" + printable(one.type, 60) + "' is not a known type of relationship",
+                           "did you mean '" + nearest_relation_type(one.type) + "'? --own-type adds a type of your own");
+            if (own_name(one.type) == "equal attributes" && attribute.empty())
+                fail_usage("nothing says which attribute is equal", "add --attribute NAME");
+            for (const std::string& text : tolerances) static_cast<void>(tolerance_of(text, own_name(one.type)));
+        }
     }
 
     void run(Context&, Report& report) override {
         RelationGraph relations = read_relations();
+        std::vector<Relationship> added;
+        for (const Stated& one : stated()) added.push_back(add(one, relations, report));
+        output.write(std::move(relations), set());
+        for (const Relationship& relationship : added) {
+            if (!relationship.is_constraint) continue;
+            try {
+                check_constraint(mesh->mesh, set(), relationship, output.file());
+            } catch (const Error& error) {
+                report.note(std::string("'deform' will refuse this as it is: ") + error.what());
+            }
+        }
+        report_result(report, added);
+    }
+
+    struct Stated {
+        std::string type;
+        std::vector<std::string> members;
+    };
+
+    /// What the command line states: one relationship, or several in the form "TYPE: A, B".
+    [[nodiscard]] std::vector<Stated> stated() const {
+        if (several.empty()) return {{type, members}};
+        const auto trimmed = [](std::string_view text) {
+            const std::size_t first = text.find_first_not_of(' ');
+            return first == std::string_view::npos ? std::string()
+                                                   : std::string(text.substr(first, text.find_last_not_of(' ') - first + 1));
+        };
+        std::vector<Stated> list;
+        for (const std::string& text : several) {
+            const std::size_t colon = text.find(':');
+            Stated one{trimmed(std::string_view(text).substr(0, colon)), {}};
+            for (std::size_t at = colon; at != std::string::npos;) {
+                const std::size_t comma = text.find(',', at + 1);
+                one.members.push_back(
+                    trimmed(std::string_view(text).substr(at + 1, comma == std::string::npos ? comma : comma - at - 1)));
+                at = comma;
+            }
+            const bool gap = std::any_of(one.members.begin(), one.members.end(), [](const auto& name) { return name.empty(); });
+            if (one.type.empty() || one.members.empty() || gap)
+                fail_usage("'" + printable(text, 60) + "' is not a relationship",
+                           "write --relation 'TYPE: A, B', with ids or tags");
+            list.push_back(std::move(one));
+        }
+        return list;
+    }
+
+    Relationship add(const Stated& one, RelationGraph& relations, Report& report) const {
         Relationship relationship;
-        const RelationType* known = find_relation_type(type);
-        type = relationship.type = own_name();
+        const RelationType* known = find_relation_type(one.type);
+        relationship.type = own_name(one.type);
         relationship.directed = directed || (known != nullptr && known->directed);
-        for (const auto& name : members) relationship.annotations.push_back(find_annotation(set(), name, annotations.file()).id);
+        for (const auto& name : one.members)
+            relationship.annotations.push_back(find_annotation(set(), name, annotations.file()).id);
         relationship.is_constraint = is_constraint || !parameters.empty() || (known != nullptr && !known->geometric);
         relationship.weight = weight;
         relationship.constraint = parameters;
         relationship.origin = "stated";
         relationship.parameters.attribute = attribute;
         for (const std::string& text : tolerances) {
-            const Tolerance tolerance = tolerance_of(text);
+            const Tolerance tolerance = tolerance_of(text, relationship.type);
             const double share = tolerance.of_diagonal ? box_diagonal(mesh->mesh) / 100 : 1;
             relationship.parameters.deviations.push_back({tolerance.quantity,
                                                           {},
@@ -189,15 +258,7 @@ struct RelationAdd final : RelationOperation {
         } else {
             relations.relationships.push_back(relationship);
         }
-        output.write(std::move(relations), set());
-        if (relationship.is_constraint) {
-            try {
-                check_constraint(mesh->mesh, set(), relationship, output.file());
-            } catch (const Error& error) {
-                report.note(std::string("'deform' will refuse this as it is: ") + error.what());
-            }
-        }
-        report_result(report, std::vector{relationship});
+        return relationship;
     }
 
     struct Tolerance {
@@ -206,12 +267,12 @@ struct RelationAdd final : RelationOperation {
         bool of_diagonal, is_length, is_angle;
     };
 
-    [[nodiscard]] std::string own_name() const {
+    static std::string own_name(const std::string& type) {
         const RelationType* known = find_relation_type(type);
         return known == nullptr ? type : known->name;
     }
 
-    [[nodiscard]] Tolerance tolerance_of(const std::string& text) const {
+    static Tolerance tolerance_of(const std::string& text, const std::string& type) {
         const std::size_t sign = text.find('=');
         double value = 0;
         const bool percent = text.ends_with('%');
@@ -222,9 +283,9 @@ struct RelationAdd final : RelationOperation {
             fail_usage("'" + printable(text, 60) + "' is not a tolerance", "write QUANTITY=NUMBER, e.g. angle=5 or distance=1%");
         if (value < 0) fail_usage("the tolerance '" + printable(text, 60) + "' is negative", "use 0 or more");
         const std::string quantity = text.substr(0, sign);
-        const auto measured = measured_quantities(own_name());
+        const auto measured = measured_quantities(type);
         if (std::find(measured.begin(), measured.end(), quantity) == measured.end())
-            fail_usage("'" + own_name() + "' does not measure '" + quantity + "'",
+            fail_usage("'" + type + "' does not measure '" + quantity + "'",
                        measured.empty() ? "leave the tolerance out" : "it measures " + joined(measured));
         const bool length = quantity == "distance" || quantity == "height", angle = quantity == "angle" || quantity == "tilt";
         if (percent && angle) fail_usage("'" + text + "' is not a tolerance", "give an angle in degrees, without '%'");
@@ -232,7 +293,7 @@ struct RelationAdd final : RelationOperation {
     }
 
     std::string type, parameters, attribute;
-    std::vector<std::string> members, tolerances;
+    std::vector<std::string> members, several, tolerances;
     double weight = 1;
     bool directed = false, is_constraint = false, own_type = false;
 };

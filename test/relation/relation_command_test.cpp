@@ -71,6 +71,36 @@ TEST(RelationCommand, ExtractAddCheckExport) {
     EXPECT_NE(read_file(scratch / "c.dot").find("label=\"glazed before\""), std::string::npos);
 }
 
+TEST(RelationCommand, SeveralAtOnceOntoTheGraphItself) {
+    const Scratch scratch;
+    const std::string graph = (scratch / "g.graph.json").string();
+    const auto added =
+        run_command("relation add " + pot + "--graph " + graph +
+                    " --relation 'same level: flower 1, 8 ,flower 3' --relation 'co-axiality: lid, body' --constraint");
+    ASSERT_EQ(added.code, 0) << added.err;
+    Json made = read_json(graph);
+    ASSERT_EQ(made["relationships"].Size(), 2U);
+    EXPECT_EQ(to_text(made["relationships"][0]["annotations"]), "[7, 8, 9]\n");
+    EXPECT_STREQ(made["relationships"][1]["type"].GetString(), "co-axiality");
+    EXPECT_TRUE(made["relationships"][1]["isConstraint"].GetBool());
+    ASSERT_EQ(run_command("relation add " + pot + "--graph " + graph + " --relation 'adjacency: lid, body'").code, 0);
+    EXPECT_EQ(read_json(graph)["relationships"].Size(), 3U);
+    const std::string before = read_file(graph);
+    const auto refused = [&](const std::string& options, int code, const std::string& text) {
+        const auto result = run_command("relation add " + pot + options);
+        EXPECT_EQ(result.code, code) << options;
+        EXPECT_NE(result.err.find(text), std::string::npos) << result.err;
+        EXPECT_EQ(read_file(graph), before);
+    };
+    refused("--graph " + graph + " --relation 'adjacency lid, body'", 2, "is not a relationship");
+    refused("--graph " + graph + " --relation 'adjacency: lid,, body'", 2, "is not a relationship");
+    refused("--graph " + graph + " --relation 'adjacensy: lid, body'", 2, "did you mean 'adjacency'?");
+    refused("--graph " + graph + " --relation 'adjacency: lid, body' --type adjacency", 2, "in one way");
+    refused("--graph " + graph, 2, "what the relationship is");
+    refused("--relation 'adjacency: lid, body'", 2, "where the graph goes");
+    refused(graph + ".new --graph " + graph + ".absent --relation 'adjacency: lid, body'", 1, "cannot be opened");
+}
+
 TEST(RelationCommand, BadInput) {
     const Scratch scratch;
     const std::string out = (scratch / "o.graph.json").string(), add = "relation add " + pot + out;
