@@ -119,10 +119,28 @@ void set_file(Call& call, const std::string& name, const std::string& file) {
     call.set_file(name, file);
 }
 
+bool is_group(const std::string& path) {
+    const auto groups = operation_groups();
+    return std::any_of(groups.begin(), groups.end(), [&](const OperationGroup& one) { return one.name == path; });
+}
+
+/// "help" in front of the words of a command, or behind those of a group, is --help behind them.
+std::vector<std::string> with_help_as_flag(std::vector<std::string> words) {
+    if (!words.empty() && words.front() == "help") {
+        words.erase(words.begin());
+        words.emplace_back("--help");
+    } else if (words.size() > 1 && words.back() == "help" && is_group(joined(std::vector(words.begin(), words.end() - 1), " "))) {
+        words.back() = "--help";
+    }
+    return words;
+}
+
 /// The operation whose words begin the arguments; null where they name a group or nothing. Throws where they name neither.
-const OperationEntry* named_operation(int argc, char** argv) {
+const OperationEntry* named_operation(const std::vector<std::string>& arguments) {
     std::vector<std::string> given;
-    for (int i = 1; i < argc && argv[i][0] != '-'; ++i) given.emplace_back(argv[i]);
+    for (const std::string& word : arguments)
+        if (word.starts_with("-")) break;
+        else given.push_back(word);
     const OperationEntry* best = nullptr;
     std::size_t maximum = 0, agreeing = 0;
     std::vector<std::string> next;  // words that may follow those that agree
@@ -146,9 +164,11 @@ const OperationEntry* named_operation(int argc, char** argv) {
 }
 
 std::string type_of(const Option& option) {
-    static constexpr const char* names[]{"", "INT", "FLOAT", "TEXT", "TEXT", "TEXT", "FLOATS", "INTS"};
-    std::string text = names[static_cast<std::size_t>(option.type())];
-    if (const auto* choices = std::get_if<Choices>(&option.rule)) text = "{" + joined(choices->names, ",") + "}";
+    static constexpr const char* types[]{"", "INT", "FLOAT", "TEXT", "TEXT", "TEXT", "FLOATS", "INTS"};
+    std::string text = types[static_cast<std::size_t>(option.type())];
+    if (const auto names = option.names(); !names.empty()) text = "{" + joined(names, ",") + "}";
+    if (const auto* words = std::get_if<Words>(&option.rule); words != nullptr && !words->others.empty())
+        text += " or " + words->others;
     if (const auto* range = std::get_if<Range>(&option.rule))
         text += " in [" + digits(range->min, 6) + ", " + digits(range->max, 6) + "]";
     return text;
@@ -261,7 +281,8 @@ void take_positionals(Call& call, const std::vector<std::string>& words) {
     if (order == orders.end()) {
         std::vector<std::string> ways;
         for (const auto& one : orders) ways.push_back(shown_order(call, one));
-        throw Error(ErrorKind::usage, call.entry().name, std::to_string(words.size()) + " arguments are given",
+        throw Error(ErrorKind::usage, call.entry().name,
+                    counted(words.size(), "argument") + (words.size() == 1 ? " is" : " are") + " given",
                     "give " + joined(ways, ", or "));
     }
     std::size_t at = 0;
@@ -273,6 +294,32 @@ void take_positionals(Call& call, const std::vector<std::string>& words) {
         else call.option((*order)[i]).set(mine);
         at += take;
     }
+}
+
+/// Says what the first thing is that is needed and was not given, and how it is given.
+void refuse_missing(const Call& call) {
+    const Parameters& parameters = call.parameters();
+    const auto refuse = [&](const std::string& name, const std::string& what, const char* value) {
+        const bool is_flag = !parameters.in_some_order(name);
+        throw Error(ErrorKind::usage, call.entry().name, (is_flag ? "--" : "") + name + " is missing",
+                    "give " + what + ": " + (is_flag ? "--" + name + " " + value : usage_of(call, parameters.orders.front())));
+    };
+    for (const Slot* slot : parameters.slots())
+        if (slot->needed && slot->sources.empty()) refuse(slot->name, slot->help, "FILE");
+    for (const Option& option : parameters.options)
+        if (option.needed && !option.given) refuse(option.name, option.help, "VALUE");
+}
+
+/// A file that belongs behind a flag is said to.
+[[noreturn]] void refuse_extra(const Call& call, const std::string& word) {
+    std::string remedy = "'ostraka " + std::string(call.entry().name) + " --help' shows what it takes";
+    for (const Slot* slot : call.parameters().slots()) {
+        const auto endings = endings_of(slot->kind);
+        if (!slot->is_positional && slot->role == Role::input && (slot->sources.empty() || slot->repeated) &&
+            std::any_of(endings.begin(), endings.end(), [&](const auto& ending) { return word.ends_with(ending); }))
+            remedy = "give it as --" + slot->name + " " + printable(word, 60);
+    }
+    throw Error(ErrorKind::usage, call.entry().name, "'" + printable(word, 60) + "' is one argument too many", remedy);
 }
 
 /// Flags of all commands.
@@ -364,7 +411,8 @@ int run_command_line(int argc, char** argv) {
     bool by_count = false;
     std::unique_ptr<Call> call;
     CLI::App* running = nullptr;
-    const OperationEntry* wanted = named_operation(argc, argv);
+    std::vector<std::string> given = with_help_as_flag({argv + 1, argv + argc});
+    const OperationEntry* wanted = named_operation(given);
     std::map<std::string, CLI::App*> known_groups;
     const auto group_of = [&](CLI::App& parent, const std::string& path, const std::string& word) {
         CLI::App*& group = known_groups[path];
@@ -398,7 +446,6 @@ int run_command_line(int argc, char** argv) {
         by_count = add_parameters(*command, *call, words);
         command->allow_extras();
     }
-    std::vector<std::string> given(argv + 1, argv + argc);
     if (call) {
         const auto behind = given.begin() + static_cast<long>(words_of(call->entry().name).size());
         const std::vector<std::string> checked = checked_words(*call, {behind, given.end()});
@@ -412,6 +459,7 @@ int run_command_line(int argc, char** argv) {
         std::reverse(given.begin(), given.end());  // as the parser wants them
         tool.parse(given);
     } catch (const CLI::ParseError& error) {
+        if (call && dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) refuse_missing(*call);
         if (error.get_exit_code() != 0 && call)
             throw Error(ErrorKind::usage, call->entry().name, error.what(),
                         "'ostraka " + std::string(call->entry().name) + " --help' shows what it takes");
@@ -420,13 +468,9 @@ int run_command_line(int argc, char** argv) {
         return std::cout ? done : failed;
     }
     if (running == nullptr) return wrong_usage;
-    for (const std::string& extra : running->remaining())
-        throw Error(ErrorKind::usage, call->entry().name, "'" + printable(extra, 60) + "' is one argument too many",
-                    "'ostraka " + std::string(call->entry().name) + " --help' shows what it takes");
+    for (const std::string& extra : running->remaining()) refuse_extra(*call, extra);
     if (by_count) take_positionals(*call, words);
-    for (const Slot* slot : call->parameters().slots())
-        if (slot->needed && slot->sources.empty())
-            throw Error(ErrorKind::usage, call->entry().name, slot->name + " is missing", "give " + slot->help);
+    refuse_missing(*call);
     return run_call(*call, common);
 }
 

@@ -4,6 +4,7 @@
 #include "ostraka/annotation/outline.h"
 #include "ostraka/core/flood.h"
 #include "ostraka/core/json_build.h"
+#include "ostraka/core/parallel.h"
 
 namespace ostraka {
 
@@ -51,52 +52,38 @@ JsonValue json_of(const Attribute& attribute, JsonAllocator& allocator) {
     return object;
 }
 
-/// The closed components of the mesh that a region covers wholly and that therefore have no outline in it.
-struct WholeComponents {
-    std::vector<Index> seeds;  ///< the smallest face of each
-    std::vector<Index> faces;  ///< all their faces
+/// What tells the faces of a region in a file.
+struct RegionParts {
+    std::vector<Outline> outlines;  ///< always, as the thesis's readers ask for them
+    std::vector<Index> seeds;       ///< the smallest face of each closed component covered wholly: no outline is in it
+    bool complete = true;           ///< otherwise the faces themselves must be listed
 };
-WholeComponents whole_components(const Mesh& mesh, const std::vector<Index>& faces, const std::vector<bool>& selected) {
-    WholeComponents result;
-    std::vector<bool> seen(selected.size(), false);
-    for (const Index first : faces) {
-        if (seen[first]) continue;
-        bool whole = true;
-        const std::vector<Face> part = flood_faces(mesh, Face(first), seen, [&](Halfedge h) {
-            const bool stays = !mesh.is_border(mesh.opposite(h)) && selected[mesh.face(mesh.opposite(h))];
-            whole = whole && stays;
-            return stays;
-        });
-        if (!whole) continue;
-        result.seeds.push_back(first);  // the smallest of its component, as `faces` ascends
-        result.faces.insert(result.faces.end(), part.begin(), part.end());
-    }
-    return result;
-}
-
-/// Boundaries always, as the thesis's readers ask for them; seeds for whole closed components; the faces themselves only if those
-/// two do not tell them.
-void add_region(JsonValue& object, const Annotation& annotation, const Mesh& mesh, JsonAllocator& allocator) {
+RegionParts parts_of(const Annotation& annotation, const Mesh& mesh) {
+    RegionParts parts;
+    parts.outlines = extract_outlines(mesh, annotation.faces);
+    if (annotation.all) return parts;
     const std::vector<bool> selected = face_flags(mesh, annotation.faces);
-    const std::vector<Outline> outlines = extract_outlines(mesh, annotation.faces);
-    add_members(object, allocator, "boundaries", outlines);
-    if (annotation.all) {
-        add_member(object, "all", JsonValue(true), allocator);
-        return;
+    Filling filling = fill_outlines(mesh, parts.outlines);
+    for (const Index first : annotation.faces) {
+        if (filling.selected[first]) continue;
+        parts.seeds.push_back(first);
+        flood_faces(mesh, Face(first), filling.selected);
     }
-    const WholeComponents whole = whole_components(mesh, annotation.faces, selected);
-    add_given(object, allocator, "seeds", whole.seeds);
-    Filling filling = fill_outlines(mesh, outlines);
-    for (const Index face : whole.faces) filling.selected[face] = true;
-    if (filling.conflicts > 0 || filling.selected != selected) add_members(object, allocator, "faces", annotation.faces);
+    parts.complete = filling.conflicts == 0 && filling.selected == selected;
+    return parts;
 }
 
-JsonValue json_of(const Annotation& annotation, const Mesh& mesh, JsonAllocator& allocator) {
+JsonValue json_of(const Annotation& annotation, const RegionParts& parts, JsonAllocator& allocator) {
     JsonValue object = json_object(allocator, "id", annotation.id, "tag", annotation.tag, "colour", annotation.colour, "type",
                                    to_string(annotation.type));
     if (annotation.type == AnnotationType::point) add_members(object, allocator, "points", annotation.points);
     if (annotation.type == AnnotationType::line) add_members(object, allocator, "polylines", annotation.polylines);
-    if (annotation.type == AnnotationType::region) add_region(object, annotation, mesh, allocator);
+    if (annotation.type == AnnotationType::region) {
+        add_members(object, allocator, "boundaries", parts.outlines);
+        if (annotation.all) add_member(object, "all", JsonValue(true), allocator);
+        add_given(object, allocator, "seeds", parts.seeds);
+        if (!parts.complete) add_members(object, allocator, "faces", annotation.faces);
+    }
     add_given(object, allocator, "note", annotation.note);
     add_members(object, allocator, "attributes",
                 json_list(annotation.attributes, allocator, [&](const Attribute& one) { return json_of(one, allocator); }));
@@ -116,7 +103,16 @@ Json annotations_to_json(const AnnotationSet& set, const Mesh& mesh, const std::
     add_members(document, allocator, "mesh", std::move(made_for));
     add_given(document, allocator, "unit", set.unit, "class", set.object_class);
     if (set.up) add_member(document, "up", numbers_of(*set.up, allocator), allocator);
-    JsonValue list = json_list(set.annotations, allocator, [&](const Annotation& one) { return json_of(one, mesh, allocator); });
+    std::vector<RegionParts> parts(set.annotations.size());
+    parallel_for(
+        parts.size(),
+        [&](std::size_t i) {
+            if (set.annotations[i].type == AnnotationType::region) parts[i] = parts_of(set.annotations[i], mesh);
+        },
+        1);
+    JsonValue list = json_list(set.annotations, allocator, [&](const Annotation& one) {
+        return json_of(one, parts[static_cast<std::size_t>(&one - set.annotations.data())], allocator);
+    });
     add_members(document, allocator, "annotations", std::move(list), "provenance", provenance.to_json(allocator));
     return document;
 }

@@ -1,13 +1,11 @@
 #include "ostraka/annotation/label_file.h"
 
-#include "region_order.h"
-
+#include "ostraka/annotation/colouring.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/text.h"
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 
 namespace ostraka {
 
@@ -106,9 +104,9 @@ AnnotationSet regions_from_labels(const Mesh& mesh, const std::vector<std::int32
         const auto name = names.find(label);
         annotation.id = label;
         annotation.tag = name == names.end() ? "part " + std::to_string(label) : name->second;
-        annotation.colour = distinct_colour(set.annotations.size() - 1);
         annotation.faces = std::move(list);
     }
+    colour_regions(mesh, set);
     return set;
 }
 
@@ -131,20 +129,6 @@ std::vector<std::int32_t> labels_of(const Mesh& mesh, const AnnotationSet& set) 
         if (!region->all)
             for (const Index face : region->faces) labels[face] = region->id;
     return labels;
-}
-
-std::array<int, 3> distinct_colour(std::size_t index) {
-    // Hues a golden section of the circle apart; saturation and value take turns.
-    const double turn = 0.6180339887498949 * static_cast<double>(index) + 0.02;
-    const double hue = 6 * (turn - std::floor(turn)), saturation = index % 3 == 1 ? 0.5 : 0.75,
-                 value = index % 2 == 0 ? 0.95 : 0.75;
-    const double sector = std::floor(hue), share = hue - sector;
-    const double p = value * (1 - saturation), q = value * (1 - saturation * share), t = value * (1 - saturation * (1 - share));
-    const std::array<std::array<double, 3>, 6> table{
-        {{value, t, p}, {q, value, p}, {p, value, t}, {p, q, value}, {t, p, value}, {value, p, q}}};
-    const auto& rgb = table[static_cast<std::size_t>(sector) % 6];
-    const auto byte = [](double part) { return static_cast<int>(std::lround(255 * part)); };
-    return {byte(rgb[0]), byte(rgb[1]), byte(rgb[2])};
 }
 
 }  // namespace ostraka

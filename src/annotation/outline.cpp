@@ -69,7 +69,7 @@ std::vector<Outline> extract_outlines(const Mesh& mesh, const std::vector<Index>
         selected[f] = true;
         list.emplace_back(f);
     }
-    std::sort(list.begin(), list.end());
+    if (!std::is_sorted(list.begin(), list.end())) std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());
     return outlines_of(mesh, selected, list);
 }
@@ -117,22 +117,16 @@ Filling fill_edges(const Mesh& mesh, const std::vector<Halfedge>& edges) {
         filling.selected[mesh.face(h)] = true;
         stack.push_back(mesh.face(h));
     };
-    // Most edges are far from any outline: a flag per vertex saves the look-up.
-    std::vector<bool> on_outline(mesh.number_of_vertices(), false);
+    std::vector<bool> wall(mesh.number_of_edges(), false);
     for (const auto& [edge, count] : net) {
-        on_outline[mesh.vertex(edge, 0)] = on_outline[mesh.vertex(edge, 1)] = true;
+        wall[edge] = count != 0;
         if (count != 0) take(mesh.halfedge(edge, count > 0 ? 0 : 1));
     }
-    const auto is_wall = [&](Halfedge h) {
-        if (!on_outline[mesh.source(h)] || !on_outline[mesh.target(h)]) return false;
-        const auto found = net.find(mesh.edge(h));
-        return found != net.end() && found->second != 0;
-    };
     while (!stack.empty()) {
         const Face f = stack.back();
         stack.pop_back();
         for (const Halfedge h : CGAL::halfedges_around_face(mesh.halfedge(f), mesh))
-            if (!is_wall(h)) take(mesh.opposite(h));
+            if (!wall[mesh.edge(h)]) take(mesh.opposite(h));
     }
     std::vector<Face> right;
     for (const auto& [edge, count] : net) {

@@ -163,6 +163,24 @@ EpsilonRule epsilon_rule(const std::string& word, double& value) {
 
 }  // namespace
 
+void GroupOptions::describe(OptionList& visit) {
+    visit("method", method,
+          "linkage: tree of mean distances, cut at epsilon; dbscan: steps of at most epsilon connect; embedding: the same in "
+          "the spectral embedding (thesis, 3.3.2)",
+          Choices{"linkage", "dbscan", "embedding"});
+    visit("epsilon", epsilon,
+          "distance within groups (shares of the largest distance for embedding); knn: mean distance to the nearest "
+          "neighbours; volume: evenly spread points; knee: bend of the curve of nearest distances; silhouette: groups that "
+          "stand out best; nested: these, and again within each as long as parts stand out",
+          Words{{"knn", "volume", "knee", "silhouette", "nested"}, "a number from 0 up", [](const std::string& word) {
+                    double number = 0;
+                    static_cast<void>(epsilon_rule(word, number));
+                }});
+    visit("expected-size", expected_size, "heads of one mould that are expected, for knn; 0: the square root of their number",
+          Range{0, 1e9});
+    visit("dimensions", dimensions, "eigenvectors of the embedding", Range{1, 20});
+}
+
 MouldGroups group_heads(const Eigen::MatrixXd& distances, const GroupOptions& options) {
     check_options(options, "groups");
     MouldGroups groups;

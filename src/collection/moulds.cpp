@@ -176,19 +176,4 @@ void CompareOptions::describe(OptionList& visit) {
     visit("samples", align.samples, "points on each surface that are laid onto the other", Range{10, 1e6});
 }
 
-void GroupOptions::describe(OptionList& visit) {
-    visit("method", method,
-          "linkage: tree of mean distances, cut at epsilon; dbscan: steps of at most epsilon connect; embedding: the same in "
-          "the "
-          "spectral embedding (thesis, 3.3.2)",
-          Choices{"linkage", "dbscan", "embedding"});
-    visit("epsilon", epsilon,
-          "distance within groups: a number (shares of the largest distance for embedding), knn (mean distance to the nearest "
-          "neighbours), volume (evenly spread points), knee (bend of the curve of nearest distances), silhouette (groups that "
-          "stand out best), nested (these, and again within each as long as parts stand out)");
-    visit("expected-size", expected_size, "heads of one mould that are expected, for knn; 0: the square root of their number",
-          Range{0, 1e9});
-    visit("dimensions", dimensions, "eigenvectors of the embedding", Range{1, 20});
-}
-
 }  // namespace ostraka

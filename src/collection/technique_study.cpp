@@ -4,7 +4,6 @@
 #include "ostraka/core/dense.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
-#include "ostraka/core/words.h"
 #include "ostraka/stats/random.h"
 #include "ostraka/stats/summary.h"
 
@@ -250,9 +249,6 @@ TechniqueStudy study_technique(const std::vector<TechniqueObject>& objects, cons
     const auto& classifiers = technique_classifiers();
     const auto chosen =
         std::find_if(classifiers.begin(), classifiers.end(), [&](const auto& each) { return each.name == options.answer_by; });
-    if (chosen == classifiers.end())
-        fail_usage("there is no classifier '" + options.answer_by + "'",
-                   "use one of: " + joined(classifiers, ", ", &TechniqueClassifier::name));
     std::set<std::string> labels;
     for (const auto& object : objects)
         if (!object.label.empty()) labels.insert(object.label);
@@ -293,7 +289,9 @@ TechniqueStudy study_technique(const std::vector<TechniqueObject>& objects, cons
 
 void TechniqueStudyOptions::describe(OptionList& visit) {
     visit("positive", positive, "the label that F1 is of; else the one whose bodies are rounder");
-    visit("answer-by", answer_by, "the classifier that answers for each object (see the table of classifiers)");
+    std::vector<std::string> classifiers;
+    for (const TechniqueClassifier& one : technique_classifiers()) classifiers.push_back(one.name);
+    visit("answer-by", answer_by, "the classifier that answers for each object", Choices(std::move(classifiers)));
     visit("folds", folds, "parts of the cross-validation", Range{2, 1000});
     visit("repeats", repeats, "divisions into parts", Range{1, 1000});
     visit("resamples", resamples, "resampled collections that each answer is asked of", Range{10, 100000});

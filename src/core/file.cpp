@@ -4,6 +4,7 @@
 #include "ostraka/core/text.h"
 #include "ostraka/core/transaction.h"
 #include "output_sweep.h"
+#include "temporary_file.h"
 
 #include <fcntl.h>
 #include <openssl/evp.h>
@@ -275,13 +276,12 @@ AtomicFile::AtomicFile(Path file) : file_(is_memory(file) ? std::move(file) : be
             fail_work(file_.string(), "cannot be written: " + reason(), "check its rights, or choose another name");
     }
     // Not the file's own name with an ending: that may be as long as names can be.
-    std::string pattern = (file_.parent_path() / ".ostraka-XXXXXX").string();
-    const int descriptor = ::mkstemp(pattern.data());
+    const auto [temporary, descriptor] = open_temporary(file_.parent_path());
     if (descriptor < 0) {
         const std::string why = reason();
         fail_work(file_.string(), "cannot be written: " + why, "check that its folder exists and may be written to");
     }
-    temporary_ = pattern;
+    temporary_ = temporary;
     ::fchmod(descriptor, rights);
     stream_ = ::fdopen(descriptor, "wb");
     if (stream_ == nullptr) {
@@ -315,24 +315,30 @@ void AtomicFile::commit() {
         return;
     }
     const bool direct = temporary_.empty();
+    // The temporary file stays locked until it has its name.
+    const int lock = direct ? -1 : ::fcntl(::fileno(stream_), F_DUPFD_CLOEXEC, 0);
     const bool flushed = std::fflush(stream_) == 0 && (direct || ::fsync(::fileno(stream_)) == 0);
     const std::string why = flushed ? "" : reason();
     const bool closed = std::fclose(stream_) == 0;
     stream_ = nullptr;
-    const bool waits = flushed && closed && !direct && open_transaction != nullptr;
-    if (waits) add_waiting(open_transaction->waiting_, temporary_, file_);
-    else if (!flushed || !closed || (!direct && ::rename(temporary_.c_str(), file_.c_str()) != 0)) {
-        const std::string cause = flushed ? reason() : why;
-        if (!direct) ::unlink(temporary_.c_str());
+    if (flushed && closed && !direct && open_transaction != nullptr)
+        return add_waiting(open_transaction->waiting_, keep_temporary(temporary_, lock), file_);
+    const bool failed = !flushed || !closed || (!direct && ::rename(temporary_.c_str(), file_.c_str()) != 0);
+    const std::string cause = flushed ? reason() : why;
+    if (failed && !direct) ::unlink(temporary_.c_str());
+    if (lock >= 0) ::close(lock);
+    if (failed)
         fail_work(file_.string(), "cannot be written: " + cause, "free some space; an earlier file of that name is untouched");
-    }
 }
 
 OutputTransaction::OutputTransaction() : outer_(open_transaction) { open_transaction = this; }
 
 OutputTransaction::~OutputTransaction() {
     open_transaction = outer_;
-    for (const auto& [temporary, file] : waiting_) remove_file(temporary);
+    for (const auto& [temporary, file] : waiting_) {
+        remove_file(temporary);
+        release_temporary(temporary);
+    }
     std::error_code code;  // of those that are not empty
     for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder) std::filesystem::remove(*folder, code);
 }
@@ -383,6 +389,7 @@ void OutputTransaction::commit() {
             const auto& [temporary, file] = waiting_.front();
             if (!is_memory(file)) replaced.emplace_back(file);
             rename_file(temporary, file);
+            release_temporary(temporary);
             if (!is_memory(file)) replaced.back().taken = true;
         }
     } catch (...) {

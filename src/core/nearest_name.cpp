@@ -31,13 +31,32 @@ std::size_t edit_distance(std::string_view first, std::string_view second, std::
     return std::min(last[b.size()], limit + 1);
 }
 
+namespace {
+
+/// The only one of the names that holds this text from the beginning of one of its words on; empty if none or several do.
+std::string only_one_with(const std::string& text, const std::vector<std::string>& names) {
+    std::string found;
+    for (const std::string& candidate : names) {
+        const std::string whole = lower_case(candidate);
+        std::size_t at = whole.find(text);
+        while (at != std::string::npos && at > 0 && whole[at - 1] != ' ' && whole[at - 1] != '-') at = whole.find(text, at + 1);
+        if (at == std::string::npos) continue;
+        if (!found.empty() && found != candidate) return {};
+        found = candidate;
+    }
+    return found;
+}
+
+}  // namespace
+
 std::string nearest_name(const std::string& name, const std::vector<std::string>& names) {
+    const std::string wanted = lower_case(name);
     std::string best;
     std::size_t fewest = std::max<std::size_t>(2, name.size() / 3) + 1;
     for (const std::string& candidate : names)
-        if (const std::size_t distance = edit_distance(name, candidate, fewest - 1); distance < fewest)
+        if (const std::size_t distance = edit_distance(wanted, lower_case(candidate), fewest - 1); distance < fewest)
             fewest = distance, best = candidate;
-    return best;
+    return best.empty() && name.size() > 2 ? only_one_with(wanted, names) : best;
 }
 
 }  // namespace ostraka

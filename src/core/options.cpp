@@ -1,6 +1,7 @@
 #include "ostraka/core/options.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/nearest_name.h"
 #include "ostraka/core/text.h"
 #include "ostraka/core/words.h"
 
@@ -27,7 +28,29 @@ std::string word_of(Number value) {
 }
 
 [[noreturn]] void refuse(const Option& option, const std::string& value, const std::string& where = {}) {
-    throw Error(ErrorKind::usage, where, "option " + option.name + " is '" + value + "'", "use " + option.allowed());
+    const std::string near = value.size() > 64 ? std::string() : nearest_name(value, option.names());
+    throw Error(ErrorKind::usage, where, "option " + option.name + " is '" + printable(value, 60) + "'",
+                (near.empty() ? "use " : "did you mean '" + near + "'? use ") + option.allowed());
+}
+
+/// Names what people write where a number stands: "2cm", "50%", "0,5". `given`: the word that `word` is a part of.
+[[noreturn]] void refuse_number(const Option& option, const std::string& word, const std::string& given) {
+    const OptionType type = option.type();
+    std::string amount = word.substr(0, word.find_last_of("0123456789.") + 1);
+    const std::string behind(trimmed(std::string_view(word).substr(amount.size())));
+    const std::size_t comma = amount.find(',');
+    const bool decimal = comma != std::string::npos && comma == amount.rfind(',');
+    if (decimal) amount[comma] = '.';
+    const auto value = number_of(amount);
+    if (!value || type == OptionType::integer || type == OptionType::integers || (behind.empty() && !decimal))
+        refuse(option, given);
+    const std::string unit = option.unit.empty()
+                                 ? "a length is in the unit of the mesh's coordinates, which --unit names where there is one"
+                                 : option.unit;
+    throw Error(ErrorKind::usage, "", "option " + option.name + " is '" + printable(given, 60) + "'",
+                behind.empty()  ? "write " + amount + ", with a decimal point"
+                : behind == "%" ? "write " + digits(*value / 100, 6) + ", a share, for " + amount + " %"
+                                : "write the number alone: " + amount + " (" + unit + ")");
 }
 
 /// `given`: the word that it is a part of, which an error shows.
@@ -37,7 +60,7 @@ Number parse(const Option& option, const std::string& word, const std::string& g
     const char *begin = word.data(), *const end = begin + word.size();
     if (word.size() > 1 && word[0] == '+' && word[1] != '-') ++begin;
     const auto [rest, code] = std::from_chars(begin, end, value);
-    if (word.empty() || code != std::errc() || rest != end) refuse(option, given);
+    if (word.empty() || code != std::errc() || rest != end) refuse_number(option, word, given);
     return value;
 }
 template <>
@@ -59,7 +82,7 @@ std::vector<std::string> split(const std::string& list) {
     return words;
 }
 
-const std::vector<std::string>& names_of(const Option& option) {
+const std::vector<std::string>& choices_of(const Option& option) {
     const auto* choices = std::get_if<Choices>(&option.rule);
     if (choices == nullptr) throw std::logic_error("option " + option.name + " has no choices");
     return choices->names;
@@ -98,17 +121,18 @@ bool Option::empty() const {
 }
 
 std::vector<std::string> Option::texts() const {
-    return std::visit(Overloaded{[&](const EnumValue& named) { return std::vector{names_of(*this).at(named.get(named.value))}; },
-                                 []<class T>(std::vector<T>* list) {
-                                     std::vector<std::string> words;
-                                     for (const T& one : *list) words.push_back(word_of(one));
-                                     return words;
-                                 },
-                                 []<class T>(std::optional<T>* maybe) {
-                                     return maybe->has_value() ? std::vector{word_of(**maybe)} : std::vector<std::string>();
-                                 },
-                                 [](auto* one) { return std::vector{word_of(*one)}; }},
-                      value.place);
+    return std::visit(
+        Overloaded{[&](const EnumValue& named) { return std::vector{choices_of(*this).at(named.get(named.value))}; },
+                   []<class T>(std::vector<T>* list) {
+                       std::vector<std::string> words;
+                       for (const T& one : *list) words.push_back(word_of(one));
+                       return words;
+                   },
+                   []<class T>(std::optional<T>* maybe) {
+                       return maybe->has_value() ? std::vector{word_of(**maybe)} : std::vector<std::string>();
+                   },
+                   [](auto* one) { return std::vector{word_of(*one)}; }},
+        value.place);
 }
 
 std::string Option::text() const {
@@ -134,7 +158,7 @@ void Option::set(const std::vector<std::string>& words) {
                           [&](std::vector<double>* list) { numbers(list); }, [&](std::vector<int>* list) { numbers(list); },
                           [&]<class T>(std::optional<T>* maybe) { *maybe = parse<T>(*this, words.front(), words.front()); },
                           [&](const EnumValue& named) {
-                              const auto& names = names_of(*this);
+                              const auto& names = choices_of(*this);
                               const auto found = std::find(names.begin(), names.end(), words.front());
                               if (found == names.end()) refuse(*this, words.front());
                               named.set(named.value, static_cast<std::size_t>(found - names.begin()));
@@ -176,8 +200,16 @@ void Option::set(const std::vector<double>& values) {
     set(words);
 }
 
+std::vector<std::string> Option::names() const {
+    if (const auto* choices = std::get_if<Choices>(&rule)) return choices->names;
+    if (const auto* words = std::get_if<Words>(&rule)) return words->names;
+    return {};
+}
+
 std::string Option::allowed() const {
     if (const auto* choices = std::get_if<Choices>(&rule)) return "one of: " + joined(choices->names);
+    if (const auto* words = std::get_if<Words>(&rule))
+        return joined(words->names) + (words->others.empty() ? "" : " or ") + words->others;
     const OptionType kind = type();
     const bool whole = kind == OptionType::integer || kind == OptionType::integers;
     std::string what = kind == OptionType::boolean                                 ? "true or false"
@@ -212,8 +244,11 @@ void Option::check(const std::string& where) const {
     }
     if (std::holds_alternative<Choices>(rule) && !std::holds_alternative<EnumValue>(value.place))
         for (const std::string& word : texts())
-            if (const auto& names = names_of(*this); std::find(names.begin(), names.end(), word) == names.end())
+            if (const auto& names = choices_of(*this); std::find(names.begin(), names.end(), word) == names.end())
                 refuse(*this, word, where);
+    if (const auto* words = std::get_if<Words>(&rule); words != nullptr && words->check)
+        for (const std::string& word : texts())
+            if (!word.empty()) words->check(word);
 }
 
 OptionList::OptionList() = default;

@@ -4,7 +4,6 @@
 #include "ostraka/core/text.h"
 
 #include <algorithm>
-#include <chrono>
 
 namespace ostraka {
 
@@ -13,8 +12,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t sum_length = 64;
-constexpr std::string_view temporary_beginning = ".ostraka-";
-constexpr std::size_t temporary_length = temporary_beginning.size() + 6;
 
 /// A name that stands on a line of its own, and in no other folder.
 bool plain(const std::string& name) {
@@ -89,22 +86,6 @@ void OutputSweep::remove_rest() {
     OutputTransaction own;
     write_file(list_, text());
     own.commit();
-}
-
-std::size_t remove_stale_temporaries(const Path& folder) {
-    using namespace std::chrono_literals;
-    std::error_code code;
-    std::size_t count = 0;
-    const auto now = fs::file_time_type::clock::now();
-    for (fs::directory_iterator it(folder, code), end; !code && it != end; it.increment(code)) {
-        const std::string name = it->path().filename().string();
-        if (name.size() != temporary_length || !name.starts_with(temporary_beginning)) continue;
-        std::error_code own;
-        if (it->symlink_status(own).type() != fs::file_type::regular) continue;
-        const auto touched = it->last_write_time(own);
-        if (!own && now - touched > 24h && fs::remove(it->path(), own)) ++count;
-    }
-    return count;
 }
 
 }  // namespace ostraka

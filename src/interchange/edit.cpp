@@ -7,6 +7,8 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/flood.h"
 #include "ostraka/core/ids.h"
+#include "ostraka/core/nearest_name.h"
+#include "ostraka/core/words.h"
 #include "ostraka/measure/measure.h"
 
 #include <algorithm>
@@ -110,7 +112,14 @@ private:
         std::vector<std::size_t> found;
         for (std::size_t i = 0; i < set_.annotations.size(); ++i)
             if (name.id ? set_.annotations[i].id == *name.id : set_.annotations[i].tag == name.text) found.push_back(i);
-        if (found.empty()) fail_input(here_, "there is no annotation " + in_words(name), "'annotation list' shows ids and tags");
+        if (found.empty()) {
+            std::vector<std::string> tags;
+            for (const Annotation& annotation : set_.annotations) tags.push_back(annotation.tag);
+            const std::string near = name.id || name.text.size() > 100 ? std::string() : nearest_name(name.text, tags);
+            fail_input(
+                here_, "there is no annotation " + in_words(name),
+                (near.empty() ? "" : "did you mean '" + printable(near, 60) + "'? ") + "'annotation list' shows ids and tags");
+        }
         if (found.size() > 1)
             fail_input(here_, to_string(found.size()) + " annotations have the tag " + in_words(name),
                        "name the one meant by its id");

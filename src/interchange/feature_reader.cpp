@@ -7,7 +7,7 @@
 #include "text.h"
 
 #include "ostraka/annotation/annotation_file.h"
-#include "ostraka/annotation/label_file.h"
+#include "ostraka/annotation/colouring.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/json_build.h"
 #include "ostraka/core/parallel.h"

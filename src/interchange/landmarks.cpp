@@ -4,7 +4,7 @@
 #include "placing.h"
 #include "text.h"
 
-#include "ostraka/annotation/label_file.h"
+#include "ostraka/annotation/colouring.h"
 #include "ostraka/core/error.h"
 
 #include <algorithm>

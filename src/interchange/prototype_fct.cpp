@@ -4,7 +4,7 @@
 #include "landmark_formats.h"
 #include "text.h"
 
-#include "ostraka/annotation/label_file.h"
+#include "ostraka/annotation/colouring.h"
 #include "ostraka/annotation/outline.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/flood.h"

@@ -22,7 +22,8 @@ JsonValue option_schema(const Option& option, JsonAllocator& allocator) {
     JsonValue schema = json_object(allocator, "type", name);
     add_rule(schema, option, "enum", allocator);
     if (option.is_list()) schema = json_object(allocator, "type", "array", "items", std::move(schema));
-    add_members(schema, allocator, "description", option.help + (option.unit.empty() ? "" : " (" + option.unit + ")"));
+    const std::string about = std::holds_alternative<Words>(option.rule) ? option.allowed() : option.unit;
+    add_members(schema, allocator, "description", option.help + (about.empty() ? "" : " (" + about + ")"));
     return schema;
 }
 
@@ -73,6 +74,8 @@ JsonValue Call::declaration(JsonAllocator& allocator) const {
         static constexpr const char* types[]{"boolean", "integer", "number", "text", "choice", "texts", "numbers", "integers"};
         JsonValue one = json_object(allocator, "name", option.name, "type", types[static_cast<std::size_t>(option.type())]);
         add_rule(one, option, "choices", allocator);
+        if (const auto* words = std::get_if<Words>(&option.rule))
+            add_members(one, allocator, "words", words->names, "others", words->others);
         if (!option.initial.empty()) add_members(one, allocator, "default", initial_of(option, allocator));
         if (!option.unit.empty()) add_members(one, allocator, "unit", option.unit);
         if (!option.group.empty()) add_members(one, allocator, "group", option.group);

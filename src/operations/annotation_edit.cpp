@@ -54,7 +54,7 @@ struct AnnotationEditing final : AnnotatedMeshOperation {
         p.options("set-class", object_class, "class of the object, of the whole file; '' for none");
         p.options("set-unit", unit,
                   "unit of the coordinates, of the whole file (any text, such as mm); no number changes; '' for none");
-        p.options("set-up", up, "x,y,z: upward direction, of the whole file; '' for none");
+        p.options("set-up", up, "upward direction, of the whole file; '' for none", direction_words("--set-up"));
         p.options("duplicate", duplicate, "add a copy; the other changes are made to the copy, the original stays");
         p.options("split", split, "make each patch, poly-line or point an annotation of its own");
         p.options("remove", remove, "remove the annotation");
@@ -68,7 +68,6 @@ struct AnnotationEditing final : AnnotatedMeshOperation {
             fail_usage(
                 "one annotation or a list of edits",
                 "name an annotation with --annotation, or give --edits FILE, not both; or --set-class, --set-unit, --set-up");
-        static_cast<void>(direction());
         if (tag && (trimmed(*tag).empty() || printable(*tag) != *tag))
             fail_usage("--tag is '" + printable(*tag, 60) + "'", "give a word that can be read");
         if (!annotation.empty()) static_cast<void>(by_options());

@@ -29,10 +29,7 @@ struct AnnotationSelect final : Operation {
                        people("area", FieldType::number, "length^2"), people("perimeter / length", FieldType::number, "length"));
     }
 
-    void check() const override {
-        static_cast<void>(step.step({}));
-        if (!step.up.empty()) static_cast<void>(direction_of(step.up, "--up"));
-    }
+    void check() const override { static_cast<void>(step.step({})); }
 
     void run(Context& context, Report& report) override {
         const MeshFile& file = *mesh;
@@ -59,15 +56,16 @@ struct AnnotationSelect final : Operation {
             for (Json* to : {&steps, &now})
                 (*to)["annotations"].PushBack(JsonValue(made, to->GetAllocator()), to->GetAllocator());
         };
-        AnnotationSet there;  // ids and colours follow what is there when the step is taken
+        AnnotationSet there;  // ids follow what is there when the step is taken
         there.annotations = start.annotations.annotations;
         if (makes && !object_class.empty() && !(step.all && step.action == "make")) {
             // The whole object comes first, as a step of its own: later steps then find the same ids.
-            Json whole = parse_json(R"({"id": 0, "colour": [128, 128, 128], "type": "region", "select": {"all": true}})", "root");
+            Json whole = parse_json(R"({"id": 0, "type": "region", "select": {"all": true}})", "root");
             add_member(whole, "tag", object_class, whole.GetAllocator());
             append(whole);
             there.annotations.emplace_back();
         }
+        if (step.action == "make") note_twins(there, report);
         const Json made = step.step(there);
         append(made);
         const Path folder = start.folder;
@@ -90,6 +88,16 @@ struct AnnotationSelect final : Operation {
         if (!replayable)
             report.note(recipe.file() + " alone does not give " + output.file() +
                         ": replay it with 'annotation apply --edit' on the annotations as they were before it was begun");
+    }
+
+    /// Says where the set has an annotation of this tag already, which is easily meant.
+    void note_twins(const AnnotationSet& there, Report& report) const {
+        std::vector<std::string> ids;
+        for (const Annotation& annotation : there.annotations)
+            if (annotation.tag == step.tag && annotation.id != step.id) ids.push_back(std::to_string(annotation.id));
+        if (ids.empty()) return;
+        report.note("a second annotation '" + printable(step.tag, 60) + "' is added beside that of id " + joined(ids) +
+                    ": to make it a part of that one, give --action 'add to' --id " + ids.front());
     }
 
     /// What the options say of the object, where the recipe does not. With an older file --up turns the camera only.

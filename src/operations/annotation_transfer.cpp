@@ -2,6 +2,7 @@
 #include "operations.h"
 
 #include "ostraka/annotation/colouring.h"
+#include "ostraka/transfer/misalignment.h"
 #include "ostraka/transfer/transfer.h"
 
 #include <cmath>
@@ -40,6 +41,7 @@ struct AnnotationTransfer final : Operation {
         p.output_option("map", Kind::index_map, map, "with --refine: new face -> old face, as JSON");
         options.describe(p.options);
 
+        p.report.values(number("meanDistance", "", "length"));
         for (const char* direction : {"annotations", "back"})
             p.report.table(direction, integer("id", "id"), text("tag", "tag"), text("sourceType"), text("targetType", "type"),
                            text("outcome"), text("note"), number("sourceArea", "", "length^2"),
@@ -74,6 +76,9 @@ struct AnnotationTransfer final : Operation {
         const auto search = in_file(target.file(), [&] { return std::make_unique<SurfaceSearch>(onto); });
         report.run("tree", tree.seconds());
         TransferResult there = in_file(target.file(), [&] { return transfer(from, set, *search, options); });
+        const Misalignment apart = find_misalignment(from, *search);
+        report("meanDistance", apart.distance);
+        if (apart.stands_out) report.note(in_words(apart, search->diagonal(), printable(set.unit, 20)));
         const Mesh& on = there.refined ? there.refined->mesh : onto;
         std::optional<TransferResult> again;
         if (back) {
@@ -86,6 +91,7 @@ struct AnnotationTransfer final : Operation {
         // All work is done: what is written now is complete.
         if (coloured) coloured.write(on, colour_by_annotation(on, there.annotations));
         if (map) map.write({"face-origin", there.refined->face_origin, onto.number_of_faces()});
+        report.run("checks", there.times.checks);
         report.run("correspondence", there.times.correspondence);
         report.run("paths", there.times.paths);
         report.run("regions", there.times.regions);

@@ -1,5 +1,8 @@
 #include "operations.h"
 
+#include "ostraka/core/nearest_name.h"
+
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -32,8 +35,6 @@ std::array<double, 3> direction_of(const std::string& text, const std::string& o
                 return axis;
             }
     const auto fails = [&](const char* remedy) { fail_usage(option + " is '" + printable(text, 60) + "'", remedy); };
-    if (!text.empty() && text.find_first_of("0123456789") == std::string::npos)
-        fails("use x, y, z, -x, -y, -z or three numbers like 0,1,0");
     const auto numbers = numbers_of<double>(text, option);
     if (numbers.size() != 3) fails("give three numbers, like 0,0,1");
     for (const double x : numbers)
@@ -42,10 +43,19 @@ std::array<double, 3> direction_of(const std::string& text, const std::string& o
     return {numbers[0], numbers[1], numbers[2]};
 }
 
-void DirectionOption::describe(Parameters& p, const std::string& help) {
-    p.options("up", text_, help);
-    p.checks.emplace_back([this] { static_cast<void>(value()); });
+Words direction_words(const std::string& option, std::vector<std::string> more) {
+    Words rule{more, "three numbers like 0,0,1"};
+    for (const char* axis : {"x", "y", "z", "-x", "-y", "-z"}) rule.names.emplace_back(axis);
+    rule.check = [option, names = rule.names, others = rule.others](const std::string& text) {
+        if (std::find(names.begin(), names.end(), text) != names.end()) return;
+        if (text.find_first_of("0123456789,") == std::string::npos)
+            fail_usage(option + " is '" + printable(text, 60) + "'", "use " + joined(names) + " or " + others);
+        static_cast<void>(direction_of(text, option));
+    };
+    return rule;
 }
+
+void DirectionOption::describe(Parameters& p, const std::string& help) { p.options("up", text_, help, direction_words("--up")); }
 
 std::optional<std::array<double, 3>> DirectionOption::value() const {
     return text_.empty() ? std::nullopt : std::optional(direction_of(text_, "--up"));
@@ -59,9 +69,14 @@ const Annotation& find_annotation(const AnnotationSet& set, const std::string& n
     std::vector<const Annotation*> tagged;
     for (const Annotation& annotation : set.annotations)
         if (annotation.tag == name) tagged.push_back(&annotation);
-    if (tagged.empty())
+    if (tagged.empty()) {
+        std::vector<std::string> tags;
+        for (const Annotation& annotation : set.annotations) tags.push_back(annotation.tag);
+        const std::string near = name.size() > 100 ? std::string() : nearest_name(name, tags);
         fail_input(file, "has no annotation '" + printable(name, 60) + "'",
-                   "give the id or the tag of one; 'ostraka annotation list' shows them");
+                   (near.empty() ? "" : "did you mean '" + printable(near, 60) + "'? ") +
+                       "give the id or the tag of one; 'ostraka annotation list' shows them");
+    }
     if (tagged.size() > 1)
         fail_input(file, "has " + std::to_string(tagged.size()) + " annotations tagged '" + printable(name, 60) + "'",
                    "give the id of one");

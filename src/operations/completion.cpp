@@ -82,7 +82,10 @@ std::vector<std::string> completions(const std::vector<std::string>& words) {
         const std::string flag = flag_of(before);
         const Option* option = flag.empty() ? nullptr : call.parameters().options.find(flag);
         const Slot* slot = flag.empty() ? nullptr : call.parameters().slot(flag);
-        if (begun.starts_with("-")) {
+        const std::vector<std::string> named_values = option == nullptr ? std::vector<std::string>() : option->names();
+        const bool takes_dash =
+            std::any_of(named_values.begin(), named_values.end(), [&](const std::string& one) { return one.starts_with(begun); });
+        if (begun.starts_with("-") && !takes_dash) {
             add_flags(list, call);
         } else if (flag == "show") {
             list = {"table", "json", "csv", "markdown"};
@@ -91,7 +94,7 @@ std::vector<std::string> completions(const std::vector<std::string>& words) {
         } else if (slot != nullptr) {
             add_files(list, begun, endings_of(slot->kind));
         } else if (option != nullptr && option->type() != OptionType::boolean) {
-            if (const auto* choices = std::get_if<Choices>(&option->rule)) list = choices->names;
+            if (!named_values.empty()) list = named_values;
             else if (option->type() == OptionType::text || option->type() == OptionType::texts) add_tags(list, words);
         } else {
             // The next argument without a flag.

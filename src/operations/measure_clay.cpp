@@ -15,9 +15,7 @@ struct MeasureClay final : Operation {
         p.input("mesh", Kind::mesh, mesh, "mesh file, closed or open");
         p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json): unit and upward direction")
             .optional();
-        up.describe(p,
-                    "x, y, z, -x, -y, -z or three numbers: direction that slices lie across; else as the annotations say, "
-                    "else 0,0,1");
+        up.describe(p, "direction that slices lie across; else as the annotations say, else 0,0,1");
         p.options("unit", unit, "unit of the mesh's coordinates, e.g. mm; else as the annotations say");
         options.describe(p.options);
         for (const Figure& figure : figures_of({})) p.report.values(any(figure.name, "", figure.unit));

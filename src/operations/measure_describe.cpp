@@ -25,6 +25,8 @@ struct MeasureDescribe final : Operation {
         const Mesh& mesh = object.mesh->mesh;
         const std::vector<NamedMap> named = read_maps(mesh);
         AnnotationSet set = object.read(report);
+        if (!object.annotations && chosen.empty())
+            report.note("the whole object is described; --annotations FILE describes its parts");
         DescriptorSearch search(mesh, options);
         report.empty_table("annotations");
         report.empty_table("");

@@ -22,8 +22,8 @@ struct MeasureTake final : Operation {
         p.options("points", points, "pins as vertex indices, like 12,88", Range{0, largest_index});
         p.options("at", places, "a pin as coordinates x,y,z: the nearest vertex; once for each pin");
         p.options("direction", direction,
-                  "direction of a bounding measure: x, y, z, -x, -y, -z or three numbers; without pins the whole annotation is "
-                  "measured along it");
+                  "direction of a bounding measure; without pins the whole annotation is measured along it",
+                  direction_words("--direction"));
         p.options("geodesic", geodesic, "a tape along edges, or the exact shortest curve over the faces",
                   Choices{"edges", "exact"});
         p.options("repeat", repeats,
@@ -41,7 +41,6 @@ struct MeasureTake final : Operation {
         if (geodesic == Geodesic::exact && tool != "tape") fail_usage("--geodesic exact with a " + tool, "it belongs to a tape");
         if (bounding && direction.empty()) fail_usage("a bounding measure without a direction", "add --direction x,y,z");
         if (!bounding && !direction.empty()) fail_usage("--direction with a " + tool, "it belongs to a bounding measure");
-        if (!direction.empty()) static_cast<void>(direction_of(direction, "--direction"));
         if (!points.empty() && !places.empty()) fail_usage("--points and --at", "give the pins in one way");
         for (const auto& text : places) static_cast<void>(place_of(text));
         for (const auto& text : repeats) static_cast<void>(numbers_of<Index>(text, "--repeat"));

@@ -22,6 +22,10 @@ AnnotationSet MeasuredObject::read(Report& report) const {
 }
 
 Annotation& MeasuredObject::one(AnnotationSet& set, const std::string& name) const {
+    if (!annotations)
+        fail_usage("--annotation '" + printable(name, 60) + "' names a part of " + printable(mesh.file(), 60) +
+                       ", but no annotation file is given",
+                   "add --annotations FILE");
     return *set.find(find_annotation(set, name, file()).id);
 }
 

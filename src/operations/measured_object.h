@@ -16,7 +16,7 @@ struct MeasuredObject {
 
     /// The annotations to change, with the unit.
     AnnotationSet read(Report& report) const;
-    /// By id, or by tag if exactly one annotation has it.
+    /// By id, or by tag if exactly one annotation has it. Throws Error (usage) where no annotations are given.
     [[nodiscard]] Annotation& one(AnnotationSet& set, const std::string& name) const;
     /// The file that says what is measured.
     [[nodiscard]] std::string file() const { return annotations ? annotations.file() : mesh.file(); }

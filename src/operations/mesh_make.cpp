@@ -10,7 +10,9 @@ namespace {
 
 struct MeshMake final : Operation {
     void describe(Parameters& p) override {
-        p.options("object", wanted, "what to make (see --list)").positional();
+        p.options("object", wanted, "what to make (see --list)",
+                  Words{synthetic_object_names(), {}, [](const std::string& name) { static_cast<void>(synthetic_object(name)); }})
+            .positional();
         p.output("output", Kind::mesh, output, "mesh file to write; PLY keeps labels and colours of faces and vertices")
             .optional();
         p.output_option("labels", Kind::labels, labels, "text file to write: the label of each face, one a line");

@@ -41,6 +41,9 @@ extern template std::vector<std::uint32_t> numbers_of<std::uint32_t>(const std::
 /// The direction "0,0,1", or the axis "z" or "-z"; Error (usage) names the option.
 std::array<double, 3> direction_of(const std::string& text, const std::string& option);
 
+/// What `direction_of` takes, as the rule of an option; `more`: words that it takes beside, which the operation knows.
+Words direction_words(const std::string& option, std::vector<std::string> more = {});
+
 /// --up: a direction as `direction_of` takes it, checked before any work.
 class DirectionOption {
 public:

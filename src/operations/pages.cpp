@@ -16,6 +16,7 @@ std::string allowed_for_page(const Option& option) {
     if (const auto* range = std::get_if<Range>(&option.rule))
         return ostraka::digits(range->min, 6) + " to " + ostraka::digits(range->max, 6);
     if (const auto* choices = std::get_if<Choices>(&option.rule)) return joined(choices->names);
+    if (std::holds_alternative<Words>(option.rule)) return option.allowed();
     if (option.type() == OptionType::boolean) return option.initial == "true" ? "on, `--no-" + option.name + "`" : "switch";
     static constexpr const char* types[]{"", "whole number", "number", "text", "text", "texts", "numbers", "whole numbers"};
     return types[static_cast<std::size_t>(option.type())];
@@ -25,24 +26,6 @@ std::string initial_for_page(const Option& option) {
     if (option.type() == OptionType::boolean || option.initial.empty()) return {};
     const auto value = number_of(option.initial);
     return value ? digits(*value) : option.initial;
-}
-
-std::string usage_of(const Call& call, const std::vector<std::string>& order) {
-    std::string text = "ostraka " + std::string(call.entry().name);
-    for (const std::string& name : order) {
-        const Slot* slot = call.parameters().slot(name);
-        const bool repeated = slot != nullptr && slot->repeated;
-        std::string upper = name;
-        std::transform(upper.begin(), upper.end(), upper.begin(),
-                       [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-        upper += repeated ? " ..." : "";
-        text += slot != nullptr && !slot->needed && call.parameters().orders.size() == 1 ? " [" + upper + "]" : " " + upper;
-    }
-    for (const Slot* slot : call.parameters().slots())
-        if (slot->needed && !slot->is_positional) text += " --" + slot->name + " FILE";
-    for (const Option& option : call.parameters().options)
-        if (option.needed && !option.is_positional) text += " --" + option.name + " VALUE";
-    return text + " [options]";
 }
 
 /// Lines of at most 120 characters.
@@ -126,6 +109,24 @@ std::string troff(const std::string& text) {
 }
 
 }  // namespace
+
+std::string usage_of(const Call& call, const std::vector<std::string>& order) {
+    std::string text = "ostraka " + std::string(call.entry().name);
+    for (const std::string& name : order) {
+        const Slot* slot = call.parameters().slot(name);
+        const bool repeated = slot != nullptr && slot->repeated;
+        std::string upper = name;
+        std::transform(upper.begin(), upper.end(), upper.begin(),
+                       [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+        upper += repeated ? " ..." : "";
+        text += slot != nullptr && !slot->needed && call.parameters().orders.size() == 1 ? " [" + upper + "]" : " " + upper;
+    }
+    for (const Slot* slot : call.parameters().slots())
+        if (slot->needed && !slot->is_positional) text += " --" + slot->name + " FILE";
+    for (const Option& option : call.parameters().options)
+        if (option.needed && !option.is_positional) text += " --" + option.name + " VALUE";
+    return text + " [options]";
+}
 
 std::vector<std::string> command_pages() {
     std::vector<std::string> words;

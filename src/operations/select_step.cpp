@@ -1,10 +1,28 @@
 #include "select_step.h"
 
-#include "ostraka/annotation/label_file.h"
+#include "ostraka/render/view.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace ostraka {
+
+namespace {
+
+const std::vector<std::string>& threshold_names() {
+    static const std::vector<std::string> names{"x", "y", "z", "mean-curvature", "gaussian-curvature", "thickness", "distance"};
+    return names;
+}
+
+/// A quantity by its name, or a file.
+void check_threshold(const std::string& of) {
+    const auto& names = threshold_names();
+    if (std::find(names.begin(), names.end(), of) != names.end() || !extension(of).empty() || file_exists(of)) return;
+    fail_usage("--threshold '" + printable(of, 60) + "' is no known quantity and no file",
+               "use " + joined(names) + " or a file of values (.npy or text)");
+}
+
+}  // namespace
 
 void SelectStep::describe(OptionList& visit) {
     visit("expression", expression, "what to select, as recipes say it (JSON)").positional();
@@ -16,9 +34,8 @@ void SelectStep::describe(OptionList& visit) {
     visit("sphere", sphere, "x,y,z,radius");
     visit("halfspace", halfspace, "six numbers: a point of the plane, and the normal to the side wanted");
     visit("nearest", nearest, "x,y,z: the nearest vertex");
-    visit("threshold", threshold,
-          "x, y, z, mean-curvature, gaussian-curvature, thickness, distance (from --seed) or a file of values (.npy or "
-          "text)");
+    visit("threshold", threshold, "places whose value lies in a range; distance: from --seed",
+          Words{threshold_names(), "a file of values (.npy or text)", check_threshold});
     visit("segment", segment, "levels of thickness to tell apart; the segment of --seed", Range{2, 100});
     visit("path", path, "picks joined by shortest paths along edges").words();
     visit("lasso", lasso, "picks around a part; --seed lies within it").words();
@@ -51,10 +68,9 @@ void SelectStep::describe(OptionList& visit) {
     visit.group("Camera (that of 'ostraka render' without legend and title)");
     visit("camera", camera_text,
           "one of the recipe's by its name, or as JSON ('render --json' reports it), instead of the following");
-    visit("view", view, "front, back, left, right, top, bottom, iso or azimuth,elevation in degrees");
-    visit("up", up,
-          "x, y, z, -x, -y, -z or three numbers: upward direction, kept where a new file is made; else as the annotations "
-          "say, else 0,0,1");
+    visit("view", view, "where the viewer stands", view_words());
+    visit("up", up, "upward direction, kept where a new file is made; else as the annotations say, else 0,0,1",
+          direction_words("--up"));
     visit("projection", projection, "of the camera", Choices{"orthographic", "perspective"});
     visit("zoom", zoom, "magnification about the middle", Range{0.01, 1000});
     visit("size", size, "width and height of the picture in pixels");
@@ -171,10 +187,6 @@ private:
             if (step_.seed.empty()) fail_usage("a threshold on the distance needs a place to start from", "add --seed PICK");
             add_members(value, a_, "distance", picks({step_.seed}, "seed"));
         } else {
-            if (extension(of).empty() && !file_exists(of))
-                fail_usage("--threshold '" + printable(of, 60) + "' is no known quantity and no file",
-                           "use x, y, z, mean-curvature, gaussian-curvature, thickness, distance or a file of values (.npy or "
-                           "text)");
             add_members(value, a_, "map", of);
         }
         if (step_.above) add_members(value, a_, "above", finite(*step_.above));
@@ -268,9 +280,7 @@ Json SelectStep::step(const AnnotationSet& set) const {
     if (action != "delete" && !tag.empty()) add_members(document, a, "tag", tag);
     if (!colour.empty() && colour.size() != 3)
         fail_usage("--colour has " + std::to_string(colour.size()) + " numbers", "give red,green,blue, each 0 to 255");
-    const auto fresh = distinct_colour(set.annotations.size());
     if (!colour.empty()) add_members(document, a, "colour", colour);
-    else if (makes) add_members(document, a, "colour", fresh);
     const char* made = !path.empty() ? "line" : nearest.empty() && vertices.empty() ? "region" : "point";
     if (makes) add_members(document, a, "type", type.value_or(made));
     if (action != "delete" && action != "retag")

@@ -72,9 +72,9 @@ struct SliceObject final : Operation {
         p.output_option("profile", Kind::picture, profile, "write a profile drawing (.svg, .png)");
         p.options("annotation", names, "id or tag of a region: slice that part only; more than one: all together").words();
         p.options.group("Planes");
-        p.options("direction", direction,
-                  "across what: up, principal, rotation, skeleton, an axis such as y or -z, or three numbers like 0,1,0");
-        up.describe(p, "x, y, z, -x, -y, -z or three numbers: upward direction; else as the annotations say, else 0,0,1");
+        p.options("direction", direction, "across what the slices lie",
+                  direction_words("--direction", {"up", "principal", "rotation", "skeleton"}));
+        up.describe(p, "upward direction; else as the annotations say, else 0,0,1");
         p.options("count", count, "number of slices, in the middles of as many layers (default 50)", Range{1, 1e6});
         p.options("spacing", spacing, "distance of the slices, from the lowest place up", Anything{}, "the mesh's unit");
         p.options("heights", heights, "heights over the lowest place, with commas between them", Anything{}, "the mesh's unit");
@@ -140,7 +140,6 @@ struct SliceObject final : Operation {
         if (range.size() != 2 || !(range[0] < range[1]))
             fail_usage("--range is '" + listed(range) + "'", "give two shares of the height, the lower one first, like 0,0.4");
         if (!plane.empty()) static_cast<void>(frame_of_plane());
-        if (direction != "up" && !own_axis()) static_cast<void>(asked_direction());
     }
 
     static std::string listed(const std::vector<double>& numbers) {
@@ -151,16 +150,6 @@ struct SliceObject final : Operation {
         for (const AxisMethod method : {AxisMethod::principal, AxisMethod::rotation, AxisMethod::skeleton})
             if (direction == to_string(method)) return method;
         return std::nullopt;
-    }
-
-    [[nodiscard]] std::array<double, 3> asked_direction() const {
-        try {
-            return direction_of(direction, "--direction");
-        } catch (const Error& error) {
-            if (direction.find_first_of("0123456789,") != std::string::npos) throw;
-            fail_usage(error.problem(),
-                       "use up, principal, rotation, skeleton, an axis (x, y, z, -x, -y, -z) or three numbers like 0,1,0");
-        }
     }
 
     [[nodiscard]] SliceFrame frame_of_plane() const {
@@ -202,7 +191,7 @@ struct SliceObject final : Operation {
         } else {
             CutOptions options{own_axis(), upwards, {heights, spacing, count.value_or(50), range[0], range[1]}, {}};
             if (!options.direction && direction != "up") {
-                const auto along = asked_direction();
+                const auto along = direction_of(direction, "--direction");
                 options.up = {along[0], along[1], along[2]};
             }
             cut = cut_object(mesh->mesh, faces, options);

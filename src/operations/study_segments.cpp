@@ -19,8 +19,7 @@ struct StudySegments final : Operation {
         p.output_option("curve", Kind::picture, curve, "plot of the criterion over the number of clusters (.svg, .png)");
         p.input_option("compare", Kind::annotations, compare,
                        "annotations with the known parts; else the mesh file's labels, if it has any");
-        up.describe(
-            p, "x, y, z, -x, -y, -z or three numbers: upward direction; else as the annotations of --compare say, else 0,0,1");
+        up.describe(p, "upward direction; else as the annotations of --compare say, else 0,0,1");
         p.options("unit", unit, "unit of the mesh; else as the annotations of --compare say");
         options.describe(p.options);
         p.report.values(text("unit"), integer("clusters"), integer("proposed"), text("criterion"));

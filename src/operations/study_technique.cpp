@@ -14,9 +14,7 @@ namespace {
 struct StudyOfTechnique final : StudyOperation {
     void describe(Parameters& p) override {
         files.describe(p, true);
-        up.describe(
-            p,
-            "x, y, z, -x, -y, -z or three numbers: upward direction of all objects; else as their annotations say, else 0,0,1");
+        up.describe(p, "upward direction of all objects; else as their annotations say, else 0,0,1");
         slices.describe(p.options);
         options.describe(p.options);
         for (const char* word : {"positive", "negative", "answeredBy"}) p.report.values(text(word));

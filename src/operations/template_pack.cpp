@@ -47,7 +47,7 @@ struct TemplatePack final : Operation {
         part("landmarks", Kind::landmarks, "landmarks (.ant.json)");
         p.options("class", object_class, "class of the object; else as the annotations say");
         p.options("unit", unit, "unit of the coordinates, any text such as mm; else as the annotations say");
-        up.describe(p, "upward direction: x, y, z, -x, -y, -z or three numbers; else as the annotations say");
+        up.describe(p, "upward direction; else as the annotations say");
         p.options("copy", copy, "copy the parts into the template's folder");
         options.describe(p.options);
         declare_template(p.report, true);

@@ -54,6 +54,7 @@ struct VocabularyShow final : Operation {
 
     void run(Context&, Report& report) override {
         const auto& vocabulary = file.load<Vocabulary>(read_vocabulary);
+        report.notes(vocabulary.notes);
         const VocabularySearch search(vocabulary);
         std::vector<std::vector<std::size_t>> narrower(vocabulary.concepts.size());
         std::vector<std::size_t> roots;

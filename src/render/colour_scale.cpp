@@ -74,14 +74,23 @@ Rgb colour_of(const ColourScale& scale, double value) {
 }
 
 Rgb category_colour(std::size_t index) {
-    const double hue = std::fmod(0.58 + 0.6180339887498949 * static_cast<double>(index % 1000), 1.0);
-    const double lightness = std::array{0.55, 0.68, 0.44}[index % 3];
-    const double chroma = 0.62 * (1 - std::abs(2 * lightness - 1));
-    const auto channel = [&](double shift) {
-        const double ramp = std::clamp(std::abs(std::fmod(hue * 6 + shift, 6.0) - 3) - 1, 0.0, 1.0);
-        return static_cast<std::uint8_t>(std::lround(255 * (lightness + chroma * (ramp - 0.5))));
+    static constexpr std::array<Rgb, category_hues> hues{{{204, 102, 119},
+                                                          {75, 63, 168},
+                                                          {221, 204, 119},
+                                                          {136, 204, 238},
+                                                          {136, 34, 85},
+                                                          {153, 153, 51},
+                                                          {17, 119, 51},
+                                                          {170, 68, 153},
+                                                          {68, 170, 153}}};
+    // Towards white, and towards black.
+    static constexpr std::array<double, category_count / category_hues> shades{0, 0.45, -0.35, 0.25, -0.18, 0.62, -0.5};
+    const Rgb& hue = hues.at(index % category_hues);
+    const double shade = shades.at(index / category_hues % shades.size());
+    const auto channel = [&](std::uint8_t value) {
+        return static_cast<std::uint8_t>(std::lround((1 - std::abs(shade)) * value + (shade > 0 ? 255 * shade : 0)));
     };
-    return {channel(0), channel(4), channel(2)};
+    return {channel(hue.red), channel(hue.green), channel(hue.blue)};
 }
 
 double round_length(double length) {

@@ -261,9 +261,12 @@ Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options)
 
 void RenderOptions::describe(OptionList& visit) {
     visit("size", size, "width and height of the picture in pixels");
-    visit("view", view, "front, back, left, right, top, bottom, iso, or azimuth,elevation in degrees");
+    visit("view", view, "where the viewer stands", view_words());
     visit("views", views, "'six': front, right, back, left, top and bottom on one sheet", Choices{"", "six"});
-    visit("up", up, "the object's upward axis: x, y, z, -x, -y, -z or three numbers; auto: as the annotations say, else z");
+    visit("up", up, "the object's upward axis; auto: as the annotations say, else z",
+          Words{{"auto", "x", "y", "z", "-x", "-y", "-z"}, "three numbers like 0,0,1", [](const std::string& text) {
+                    static_cast<void>(parse_up(text));
+                }});
     visit("projection", projection, "orthographic or perspective", Choices{"orthographic", "perspective"});
     visit("zoom", zoom, "magnification about the middle, 1 shows the whole object", Range{0.01, 1000});
     visit("fit", fit, "several objects: all at one scale, or each as large as fits", Choices{"all", "each"});
@@ -272,7 +275,8 @@ void RenderOptions::describe(OptionList& visit) {
     visit("ambient-occlusion", ambient_occlusion, "rays a pixel that darken hollows, 0 for none", Range{0, 1024});
     visit("samples", samples, "rays a pixel where colours change, 1 for none extra", Range{1, 64});
     visit("edges", edges, "draw the edges of the mesh");
-    visit("background", background, "#rrggbb, white, black or grey");
+    visit("background", background, "colour of the background",
+          Words{{"white", "black", "grey"}, "#rrggbb", [](const std::string& text) { static_cast<void>(parse_colour(text)); }});
     visit("transparent", transparent, "no background");
     visit("no-scale-bar", no_scale_bar, "leave out the scale bar");
     visit("no-legend", no_legend, "leave out the legend and the colour bar");

@@ -2,6 +2,7 @@
 #include "ostraka/core/angles.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/words.h"
 
 #include <algorithm>
 #include <cctype>
@@ -58,11 +59,18 @@ View parse_view(const std::string& text) {
         if (view.name == text) return view;
     if (text == "iso") return {"iso", 45, std::atan(1 / std::numbers::sqrt2) * 180 / pi};
     const auto angles = numbers(text);
-    if (angles.size() != 2 || std::abs(angles[1]) > 90 || std::abs(angles[0]) > 3600)
-        fail_usage(
-            "view '" + text + "' is not known",
-            "use front, back, left, right, top, bottom, iso or azimuth,elevation in degrees with an elevation of -90 to 90");
+    if (angles.size() != 2 || std::abs(angles[1]) > 90 || std::abs(angles[0]) > 3600) {
+        const Words known = view_words();
+        fail_usage("view '" + text + "' is not known",
+                   "use " + joined(known.names) + " or " + known.others + " with an elevation of -90 to 90");
+    }
     return {text, angles[0], angles[1]};
+}
+
+Words view_words() {
+    return {{"front", "back", "left", "right", "top", "bottom", "iso"},
+            "azimuth,elevation in degrees",
+            [](const std::string& text) { static_cast<void>(parse_view(text)); }};
 }
 
 std::vector<View> standard_views() {

@@ -3,7 +3,7 @@
 #include "expression.h"
 
 #include "ostraka/annotation/annotation_file.h"
-#include "ostraka/annotation/label_file.h"
+#include "ostraka/annotation/colouring.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/inside.h"
 #include "ostraka/measure/measure.h"
@@ -96,7 +96,7 @@ private:
                      "), or an action such as 'add to' that edits the older one");
         Annotation annotation = selected(type_of(step["type"].GetString()), step["select"], frame, at + "/select");
         annotation.id = id;
-        annotation.colour = distinct_colour(set_.annotations.size());
+        annotation.colour = fresh_colour(mesh_, set_, annotation);
         set_looks(annotation, step);
         if (const JsonValue* attributes = find_member(step, "attributes"))
             add_attributes(annotation, *attributes, frame, at + "/attributes");

@@ -1,5 +1,6 @@
 #include "ostraka/select/slice_segments.h"
 
+#include "ostraka/annotation/colouring.h"
 #include "ostraka/annotation/label_file.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"

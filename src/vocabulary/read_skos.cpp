@@ -4,6 +4,7 @@
 #include "skos_terms.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/words.h"
 #include "ostraka/vocabulary/skos.h"
 
 #include <algorithm>
@@ -68,6 +69,7 @@ public:
             vocabulary_.notes.push_back(
                 to_string(outside_) +
                 " concepts of other schemes, or of nothing we know, are named as broader; kept as they are");
+        note_unread();
         check_vocabulary(vocabulary_, where_);
     }
     Vocabulary result() { return std::move(vocabulary_); }
@@ -123,6 +125,8 @@ private:
             if (predicate == skos::core + "broader" || predicate == skos::core + "narrower") add(subject);
         }
         if (nameless > 0) vocabulary_.notes.push_back(to_string(nameless) + " concepts without a URI not kept");
+        if (!elsewhere.empty())
+            vocabulary_.notes.push_back(counted(elsewhere.size(), "concept") + " of other schemes not kept (see --scheme)");
         if (concepts_.empty()) fail("holds no SKOS concept", "give a SKOS vocabulary (skos:Concept)");
         std::map<RdfTerm, std::size_t> positions;
         for (const RdfTerm& term : concepts_)
@@ -202,7 +206,7 @@ private:
     void read_concept(const RdfTerm& term) {
         Concept& entry = vocabulary_.concepts[index_.at(term.value)];
         graph_.each(term, [&](const std::string& property, const RdfTerm& value) {
-            const bool text = value.kind == Kind::text && value.datatype.empty();
+            const bool text = value.kind == Kind::text && (value.datatype.empty() || value.datatype == skos::xsd + "string");
             if (property == skos::rdf + "type" && value == uri(skos::core + "Concept")) return;
             if ((property == skos::core + "inScheme" || property == skos::core + "topConceptOf") && value == uri(scheme_)) return;
             if (property == skos::own + "position" || property == skos::own + "attribute" || property == skos::own + "id") return;
@@ -233,6 +237,60 @@ private:
             for (const RdfTerm& other : graph_.values(term, skos::core + "narrower"))
                 if (const auto found = index_.find(other.value); found != index_.end() && other.kind == Kind::uri)
                     vocabulary_.concepts[found->second].broader.push_back(ids_.at(term.value));
+    }
+
+    /// What the file calls it: its first label, or its URI.
+    [[nodiscard]] std::string called(const RdfTerm& subject) const {
+        for (const std::string& property : {skos::core + "prefLabel", skos::rdfs + "label", skos::dcterms + "title"})
+            for (const RdfTerm& value : graph_.values(subject, property))
+                if (value.kind == Kind::text) return "'" + value.value + "'";
+        return subject.kind == Kind::uri ? "<" + subject.value + ">" : "one without a name";
+    }
+
+    /// Concepts and collections that a collection lists.
+    [[nodiscard]] std::size_t members_of(const RdfTerm& collection) const {
+        std::size_t count = graph_.values(collection, skos::core + "member").size();
+        for (RdfTerm cell : graph_.values(collection, skos::core + "memberList"))
+            for (std::set<RdfTerm> seen; seen.insert(cell).second;) {  // a list that leads to itself ends here
+                count += graph_.values(cell, skos::rdf + "first").size();
+                const auto rest = graph_.values(cell, skos::rdf + "rest");
+                if (rest.empty()) break;
+                cell = rest.front();
+            }
+        return count;
+    }
+
+    /// Things of the file that are no concepts of this scheme: collections by name, what else has a URI by its kind.
+    void note_unread() {
+        std::vector<std::string> collections;
+        std::size_t members = 0, labels = 0, others = 0;
+        std::set<RdfTerm> seen{uri(scheme_)};
+        for (const RdfStatement& statement : graph_.statements()) {
+            const RdfTerm& subject = statement.subject;
+            if (index_.contains(subject.value) || !seen.insert(subject).second) continue;
+            const auto types = graph_.values(subject, skos::rdf + "type");
+            const auto is_a = [&](const std::string& type) {
+                return std::find(types.begin(), types.end(), uri(type)) != types.end();
+            };
+            if (is_a(skos::core + "Collection") || is_a(skos::core + "OrderedCollection")) {
+                collections.push_back(called(subject));
+                members += members_of(subject);
+            } else if (is_a(skos::xl + "Label")) {
+                ++labels;
+            } else if (subject.kind == Kind::uri && !is_a(skos::core + "Concept") && !is_a(skos::core + "ConceptScheme")) {
+                ++others;
+            }
+        }
+        if (!collections.empty()) {
+            const std::size_t count = collections.size();
+            if (count > 5) collections.resize(5);
+            vocabulary_.notes.push_back(counted(count, "collection") + " with " + counted(members, "member") +
+                                        " not kept: " + joined(collections) + (count > 5 ? " ..." : ""));
+        }
+        if (labels > 0)
+            vocabulary_.notes.push_back(counted(labels, "label") + " of SKOS-XL not used (give skos:prefLabel as well)");
+        if (others > 0)
+            vocabulary_.notes.push_back("what is said of " + counted(others, "thing") + " that are no concepts is not kept");
     }
 
     /// Nodes in the order of their positions, or as they stand.

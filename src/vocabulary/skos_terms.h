@@ -12,6 +12,7 @@ inline const std::string rdf = "http://www.w3.org/1999/02/22-rdf-syntax-ns#";
 inline const std::string rdfs = "http://www.w3.org/2000/01/rdf-schema#";
 inline const std::string xsd = "http://www.w3.org/2001/XMLSchema#";
 inline const std::string core = "http://www.w3.org/2004/02/skos/core#";
+inline const std::string xl = "http://www.w3.org/2008/05/skos-xl#";
 inline const std::string dcterms = "http://purl.org/dc/terms/";
 /// Ours: attributes that a concept may carry, and rules.
 inline const std::string own = "urn:ostraka:ns#";

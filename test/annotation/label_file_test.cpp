@@ -4,10 +4,12 @@
 #include "ostraka/annotation/colouring.h"
 #include "ostraka/annotation/remap.h"
 #include "ostraka/core/error.h"
+#include "ostraka/render/colour_scale.h"
 #include "scratch.h"
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <numeric>
 #include <set>
 
@@ -74,6 +76,35 @@ TEST(Labels, BecomeRegionsAndBack) {
     EXPECT_EQ(face_labels_from_vertices(grid(1), {1, 2, 2, 2}), (std::vector<std::int32_t>{2, 2}));
     EXPECT_EQ(face_labels_from_vertices(grid(1), {1, 2, 2, 3})[0], 1);
     EXPECT_THROW(face_labels_from_vertices(mesh, {1}), Error);
+}
+
+TEST(Colouring, NeighboursDifferAndTheWholeIsNeutral) {
+    // A chessboard of 36 fields, each with its own label, more than there are hues.
+    const Mesh mesh = grid(6);
+    std::vector<std::int32_t> labels(mesh.number_of_faces());
+    for (std::size_t f = 0; f < labels.size(); ++f) labels[f] = static_cast<std::int32_t>(f / 2);
+    const AnnotationSet set = regions_from_labels(mesh, labels);
+    std::map<std::array<int, 3>, std::size_t> index_of;
+    for (std::size_t i = 0; i < category_count; ++i) index_of[distinct_colour(i)] = i;
+    std::vector<std::size_t> colours;
+    for (const Annotation& annotation : set.annotations) colours.push_back(index_of.at(annotation.colour));
+    EXPECT_EQ(std::set<std::size_t>(colours.begin(), colours.end()).size(), 36U);
+    for (std::size_t row = 0; row < 6; ++row)
+        for (std::size_t column = 0; column < 5; ++column) {
+            EXPECT_NE(colours[6 * row + column] % category_hues, colours[6 * row + column + 1] % category_hues);
+            EXPECT_NE(colours[6 * column + row] % category_hues, colours[6 * column + 6 + row] % category_hues);
+        }
+    const AnnotationSet one = regions_from_labels(mesh, std::vector<std::int32_t>(labels.size(), 7));
+    EXPECT_EQ(one.annotations[0].colour, neutral_colour);
+    // What joins takes the first colour that is free.
+    for (std::size_t f = 0; f < labels.size(); ++f) labels[f] = f < 1 ? 0 : f < 30 ? 1 : 2;
+    AnnotationSet two = regions_from_labels(mesh, labels);
+    two.annotations.erase(two.annotations.begin() + 1);
+    Annotation joining;
+    joining.faces = {0, 1};
+    EXPECT_EQ(fresh_colour(mesh, two, joining), distinct_colour(1));
+    joining.faces.resize(70);
+    EXPECT_EQ(fresh_colour(mesh, two, joining), neutral_colour);
 }
 
 TEST(Labels, NamesAreObjectsOrLists) {

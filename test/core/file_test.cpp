@@ -7,6 +7,9 @@
 #include "scratch.h"
 
 #include <sys/stat.h>
+#include <unistd.h>
+
+#include <csignal>
 
 using namespace ostraka;
 using ostraka::test::Scratch;
@@ -223,6 +226,61 @@ TEST(RemoveStaleTemporaries, TakesOldOnesOnly) {
     EXPECT_FALSE(std::filesystem::exists(scratch / ".ostraka-AbC123"));
     EXPECT_EQ(test::count_files(scratch.path()), 5U);
     EXPECT_EQ(remove_stale_temporaries(scratch / "nowhere"), 0U);
+}
+
+TEST(RemoveStaleTemporaries, TakesThoseOfKilledProcessesAtOnce) {
+    const Scratch scratch;
+    const auto names = [&] {
+        std::vector<std::string> list;
+        for (const auto& name : files_in(scratch.path()))
+            if (name.starts_with(".ostraka-")) list.push_back(name);
+        return list;
+    };
+    // One that is being written, and one that waits for its transaction, are left alone.
+    {
+        OutputTransaction waiting;
+        write_file(scratch / "waits.txt", "x");
+        AtomicFile open(scratch / "open.txt");
+        open.write("x");
+        EXPECT_EQ(names().size(), 2U);
+        EXPECT_EQ(remove_stale_temporaries(scratch.path()), 0U);
+        EXPECT_EQ(names().size(), 2U);
+        open.commit();
+        waiting.commit();
+    }
+    EXPECT_EQ(read_file(scratch / "waits.txt") + read_file(scratch / "open.txt"), "xx");
+    EXPECT_TRUE(names().empty());
+    // A process that is killed in the middle leaves two.
+    const pid_t child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+        OutputTransaction waiting;
+        write_file(scratch / "a.txt", "half");
+        AtomicFile open(scratch / "b.txt");
+        open.write("half");
+        ::kill(::getpid(), SIGKILL);
+    }
+    int status = 0;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    ASSERT_TRUE(WIFSIGNALED(status));
+    EXPECT_EQ(names().size(), 2U);
+    // The next run that writes to the folder removes them.
+    ASSERT_EQ(test::run_command("mesh make sphere " + (scratch / "s.ply").string() + " --vertices 500 --quiet").code, 0);
+    EXPECT_TRUE(names().empty());
+    EXPECT_EQ(remove_stale_temporaries(scratch.path()), 0U);
+}
+
+TEST(AtomicFile, ManyMayWaitAtOnce) {
+    const Scratch scratch;
+    {
+        OutputTransaction waiting;
+        for (int i = 0; i < 400; ++i) write_file(scratch / (std::to_string(i) + ".txt"), "x");
+        EXPECT_EQ(remove_stale_temporaries(scratch.path()), 0U);
+        EXPECT_EQ(test::count_files(scratch.path()), 400U);
+        waiting.commit();
+    }
+    EXPECT_EQ(test::count_files(scratch.path()), 400U);
+    EXPECT_EQ(read_file(scratch / "399.txt"), "x");
 }
 
 TEST(AtomicFile, RefusesFoldersAndMissingFolders) {

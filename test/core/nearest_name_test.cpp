@@ -46,6 +46,13 @@ TEST(NearestName, WithinTwoEditsOrOneInThreeLetters) {
     EXPECT_EQ(nearest_name("dekorazion", names), "decoration");
     EXPECT_EQ(nearest_name("spout", names), "");
     EXPECT_EQ(nearest_name("", {"abc"}), "");
+    EXPECT_EQ(nearest_name("HANDLE", names), "handle") << "capital letters or not";
+    const std::vector<std::string> parts{"seat width", "seat depth", "Back height", "leg"};
+    EXPECT_EQ(nearest_name("seet width", parts), "seat width");
+    EXPECT_EQ(nearest_name("back hight", parts), "Back height");
+    EXPECT_EQ(nearest_name("height", parts), "Back height") << "the only one with that word";
+    EXPECT_EQ(nearest_name("seat", parts), "") << "two of them";
+    EXPECT_EQ(nearest_name("idth", parts), "") << "no word begins so";
     EXPECT_EQ(nearest_name("x", {}), "");
 }
 

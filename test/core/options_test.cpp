@@ -20,6 +20,7 @@ struct Sample {
     std::vector<double> heights;
     std::optional<double> limit;
     Colour colour = Colour::red;
+    std::string where;
 
     void describe(OptionList& visit) {
         visit("on", on, "a switch");
@@ -32,6 +33,10 @@ struct Sample {
         visit("heights", heights, "numbers", Range{0, 100});
         visit("limit", limit, "if there is one", Range{-1, 1});
         visit("colour", colour, "an enumeration", Choices{"red", "green"});
+        visit("where", where, "a place", Words{{"top", "left"}, "a letter", [](const std::string& text) {
+                                                   if (text.size() != 1 && text != "top" && text != "left")
+                                                       throw Error(ErrorKind::usage, "", "option where is '" + text + "'");
+                                               }});
     }
 };
 
@@ -79,13 +84,34 @@ TEST(Options, AreSetAndChecked) {
                                      {"seed", "-1"}})
         EXPECT_NE(refused(sample, name, {word}).find("option " + name), std::string::npos) << name << " " << word;
     EXPECT_NE(refused(sample, "count", {"1", "2"}), "");
+    for (const char* word : {"top", "left", "q"}) EXPECT_EQ(refused(sample, "where", {word}), "") << word;
+    EXPECT_NE(refused(sample, "where", {"aside"}), "");
+}
+
+TEST(Options, AmountsWithAUnitOrADecimalCommaSayHowToWriteThem) {
+    Sample sample;
+    const auto says = [&](const std::string& name, const std::string& word, const std::string& remedy) {
+        const std::string message = refused(sample, name, {word});
+        EXPECT_NE(message.find(remedy), std::string::npos) << message;
+        EXPECT_NE(message.find("'" + word + "'"), std::string::npos) << message;
+    };
+    says("limit", "0,5", "write 0.5, with a decimal point");
+    says("limit", "2cm", "write the number alone: 2 (");
+    says("limit", "2 mm", "--unit");
+    says("share", "50%", "write 0.5, a share");
+    says("share", "0,5 of it", "write the number alone: 0.5 (share of the diagonal)");
+    says("heights", "2,4mm", "write the number alone: 4 (");
+    says("count", "5k", "use a value from 1 to 10");
+    says("limit", "wide", "use a value from -1 to 1");
+    says("colour", "Gren", "did you mean 'green'? use one of: red, green");
+    EXPECT_EQ(refused(sample, "heights", {"2,4"}), "");
 }
 
 TEST(Options, StructsAreCheckedAndListed) {
     Sample sample;
     EXPECT_NO_THROW(check_options(sample, "here"));
     const auto list = list_options(sample);
-    ASSERT_EQ(list.size(), 10U);
+    ASSERT_EQ(list.size(), 11U);
     EXPECT_EQ(list[0], (std::pair<std::string, std::string>{"on", "true"}));
     EXPECT_EQ(list[3].second, "0.5");
     EXPECT_EQ(list[4].second, "");

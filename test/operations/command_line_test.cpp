@@ -32,6 +32,56 @@ TEST(CommandLine, WrongFlagsAreNamedWithTheNearest) {
     expect_refusal("mesh info " + vase + " --threads 1 --threads 2", "ostraka: mesh info: --threads");
 }
 
+TEST(CommandLine, WhatIsMissingIsNamedWithTheWayToGiveIt) {
+    expect_refusal("annotation list " + vase,
+                   "annotations is missing (give its annotations (.ant.json): ostraka annotation list MESH ANNOTATIONS");
+    expect_refusal("mesh convert " + vase, "output is missing");
+    expect_refusal("measure refresh " + vase, "--annotations is missing");
+    expect_refusal("measure refresh " + vase, "(.ant.json): --annotations FILE");
+    expect_refusal("measure take " + vase, "--tool is missing");
+    expect_refusal("measure describe " + vase + " " + annotations, "give it as --annotations " + annotations);
+    expect_refusal("measure describe " + vase + " --annotation belly", "add --annotations FILE");
+    expect_refusal("render " + vase, "1 argument is given");
+    const auto whole = run_command("measure describe " + vase);
+    EXPECT_EQ(whole.code, 0) << whole.err;
+    EXPECT_NE(whole.err.find("--annotations FILE describes its parts"), std::string::npos) << whole.err;
+}
+
+TEST(CommandLine, HelpIsAWordToo) {
+    EXPECT_EQ(run_command("help").out, run_command("--help").out);
+    EXPECT_NE(run_command("help").out.find("annotation"), std::string::npos);
+    for (const std::string words : {"annotation", "annotation select", "study make", "mesh info"}) {
+        const auto result = run_command("help " + words);
+        EXPECT_EQ(result.code, 0) << words << result.err;
+        EXPECT_EQ(result.out, run_command(words + " --help").out) << words;
+    }
+    EXPECT_EQ(run_command("annotation help").out, run_command("annotation --help").out);
+    expect_refusal("help anotation", "did you mean 'annotation'");
+    expect_refusal("help no", "is no command");
+}
+
+TEST(CommandLine, AmountsAreNumbersWithADecimalPoint) {
+    expect_refusal("slice " + vase + " --spacing 2cm", "write the number alone: 2 (the mesh's unit)");
+    expect_refusal("slice " + vase + " --spacing 0,5", "write 0.5, with a decimal point");
+    expect_refusal("annotation select " + vase + " x.ant.json --tag t --brush 3 --radius 2mm", "--unit");
+}
+
+TEST(CommandLine, NamesAreSuggestedWhateverTheirCase) {
+    const auto take = [](const std::string& name) {
+        const auto result = run_command("measure take " + vase + " --tool bounding --direction z --annotations " + annotations +
+                                        " --annotation '" + name + "'");
+        EXPECT_EQ(result.code, 1) << name;
+        return result.err;
+    };
+    EXPECT_NE(take("rigth handel").find("did you mean 'right handle'"), std::string::npos);
+    EXPECT_NE(take("BELLY").find("did you mean 'belly'"), std::string::npos);
+    EXPECT_NE(take("girth").find("did you mean 'widest girth'"), std::string::npos);
+    const auto edited = run_command("annotation edit " + vase + " " + annotations + " x.ant.json --annotation Shoulder --tag s");
+    EXPECT_NE(edited.err.find("did you mean 'shoulder'"), std::string::npos) << edited.err;
+    expect_refusal("measure take " + vase + " --tool Rular", "did you mean 'ruler'");
+    expect_refusal("Annotation list", "did you mean 'annotation'");
+}
+
 TEST(CommandLine, AFlagHasItsValue) {
     const Scratch scratch;
     const std::string out = (scratch / "x.ply").string();
@@ -44,6 +94,21 @@ TEST(CommandLine, AFlagHasItsValue) {
     ASSERT_EQ(run_command(edit + "--set-unit= " + edited.string()).code, 0);
     EXPECT_EQ(find_member(read_json(edited), "unit"), nullptr);
     expect_refusal(edit + edited.string() + " --annotation 1 --tag ''", "--tag is ''");
+}
+
+TEST(CommandLine, DirectionsAndViewsAreTakenAsTheHelpNamesThem) {
+    const Scratch scratch;
+    const auto select = [&](const std::string& flags) {
+        std::filesystem::remove(scratch / "a.ant.json");
+        return run_command("annotation select " + vase + " " + (scratch / "a.ant.json").string() +
+                           " --tag t --rectangle 300,200,900,700 " + flags);
+    };
+    for (const char* up : {"x", "y", "z", "-x", "-y", "-z", "0,1,0", "-0.5,1,0"})
+        EXPECT_EQ(select(std::string("--up ") + up).code, 0) << up;
+    for (const char* view : {"front", "back", "left", "right", "top", "bottom", "iso", "-30,20"})
+        EXPECT_EQ(select(std::string("--view ") + view).code, 0) << view;
+    expect_refusal("measure clay " + vase + " --up sideways", "use x, y, z, -x, -y, -z or three numbers");
+    expect_refusal("render " + vase + " " + (scratch / "p.png").string() + " --view under", "top, bottom, iso or azimuth");
 }
 
 TEST(CommandLine, NamesThatBeginWithADash) {
@@ -98,6 +163,12 @@ TEST(CommandLine, CompletionKnowsWhatAllCommandsHave) {
     EXPECT_EQ(run_command("--complete mesh info --show ''").out, "csv\njson\nmarkdown\ntable\n");
     EXPECT_EQ(run_command("--complete mesh info --threads ''").out, "");
     EXPECT_EQ(run_command("--complete mesh info - x").code, 0);
+    EXPECT_EQ(run_command("--complete render a.ply --view b").out, "back\nbottom\n");
+    EXPECT_EQ(run_command("--complete annotation select a.ply --type ''").out, "line\npoint\nregion\n");
+    EXPECT_EQ(run_command("--complete relation extract a.ply --type adj").out, "adjacency\n");
+    EXPECT_EQ(run_command("--complete slice a.ply --up -").out, "-x\n-y\n-z\n");
+    EXPECT_EQ(run_command("--complete slice a.ply --ax").out, "--axes\n");
+    EXPECT_EQ(run_command("--complete relation ''").out, "add\ncheck\nexport\nextract\nlist\nremove\n");
 }
 
 }  // namespace

@@ -219,6 +219,24 @@ TEST_F(EveryOperation, IsDeclaredOnceAndSoundly) {
     }
 }
 
+TEST_F(EveryOperation, TakesWhatItsHelpNames) {
+    for (const OperationEntry& entry : operations()) {
+        const Call declared(entry);
+        for (const Option& option : declared.parameters().options) {
+            SCOPED_TRACE(std::string(entry.name) + " --" + option.name);
+            EXPECT_EQ(option.help.find("x, y, z"), std::string::npos) << "directions are named by the rule, not by the help";
+            EXPECT_EQ(std::holds_alternative<Words>(option.rule) && option.names().empty(), false);
+            const auto take = [&](const std::vector<std::string>& words) {
+                Call call(entry);
+                EXPECT_NO_THROW(call.option(option.name).set(words)) << joined(words);
+                EXPECT_EQ(call.option(option.name).texts(), words);
+            };
+            for (const std::string& name : option.names()) take({name});
+            if (!option.needed && !option.empty() && !option.texts().front().empty()) take(option.texts());
+        }
+    }
+}
+
 TEST_F(EveryOperation, RunsHereOrHasATestOfItsOwn) {
     // What asks for data that takes long to make is run by the tests of its module.
     std::set<std::string> run{"study landmarks", "template turn", "pair"};

@@ -161,6 +161,19 @@ TEST_F(RenderCommand, AnnotationsTakeTheirColours) {
               0);
 }
 
+TEST_F(RenderCommand, OutlinesOfLargerRegionsDoNotRunOverSmallerOnes) {
+    // The larger region ends at the diagonal of the front, both triangles of which the smaller one covers.
+    const Path annotations = scratch.file("cube.ant.json", R"({"format": "ostraka-annotations", "version": 1, "annotations": [
+          {"id": 1, "tag": "small", "colour": [200, 30, 10], "type": "region", "faces": [0, 1]},
+          {"id": 2, "tag": "large", "colour": [10, 200, 30], "type": "region", "faces": [1, 2, 3, 4]}]})");
+    ASSERT_EQ(run("--no-legend --size 300x300 --view front --annotations " + annotations.string()).code, 0);
+    EXPECT_EQ(picture().at(150, 130), pixel({200, 30, 10}));
+    std::size_t dark = 0;
+    for (int x = 120; x < 180; ++x)
+        for (int y = 120; y < 180; ++y) dark += picture().at(x, y) != pixel({200, 30, 10}) ? 1 : 0;
+    EXPECT_EQ(dark, 0U);
+}
+
 TEST_F(RenderCommand, LabelsOfTheFileAreShown) {
     std::ostringstream ply;
     const Scene scene = test::cube();

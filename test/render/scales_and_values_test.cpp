@@ -9,9 +9,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <set>
 
 namespace ostraka {
 namespace {
@@ -81,6 +84,47 @@ TEST(ColourScale, RoundLengths) {
     EXPECT_EQ(round_length(std::numeric_limits<double>::infinity()), 0);
     EXPECT_GT(round_length(1e308), 0);
     EXPECT_GT(round_length(1e-300), 0);
+}
+
+/// CIE L*a*b* of a colour as eyes of one kind see it: `eye` is a matrix on linear red, green and blue (Machado, Oliveira and
+/// Fernandes 2009).
+std::array<double, 3> lab(const Rgb& colour, const std::array<std::array<double, 3>, 3>& eye) {
+    std::array<double, 3> linear{}, seen{};
+    const std::array<int, 3> channels{colour.red, colour.green, colour.blue};
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double c = channels[k] / 255.0;
+        linear[k] = c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+    }
+    for (std::size_t i = 0; i < 3; ++i)
+        seen[i] = std::clamp(eye[i][0] * linear[0] + eye[i][1] * linear[1] + eye[i][2] * linear[2], 0.0, 1.0);
+    const auto f = [](double t) { return t > 0.008856 ? std::cbrt(t) : 7.787 * t + 16.0 / 116; };
+    const double x = f((0.4124 * seen[0] + 0.3576 * seen[1] + 0.1805 * seen[2]) / 0.95047),
+                 y = f(0.2126 * seen[0] + 0.7152 * seen[1] + 0.0722 * seen[2]),
+                 z = f((0.0193 * seen[0] + 0.1192 * seen[1] + 0.9505 * seen[2]) / 1.08883);
+    return {116 * y - 16, 500 * (x - y), 200 * (y - z)};
+}
+
+TEST(CategoryColours, AreToldApartByColourBlindReaders) {
+    const std::array<std::array<std::array<double, 3>, 3>, 4> eyes{
+        {{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
+         {{{0.152286, 1.052583, -0.204868}, {0.114503, 0.786281, 0.099216}, {-0.003882, -0.048116, 1.051998}}},
+         {{{0.367322, 0.860646, -0.227968}, {0.280085, 0.672501, 0.047413}, {-0.011820, 0.042940, 0.968881}}},
+         {{{1.255528, -0.076749, -0.178779}, {-0.078411, 0.930809, 0.147602}, {0.004733, 0.691367, 0.303900}}}}};
+    for (const auto& eye : eyes)
+        for (std::size_t i = 0; i < category_hues; ++i)
+            for (std::size_t j = 0; j < i; ++j) {
+                const auto a = lab(category_colour(i), eye), b = lab(category_colour(j), eye);
+                EXPECT_GT(std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]), 15) << i << ' ' << j;
+            }
+    std::set<std::array<int, 3>> all;
+    for (std::size_t i = 0; i < category_count; ++i) {
+        const Rgb colour = category_colour(i);
+        all.insert({colour.red, colour.green, colour.blue});
+        // Calm: no channel stands at its end while another is at the other.
+        EXPECT_LT(std::max({colour.red, colour.green, colour.blue}) - std::min({colour.red, colour.green, colour.blue}), 110);
+    }
+    EXPECT_EQ(all.size(), category_count);
+    EXPECT_EQ(category_colour(category_count), category_colour(0));
 }
 
 TEST(View, AxesAreRightHandedAndStandardViewsExact) {

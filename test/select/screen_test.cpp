@@ -49,7 +49,7 @@ Sight brute_force(const Mesh& mesh, Vertex vertex, const Vector& ray, double max
 /// 10,000 pairs of a random vertex and a random camera.
 void compare_with_brute_force(const Mesh& mesh) {
     std::mt19937_64 random(5);
-    const SurfaceSearch search(mesh, false);
+    const SurfaceSearch search(mesh);
     const double diagonal = box_diagonal(mesh);
     std::size_t compared = 0, doubtful = 0, hidden = 0;
     for (int k = 0; k < 8; ++k) {
@@ -109,7 +109,7 @@ TEST(Screen, ARectangleOnATileSeenFromAbove) {
 
 TEST(Screen, OfAConvexShapeWhatFacesTheEyeIsVisible) {
     const Mesh mesh = spheres(4);
-    const SurfaceSearch search(mesh, false);
+    const SurfaceSearch search(mesh);
     const auto all = [](const Pixel&) { return true; };
     for (const bool perspective : {false, true})
         for (const char* view : {"30,20", "front", "top", "200,-50"}) {
@@ -158,7 +158,7 @@ TEST(Screen, APixelOfAPictureSelectsWhatIsSeenThere) {
     MakeOptions make;
     make.vertices = 4000;
     const Mesh mesh = make_mesh(synthetic_object("teapot"), make).mesh;
-    const SurfaceSearch search(mesh, false);
+    const SurfaceSearch search(mesh);
     const std::array<Rgb, 3> palette{Rgb{255, 0, 0}, Rgb{0, 255, 0}, Rgb{0, 0, 255}};
     Scene scene;
     scene.mesh = to_soup(mesh);

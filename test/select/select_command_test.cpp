@@ -2,6 +2,7 @@
 #include "annotation/example_meshes.h"
 #include "mutate.h"
 #include "ostraka/annotation/annotation_file.h"
+#include "ostraka/annotation/colouring.h"
 #include "ostraka/core/error.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/operations/table.h"
@@ -56,6 +57,33 @@ TEST(SelectCommand, StepsAreRecordedAndReplayedToTheByte) {
     EXPECT_EQ(set.find(2)->tag, "ring");
     EXPECT_EQ(set.find(6)->colour, (std::array<int, 3>{1, 2, 3}));
     EXPECT_EQ(run_command("annotation check " + folder.at("ball.ply") + " " + folder.at("a.ant.json")).code, 0);
+}
+
+TEST(SelectCommand, ASecondPartOfOneTagIsSaid) {
+    const Folder folder;
+    ASSERT_EQ(folder.select("--tag cap --sphere 0,0,1,0.5").err, "");
+    const auto second = folder.select("--tag cap --sphere 0,0,-1,0.5");
+    EXPECT_EQ(second.code, 0);
+    EXPECT_NE(second.err.find("a second annotation 'cap' is added beside that of id 0"), std::string::npos) << second.err;
+    EXPECT_NE(second.err.find("--action 'add to' --id 0"), std::string::npos) << second.err;
+    EXPECT_EQ(folder.select("--action 'add to' --id 0 --sphere 1,0,0,0.5").err, "");
+    const auto taken = folder.select("--tag cap --id 0 --sphere 1,0,0,0.5");
+    EXPECT_EQ(taken.code, 1);
+    EXPECT_NE(taken.err.find("'add to'"), std::string::npos) << taken.err;
+}
+
+TEST(SelectCommand, ColoursTellPartsFromTheWhole) {
+    const Folder folder;
+    ASSERT_EQ(folder.select("--class ball --tag cap --sphere 0,0,1,0.5").code, 0);
+    ASSERT_EQ(folder.select("--tag nearly --halfspace 0,0,-0.99,0,0,1").code, 0);
+    ASSERT_EQ(folder.select("--tag foot --sphere 0,0,-1,0.5").code, 0);
+    const Mesh mesh = read_mesh(folder / "ball.ply").mesh;
+    const AnnotationSet set = read_annotations(folder / "a.ant.json", mesh);
+    ASSERT_EQ(set.annotations.size(), 4U);
+    EXPECT_EQ(set.annotations[0].colour, neutral_colour) << "the whole object";
+    EXPECT_EQ(set.annotations[1].colour, distinct_colour(0));
+    EXPECT_EQ(set.annotations[2].colour, neutral_colour) << "all but a few faces";
+    EXPECT_EQ(set.annotations[3].colour, distinct_colour(1));
 }
 
 TEST(SelectCommand, ANewFileKeepsClassUnitAndUp) {
@@ -176,7 +204,7 @@ TEST(SelectCommand, BringsObjectsInMemoryUpToDate) {
         if (set) call.set_object("annotations", *set);
         if (recipe) call.set_object("record", *recipe);
         else call.want("recipe");
-        call.set("tag", "part");
+        call.set("tag", "part " + std::to_string(count));
         Json sphere = parse_json("[0, 0, 1, 0.5]", "sphere"), values(rapidjson::kObjectType);
         values.AddMember("sphere", sphere, values.GetAllocator());
         call.set(values);

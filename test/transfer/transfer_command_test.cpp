@@ -96,6 +96,17 @@ TEST_F(TransferCommand, BadInputIsOneNamesTheFileAndTouchesNothing) {
     fails(transfer("", "cut.ply"), "cut.ply");
 }
 
+TEST_F(TransferCommand, SmallMisalignmentIsNoted) {
+    const CommandResult good = transfer("");
+    EXPECT_EQ(good.err.find("apart on average"), std::string::npos) << good.err;
+    write_mesh(scratch / "swollen.ply", build_mesh(moved(octahedron_sphere(5), 1.05, {0, 0, 0})));
+    const CommandResult result = transfer("--json --max-distance 0.1", "swollen.ply");
+    ASSERT_EQ(result.code, 0) << result.err;
+    EXPECT_NE(result.err.find("apart on average"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("scaled by 1.05"), std::string::npos) << result.err;
+    EXPECT_NEAR(parse_json(result.out, "report")["result"]["meanDistance"].GetDouble(), 0.05, 0.005);
+}
+
 TEST_F(TransferCommand, FullDiskLeavesTheEarlierFile) {
     write_file(scratch / "o.ant.json", "earlier");
     const CommandResult result = transfer("", "t.ply", "o.ant.json", "ulimit -f 1;");

@@ -93,8 +93,9 @@ ex:other a skos:Concept ; skos:inScheme <https://example.org/another> ; skos:pre
     EXPECT_EQ(vase.definition.at("en"), "holds flowers");
     EXPECT_EQ(vase.others.size(), 5U) << "notation, related, broader elsewhere, a second definition, scopeNote";
     EXPECT_EQ(vocabulary.concepts[2].id, "lip");
-    ASSERT_EQ(vocabulary.notes.size(), 2U);
-    EXPECT_TRUE(holds(vocabulary.notes[0], "creator"));
+    ASSERT_EQ(vocabulary.notes.size(), 3U);
+    EXPECT_TRUE(holds(vocabulary.notes[0], "1 concept of other schemes"));
+    EXPECT_TRUE(holds(vocabulary.notes[1], "creator"));
     // What was kept is written again.
     EXPECT_TRUE(holds(vocabulary_to_skos(vocabulary, false, "v"), "http://elsewhere.example/pot"));
     const std::string two =
@@ -102,6 +103,29 @@ ex:other a skos:Concept ; skos:inScheme <https://example.org/another> ; skos:pre
     expect_error(two, false, "v.ttl: ", "2 concept schemes");
     EXPECT_EQ(vocabulary_from_skos(two, false, "v", "https://example.org/things/b").concepts.size(), 1U);
     EXPECT_THROW(vocabulary_from_skos(two, false, "v", "https://example.org/things/c"), Error);
+}
+
+TEST(Skos, WhatIsNotKeptIsNoted) {
+    const Vocabulary vocabulary = vocabulary_from_skos(head + R"(
+@prefix xl: <http://www.w3.org/2008/05/skos-xl#> .
+@prefix xsd: <http://www.w3.org/2001/XMLSchema#> .
+ex:scheme a skos:ConceptScheme .
+ex:vase a skos:Concept ; skos:inScheme ex:scheme ; skos:prefLabel "vase"^^xsd:string, "Vase"@de ; xl:prefLabel ex:label .
+ex:label a xl:Label ; xl:literalForm "vase"@en .
+ex:jug a skos:Concept ; skos:inScheme ex:scheme ; skos:prefLabel "jug"@en .
+ex:cup a skos:Concept ; skos:inScheme ex:scheme ; skos:prefLabel "cup"@en .
+ex:shapes a skos:Collection ; skos:prefLabel "by shape"@en ; skos:member ex:vase, ex:jug .
+[] a skos:OrderedCollection ; skos:memberList ( ex:cup ex:jug ex:vase ) .
+ex:somebody <http://xmlns.com/foaf/0.1/name> "somebody" .
+)",
+                                                       false, "v");
+    ASSERT_EQ(vocabulary.concepts.size(), 3U);
+    EXPECT_EQ(vocabulary.concepts[0].labels, (Labels{{"", "vase"}, {"de", "Vase"}})) << "a text with its datatype is a text";
+    ASSERT_EQ(vocabulary.notes.size(), 3U);
+    EXPECT_TRUE(holds(vocabulary.notes[0], "2 collections with 5 members not kept: 'by shape', one without a name"))
+        << vocabulary.notes[0];
+    EXPECT_TRUE(holds(vocabulary.notes[1], "1 label of SKOS-XL")) << vocabulary.notes[1];
+    EXPECT_TRUE(holds(vocabulary.notes[2], "1 thing")) << vocabulary.notes[2];
 }
 
 TEST(Skos, WhatDoesNotParseIsNamedWithItsLine) {

@@ -57,11 +57,14 @@ struct Attribute {
 
 enum class AnnotationType { point, line, region };
 
+/// The colour of what tells no part from another: the whole object.
+inline constexpr std::array<int, 3> neutral_colour{190, 190, 190};
+
 /// Selections are plain indices of the mesh they belong to. Exactly one of `points`, `polylines`, `faces` is used.
 struct Annotation {
     int id = 0;
     std::string tag;
-    std::array<int, 3> colour{128, 128, 128};  ///< red, green, blue, 0 to 255
+    std::array<int, 3> colour = neutral_colour;  ///< red, green, blue, 0 to 255
     AnnotationType type = AnnotationType::region;
     std::vector<Index> points;                  ///< vertices, in the order given
     std::vector<std::vector<Index>> polylines;  ///< successive vertices joined by edges; closed when first = last

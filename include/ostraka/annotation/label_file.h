@@ -21,7 +21,8 @@ void write_labels(const Path& file, const std::vector<std::int32_t>& labels);
 /// Names of labels: a JSON object {"0": "head", ...} or list ["head", ...]. Throws Error (input).
 std::map<std::int32_t, std::string> read_label_names(const Path& file);
 
-/// One region per label but `no_label`, in ascending order: id = label, tag = its name or "part N", colours that differ. Linear.
+/// One region per label but `no_label`, in ascending order: id = label, tag = its name or "part N", colours of
+/// colour_regions. Linear.
 AnnotationSet regions_from_labels(const Mesh& mesh, const std::vector<std::int32_t>& face_labels,
                                   const std::map<std::int32_t, std::string>& names = {});
 
@@ -30,8 +31,5 @@ std::vector<std::int32_t> face_labels_from_vertices(const Mesh& mesh, const std:
 
 /// Per face the id of the smallest region (by area, then by place in the set) that covers it; the whole object does not count.
 std::vector<std::int32_t> labels_of(const Mesh& mesh, const AnnotationSet& set);
-
-/// Colour number `index` of an endless list in which neighbours differ well.
-std::array<int, 3> distinct_colour(std::size_t index);
 
 }  // namespace ostraka

@@ -104,8 +104,9 @@ private:
 /// it) remembers what was written; what is not on it, or was changed since, stays. Throws std::logic_error where none is open.
 void replace_outputs(const Path& folder, const std::string& owner);
 
-/// Removes the temporary files that AtomicFile left in `folder` when its process was killed: regular files named as it names
-/// them, and not touched for a day (a younger one may be another process's). Returns how many.
+/// Removes the temporary files that AtomicFile left in `folder` when its process was killed: regular files named as it names them
+/// that no process holds locked; where files cannot be locked, those not touched for a day. AtomicFile does so when its process
+/// first writes to a folder. Returns how many.
 std::size_t remove_stale_temporaries(const Path& folder);
 
 /// Writes `bytes` atomically to `file`.

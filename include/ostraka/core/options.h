@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <initializer_list>
 #include <optional>
 #include <string>
@@ -31,7 +32,14 @@ struct Choices {
     Choices(std::initializer_list<const char*> list) : names(list.begin(), list.end()) {}
     explicit Choices(std::vector<std::string> list) : names(std::move(list)) {}
 };
-using OptionRule = std::variant<Anything, Range, Choices>;
+/// Words that a text may be, beside other values: help and completion offer them.
+struct Words {
+    std::vector<std::string> names;
+    std::string others;  ///< what else it may be: "three numbers"
+    /// Throws Error (usage) for a text that is neither; empty: the operation checks.
+    std::function<void(const std::string&)> check = {};
+};
+using OptionRule = std::variant<Anything, Range, Choices, Words>;
 
 /// An enumeration whose values 0, 1, ... are named by the option's Choices in their order.
 struct EnumValue {
@@ -110,6 +118,8 @@ struct Option {
     void check(const std::string& where = {}) const;
     /// "a number from 0 to 1", "one of: a, b".
     [[nodiscard]] std::string allowed() const;
+    /// The words that its Choices or Words name.
+    [[nodiscard]] std::vector<std::string> names() const;
 };
 
 class OptionList {

@@ -11,6 +11,9 @@ std::string commands_page(const std::string& first_word);
 /// The first words of all names, in the order of the table: one page each.
 std::vector<std::string> command_pages();
 
+/// "ostraka mesh convert INPUT OUTPUT [options]": how an operation is called with its arguments in this order.
+std::string usage_of(const Call& call, const std::vector<std::string>& order);
+
 /// "ostraka-mesh-info": a manual page (troff, section 1) on one operation.
 std::string manual_name(const OperationEntry& entry);
 std::string manual_page(const OperationEntry& entry);

@@ -23,8 +23,11 @@ ColourScale scale_of(const std::vector<const std::vector<double>*>& values, cons
 /// The colour of a value; a neutral grey for values that are not numbers.
 Rgb colour_of(const ColourScale& scale, double value);
 
-/// Colours for things without an order, easily distinguished: the hue turns by the golden angle from one index to the next.
+/// Colours for things without an order. The first `category_hues` are Paul Tol's muted scheme with a lighter indigo, which
+/// colour-blind readers can tell apart, in an order that puts the most different ones first; then come lighter and darker ones of
+/// the same hues in turn, and after `category_count` all again.
 Rgb category_colour(std::size_t index);
+inline constexpr std::size_t category_hues = 9, category_count = 63;
 
 /// The largest of 1, 2 and 5 times a power of ten that is not above `length`; 0 unless length is positive and finite.
 double round_length(double length);

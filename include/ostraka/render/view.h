@@ -1,6 +1,8 @@
 // Where a picture is taken from.
 #pragma once
 
+#include "ostraka/core/options.h"
+
 #include <array>
 #include <string>
 #include <vector>
@@ -17,6 +19,9 @@ struct View {
 /// "front", "back", "left", "right", "top", "bottom", "iso" (45, 35.26) or "azimuth,elevation" in degrees.
 /// Throws Error (usage) for anything else.
 View parse_view(const std::string& text);
+
+/// What `parse_view` takes, as the rule of an option.
+Words view_words();
 
 /// What `--views` asks for: "six" gives front, right, back, left, top, bottom.
 std::vector<View> standard_views();

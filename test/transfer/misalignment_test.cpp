@@ -1,0 +1,87 @@
+#include "ostraka/transfer/misalignment.h"
+
+#include "meshes.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/synthetic/make_mesh.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace ostraka;
+using ostraka::test::octahedron_sphere;
+
+namespace {
+
+Mesh made(const std::string& name, std::uint64_t vertices) {
+    MakeOptions options;
+    options.vertices = vertices;
+    return make_mesh(synthetic_object(name), options).mesh;
+}
+
+Misalignment between(const Mesh& source, const Mesh& target) {
+    const SurfaceSearch search(target);
+    return find_misalignment(source, search);
+}
+
+/// Turned about an axis through the middle of its box, then scaled about it, then moved by a share of the diagonal.
+Mesh placed(Mesh mesh, double degrees, const Vector& axis, double scale, const Vector& shift) {
+    const CGAL::Bbox_3 box = bounding_box(mesh);
+    const double diagonal = box_diagonal(mesh), angle = degrees * CGAL_PI / 180;
+    const Point middle((box.xmin() + box.xmax()) / 2, (box.ymin() + box.ymax()) / 2, (box.zmin() + box.zmax()) / 2);
+    for (const Vertex v : mesh.vertices()) {
+        const Vector p = mesh.point(v) - middle;
+        const Vector turned =
+            std::cos(angle) * p + std::sin(angle) * CGAL::cross_product(axis, p) + (1 - std::cos(angle)) * (axis * p) * axis;
+        mesh.point(v) = middle + scale * turned + diagonal * shift;
+    }
+    return mesh;
+}
+
+}  // namespace
+
+TEST(Misalignment, ResolutionsOfOneSurfaceDoNotStandOut) {
+    for (const char* name : {"teapot", "vase", "chair", "hand", "statuette"}) {
+        const Mesh coarse = made(name, 2500), fine = made(name, 8000);
+        EXPECT_FALSE(between(coarse, fine).stands_out) << name;
+        EXPECT_FALSE(between(fine, coarse).stands_out) << name;
+        EXPECT_LT(between(fine, fine).distance, 1e-12 * box_diagonal(fine)) << name;
+    }
+    for (const int level : {1, 2, 3, 4})
+        for (const int other : {1, 2, 3, 4, 5})
+            EXPECT_FALSE(between(build_mesh(octahedron_sphere(level)), build_mesh(octahedron_sphere(other))).stands_out)
+                << level << ' ' << other;
+}
+
+TEST(Misalignment, SmallMotionsAreFound) {
+    const Mesh coarse = made("teapot", 2000), fine = made("teapot", 6000);
+    const double diagonal = box_diagonal(coarse);
+    for (const Vector& axis : {Vector(1, 0, 0), Vector(0, 1, 0), Vector(0, 0, 1)}) {
+        const Misalignment turned = between(coarse, placed(fine, 3, axis, 1, {0, 0, 0}));
+        ASSERT_TRUE(turned.stands_out) << axis;
+        EXPECT_NEAR(turned.rotation, 3, 0.3) << axis;
+        EXPECT_NEAR(turned.scale, 1, 0.005) << axis;
+        const Misalignment moved = between(coarse, placed(fine, 0, axis, 1, 0.01 * axis));
+        ASSERT_TRUE(moved.stands_out) << axis;
+        EXPECT_NEAR(moved.shift, 0.01 * diagonal, 0.001 * diagonal) << axis;
+    }
+    for (const double scale : {0.95, 1.05}) {
+        const Misalignment scaled = between(coarse, placed(fine, 0, {0, 0, 1}, scale, {0, 0, 0}));
+        ASSERT_TRUE(scaled.stands_out) << scale;
+        EXPECT_NEAR(scaled.scale, scale, 0.005) << scale;
+        EXPECT_GT(scaled.distance, 3 * scaled.distance_left) << scale;
+        EXPECT_NE(in_words(scaled, diagonal, "mm").find(" mm apart on average"), std::string::npos);
+    }
+}
+
+TEST(Misalignment, IsTheSameForAnyNumberOfThreads) {
+    const Mesh coarse = made("teapot", 2000), turned = placed(made("teapot", 4000), 3, {1, 0, 0}, 1, {0, 0, 0});
+    set_threads(1);
+    const Misalignment one = between(coarse, turned);
+    set_threads(2);
+    const Misalignment two = between(coarse, turned);
+    set_threads(0);
+    EXPECT_EQ(one.distance, two.distance);
+    EXPECT_EQ(one.distance_left, two.distance_left);
+    EXPECT_EQ(one.rotation, two.rotation);
+}
