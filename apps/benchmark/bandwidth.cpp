@@ -2,6 +2,8 @@
 #include "benchmarks.h"
 #include "ostraka/core/parallel.h"
 
+#include <algorithm>
+#include <chrono>
 #include <cstring>
 #include <numeric>
 #include <string>
@@ -24,18 +26,31 @@ void measure(benchmark::State& state, int thread_count, std::size_t count, std::
 }
 
 /// Sums words through eight independent accumulators, so that no chain of additions holds up the loads.
-void read_memory(benchmark::State& state, int thread_count) {
-    std::vector<std::uint64_t> words(array_bytes / 8);
-    std::iota(words.begin(), words.end(), 0);
+std::uint64_t sum_of(const std::vector<std::uint64_t>& words) {
     std::vector<std::uint64_t> sums(words.size() / block_words);
-    measure(state, thread_count, words.size(), block_words, array_bytes, [&](std::size_t begin, std::size_t end) {
+    parallel_blocks(words.size(), block_words, [&](std::size_t begin, std::size_t end) {
         std::uint64_t part[8] = {};
         for (std::size_t i = begin; i + 8 <= end; i += 8)
             for (std::size_t k = 0; k < 8; ++k) part[k] += words[i + k];
         sums[begin / block_words] = std::accumulate(std::begin(part), std::end(part), std::uint64_t{0});
     });
+    return std::accumulate(sums.begin(), sums.end(), std::uint64_t{0});
+}
+
+std::vector<std::uint64_t> numbered_words() {
+    std::vector<std::uint64_t> words(array_bytes / 8);
+    std::iota(words.begin(), words.end(), 0);
+    return words;
+}
+
+void read_memory(benchmark::State& state, int thread_count) {
+    const std::vector<std::uint64_t> words = numbered_words();
     const std::uint64_t n = words.size();
-    if (std::accumulate(sums.begin(), sums.end(), std::uint64_t{0}) != n * (n - 1) / 2) state.SkipWithError("wrong sum");
+    set_threads(thread_count);
+    for ([[maybe_unused]] const auto lap : state)
+        if (sum_of(words) != n * (n - 1) / 2) state.SkipWithError("wrong sum");
+    set_threads(0);
+    state.SetBytesProcessed(static_cast<std::int64_t>(state.iterations() * array_bytes));
 }
 
 void copy_memory(benchmark::State& state, int thread_count) {
@@ -76,6 +91,19 @@ void area_vectors(benchmark::State& state, int thread_count) {
 }
 
 }  // namespace
+
+double memory_bandwidth(int thread_count) {
+    const std::vector<std::uint64_t> words = numbered_words();
+    double fastest = 1e9;
+    set_threads(thread_count);
+    for (int lap = 0; lap < 5; ++lap) {
+        const auto start = std::chrono::steady_clock::now();
+        benchmark::DoNotOptimize(sum_of(words));
+        fastest = std::min(fastest, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    }
+    set_threads(0);
+    return static_cast<double>(array_bytes) / fastest;
+}
 
 void register_bandwidth_benchmarks() {
     const std::pair<const char*, void (*)(benchmark::State&, int)> loops[] = {{"memory/read", read_memory},

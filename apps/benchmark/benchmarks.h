@@ -7,6 +7,9 @@
 
 #include <benchmark/benchmark.h>
 
+#include <string>
+#include <vector>
+
 namespace ostraka::bench {
 
 /// Runs the built command, so it must come first: what this process holds counts as the command's memory as long as the
@@ -27,6 +30,33 @@ void register_fitting_benchmarks();
 inline void with_both_times(benchmark::internal::Benchmark* run) {
     run->UseRealTime()->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond);
 }
+
+/// What a figure is meant to be at most: a counter of a benchmark, or "seconds", its wall time. The page shows it.
+void set_aim(const std::string& benchmark, const std::string& figure, double at_most);
+
+/// What is measured goes to the console and, at the end, into a page: for each group (the first word of a name) that was measured
+/// and that the page has a place for, between the lines "<!-- measured: group -->" and "<!-- end of group -->".
+class PageReporter : public benchmark::ConsoleReporter {
+public:
+    PageReporter() : ConsoleReporter(OO_Tabular) {}
+    void ReportRuns(const std::vector<Run>& runs) override;
+    /// Throws Error if the page cannot be read or written.
+    void write(const Path& page) const;
+
+private:
+    std::vector<Run> runs_;
+};
+
+/// What a transfer cannot do without, as a program of its own: reads a mesh, its annotations and another mesh, named by the three
+/// arguments after this one, and builds CGAL's tree over the latter. Returns the exit code.
+inline constexpr const char* read_and_build_tree = "--read-and-build-tree";
+int run_read_and_build_tree(const std::vector<std::string>& files);
+
+/// Bytes a second that loops read from memory at best.
+double memory_bandwidth(int thread_count);
+
+/// The time to build CGAL's AABB tree over a mesh, on one thread. Freeing it is not counted.
+double seconds_of_cgal_tree(const Mesh& mesh);
 
 /// A teapot of 50,000 vertices; ten of its parts (body, base, spout, handle, knob, flowers ...) are regions.
 struct Source {

@@ -1,5 +1,7 @@
 // The built command as a whole: wall time, processor time, peak memory.
 #include "benchmarks.h"
+#include "ostraka/annotation/annotation_file.h"
+#include "ostraka/io/mesh_file.h"
 
 #include <fcntl.h>
 #include <sys/resource.h>
@@ -22,8 +24,8 @@ struct CommandResult {
 double seconds(const timeval& time) { return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec); }
 
 /// A child's peak counts from the moment it splits from this process, so this process must be smaller than what is measured.
-CommandResult run_command(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), OSTRAKA_COMMAND);
+CommandResult run_program(const std::string& program, std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), program);
     std::vector<char*> pointers;
     for (std::string& argument : arguments) pointers.push_back(argument.data());
     pointers.push_back(nullptr);
@@ -45,6 +47,8 @@ CommandResult run_command(std::vector<std::string> arguments) {
     run.peak_bytes = 1024.0 * static_cast<double>(usage.ru_maxrss);
     return run;
 }
+
+CommandResult run_command(std::vector<std::string> arguments) { return run_program(OSTRAKA_COMMAND, std::move(arguments)); }
 
 std::string path_of(const std::string& name) { return (scratch_folder() / name).string(); }
 
@@ -72,31 +76,64 @@ void report(benchmark::State& state, const CommandResult& run, std::size_t verti
     state.counters["peak_B_per_vertex"] = run.peak_bytes / static_cast<double>(vertices);
 }
 
-void measure_command(benchmark::State& state, const std::vector<std::string>& arguments, std::size_t vertices) {
+CommandResult measure_command(benchmark::State& state, const std::vector<std::string>& arguments, std::size_t vertices,
+                              const std::string& program = OSTRAKA_COMMAND) {
+    CommandResult run;
     for ([[maybe_unused]] const auto lap : state) {
         rusage own{};
         ::getrusage(RUSAGE_SELF, &own);
-        const CommandResult run = run_command(arguments);
+        run = run_program(program, arguments);
         if (run.exit_code != 0) state.SkipWithError(("exit code " + std::to_string(run.exit_code)).c_str());
         else if (run.peak_bytes < 2048.0 * static_cast<double>(own.ru_maxrss))
             state.SkipWithError("this process is too large for a measurement: run the command benchmarks alone");
         report(state, run, vertices);
     }
+    return run;
 }
 
-void transfer_command(benchmark::State& state, std::size_t vertices, const std::vector<std::string>& more) {
-    const std::string name = "target" + std::to_string(vertices) + ".ply";
-    if (!make_teapot("source.ply", 50'000, 1) || !make_teapot(name, vertices, 2) ||
-        run_command({"annotation", "apply", path_of("source.ply"), path_of("source.ant.json"), "--from-ply-labels", "--quiet"})
-                .exit_code != 0) {
+std::string target_file(std::size_t vertices) { return "target" + std::to_string(vertices) + ".ply"; }
+
+bool make_transfer_files(std::size_t vertices) {
+    static std::map<std::size_t, bool> made;
+    const auto [known, is_new] = made.try_emplace(vertices, false);
+    if (is_new)
+        known->second = make_teapot("source.ply", 50'000, 1) && make_teapot(target_file(vertices), vertices, 2) &&
+                        run_command({"annotation", "apply", path_of("source.ply"), path_of("source.ant.json"),
+                                     "--from-ply-labels", "--quiet"})
+                                .exit_code == 0;
+    return known->second;
+}
+
+/// Wall time of reading a transfer's input and of building CGAL's tree over the target, by target vertices.
+std::map<std::size_t, double> least_seconds;
+
+void read_and_build(benchmark::State& state, std::size_t vertices) {
+    if (!make_transfer_files(vertices)) {
         state.SkipWithError("the inputs could not be made");
         return;
     }
-    std::vector<std::string> arguments{
-        "annotation", "transfer", path_of("source.ply"), path_of("source.ant.json"), path_of(name), path_of("result.ant.json"),
-        "--quiet"};
+    const CommandResult run = measure_command(
+        state, {read_and_build_tree, path_of("source.ply"), path_of("source.ant.json"), path_of(target_file(vertices))}, vertices,
+        "/proc/self/exe");
+    if (run.exit_code == 0) least_seconds[vertices] = run.seconds;
+}
+
+void transfer_command(benchmark::State& state, std::size_t vertices, const std::vector<std::string>& more) {
+    if (!make_transfer_files(vertices)) {
+        state.SkipWithError("the inputs could not be made");
+        return;
+    }
+    std::vector<std::string> arguments{"annotation",
+                                       "transfer",
+                                       path_of("source.ply"),
+                                       path_of("source.ant.json"),
+                                       path_of(target_file(vertices)),
+                                       path_of("result.ant.json"),
+                                       "--quiet"};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    measure_command(state, arguments, vertices);
+    const CommandResult run = measure_command(state, arguments, vertices);
+    if (const auto least = least_seconds.find(vertices); least != least_seconds.end())
+        state.counters["of_reading_and_cgal_tree"] = run.seconds / least->second;
 }
 
 void million_command(benchmark::State& state, std::vector<std::string> arguments, const std::vector<std::string>& more) {
@@ -111,21 +148,37 @@ void million_command(benchmark::State& state, std::vector<std::string> arguments
 
 }  // namespace
 
+int run_read_and_build_tree(const std::vector<std::string>& files) {
+    const Mesh source = read_mesh(files[0]).mesh;
+    const AnnotationSet annotations = read_annotations(files[1], source);
+    const Mesh target = read_mesh(files[2]).mesh;
+    return !annotations.annotations.empty() && seconds_of_cgal_tree(target) > 0 ? 0 : 1;
+}
+
 void register_command_benchmarks() {
     const auto add = [](const std::string& name, auto run) {
         benchmark::RegisterBenchmark(("command/" + name).c_str(), run)
             ->UseManualTime()
             ->Iterations(1)
             ->Unit(benchmark::kMillisecond);
+        return "command/" + name;
     };
-    for (const std::size_t vertices : {1'000'000, 8'000'000})
-        for (const bool overlap : {false, true})
-            add("transfer" + std::string(overlap ? "" : "_without_overlap") + "/" + std::to_string(vertices),
-                [vertices, overlap](benchmark::State& state) {
-                    transfer_command(state, vertices,
-                                     overlap ? std::vector<std::string>{} : std::vector<std::string>{"--no-overlap"});
-                });
+    for (const std::size_t vertices : {1'000'000, 8'000'000}) {
+        const std::string ending = "/" + std::to_string(vertices);
+        add("reading_and_cgal_tree" + ending, [vertices](benchmark::State& state) { read_and_build(state, vertices); });
+        for (const bool overlap : {false, true}) {
+            const std::string name =
+                add("transfer" + std::string(overlap ? "" : "_without_overlap") + ending,
+                    [vertices, overlap](benchmark::State& state) {
+                        transfer_command(state, vertices,
+                                         overlap ? std::vector<std::string>{} : std::vector<std::string>{"--no-overlap"});
+                    });
+            set_aim(name, "of_reading_and_cgal_tree", 1.5);
+            set_aim(name, "peak_B_per_vertex", 600);
+        }
+    }
     add("mesh_info/1000000", [](benchmark::State& state) { million_command(state, {"mesh", "info"}, {"--quiet"}); });
+    set_aim("command/render/1000000", "seconds", 2);
     add("render/1000000", [](benchmark::State& state) {
         million_command(state, {"render"}, {path_of("million.png"), "--quiet"});
     });

@@ -82,6 +82,7 @@ void register_reading_benchmarks() {
     with_both_times(benchmark::RegisterBenchmark("info/all_checks", [](benchmark::State& state) { mesh_info(state, true); }));
     with_both_times(benchmark::RegisterBenchmark("info/without_self_intersections",
                                                  [](benchmark::State& state) { mesh_info(state, false); }));
+    for (const char* name : {"info/all_checks", "info/without_self_intersections"}) set_aim(name, "reading_by_checks", 1);
 }
 
 }  // namespace ostraka::bench

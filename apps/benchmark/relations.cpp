@@ -46,6 +46,9 @@ void find_topology(benchmark::State& state) {
 
 }  // namespace
 
-void register_relation_benchmarks() { with_both_times(benchmark::RegisterBenchmark("relation/topology/500000", find_topology)); }
+void register_relation_benchmarks() {
+    with_both_times(benchmark::RegisterBenchmark("relation/topology/500000", find_topology));
+    set_aim("relation/topology/500000", "seconds", 1);
+}
 
 }  // namespace ostraka::bench

@@ -73,7 +73,7 @@ double robust_mean(const std::vector<double>& lengths, const std::vector<double>
 
 class Caster {
 public:
-    explicit Caster(const Mesh& mesh) : search_(mesh, false), diagonal_(search_.diagonal()) {}
+    explicit Caster(const Mesh& mesh) : search_(mesh), diagonal_(search_.diagonal()) {}
 
     /// The way from `origin` to the first face, other than the one it starts from, that the ray leaves the solid through;
     /// `expected` says how far is looked at first.

@@ -58,7 +58,7 @@ std::vector<double> turns(const Mesh& mesh, const std::vector<Vector>& normals) 
 }
 
 Walls walls_under(const Mesh& mesh, const std::vector<Vector>& normals, std::size_t step) {
-    const SurfaceSearch search(mesh, false);
+    const SurfaceSearch search(mesh);
     const double diagonal = search.diagonal();
     constexpr int count = 9;
     constexpr double half = 12 * pi / 180;

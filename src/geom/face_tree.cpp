@@ -1,12 +1,16 @@
 #include "face_tree.h"
 
-#include "ostraka/core/angles.h"
+#include "face_order.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/geom/eigen.h"
 
+#include <CGAL/Intersections_3/Segment_3_Triangle_3.h>
+
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 namespace ostraka {
 
@@ -15,191 +19,320 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr std::uint32_t leaf_size = 6;
+/// Levels of nodes: one a bit of the codes, and faces of equal codes are halved.
+constexpr std::size_t most_levels = 63 + 32;
 /// Single precision: boxes are this much larger, and cones this much wider than they need to be.
 constexpr float slack = 2e-7F;
 constexpr double rounding = 1e-6;
 
-double angle_between(const Vector3d& a, const Vector3d& b) { return 2 * std::atan2((a - b).norm(), (a + b).norm()); }
+Eigen::Array4f floats(const Vector3d& v, float last) {
+    return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()), last};
+}
+Vector3d axis_of(const Eigen::Array4f& cone) { return cone.head<3>().matrix().cast<double>(); }
 
-/// Nodes of a tree over so many faces. Halves differ by one at most, so that each level has two sizes.
-std::uint32_t node_count(std::uint32_t faces) {
-    std::uint32_t nodes = 0;
-    // Of `small` faces there are `few` trees in this level, of one more `many`.
-    std::uint32_t small = faces, few = 1, many = 0;
-    while (few > 0 || many > 0) {
-        nodes += few + many;
-        const std::uint32_t split_few = small > leaf_size ? few : 0, split_many = small + 1 > leaf_size ? many : 0;
-        // small = 2k: k, k; 2k + 1: k, k + 1; and 2k + 2: k + 1, k + 1.
-        const std::uint32_t half = small / 2;
-        few = small % 2 == 0 ? 2 * split_few + split_many : split_few;
-        many = small % 2 == 0 ? split_many : split_few + 2 * split_many;
-        small = half;
-    }
-    return nodes;
+/// Where the faces of a node are parted: where the first bit of their codes that differs changes.
+std::uint32_t part(const FaceOrder& order, std::uint32_t begin, std::uint32_t end) {
+    const std::uint64_t first = order.codes[begin], last = order.codes[end - 1];
+    if (first == last) return begin + (end - begin) / 2;
+    const int bit = 63 - std::countl_zero(first ^ last);
+    const std::uint64_t* const codes = order.codes.get();
+    return static_cast<std::uint32_t>(std::lower_bound(codes + begin, codes + end, last >> bit << bit) - codes);
 }
 
-Vector3d vector_of_place(const std::array<float, 3>& p) { return {p[0], p[1], p[2]}; }
+std::uint32_t node_count(const FaceOrder& order, std::uint32_t begin, std::uint32_t end) {
+    if (end - begin <= leaf_size) return 1;
+    const std::uint32_t middle = part(order, begin, end);
+    return 1 + node_count(order, begin, middle) + node_count(order, middle, end);
+}
+
+/// Half the opening of a cone, from nothing to half a turn.
+struct Opening {
+    double cosine = 1, sine = 0;
+
+    /// At most half a turn.
+    [[nodiscard]] Opening wider_by(const Opening& other) const {
+        const double sum = sine * other.cosine + cosine * other.sine;
+        if (sum < 0) return {-1, 0};
+        return {cosine * other.cosine - sine * other.sine, sum};
+    }
+    void include(const Opening& other) {
+        if (!(other.cosine >= cosine)) *this = other;
+    }
+};
+/// The sine of so small an angle is the angle, and its cosine is 1.
+constexpr Opening rounding_angle{1, rounding};
+
+/// The angle between two vectors.
+Opening between(const Vector3d& a, const Vector3d& b) {
+    const double cosine = a.dot(b), sine = a.cross(b).norm(), length = std::sqrt(cosine * cosine + sine * sine);
+    return {cosine / length, sine / length};
+}
+
+/// Whether the segment pq meets the triangle abc, exactly. Corners on one line make no triangle.
+bool meet(const Point& p, const Point& q, const Point& a, const Point& b, const Point& c) {
+    const CGAL::Orientation at_p = CGAL::orientation(a, b, c, p), at_q = CGAL::orientation(a, b, c, q);
+    if (at_p == at_q) {
+        if (at_p != CGAL::COPLANAR || CGAL::collinear(a, b, c)) return false;
+        const Kernel::Triangle_3 triangle(a, b, c);
+        return p == q ? triangle.has_on(p) : CGAL::do_intersect(Kernel::Segment_3(p, q), triangle);
+    }
+    // Seen from above, the line runs down through the triangle on no edge's right side.
+    const bool down = at_p == CGAL::POSITIVE || at_q == CGAL::NEGATIVE;
+    const Point &above = down ? p : q, &below = down ? q : p;
+    return CGAL::orientation(above, below, a, b) != CGAL::POSITIVE && CGAL::orientation(above, below, b, c) != CGAL::POSITIVE &&
+           CGAL::orientation(above, below, c, a) != CGAL::POSITIVE;
+}
+
+/// A segment that asks boxes whether it may meet them; it never misses one that it meets. Twice the coordinates are used, so that
+/// middles need no halves.
+class SegmentProbe {
+public:
+    SegmentProbe(const Vector3d& from, const Vector3d& to) {
+        margin_ = 1e-14 * (1 + from.cwiseAbs().maxCoeff() + to.cwiseAbs().maxCoeff());
+        for (Eigen::Index k = 0; k < 3; ++k) {
+            sum_[k] = from[k] + to[k];
+            along_[k] = to[k] - from[k];
+            extent_[k] = std::abs(along_[k]);
+        }
+    }
+
+    /// No plane parts the two: neither across an axis, nor along the segment and an axis.
+    [[nodiscard]] bool may_meet(const Eigen::Array4f& low, const Eigen::Array4f& high) const {
+        double away[3], size[3];
+        for (Eigen::Index k = 0; k < 3; ++k) {
+            away[k] = sum_[k] - (static_cast<double>(low[k]) + static_cast<double>(high[k]));
+            size[k] = static_cast<double>(high[k]) - static_cast<double>(low[k]) + margin_;
+            if (std::abs(away[k]) > size[k] + extent_[k]) return false;
+        }
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::size_t i = k == 2 ? 0 : k + 1, j = k == 0 ? 2 : k - 1;
+            if (std::abs(along_[i] * away[j] - along_[j] * away[i]) > size[i] * extent_[j] + size[j] * extent_[i]) return false;
+        }
+        return true;
+    }
+
+private:
+    double sum_[3], along_[3], extent_[3], margin_;
+};
 
 }  // namespace
 
-Vector3d FaceTree::place(const Point& p) const { return eigen(p - middle_) / unit_; }
+Vector3d FaceTree::place(const Point& p) const { return eigen(p - middle_) * scale_; }
 
-FaceTree::FaceTree(const Mesh& mesh, const std::vector<Face>& faces) : mesh_(mesh), middle_(CGAL::ORIGIN) {
-    if (faces.empty()) return;
+FaceTree::FaceTree(const Mesh& mesh) : mesh_(mesh), middle_(CGAL::ORIGIN) {
+    if (mesh.has_garbage()) throw std::logic_error("FaceTree: collect the garbage first");
     const CGAL::Bbox_3 box = bounding_box(mesh);
     middle_ = Point(0.5 * (box.xmin() + box.xmax()), 0.5 * (box.ymin() + box.ymax()), 0.5 * (box.zmin() + box.zmax()));
-    unit_ = box_diagonal(mesh);
-    std::vector<Item> items(faces.size());
-    parallel_for(faces.size(), [&](std::size_t i) {
-        const Vector3d p = place(centroid(mesh, faces[i]));
-        items[i] = {{static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())}, faces[i]};
-    });
-    const auto count = static_cast<std::uint32_t>(faces.size());
-    nodes_.resize(node_count(count));
-    // The upper nodes one after the other, the trees below them side by side.
-    const std::uint32_t small = std::max<std::uint32_t>(count / 64, 1024);
-    std::vector<Range> above, below, todo{{0, 0, count}};
-    while (!todo.empty()) {
-        const Range range = todo.back();
-        todo.pop_back();
-        if (range.end - range.begin <= small) {
-            below.push_back(range);
-            continue;
-        }
-        above.push_back(range);
-        for (const Range& half : split(range, items)) todo.push_back(half);
-    }
+    unit_ = std::hypot(box.xmax() - box.xmin(), box.ymax() - box.ymin(), box.zmax() - box.zmin());
+    scale_ = 1 / unit_;
+    const FaceOrder order = order_faces(mesh, middle_, unit_);
+    size_ = order.count;
+    area_ = order.area;
+    if (size_ > 0) build(order);
+}
+
+void FaceTree::build(const FaceOrder& order) {
+    // The upper nodes and the trees below them, in the order of all nodes; first the trees are counted, then made, side by side.
+    struct Piece {
+        std::uint32_t begin, end;
+        std::uint32_t second;  ///< the piece that is an upper node's second child; 0 for trees
+        std::uint32_t node = 0;
+    };
+    std::vector<Piece> pieces;
+    const std::uint32_t small = std::max<std::uint32_t>(order.count / 64, 1024);
+    const auto cut = [&](const auto& again, std::uint32_t begin, std::uint32_t end) -> void {
+        const std::size_t own = pieces.size();
+        pieces.push_back({begin, end, 0});
+        if (end - begin <= small) return;
+        const std::uint32_t middle = part(order, begin, end);
+        again(again, begin, middle);
+        pieces[own].second = static_cast<std::uint32_t>(pieces.size());
+        again(again, middle, end);
+    };
+    cut(cut, 0, order.count);
+    std::vector<std::uint32_t> nodes(pieces.size(), 1);
     parallel_for(
-        below.size(), [&](std::size_t i) { build(below[i], items); }, 1);
-    for (auto range = above.rbegin(); range != above.rend(); ++range) join(range->node);
-    faces_.resize(items.size());
-    for (std::size_t i = 0; i < items.size(); ++i) faces_[i] = items[i].face;
-}
-
-std::array<FaceTree::Range, 2> FaceTree::split(const Range& range, std::vector<Item>& items) {
-    Place low = items[range.begin].centre, high = low;
-    for (std::uint32_t i = range.begin; i < range.end; ++i)
-        for (std::size_t k = 0; k < 3; ++k) {
-            low[k] = std::min(low[k], items[i].centre[k]);
-            high[k] = std::max(high[k], items[i].centre[k]);
-        }
-    std::size_t axis = 0;
-    for (std::size_t k = 1; k < 3; ++k)
-        if (high[k] - low[k] > high[axis] - low[axis]) axis = k;
-    const std::uint32_t middle = range.begin + (range.end - range.begin) / 2;
-    std::nth_element(items.begin() + range.begin, items.begin() + middle, items.begin() + range.end,
-                     [axis](const Item& a, const Item& b) {
-                         return a.centre[axis] < b.centre[axis] || (a.centre[axis] == b.centre[axis] && a.face < b.face);
-                     });
-    const std::uint32_t second = range.node + 1 + node_count(middle - range.begin);
-    nodes_[range.node].first = second;
-    nodes_[range.node].count = 0;
-    return {Range{range.node + 1, range.begin, middle}, Range{second, middle, range.end}};
-}
-
-void FaceTree::build(const Range& range, std::vector<Item>& items) {
-    if (range.end - range.begin <= leaf_size) {
-        fill(range, items);
-        return;
+        pieces.size(),
+        [&](std::size_t i) {
+            if (pieces[i].second == 0) nodes[i] = node_count(order, pieces[i].begin, pieces[i].end);
+        },
+        1);
+    std::uint32_t count = 0;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        pieces[i].node = count;
+        count += nodes[i];
     }
-    for (const Range& half : split(range, items)) build(half, items);
-    join(range.node);
+    nodes_ = std::make_unique_for_overwrite<Node[]>(count);
+    triangles_ = std::make_unique_for_overwrite<Triangle[]>(order.count);
+    parallel_for(
+        pieces.size(),
+        [&](std::size_t i) {
+            if (pieces[i].second == 0) build(order, pieces[i].begin, pieces[i].end, pieces[i].node);
+        },
+        1);
+    for (auto piece = pieces.rbegin(); piece != pieces.rend(); ++piece) {
+        if (piece->second == 0) continue;
+        nodes_[piece->node].first = pieces[piece->second].node;
+        join(piece->node);
+    }
 }
 
-void FaceTree::fill(const Range& leaf, std::vector<Item>& items) {
-    std::sort(items.begin() + leaf.begin, items.begin() + leaf.end, [](const Item& a, const Item& b) { return a.face < b.face; });
-    Node& node = nodes_[leaf.node];
-    node.first = leaf.begin;
-    node.count = leaf.end - leaf.begin;
-    node.low.fill(std::numeric_limits<float>::infinity());
-    node.high.fill(-std::numeric_limits<float>::infinity());
+/// Makes the nodes of a tree from `node` on; returns the first number that is free after them.
+std::uint32_t FaceTree::build(const FaceOrder& order, std::uint32_t begin, std::uint32_t end, std::uint32_t node) {
+    if (end - begin <= leaf_size) {
+        fill(order, begin, end, nodes_[node]);
+        return node + 1;
+    }
+    const std::uint32_t middle = part(order, begin, end);
+    nodes_[node].first = build(order, begin, middle, node + 1);
+    const std::uint32_t next = build(order, middle, end, nodes_[node].first);
+    join(node);
+    return next;
+}
+
+void FaceTree::fill(const FaceOrder& order, std::uint32_t begin, std::uint32_t end, Node& leaf) {
+    leaf.first = begin;
+    leaf.count = end - begin;
+    leaf.low.setConstant(std::numeric_limits<float>::infinity());
+    leaf.high.setConstant(-std::numeric_limits<float>::infinity());
     std::array<Vector3d, leaf_size> normals;
     Vector3d axis = Vector3d::Zero();
-    for (std::uint32_t i = 0; i < node.count; ++i) {
-        const Face face(items[leaf.begin + i].face);
-        for (const Vertex v : corners(mesh_, face)) {
-            const Vector3d p = place(mesh_.point(v));
-            for (std::size_t k = 0; k < 3; ++k) {
-                const auto x = static_cast<float>(p[static_cast<Eigen::Index>(k)]);
-                node.low[k] = std::min(node.low[k], x - slack);
-                node.high[k] = std::max(node.high[k], x + slack);
-            }
+    for (std::uint32_t i = 0; i < leaf.count; ++i) {
+        Triangle& triangle = triangles_[begin + i];
+        triangle.face = order.faces[begin + i];
+        const auto vertices = corners(mesh_, Face(triangle.face));
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+            triangle.corners[corner] = vertices[corner];
+            const Place p = floats(place(mesh_.point(vertices[corner])), 0);
+            leaf.low = leaf.low.min(p - slack);
+            leaf.high = leaf.high.max(p + slack);
         }
-        const Vector area = area_vector(mesh_, face);
+        const Point& a = mesh_.point(vertices[0]);
+        const Vector area = CGAL::cross_product(mesh_.point(vertices[1]) - a, mesh_.point(vertices[2]) - a);
         normals[i] = eigen(area / std::sqrt(area.squared_length()));
         axis += normals[i];
     }
-    double opening = axis.norm() > rounding ? 0 : pi;
-    axis.normalize();
-    for (std::size_t k = 0; k < 3; ++k) node.axis[k] = static_cast<float>(axis[static_cast<Eigen::Index>(k)]);
-    for (std::uint32_t i = 0; i < node.count; ++i)
-        opening = std::max(opening, angle_between(vector_of_place(node.axis), normals[i]) + rounding);
-    opening = std::min(opening, pi);
-    node.cosine = static_cast<float>(std::cos(opening));
-    node.sine = static_cast<float>(std::sin(opening));
+    leaf.low[3] = leaf.high[3] = 0;
+    Opening opening{-1, 0};
+    if (axis.norm() > rounding) {
+        leaf.cone = floats(axis.normalized(), 0);
+        const Vector3d stored = axis_of(leaf.cone).normalized();
+        double cosine = 1;
+        for (std::uint32_t i = 0; i < leaf.count; ++i)
+            cosine = std::min(cosine, stored.dot(normals[i]));
+        opening = Opening{cosine, std::sqrt(std::max(0.0, 1 - cosine * cosine))}.wider_by(rounding_angle);
+    } else {
+        leaf.cone = floats(Vector3d::UnitZ(), 0);
+    }
+    leaf.cone[3] = static_cast<float>(opening.cosine);
+    leaf.sine = static_cast<float>(opening.sine);
 }
 
 void FaceTree::join(std::uint32_t number) {
     Node& node = nodes_[number];
+    node.count = 0;
     const Node &a = nodes_[number + 1], &b = nodes_[node.first];
-    for (std::size_t k = 0; k < 3; ++k) {
-        node.low[k] = std::min(a.low[k], b.low[k]);
-        node.high[k] = std::max(a.high[k], b.high[k]);
-    }
-    Vector3d axis = vector_of_place(a.axis) + vector_of_place(b.axis);
-    double opening = pi;
-    if (axis.norm() > rounding) {
-        axis.normalize();
-        for (std::size_t k = 0; k < 3; ++k) node.axis[k] = static_cast<float>(axis[static_cast<Eigen::Index>(k)]);
-        opening = 0;
+    node.low = a.low.min(b.low);
+    node.high = a.high.max(b.high);
+    const Vector3d axis = axis_of(a.cone) + axis_of(b.cone);
+    Opening opening{-1, 0};
+    if (a.cone[3] > -1 && b.cone[3] > -1 && axis.norm() > rounding) {
+        node.cone = floats(axis.normalized(), 0);
+        opening = {};
         for (const Node* child : {&a, &b})
-            opening = std::max(opening, angle_between(vector_of_place(node.axis), vector_of_place(child->axis)) +
-                                            std::atan2(child->sine, child->cosine) + rounding);
-        opening = std::min(opening, pi);
+            opening.include(between(axis_of(node.cone), axis_of(child->cone))
+                                .wider_by({child->cone[3], child->sine})
+                                .wider_by(rounding_angle));
     } else {
-        node.axis = {0, 0, 1};
+        node.cone = floats(Vector3d::UnitZ(), 0);
     }
-    node.cosine = static_cast<float>(std::cos(opening));
-    node.sine = static_cast<float>(std::sin(opening));
+    node.cone[3] = static_cast<float>(opening.cosine);
+    node.sine = static_cast<float>(opening.sine);
 }
+
+/// A search for the nearest face under way.
+struct FaceTree::Search {
+    const FaceTree& tree;
+    const Point& query;
+    const Vector& normal;
+    double min_cosine;
+    double bound;  ///< squared distance
+    std::optional<SurfaceHit> best;
+
+    Place from, direction;  ///< of the query, in single precision; the direction is as long as the normal
+    float margin;           ///< by which boxes may seem too far away
+    float limit;            ///< not less than the bound, in the unit of boxes
+    float turn_cosine, turn_sine, length;
+
+    Search(const FaceTree& faces, const Point& from_point, const Vector& along, double least_cosine, double search_radius)
+        : tree(faces), query(from_point), normal(along), min_cosine(least_cosine), bound(search_radius * search_radius) {
+        const Vector3d at = tree.place(query);
+        from = floats(at, 0);
+        direction = floats(eigen(normal), 0);
+        // Boxes have room for the rounding of places among them; farther away it grows.
+        margin = static_cast<float>(2e-7 * std::max(0.0, at.cwiseAbs().maxCoeff() - 1));
+        turn_cosine = static_cast<float>(std::clamp(min_cosine, -1.0, 1.0));
+        turn_sine = std::sqrt(1 - turn_cosine * turn_cosine);
+        length = direction.matrix().norm();
+        set_limit();
+    }
+
+    void set_limit() {
+        const double above = bound / (tree.unit_ * tree.unit_) * (1 + 1e-5);
+        using Single = std::numeric_limits<float>;
+        limit = above < Single::max() ? static_cast<float>(above) : Single::infinity();
+    }
+    [[nodiscard]] bool any_normal() const { return min_cosine <= -1; }
+
+    /// Squared, in the unit of boxes.
+    [[nodiscard]] float distance(const Node& node) const {
+        return ((node.low - from).max(from - node.high) - margin).max(0).matrix().squaredNorm();
+    }
+    /// No normal is within what is asked for if the cone's axis is farther off than that and half of its opening together.
+    [[nodiscard]] bool is_turned_away(const Node& node) const {
+        constexpr auto uncertain = static_cast<float>(rounding);
+        return !any_normal() && node.cone[3] > -turn_cosine + uncertain &&
+               (direction * node.cone).sum() < length * (node.cone[3] * turn_cosine - node.sine * turn_sine - uncertain);
+    }
+
+    void consider(Index face, const Point& a, const Point& b, const Point& c) {
+        SurfaceHit hit;
+        hit.face = face;
+        hit.barycentric = nearest_barycentric(a, b, c, query);
+        hit.point = point_at(a, b, c, hit.barycentric);
+        const double squared = CGAL::squared_distance(hit.point, query);
+        if (squared > bound || (best && squared == bound && hit.face > best->face)) return;
+        if (!any_normal()) {
+            const Vector n = CGAL::cross_product(b - a, c - a);
+            if (n / std::sqrt(n.squared_length()) * normal < min_cosine) return;
+        }
+        bound = squared;
+        set_limit();
+        best = hit;
+    }
+};
 
 std::optional<SurfaceHit> FaceTree::closest(const Point& query, const Vector& normal, double min_cosine,
                                             double search_radius) const {
-    if (nodes_.empty() || !(search_radius >= 0)) return std::nullopt;
-    const Vector3d from = place(query), direction = eigen(normal);
-    const bool any = min_cosine <= -1;
-    const double cosine = std::clamp(min_cosine, -1.0, 1.0), sine = std::sqrt(1 - cosine * cosine), length = direction.norm();
-    std::optional<SurfaceHit> best;
-    double bound = search_radius * search_radius;  // squared distance
-    const auto distance = [&](const Node& node) {
-        // No normal is within what is asked for if the cone's axis is farther off than that and half of its opening together.
-        if (!any && node.cosine > -cosine + rounding &&
-            direction.dot(vector_of_place(node.axis)) < length * (node.cosine * cosine - node.sine * sine - rounding))
-            return std::numeric_limits<double>::infinity();
-        double squared = 0;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const double x = from[static_cast<Eigen::Index>(k)], off = std::max({node.low[k] - x, x - node.high[k], 0.0});
-            squared += off * off;
-        }
-        return squared * unit_ * unit_;
-    };
+    if (size_ == 0 || !(search_radius >= 0)) return std::nullopt;
+    Search search(*this, query, normal, min_cosine, search_radius);
     struct Waiting {
         std::uint32_t node;
-        double squared;
+        float squared;
     };
-    std::array<Waiting, 64> stack;
+    std::array<Waiting, most_levels + 1> stack;
     std::size_t waiting = 0;
-    const auto push = [&](std::uint32_t node, double squared) {
-        if (squared <= bound) stack[waiting++] = {node, squared};
+    const auto push = [&](std::uint32_t node, float squared) {
+        if (!(squared > search.limit) && !search.is_turned_away(nodes_[node])) stack[waiting++] = {node, squared};
     };
-    push(0, distance(nodes_[0]));
+    push(0, search.distance(nodes_[0]));
     while (waiting > 0) {
         const Waiting next = stack[--waiting];
-        if (next.squared > bound) continue;
+        if (next.squared > search.limit) continue;
         const Node& node = nodes_[next.node];
         if (node.count == 0) {
             const std::uint32_t a = next.node + 1, b = node.first;
-            const double to_a = distance(nodes_[a]), to_b = distance(nodes_[b]);
+            const float to_a = search.distance(nodes_[a]), to_b = search.distance(nodes_[b]);
             if (to_a <= to_b) {
                 push(b, to_b);
                 push(a, to_a);
@@ -210,25 +343,56 @@ std::optional<SurfaceHit> FaceTree::closest(const Point& query, const Vector& no
             continue;
         }
         for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-            const Face face(faces_[i]);
-            const auto [a, b, c] = corners(mesh_, face);
-            const Point &pa = mesh_.point(a), &pb = mesh_.point(b), &pc = mesh_.point(c);
-            if (!any) {
-                const Vector n = CGAL::cross_product(pb - pa, pc - pa);
-                if (n / std::sqrt(n.squared_length()) * normal < min_cosine) continue;
-            }
-            SurfaceHit hit;
-            hit.face = face;
-            hit.barycentric = nearest_barycentric(pa, pb, pc, query);
-            hit.point = point_at(mesh_, hit.face, hit.barycentric);
-            const double squared = CGAL::squared_distance(hit.point, query);
-            if (squared > bound || (best && squared == bound && hit.face > best->face)) continue;
-            bound = squared;
-            best = hit;
+            const auto& [a, b, c] = triangles_[i].corners;
+            search.consider(triangles_[i].face, mesh_.point(Vertex(a)), mesh_.point(Vertex(b)), mesh_.point(Vertex(c)));
         }
     }
-    if (best) best->distance = std::sqrt(bound);
-    return best;
+    if (search.best) search.best->distance = std::sqrt(search.bound);
+    return search.best;
+}
+
+/// Calls `visit(face)` for each face that the segment meets until it says false.
+template <class Visit>
+void FaceTree::along(const Point& from, const Point& to, const Visit& visit) const {
+    if (size_ == 0) return;
+    const SegmentProbe probe(place(from), place(to));
+    std::array<std::uint32_t, most_levels + 1> stack;
+    std::size_t waiting = 0;
+    stack[waiting++] = 0;
+    while (waiting > 0) {
+        const std::uint32_t number = stack[--waiting];
+        const Node& node = nodes_[number];
+        if (!probe.may_meet(node.low, node.high)) continue;
+        if (node.count == 0) {
+            stack[waiting++] = node.first;
+            stack[waiting++] = number + 1;
+            continue;
+        }
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+            const auto& [a, b, c] = triangles_[i].corners;
+            if (meet(from, to, mesh_.point(Vertex(a)), mesh_.point(Vertex(b)), mesh_.point(Vertex(c))) &&
+                !visit(triangles_[i].face))
+                return;
+        }
+    }
+}
+
+std::vector<Index> FaceTree::met(const Point& from, const Point& to) const {
+    std::vector<Index> faces;
+    along(from, to, [&](Index face) {
+        faces.push_back(face);
+        return true;
+    });
+    return faces;
+}
+
+bool FaceTree::meets(const Point& from, const Point& to, const std::function<bool(Index)>& ignored) const {
+    bool found = false;
+    along(from, to, [&](Index face) {
+        found = !ignored(face);
+        return !found;
+    });
+    return found;
 }
 
 }  // namespace ostraka

@@ -32,7 +32,26 @@ double distance_to_polyline(const Point& p, const std::vector<Point>& polyline) 
     return best;
 }
 
-PathSearch::PathSearch(const Mesh& mesh) : mesh_(mesh), records_(mesh.number_of_vertices()) {}
+PathSearch::PathSearch(const Mesh& mesh) : mesh_(mesh), records_(1024) {}
+
+PathSearch::Record& PathSearch::record(Index vertex) {
+    if (2 * used_ >= records_.size()) {
+        std::vector<Record> smaller(2 * records_.size());
+        std::swap(records_, smaller);
+        used_ = 0;
+        for (const Record& old : smaller)
+            if (old.search == search_) record(old.vertex) = old;
+    }
+    const std::size_t mask = records_.size() - 1;
+    std::size_t place = (vertex * std::size_t{0x9e3779b97f4a7c15}) >> 20 & mask;  // Knuth's multiplicative hashing
+    while (records_[place].search == search_ && records_[place].vertex != vertex) place = (place + 1) & mask;
+    Record& found = records_[place];
+    if (found.search != search_) {
+        ++used_;
+        found = {vertex, search_, no_index, false, std::numeric_limits<double>::infinity(), 0};
+    }
+    return found;
+}
 
 std::vector<Index> PathSearch::find(Vertex from, Vertex to, const Query& query) {
     if (from == to) return {static_cast<Index>(from)};
@@ -57,44 +76,49 @@ std::vector<Index> PathSearch::search(Vertex from, const std::function<bool(Vert
                                       const std::function<double(Vertex)>& bound, const std::vector<Point>& guide,
                                       const Query& query) {
     if (mesh_.is_isolated(from)) return {};
-    if (++stamp_ == 0) {
+    used_ = 0;
+    if (++search_ == 0) {
         std::fill(records_.begin(), records_.end(), Record{});
-        stamp_ = 1;
+        search_ = 1;
     }
     const double limit = query.limit > 0 ? query.limit : std::numeric_limits<double>::infinity();
     using Entry = std::tuple<double, Index>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-    records_[from] = {stamp_, false, no_index, 0, 0};
+    record(from).cost = 0;
     queue.emplace(bound(from), from);
     Vertex reached = Mesh::null_vertex();
     while (!queue.empty()) {
         const Vertex v(std::get<1>(queue.top()));
         queue.pop();
-        if (records_[v].settled) continue;
-        records_[v].settled = true;
+        Record& current = record(v);
+        if (current.settled) continue;
+        current.settled = true;
+        const double cost_to_v = current.cost, length_to_v = current.length;
         if (is_goal(v)) {
             reached = v;
             break;
         }
         for (const Halfedge h : CGAL::halfedges_around_source(v, mesh_)) {
             const Vertex w = mesh_.target(h);
-            Record& record = records_[w];
-            if (record.stamp == stamp_ && record.settled) continue;
+            Record& next = record(w);
+            if (next.settled) continue;
             if (query.blocked && query.blocked(w) && !is_goal(w)) continue;
             const double edge = std::sqrt(CGAL::squared_distance(mesh_.point(v), mesh_.point(w)));
-            const double length = records_[v].length + edge;
+            const double length = length_to_v + edge;
             if (length > limit) continue;
             double step = query.metric == PathMetric::segment ? 0 : edge;
             if (query.metric != PathMetric::euclidean) step += distance_to_polyline(mesh_.point(w), guide);
-            const double cost = records_[v].cost + step;
-            if (record.stamp == stamp_ && record.cost <= cost) continue;
-            record = {stamp_, false, static_cast<Index>(v), cost, length};
+            const double cost = cost_to_v + step;
+            if (next.cost <= cost) continue;
+            next.previous = v;
+            next.cost = cost;
+            next.length = length;
             queue.emplace(cost + bound(w), w);
         }
     }
     std::vector<Index> path;
     if (reached == Mesh::null_vertex()) return path;
-    for (Index v = reached; v != no_index; v = records_[Vertex(v)].previous) path.push_back(v);
+    for (Index v = reached; v != no_index; v = record(v).previous) path.push_back(v);
     std::reverse(path.begin(), path.end());
     return path;
 }

@@ -22,7 +22,7 @@ std::string size_of(const ScreenCamera& camera) { return digits(camera.width, 6)
 }  // namespace
 
 const SurfaceSearch& ExpressionEvaluator::search(const std::string& at) const {
-    if (!search_) in_place(at, [&] { search_.emplace(mesh_, false); });
+    if (!search_) in_place(at, [&] { search_.emplace(mesh_); });
     return *search_;
 }
 

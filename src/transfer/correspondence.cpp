@@ -96,41 +96,81 @@ struct Moments {
     double volume = 0;                                   ///< signed, about the centre, as a share of area times extent
 };
 
+/// Sums over faces: those about any place, and those about the centre, which need it.
+struct PlaceSums {
+    double area = 0;
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+    Eigen::Array3d squares = Eigen::Array3d::Zero(), products = Eigen::Array3d::Zero();  ///< xx, yy, zz; yz, zx, xy
+    void add(const PlaceSums& other) {
+        area += other.area;
+        centre += other.centre;
+        squares += other.squares;
+        products += other.products;
+    }
+};
+struct CentralSums {
+    Eigen::Vector3d cubes = Eigen::Vector3d::Zero();
+    double volume = 0, extent = 0;
+    void add(const CentralSums& other) {
+        cubes += other.cubes;
+        volume += other.volume;
+        extent = std::max(extent, other.extent);
+    }
+};
+
+/// What `add_face(sums, face)` adds up over all faces: block by block, in their order.
+template <class Sums, class AddFace>
+Sums sums_over_faces(const Mesh& mesh, const AddFace& add_face) {
+    constexpr std::size_t block = 16384;
+    std::vector<Sums> parts((mesh.number_of_faces() + block - 1) / block);
+    parallel_blocks(mesh.number_of_faces(), block, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t f = begin; f < end; ++f) add_face(parts[begin / block], Face(static_cast<Index>(f)));
+    });
+    Sums sums;
+    for (const Sums& part : parts) sums.add(part);
+    return sums;
+}
+
 Moments moments(const Mesh& mesh) {
     Moments m;
-    double area = 0;
     const CGAL::Bbox_3 box = bounding_box(mesh);
     const Eigen::Vector3d origin(box.xmin(), box.ymin(), box.zmin());
     const auto position = [&](Vertex v) -> Eigen::Vector3d {
         return Eigen::Vector3d(mesh.point(v).x(), mesh.point(v).y(), mesh.point(v).z()) - origin;
     };
-    for (const Face f : mesh.faces()) {
+    const auto about_origin = sums_over_faces<PlaceSums>(mesh, [&](PlaceSums& sums, Face f) {
         const auto [a, b, c] = corners(mesh, f);
         const Eigen::Vector3d p = position(a), q = position(b), r = position(c), s = p + q + r;
-        const double w = face_area(mesh, f);
-        area += w;
-        m.centre += w / 3 * s;
-        m.covariance += w / 12 * (p * p.transpose() + q * q.transpose() + r * r.transpose() + s * s.transpose());
-    }
+        const double w = (q - p).cross(r - p).norm() / 2;
+        sums.area += w;
+        sums.centre += w / 3 * s;
+        for (Eigen::Index i = 0; i < 3; ++i) {
+            const Eigen::Index j = i == 2 ? 0 : i + 1, k = i == 0 ? 2 : i - 1;
+            sums.squares[i] += w / 12 * (p[i] * p[i] + q[i] * q[i] + r[i] * r[i] + s[i] * s[i]);
+            sums.products[i] += w / 12 * (p[j] * p[k] + q[j] * q[k] + r[j] * r[k] + s[j] * s[k]);
+        }
+    });
+    const double area = about_origin.area;
     if (area > 0) {
-        m.centre /= area;
-        m.covariance = m.covariance / area - m.centre * m.centre.transpose();
+        m.centre = about_origin.centre / area;
+        const Eigen::Array3d &square = about_origin.squares, &product = about_origin.products;
+        m.covariance << square[0], product[2], product[1], product[2], square[1], product[0], product[1], product[0], square[2];
+        m.covariance = (m.covariance / area - m.centre * m.centre.transpose()).eval();
     }
-    double extent = 0;
-    for (const Face f : mesh.faces()) {
+    const auto about_centre = sums_over_faces<CentralSums>(mesh, [&](CentralSums& sums, Face f) {
         const auto [a, b, c] = corners(mesh, f);
         const Eigen::Vector3d p = position(a) - m.centre, q = position(b) - m.centre, r = position(c) - m.centre,
                               g = (p + q + r) / 3;
-        const double w = face_area(mesh, f);
-        m.skewness += w * Eigen::Vector3d(g.array().cube());
-        m.volume += p.dot(q.cross(r)) / 6;
-        extent = std::max(extent, g.norm());
-    }
+        sums.cubes += (q - p).cross(r - p).norm() / 2 * Eigen::Vector3d(g.array().cube());
+        sums.volume += p.dot(q.cross(r)) / 6;
+        sums.extent = std::max(sums.extent, g.squaredNorm());
+    });
+    const double extent = std::sqrt(about_centre.extent);
     if (area > 0 && extent > 0) {
-        m.volume /= area * extent;
+        m.volume = about_centre.volume / (area * extent);
         for (int i = 0; i < 3; ++i) {
             const double deviation = std::sqrt(std::max(0.0, m.covariance(i, i)));
-            m.skewness[i] = deviation > 1e-6 * extent ? m.skewness[i] / (area * deviation * deviation * deviation) : 0;
+            if (deviation > 1e-6 * extent) m.skewness[i] = about_centre.cubes[i] / (area * deviation * deviation * deviation);
         }
     }
     m.centre += origin;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <unordered_map>
 
@@ -18,10 +19,6 @@ struct RoundingGoal {
     double edge = 0;       ///< typical edge length of the target
     bool coarser = false;  ///< the target cannot show the outline's detail: a shorter outline is as good, and no teeth are added
 };
-
-double edge_length(const Mesh& mesh, Halfedge h) {
-    return std::sqrt(CGAL::squared_distance(mesh.point(mesh.source(h)), mesh.point(mesh.target(h))));
-}
 
 bool is_selected(const Mesh& mesh, const std::vector<bool>& selected, Halfedge h) {
     return !mesh.is_border(h) && selected[mesh.face(h)];
@@ -55,89 +52,133 @@ bool can_flip(const Mesh& mesh, const std::vector<bool>& selected, Face f, doubl
     return outline_edges == 1 ? changes == 0 : changes == 2;
 }
 
-/// Moves single faces across the outline of `selected`, never changing the topology of the region. `shares` tells of the faces
-/// near the true outline which share of them lies inside; only those move. `balance` off: each goes to the side that holds most
-/// of it. On: one face at a time, that one changes sides which lowers
-///     20 |A / A_source - 1| + |P / P_source - 1| + 6 W / (h P_source)
-/// most, until none does. W is the area on the wrong side: faces cut in halves may change sides at no cost, and they are enough
-/// to meet area A and perimeter P. O(k m) for k faces and m moves, both small beside the mesh.
-void round_region(const Mesh& mesh, std::vector<bool>& selected, const std::vector<std::pair<Index, double>>& shares,
-                  const RoundingGoal& goal, bool balance) {
-    double change = 0;
-    if (!balance || !(goal.area > 0) || !(goal.perimeter > 0)) {
-        // A flip may open the way for its neighbours.
-        for (int pass = 0; pass < 8; ++pass) {
-            bool any = false;
-            for (const auto& [f, share] : shares)
-                if (selected[f] != (share > 0.5) && share != 0.5 && can_flip(mesh, selected, Face(f), change)) {
-                    selected[f] = !selected[f];
-                    any = true;
-                }
-            if (!any) break;
+/// What a change of side of each face near the true outline would change. Those that leave the topology as it is stand together,
+/// so that looking for the best of them is fast.
+class Moves {
+public:
+    Moves(const Mesh& mesh, const std::vector<bool>& selected, const std::vector<std::pair<Index, double>>& shares)
+        : mesh_(mesh), selected_(selected), shares_(shares), slot_(shares.size(), none) {
+        for (std::size_t i = 0; i < shares.size(); ++i) {
+            position_[shares[i].first] = i;
+            update(i);
         }
-        return;
     }
-    double area = 0, perimeter = 0;
-    for (const Face f : mesh.faces()) {
-        if (!selected[f]) continue;
-        area += face_area(mesh, f);
-        for (const Halfedge h : CGAL::halfedges_around_face(mesh.halfedge(f), mesh))
-            if (!is_selected(mesh, selected, mesh.opposite(h))) perimeter += edge_length(mesh, h);
-    }
-    const double wanted = goal.coarser ? std::min(goal.perimeter, perimeter) : goal.perimeter;
-    // What a flip of each face would change; only faces around the last flip need to be asked again.
+
     struct Move {
         Index face;
-        double area, wrong, perimeter;
-        bool possible;
+        double area, perimeter;
     };
-    std::vector<Move> moves;
-    std::unordered_map<Index, std::size_t> position;
-    const auto update = [&](Move& move, double share) {
-        const double face = face_area(mesh, Face(move.face));
-        move.area = selected[move.face] ? -face : face;
-        move.wrong = face * (selected[move.face] ? 2 * share - 1 : 1 - 2 * share);
-        move.possible = can_flip(mesh, selected, Face(move.face), move.perimeter);
-    };
-    for (const auto& [f, share] : shares) {
-        position[f] = moves.size();
-        moves.push_back({f, 0, 0, 0, false});
-        update(moves.back(), share);
-    }
-    const auto misfit = [&](double a, double p) {
-        return 20 * std::abs(a / goal.area - 1) + std::abs(p - wanted) / goal.perimeter;
-    };
-    for (std::size_t step = 0; step < 2 * moves.size(); ++step) {
-        const double now = misfit(area, perimeter);
-        double best_gain = 1e-12;
-        const Move* best = nullptr;
-        for (const Move& move : moves) {
-            if (!move.possible) continue;
-            const double gain =
-                now - misfit(area + move.area, perimeter + move.perimeter) - 6 * move.wrong / (goal.edge * goal.perimeter);
-            if (gain > best_gain) {
-                best_gain = gain;
-                best = &move;
-            }
+    /// The move that lowers 20 |A / A_goal - 1| + |P - P_wanted| / P_goal + 6 W / (h P_goal) most, of equal ones the first;
+    /// nothing if none does.
+    [[nodiscard]] std::optional<Move> best(double area, double perimeter, double wanted, const RoundingGoal& goal) const {
+        const double by_area = 20 / goal.area, by_perimeter = 1 / goal.perimeter, by_wrong = 6 / (goal.edge * goal.perimeter);
+        const double too_large = area - goal.area, too_long = perimeter - wanted;
+        const double now = by_area * std::abs(too_large) + by_perimeter * std::abs(too_long);
+        double most = 1e-12;
+        std::size_t best = none;
+        for (std::size_t k = 0; k < owner_.size(); ++k) {
+            const double gain = now - by_area * std::abs(too_large + area_[k]) -
+                                by_perimeter * std::abs(too_long + perimeter_[k]) - by_wrong * wrong_[k];
+            if (gain < most || (gain == most && (best == none || owner_[k] > owner_[best]))) continue;
+            most = gain;
+            best = k;
         }
-        if (best == nullptr) break;
-        const Index f = best->face;
-        area += best->area;
-        perimeter += best->perimeter;
-        selected[f] = !selected[f];
-        for (const Vertex v : corners(mesh, Face(f)))
-            for (const Halfedge h : CGAL::halfedges_around_target(v, mesh)) {
-                if (mesh.is_border(h)) continue;
-                if (const auto found = position.find(mesh.face(h)); found != position.end())
-                    update(moves[found->second], shares[found->second].second);
+        if (best == none) return {};
+        return Move{shares_[owner_[best]].first, area_[best], perimeter_[best]};
+    }
+
+    /// After a face has changed sides: what its neighbours' changes would change is another.
+    void update_around(Index face) {
+        for (const Vertex v : corners(mesh_, Face(face)))
+            for (const Halfedge h : CGAL::halfedges_around_target(v, mesh_)) {
+                if (mesh_.is_border(h)) continue;
+                if (const auto found = position_.find(mesh_.face(h)); found != position_.end()) update(found->second);
             }
+    }
+
+    [[nodiscard]] std::size_t size() const { return shares_.size(); }
+
+private:
+    static constexpr std::size_t none = static_cast<std::size_t>(-1);
+
+    void update(std::size_t i) {
+        const auto& [face, share] = shares_[i];
+        double perimeter = 0;
+        if (!can_flip(mesh_, selected_, Face(face), perimeter)) {
+            remove(i);
+            return;
+        }
+        if (slot_[i] == none) {
+            slot_[i] = owner_.size();
+            owner_.push_back(i);
+            for (auto* list : {&area_, &perimeter_, &wrong_}) list->push_back(0);
+        }
+        const double area = face_area(mesh_, Face(face));
+        area_[slot_[i]] = selected_[face] ? -area : area;
+        perimeter_[slot_[i]] = perimeter;
+        wrong_[slot_[i]] = area * (selected_[face] ? 2 * share - 1 : 1 - 2 * share);
+    }
+
+    void remove(std::size_t i) {
+        const std::size_t slot = slot_[i];
+        if (slot == none) return;
+        slot_[owner_.back()] = slot;
+        slot_[i] = none;
+        owner_[slot] = owner_.back();
+        owner_.pop_back();
+        for (auto* list : {&area_, &perimeter_, &wrong_}) {
+            (*list)[slot] = list->back();
+            list->pop_back();
+        }
+    }
+
+    const Mesh& mesh_;
+    const std::vector<bool>& selected_;
+    const std::vector<std::pair<Index, double>>& shares_;
+    std::unordered_map<Index, std::size_t> position_;  ///< of a face in `shares`
+    std::vector<std::size_t> slot_;                    ///< of a face of `shares` in the lists below, or none
+    std::vector<std::size_t> owner_;                   ///< by slot: position in `shares`
+    std::vector<double> area_, perimeter_, wrong_;     ///< by slot: the changes
+};
+
+/// Without a goal: each face goes to the side that holds most of it.
+void round_by_share(const Mesh& mesh, std::vector<bool>& selected, const std::vector<std::pair<Index, double>>& shares) {
+    // A flip may open the way for its neighbours.
+    double change = 0;
+    for (int pass = 0; pass < 8; ++pass) {
+        bool any = false;
+        for (const auto& [f, share] : shares)
+            if (selected[f] != (share > 0.5) && share != 0.5 && can_flip(mesh, selected, Face(f), change)) {
+                selected[f] = !selected[f];
+                any = true;
+            }
+        if (!any) break;
+    }
+}
+
+/// Moves single faces across the outline of `selected`, never changing the topology of the region. `shares` tells of the faces
+/// near the true outline which share of them lies inside; only those move: one at a time, that one which lowers
+///     20 |A / A_source - 1| + |P / P_source - 1| + 6 W / (h P_source)
+/// most, until none does. W is the area on the wrong side: faces cut in halves may change sides at no cost, and they are enough
+/// to meet area A and perimeter P. O(k m) for k faces along the outline and m moves, both small beside the mesh.
+void round_region(const Mesh& mesh, FilledRegion& region, const std::vector<std::pair<Index, double>>& shares,
+                  const RoundingGoal& goal) {
+    const double wanted = goal.coarser ? std::min(goal.perimeter, region.perimeter) : goal.perimeter;
+    Moves moves(mesh, region.selected, shares);
+    for (std::size_t step = 0; step < 2 * moves.size(); ++step) {
+        const auto move = moves.best(region.area, region.perimeter, wanted, goal);
+        if (!move) break;
+        region.area += move->area;
+        region.perimeter += move->perimeter;
+        region.selected[move->face] = !region.selected[move->face];
+        moves.update_around(move->face);
     }
 }
 
 /// The same along outlines that regions share: a face goes over to the region that holds most of it, and the one that had it
 /// gives it up in the same move, so that regions that partition the surface still do. Topologies stay. `faces` need not be
 /// sorted.
-void round_shared(const Mesh& mesh, std::vector<std::vector<bool>>& selected, std::vector<SharedFace> faces) {
+void round_shared(const Mesh& mesh, std::vector<FilledRegion>& regions, std::vector<SharedFace> faces) {
     std::sort(faces.begin(), faces.end(), [](const SharedFace& a, const SharedFace& b) {
         return std::make_pair(a.face, a.region) < std::make_pair(b.face, b.region);
     });
@@ -150,13 +191,13 @@ void round_shared(const Mesh& mesh, std::vector<std::vector<bool>>& selected, st
             const auto taker = std::find_if(first, last, [](const SharedFace& x) { return x.share > 0.5; });
             std::vector<std::size_t> owners;
             for (auto x = first; x != last; ++x)
-                if (x->share < 0.5 && selected[x->region][f]) owners.push_back(x->region);
+                if (x->share < 0.5 && regions[x->region].selected[f]) owners.push_back(x->region);
             first = last;
-            if (taker == last || selected[taker->region][f] || owners.size() > 1) continue;
-            if (!can_flip(mesh, selected[taker->region], Face(f), change)) continue;
-            if (!owners.empty() && !can_flip(mesh, selected[owners.front()], Face(f), change)) continue;
-            selected[taker->region][f] = true;
-            if (!owners.empty()) selected[owners.front()][f] = false;
+            if (taker == last || regions[taker->region].selected[f] || owners.size() > 1) continue;
+            if (!can_flip(mesh, regions[taker->region].selected, Face(f), change)) continue;
+            if (!owners.empty() && !can_flip(mesh, regions[owners.front()].selected, Face(f), change)) continue;
+            regions[taker->region].selected[f] = true;
+            if (!owners.empty()) regions[owners.front()].selected[f] = false;
             any = true;
         }
         if (!any) break;
@@ -172,7 +213,8 @@ OutlineRounding::OutlineRounding(const Mesh& source, const AnnotationSet& set, c
       target_(target),
       tracer_(tracer),
       source_edge_(mean_edge_length(source)),
-      steps_(vertex_paths.size()) {
+      steps_(vertex_paths.size()),
+      put_aside_(vertex_paths.size()) {
     for (std::size_t i = 0; i < vertex_paths.size(); ++i) {
         if (set.annotations[i].type != AnnotationType::region) continue;
         TransferScore ignored;  // the same places were settled, and counted, for the paths
@@ -184,7 +226,7 @@ OutlineRounding::OutlineRounding(const Mesh& source, const AnnotationSet& set, c
         for (const PathTracer::Step& step : steps) ++users_[step.curve];
 }
 
-void OutlineRounding::round(std::size_t region, std::vector<bool>& selected, double edge, bool balance) {
+void OutlineRounding::round(std::size_t region, FilledRegion& filled, double edge, bool balance) {
     if (steps_[region].empty()) return;
     std::vector<SurfaceCurve> curves;
     std::set<Index> shared;  // vertices along outlines that other regions have in common with this one
@@ -205,19 +247,22 @@ void OutlineRounding::round(std::size_t region, std::vector<bool>& selected, dou
         return std::any_of(vertices.begin(), vertices.end(), [&](Vertex v) { return shared.count(v) > 0; });
     };
     for (const auto& entry : shares)
-        if (is_shared(entry)) put_aside_.push_back({entry.first, region, entry.second});
+        if (is_shared(entry)) put_aside_[region].push_back({entry.first, region, entry.second});
     shares.erase(std::remove_if(shares.begin(), shares.end(), is_shared), shares.end());
     const Annotation& annotation = set_.annotations[region];
     RoundingGoal goal;
     goal.area = area_of(source_, annotation.faces);
-    goal.perimeter = length_of(segments_of(source_, annotation));
+    goal.perimeter = length_of(segments_of(source_, annotation, extract_outlines(source_, annotation.faces)));
     goal.edge = edge;
     goal.coarser = edge > 1.5 * source_edge_;
-    round_region(target_, selected, shares, goal, balance);
+    if (balance && goal.area > 0 && goal.perimeter > 0) round_region(target_, filled, shares, goal);
+    else round_by_share(target_, filled.selected, shares);
 }
 
-void OutlineRounding::round_shared_outlines(std::vector<std::vector<bool>>& selected) {
-    round_shared(target_, selected, std::move(put_aside_));
+void OutlineRounding::round_shared_outlines(std::vector<FilledRegion>& regions) {
+    std::vector<SharedFace> faces;
+    for (const auto& part : put_aside_) faces.insert(faces.end(), part.begin(), part.end());
+    round_shared(target_, regions, std::move(faces));
 }
 
 }  // namespace ostraka

@@ -3,6 +3,7 @@
 
 #include "ostraka/annotation/annotation.h"
 #include "path_tracer.h"
+#include "region_transfer.h"
 
 #include <vector>
 
@@ -22,10 +23,10 @@ public:
                     const std::vector<std::vector<SourcePath>>& vertex_paths, PathTracer& tracer);
 
     /// Rounds what only this region borders on; faces along outlines that regions share are put aside. `edge` is the typical
-    /// edge length of the target.
-    void round(std::size_t region, std::vector<bool>& selected, double edge, bool balance);
+    /// edge length of the target. Regions may be rounded side by side.
+    void round(std::size_t region, FilledRegion& filled, double edge, bool balance);
     /// Rounds what was put aside, for all regions in one move.
-    void round_shared_outlines(std::vector<std::vector<bool>>& selected);
+    void round_shared_outlines(std::vector<FilledRegion>& regions);
 
 private:
     const Mesh& source_;
@@ -35,7 +36,7 @@ private:
     double source_edge_;
     std::vector<std::vector<PathTracer::Step>> steps_;  ///< by annotation
     std::vector<int> users_;                            ///< by curve: how many regions it bounds
-    std::vector<SharedFace> put_aside_;
+    std::vector<std::vector<SharedFace>> put_aside_;    ///< by annotation
 };
 
 }  // namespace ostraka

@@ -66,20 +66,30 @@ std::vector<Index> diameter_path(const std::vector<Index>& walk) {
     return sweep(first.front());
 }
 
-RegionTransfer::RegionTransfer(const Mesh& source, const SurfaceSearch& target, const TransferOptions& options)
-    : source_(source), search_(target), options_(options) {
-    target_edge_ = target.typical_edge();
-}
+RegionTransfer::RegionTransfer(const Mesh& source, const AnnotationSet& set, const SurfaceSearch& target,
+                               const TransferOptions& options)
+    : source_(source), set_(set), search_(target), options_(options), target_edge_(target.typical_edge()) {}
 
-RegionTransfer::~RegionTransfer() = default;
+const SurfaceSearch& RegionTransfer::source_search() {
+    std::call_once(source_search_once_, [this] { source_search_.emplace(source_); });
+    return *source_search_;
+}
 
 namespace {
 
-double selected_area(const Mesh& mesh, const std::vector<bool>& selected) {
-    double sum = 0;
-    for (const Face f : mesh.faces())
-        if (selected[f]) sum += face_area(mesh, f);
-    return sum;
+/// Area and perimeter of what is selected.
+FilledRegion measured(const Mesh& mesh, std::vector<bool> selected) {
+    FilledRegion region;
+    for (const Face f : mesh.faces()) {
+        if (!selected[f]) continue;
+        region.area += face_area(mesh, f);
+        for (const Halfedge h : CGAL::halfedges_around_face(mesh.halfedge(f), mesh)) {
+            const Halfedge across = mesh.opposite(h);
+            if (mesh.is_border(across) || !selected[mesh.face(across)]) region.perimeter += edge_length(mesh, h);
+        }
+    }
+    region.selected = std::move(selected);
+    return region;
 }
 
 /// Connected parts of a set of faces; for each, one face and whether any edge of it separates it from another face.
@@ -121,68 +131,88 @@ void free_large_patches(const Mesh& mesh, const std::vector<Index>& region, std:
 
 }  // namespace
 
-std::vector<bool> RegionTransfer::fill(const std::vector<Index>& region, const std::vector<TracedPath>& traced,
-                                       const std::vector<SourcePath>& vertex_paths, const Mesh& mesh,
-                                       const std::vector<Index>* origin, TransferScore& score) {
-    const double source_area = area_of(source_, region);
-    std::vector<Halfedge> edges;
-    std::size_t vanished = 0;
-    double length = 0;
-    for (const TracedPath& vertex_path : traced) {
-        if (vertex_path.path.size() < 2) ++vanished;
-        const std::size_t steps = vertex_path.path.size() < 2 ? 0
-                                  : vertex_path.closed        ? vertex_path.path.size()
-                                                              : vertex_path.path.size() - 1;
-        for (std::size_t i = 0; i < steps; ++i) {
-            const Halfedge h =
-                find_halfedge(mesh, Vertex(vertex_path.path[i]), Vertex(vertex_path.path[(i + 1) % vertex_path.path.size()]));
+RegionTransfer::Traced RegionTransfer::edges_of(const std::vector<TracedPath>& paths) const {
+    Traced traced;
+    traced.pieces = paths.size();
+    for (const TracedPath& vertex_path : paths) {
+        const std::vector<Index>& path = vertex_path.path;
+        if (path.size() < 2) {
+            ++traced.vanished;
+            continue;
+        }
+        for (std::size_t i = 0; i < (vertex_path.closed ? path.size() : path.size() - 1); ++i) {
+            const Halfedge h = find_halfedge(*mesh_, Vertex(path[i]), Vertex(path[(i + 1) % path.size()]));
             if (h == Mesh::null_halfedge()) continue;  // a gap between two components
-            edges.push_back(h);
-            length += std::sqrt(CGAL::squared_distance(mesh.point(mesh.source(h)), mesh.point(mesh.target(h))));
+            traced.edges.push_back(h);
+            traced.length += edge_length(*mesh_, h);
         }
     }
-    std::vector<Patch> patches = patches_of(source_, region);
-    if (edges.empty()) free_large_patches(source_, region, patches);
-    const auto is_bounded = [](const Patch& patch) { return patch.bounded; };
-    if (vanished > 0 && vanished < traced.size())
-        score.note += (score.note.empty() ? "" : "; ") + std::to_string(vanished) + " of " + std::to_string(traced.size()) +
-                      " pieces of its outline vanished";
-    // Nothing but vanished outlines: the region is no larger than the target's faces, unless a patch never had an outline.
-    if (edges.empty() && std::all_of(patches.begin(), patches.end(), is_bounded))
-        return std::vector<bool>(mesh.number_of_faces(), false);
-
-    const auto plausible = [&](double area) { return std::abs(area - source_area) <= 0.5 * source_area + target_edge_ * length; };
-    Filling filling = fill_edges(mesh, edges);
-    double expected = source_area;
-    // Patches without outlines cover their component: a place inside leads to it.
-    bool unbounded = false;
-    for (const Patch& patch : patches) {
-        if (patch.bounded) continue;
-        unbounded = true;
-        const auto hit = search_.closest_compatible(centroid(source_, Face(patch.face)), area_vector(source_, Face(patch.face)),
-                                                    0, options_.correspondence.max_distance * search_.diagonal());
-        if (!hit) continue;
-        Index start = hit->face;
-        if (origin != nullptr)
-            start = static_cast<Index>(std::lower_bound(origin->begin(), origin->end(), hit->face) - origin->begin());
-        flood_faces(mesh, Face(start), filling.selected);
-    }
-    std::vector<bool> selected = std::move(filling.selected);
-    if (!unbounded && (filling.conflicts > 0 || !plausible(selected_area(mesh, selected)))) {
-        score.crossings_resolved = true;
-        const auto wound = fill_by_winding(mesh, edges, expected);
-        if (wound) selected = *wound;
-        if (!wound || !plausible(selected_area(mesh, selected))) {
-            if (!source_search_) source_search_ = std::make_unique<SurfaceSearch>(source_);
-            selected = region_by_vote(source_, *source_search_, region, mesh, options_.correspondence);
-            score.voted = true;
-        }
-    }
-    if (options_.cover != TransferOptions::Cover::overlapping) cover(selected, vertex_paths, score);
-    return selected;
+    return traced;
 }
 
-void RegionTransfer::cover(std::vector<bool>& selected, const std::vector<SourcePath>& vertex_paths, TransferScore& score) {
+void RegionTransfer::set_outlines(const std::vector<std::vector<TracedPath>>& traced, const Mesh& mesh,
+                                  const std::vector<Index>* origin) {
+    mesh_ = &mesh;
+    origin_ = origin;
+    traced_.resize(set_.annotations.size());
+    std::vector<Edge> walls;
+    bool any = false;
+    for (std::size_t i = 0; i < traced.size(); ++i) {
+        if (set_.annotations[i].type != AnnotationType::region || set_.annotations[i].all) continue;
+        any = true;
+        traced_[i] = edges_of(traced[i]);
+        for (const Halfedge h : traced_[i].edges) walls.push_back(mesh.edge(h));
+    }
+    if (any) parts_.emplace(mesh, std::move(walls));
+}
+
+FilledRegion RegionTransfer::fill(std::size_t region, TransferScore& score) {
+    const std::vector<Index>& faces = set_.annotations[region].faces;
+    const Traced& traced = traced_[region];
+    const double source_area = area_of(source_, faces);
+    std::vector<Patch> patches = patches_of(source_, faces);
+    if (traced.edges.empty()) free_large_patches(source_, faces, patches);
+    const auto is_bounded = [](const Patch& patch) { return patch.bounded; };
+    if (traced.vanished > 0 && traced.vanished < traced.pieces)
+        score.note += (score.note.empty() ? "" : "; ") + std::to_string(traced.vanished) + " of " +
+                      std::to_string(traced.pieces) + " pieces of its outline vanished";
+    // Nothing but vanished outlines: the region is no larger than the target's faces, unless a patch never had an outline.
+    const bool bounded = std::all_of(patches.begin(), patches.end(), is_bounded);
+    if (traced.edges.empty() && bounded) return {};
+
+    const FaceParts::Choice choice = parts_->left_of(traced.edges);
+    FilledRegion filled{parts_->faces(choice), choice.area, choice.perimeter};
+    if (!bounded) {
+        // Patches without outlines cover their component: a place inside leads to it.
+        for (const Patch& patch : patches) {
+            if (patch.bounded) continue;
+            const Face face(patch.face);
+            const auto hit = search_.closest_compatible(centroid(source_, face), area_vector(source_, face), 0,
+                                                        options_.correspondence.max_distance * search_.diagonal());
+            if (!hit) continue;
+            Index start = hit->face;
+            if (origin_ != nullptr)
+                start = static_cast<Index>(std::lower_bound(origin_->begin(), origin_->end(), hit->face) - origin_->begin());
+            flood_faces(*mesh_, Face(start), filled.selected);
+        }
+        return measured(*mesh_, std::move(filled.selected));
+    }
+    const auto plausible = [&](double area) {
+        return std::abs(area - source_area) <= 0.5 * source_area + target_edge_ * traced.length;
+    };
+    if (!choice.crossing && plausible(filled.area)) return filled;
+    score.crossings_resolved = true;
+    if (auto wound = fill_by_winding(*mesh_, traced.edges, source_area)) filled = measured(*mesh_, std::move(*wound));
+    else score.voted = true;
+    score.voted = score.voted || !plausible(filled.area);
+    return filled;
+}
+
+std::vector<bool> RegionTransfer::vote(std::size_t region) {
+    return region_by_vote(source_, source_search(), set_.annotations[region].faces, *mesh_, options_.correspondence);
+}
+
+void RegionTransfer::cover(std::vector<bool>& selected, const std::vector<SourcePath>& vertex_paths, TransferScore& score) const {
     // The faces that the outline itself runs through, drawn exactly.
     TransferScore ignored;
     PathTracer tracer(source_, search_, options_);
@@ -217,11 +247,10 @@ void RegionTransfer::cover(std::vector<bool>& selected, const std::vector<Source
         if (crossed[f]) selected[f] = options_.cover == TransferOptions::Cover::enclosing;
 }
 
-std::function<bool(const SurfaceHit&)> RegionTransfer::membership(const std::vector<Index>& faces, const Mesh& mesh,
-                                                                  const std::vector<Index>* origin) {
-    const auto selected = std::make_shared<std::vector<bool>>(face_flags(mesh, faces));
-    if (origin == nullptr) return [selected](const SurfaceHit& hit) { return static_cast<bool>((*selected)[hit.face]); };
-    return [selected, origin, &mesh](const SurfaceHit& hit) {
+std::function<bool(const SurfaceHit&)> RegionTransfer::membership(const std::vector<Index>& faces) const {
+    const auto selected = std::make_shared<std::vector<bool>>(face_flags(*mesh_, faces));
+    if (origin_ == nullptr) return [selected](const SurfaceHit& hit) { return static_cast<bool>((*selected)[hit.face]); };
+    return [selected, origin = origin_, &mesh = *mesh_](const SurfaceHit& hit) {
         // New faces stand in the order of their old ones.
         const auto [first, last] = std::equal_range(origin->begin(), origin->end(), hit.face);
         double best = std::numeric_limits<double>::infinity();

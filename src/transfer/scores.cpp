@@ -1,6 +1,5 @@
 #include "scores.h"
 
-#include "ostraka/annotation/outline.h"
 #include "ostraka/core/parallel.h"
 
 #include <algorithm>
@@ -21,89 +20,147 @@ Distortions distortions(const TransferScore& score) {
     return d;
 }
 
-double overlapping_area(const Mesh& mesh, const std::vector<Index>& region, const SurfaceSearch& other,
-                        const CorrespondenceOptions& options, std::size_t max_inner,
-                        const std::function<bool(const SurfaceHit&)>& contains) {
-    // Vertices on the outline and their neighbours make the band that is sampled finely.
-    std::vector<bool> on_rim(mesh.number_of_vertices(), false), near = on_rim;
-    std::vector<Index> rim;
-    for (const Outline& outline : extract_outlines(mesh, region))
-        for (const Index v : outline) rim.push_back(v);
-    for (const Index v : rim) {
-        near[v] = on_rim[v] = true;
-        for (const Halfedge h : CGAL::halfedges_around_source(Vertex(v), mesh)) near[mesh.target(h)] = true;
-    }
-    const double fine = 0.3 * other.typical_edge();
-    const double search_radius = options.max_distance * other.diagonal();
-    const double min_cosine = std::cos(options.max_angle * CGAL_PI / 180);
-    const std::size_t stride = std::max<std::size_t>(1, (region.size() + max_inner - 1) / std::max<std::size_t>(1, max_inner));
-    std::vector<double> inside(region.size(), -1), area_of(region.size(), 0);
-    parallel_for(
-        region.size(),
-        [&](std::size_t i) {
-            const Face f(region[i]);
-            const auto [a, b, c] = corners(mesh, f);
-            const Vector area = area_vector(mesh, f);
-            const double length = std::sqrt(area.squared_length());
-            area_of[i] = length;
-            if (!(length > 0)) return;
-            const Vector normal = area / length;
-            int k = 1;
-            const bool in_band = near[a] || near[b] || near[c];
-            if (!in_band && i % stride != 0) return;
-            if (in_band) {
-                const double size = std::sqrt(std::max({CGAL::squared_distance(mesh.point(a), mesh.point(b)),
-                                                        CGAL::squared_distance(mesh.point(b), mesh.point(c)),
-                                                        CGAL::squared_distance(mesh.point(c), mesh.point(a))}));
-                k = std::clamp(static_cast<int>(std::ceil(size / fine)), 2, 8);
-            }
-            const auto share_inside = [&](int n) {  // at the centroids of the n * n equal triangles of a regular subdivision
-                int hits = 0;
-                for (int u = 0; u < n; ++u)
-                    for (int v = 0; u + v < n; ++v)
-                        for (int half = 0; half < (u + v + 1 < n ? 2 : 1); ++half) {
-                            const double s = (u + (half == 0 ? 1.0 : 2.0) / 3) / n, t = (v + (half == 0 ? 1.0 : 2.0) / 3) / n;
-                            const Point p =
-                                mesh.point(a) + s * (mesh.point(b) - mesh.point(a)) + t * (mesh.point(c) - mesh.point(a));
-                            const auto hit = other.closest_compatible(p, normal, min_cosine, search_radius);
-                            if (hit && contains(*hit)) ++hits;
-                        }
-                return static_cast<double>(hits) / (n * n);
-            };
-            // A strip away from the outline, four samples that agree will do.
-            const bool at_rim = on_rim[a] || on_rim[b] || on_rim[c];
-            double share = share_inside(at_rim ? k : std::min(k, 2));
-            if (!at_rim && k > 2 && share < 1) share = share_inside(k);
-            inside[i] = length * share;
-        },
-        64);
-    // Faces that were passed over share the lot of those inside that were not.
-    double sum = 0, passed_over = 0, inner = 0, inner_inside = 0;
-    for (std::size_t i = 0; i < region.size(); ++i) {
-        if (inside[i] < 0) {
-            passed_over += area_of[i];
-            continue;
-        }
-        sum += inside[i];
-        const auto vertices = corners(mesh, Face(region[i]));
-        if (std::any_of(vertices.begin(), vertices.end(), [&](Vertex v) { return near[v]; })) continue;
-        inner += area_of[i];
-        inner_inside += inside[i];
-    }
-    return sum + (inner > 0 ? passed_over * inner_inside / inner : passed_over);
-}
+namespace {
 
-void score_overlap(const RegionOn& source, const RegionOn& target, const CorrespondenceOptions& options,
-                   const std::function<bool(const SurfaceHit&)>& in_target, TransferScore& score) {
-    constexpr std::size_t max_inner = 5000;
-    std::vector<bool> in_source(source.mesh.number_of_faces(), false);
-    for (const Index f : source.faces) in_source[f] = true;
-    const double arrived = overlapping_area(source.mesh, source.faces, target.search, options, max_inner, in_target);
-    const double came = overlapping_area(target.mesh, target.faces, source.search, options, max_inner,
-                                         [&](const SurfaceHit& hit) { return static_cast<bool>(in_source[hit.face]); });
-    const double common = (arrived + came) / 2;
-    score.overlap = common / (score.source_area + score.target_area - common);
-    score.wrong_side = std::max(0.0, score.source_area - arrived) + std::max(0.0, score.target_area - came);
+/// How much of a region of one mesh has its places on the other one in the corresponding region there, from samples: in pieces
+/// that may be worked on side by side.
+class RegionSamples {
+public:
+    RegionSamples(const Mesh& mesh, const std::vector<Index>& region, const std::vector<Outline>& outlines,
+                  const SurfaceSearch& other, const CorrespondenceOptions& options,
+                  std::function<bool(const SurfaceHit&)> contains)
+        : mesh_(mesh),
+          region_(region),
+          other_(other),
+          contains_(std::move(contains)),
+          on_rim_(mesh.number_of_vertices(), false),
+          near_(on_rim_),
+          fine_(0.3 * other.typical_edge()),
+          search_radius_(options.max_distance * other.diagonal()),
+          min_cosine_(std::cos(options.max_angle * CGAL_PI / 180)),
+          stride_(std::max<std::size_t>(1, (region.size() + max_inner - 1) / max_inner)),
+          sums_((region.size() + piece_size - 1) / piece_size) {
+        for (const Outline& outline : outlines)
+            for (const Index v : outline) {
+                near_[v] = on_rim_[v] = true;
+                for (const Halfedge h : CGAL::halfedges_around_source(Vertex(v), mesh)) near_[mesh.target(h)] = true;
+            }
+    }
+
+    [[nodiscard]] std::size_t pieces() const { return sums_.size(); }
+
+    void sample(std::size_t piece) {
+        for (std::size_t i = piece * piece_size; i < std::min(region_.size(), (piece + 1) * piece_size); ++i)
+            sample_face(i, sums_[piece]);
+    }
+
+    /// The area of what lies inside, when all pieces are done. Faces that were passed over share the lot of those inside that
+    /// were not.
+    [[nodiscard]] double area_inside() const {
+        Sums sums;
+        for (const Sums& part : sums_) {
+            sums.inside += part.inside;
+            sums.passed_over += part.passed_over;
+            sums.inner += part.inner;
+            sums.inner_inside += part.inner_inside;
+        }
+        return sums.inside + (sums.inner > 0 ? sums.passed_over * sums.inner_inside / sums.inner : sums.passed_over);
+    }
+
+private:
+    static constexpr std::size_t piece_size = 64, max_inner = 5000;
+    struct Sums {  ///< of areas
+        double inside = 0, passed_over = 0, inner = 0, inner_inside = 0;
+    };
+
+    void sample_face(std::size_t i, Sums& sums) const {
+        const auto vertices = corners(mesh_, Face(region_[i]));
+        const Point &a = mesh_.point(vertices[0]), &b = mesh_.point(vertices[1]), &c = mesh_.point(vertices[2]);
+        const Vector area_vector = 0.5 * CGAL::cross_product(b - a, c - a);
+        const double area = std::sqrt(area_vector.squared_length());
+        if (!(area > 0)) return;
+        const auto is_near = [&](Vertex v) -> bool { return near_[v]; };
+        const bool in_band = std::any_of(vertices.begin(), vertices.end(), is_near);
+        if (!in_band && i % stride_ != 0) {
+            sums.passed_over += area;
+            return;
+        }
+        const Vector normal = area_vector / area;
+        const auto share_inside = [&](int n) {  // at the centroids of the n * n equal triangles of a regular subdivision
+            int hits = 0;
+            for (int u = 0; u < n; ++u)
+                for (int v = 0; u + v < n; ++v)
+                    for (int half = 0; half < (u + v + 1 < n ? 2 : 1); ++half) {
+                        const double s = (u + (half == 0 ? 1.0 : 2.0) / 3) / n, t = (v + (half == 0 ? 1.0 : 2.0) / 3) / n;
+                        const Point place = a + s * (b - a) + t * (c - a);
+                        const auto hit = other_.closest_compatible(place, normal, min_cosine_, search_radius_);
+                        if (hit && contains_(*hit)) ++hits;
+                    }
+            return static_cast<double>(hits) / (n * n);
+        };
+        if (!in_band) {
+            const double inside = area * share_inside(1);
+            sums.inside += inside;
+            sums.inner += area;
+            sums.inner_inside += inside;
+            return;
+        }
+        const double size =
+            std::sqrt(std::max({CGAL::squared_distance(a, b), CGAL::squared_distance(b, c), CGAL::squared_distance(c, a)}));
+        const int k = std::clamp(static_cast<int>(std::ceil(size / fine_)), 2, 8);
+        // A strip away from the outline, four samples that agree will do.
+        const bool at_rim = std::any_of(vertices.begin(), vertices.end(), [&](Vertex v) -> bool { return on_rim_[v]; });
+        double share = share_inside(at_rim ? k : 2);
+        if (!at_rim && k > 2 && share < 1) share = share_inside(k);
+        sums.inside += area * share;
+    }
+
+    const Mesh& mesh_;
+    const std::vector<Index>& region_;
+    const SurfaceSearch& other_;
+    std::function<bool(const SurfaceHit&)> contains_;
+    std::vector<bool> on_rim_, near_;  ///< vertices on the outline; those and their neighbours make the band sampled finely
+    double fine_, search_radius_, min_cosine_;
+    std::size_t stride_;
+    std::vector<Sums> sums_;  ///< by piece
+};
+
+}  // namespace
+
+void score_overlaps(const ScoredMesh& source, const ScoredMesh& target, const std::vector<OverlapQuestion>& questions,
+                    const CorrespondenceOptions& options) {
+    constexpr std::size_t at_once = 32;  // their flags fill memory
+    for (std::size_t first = 0; first < questions.size(); first += at_once) {
+        const std::size_t count = std::min(at_once, questions.size() - first);
+        std::vector<std::optional<RegionSamples>> samples(2 * count);  // of a region on the source, then of it on the target
+        parallel_for(
+            samples.size(),
+            [&](std::size_t i) {
+                const OverlapQuestion& question = questions[first + i / 2];
+                if (i % 2 == 0) {
+                    samples[i].emplace(source.mesh, *question.source_faces, question.source_outlines, target.search, options,
+                                       question.in_target);
+                } else {
+                    samples[i].emplace(target.mesh, *question.target_faces, question.target_outlines, source.search, options,
+                                       [in_source = face_flags(source.mesh, *question.source_faces)](const SurfaceHit& hit) {
+                                           return static_cast<bool>(in_source[hit.face]);
+                                       });
+                }
+            },
+            1);
+        std::vector<std::pair<RegionSamples*, std::size_t>> pieces;
+        for (auto& region : samples)
+            for (std::size_t piece = 0; piece < region->pieces(); ++piece) pieces.emplace_back(&*region, piece);
+        parallel_for(
+            pieces.size(), [&](std::size_t i) { pieces[i].first->sample(pieces[i].second); }, 1);
+        for (std::size_t i = 0; i < count; ++i) {
+            TransferScore& score = *questions[first + i].score;
+            const double arrived = samples[2 * i]->area_inside(), came = samples[2 * i + 1]->area_inside();
+            const double common = (arrived + came) / 2;
+            score.overlap = common / (score.source_area + score.target_area - common);
+            score.wrong_side = std::max(0.0, score.source_area - arrived) + std::max(0.0, score.target_area - came);
+        }
+    }
 }
 
 std::vector<bool> region_by_vote(const Mesh& source, const SurfaceSearch& source_search, const std::vector<Index>& region,
@@ -135,7 +192,7 @@ std::vector<bool> region_by_vote(const Mesh& source, const SurfaceSearch& source
     return {vote.begin(), vote.end()};
 }
 
-Segments segments_of(const Mesh& mesh, const Annotation& annotation) {
+Segments segments_of(const Mesh& mesh, const Annotation& annotation, const std::vector<Outline>& outlines) {
     Segments segments;
     const auto add = [&](Index a, Index b) { segments.emplace_back(mesh.point(Vertex(a)), mesh.point(Vertex(b))); };
     for (const Index v : annotation.points) add(v, v);
@@ -143,7 +200,7 @@ Segments segments_of(const Mesh& mesh, const Annotation& annotation) {
         if (line.size() == 1) add(line[0], line[0]);
         for (std::size_t i = 0; i + 1 < line.size(); ++i) add(line[i], line[i + 1]);
     }
-    for (const Outline& outline : extract_outlines(mesh, annotation.faces))
+    for (const Outline& outline : outlines)
         for (std::size_t i = 0; i < outline.size(); ++i) add(outline[i], outline[(i + 1) % outline.size()]);
     return segments;
 }

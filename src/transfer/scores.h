@@ -1,30 +1,33 @@
 // How much of a region arrived where it belongs.
 #pragma once
 
+#include "ostraka/annotation/outline.h"
 #include "ostraka/transfer/transfer.h"
 
 #include <functional>
 
 namespace ostraka {
 
-/// Area of a region of `mesh` whose places on the other mesh lie in the corresponding region there, as `contains` tells. Faces
-/// near the region's outline are sampled by up to 64 smaller triangles each, finer than the other mesh's faces (four, if these
-/// agree, where no corner is on the outline); the others at their centroids, or, of more than `max_inner` of them, every so
-/// many.
-double overlapping_area(const Mesh& mesh, const std::vector<Index>& region, const SurfaceSearch& other,
-                        const CorrespondenceOptions& options, std::size_t max_inner,
-                        const std::function<bool(const SurfaceHit&)>& contains);
-
-/// A region of a mesh, with the search tree of the surface it was made for (for a refined target: that of the target itself).
-struct RegionOn {
+/// One of the two meshes, with the search tree of its surface (for a refined target: that of the target itself).
+struct ScoredMesh {
     const Mesh& mesh;
-    const std::vector<Index>& faces;
     const SurfaceSearch& search;
 };
-/// Overlap and wrong side of a score, from both sides, since the surfaces differ: what of the source region arrived inside, and
-/// what of the target region came from inside.
-void score_overlap(const RegionOn& source, const RegionOn& target, const CorrespondenceOptions& options,
-                   const std::function<bool(const SurfaceHit&)>& in_target, TransferScore& score);
+
+/// A region on both meshes, its outlines, and whether a place on the target lies in it.
+struct OverlapQuestion {
+    const std::vector<Index>*source_faces, *target_faces;
+    std::vector<Outline> source_outlines, target_outlines;
+    std::function<bool(const SurfaceHit&)> in_target;
+    TransferScore* score;  ///< gets overlap and wrong side; its areas are known
+};
+
+/// Overlap and wrong side from both sides, since the surfaces differ: what of the source region arrived inside, and what of the
+/// target region came from inside. Faces near a region's outline are sampled by up to 64 smaller triangles each, finer than the
+/// other mesh's faces (four, if these agree, where no corner is on the outline); the others at their centroids, or, of more than
+/// some thousand of them, every so many. All questions are worked on side by side.
+void score_overlaps(const ScoredMesh& source, const ScoredMesh& target, const std::vector<OverlapQuestion>& questions,
+                    const CorrespondenceOptions& options);
 
 /// The region's faces found one by one: those target faces whose centroid has its nearest compatible point in the region.
 std::vector<bool> region_by_vote(const Mesh& source, const SurfaceSearch& source_search, const std::vector<Index>& region,
@@ -32,7 +35,7 @@ std::vector<bool> region_by_vote(const Mesh& source, const SurfaceSearch& source
 
 /// Outline of a region, or the edges of a line, or points as segments without length.
 using Segments = std::vector<std::pair<Point, Point>>;
-Segments segments_of(const Mesh& mesh, const Annotation& annotation);
+Segments segments_of(const Mesh& mesh, const Annotation& annotation, const std::vector<Outline>& outlines);
 double length_of(const Segments& segments);
 
 }  // namespace ostraka

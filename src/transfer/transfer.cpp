@@ -1,7 +1,9 @@
 #include "ostraka/transfer/transfer.h"
 
 #include "attribute_carrier.h"
+#include "disjoint_regions.h"
 #include "ostraka/annotation/outline.h"
+#include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
 #include "ostraka/geom/polyline_distance.h"
 #include "ostraka/measure/measure.h"
@@ -12,7 +14,8 @@
 
 #include <algorithm>
 #include <chrono>
-#include <memory>
+#include <numeric>
+#include <optional>
 #include <set>
 
 namespace ostraka {
@@ -61,10 +64,10 @@ public:
           target_(target.mesh()),
           options_(options),
           tracer_(source, target, options),
-          regions_(source, target, options) {}
+          regions_(source, set, target, options) {}
 
-    TransferResult run() {
-        Clock clock;
+    TransferResult run(Clock& clock) {
+        result_.times.checks = clock.lap();
         match();
         result_.times.correspondence = clock.lap();
         std::vector<Annotation> transferred(set_.annotations.size());
@@ -82,12 +85,8 @@ public:
         fill_all(transferred, rounding ? &*rounding : nullptr);
         result_.times.regions = clock.lap();
         AttributeCarrier attributes(tracer_, result_.refined.has_value());
-        Progress progress("scores", transferred.size());
-        for (std::size_t i = 0; i < transferred.size(); ++i) {
-            attributes.carry(set_.annotations[i], transferred[i]);
-            score(set_.annotations[i], transferred[i], result_.scores[i]);
-            progress.advance();
-        }
+        for (std::size_t i = 0; i < transferred.size(); ++i) attributes.carry(set_.annotations[i], transferred[i]);
+        score_all(transferred);
         result_.times.scores = clock.lap();
         result_.annotations.object_class = set_.object_class;
         result_.annotations.unit = set_.unit;
@@ -234,23 +233,44 @@ private:
         }
     }
 
+    /// Calls body(i) for each annotation, side by side; the largest first, so that none of them is left alone at the end.
+    template <class Body>
+    void for_each_annotation(const Body& body) const {
+        std::vector<std::size_t> order(set_.annotations.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
+            return set_.annotations[i].faces.size() > set_.annotations[j].faces.size();
+        });
+        parallel_for(
+            order.size(), [&](std::size_t k) { body(order[k]); }, 1);
+    }
+
     void fill_all(std::vector<Annotation>& transferred, OutlineRounding* rounding) {
-        std::vector<std::vector<bool>> selected(transferred.size());
-        for (std::size_t i = 0; i < transferred.size(); ++i) {
-            const Annotation& from = set_.annotations[i];
-            if (from.type != AnnotationType::region || from.all) continue;
-            TransferScore& score = result_.scores[i];
-            selected[i] = regions_.fill(from.faces, traced_[i], vertex_paths_[i], on(),
-                                        result_.refined ? &result_.refined->face_origin : nullptr, score);
-            const bool any = std::find(selected[i].begin(), selected[i].end(), true) != selected[i].end();
-            if (any && !score.voted && rounding != nullptr)
-                rounding->round(i, selected[i], regions_.target_edge(), options_.rounding == TransferOptions::Rounding::balanced);
-        }
-        if (rounding != nullptr) rounding->round_shared_outlines(selected);
-        for (std::size_t i = 0; i < transferred.size(); ++i) {
+        regions_.set_outlines(traced_, on(), result_.refined ? &result_.refined->face_origin : nullptr);
+        std::vector<FilledRegion> filled(transferred.size());
+        for_each_annotation([&](std::size_t i) {
+            if (set_.annotations[i].type == AnnotationType::region && !set_.annotations[i].all)
+                filled[i] = regions_.fill(i, result_.scores[i]);
+        });
+        for (std::size_t i = 0; i < transferred.size(); ++i)
+            if (result_.scores[i].voted) filled[i].selected = regions_.vote(i);
+        for_each_annotation([&](std::size_t i) {
+            if (filled[i].selected.empty()) return;
+            if (options_.cover != TransferOptions::Cover::overlapping)
+                regions_.cover(filled[i].selected, vertex_paths_[i], result_.scores[i]);
+            else if (rounding != nullptr && !result_.scores[i].voted && filled[i].area > 0)
+                rounding->round(i, filled[i], regions_.target_edge(), options_.rounding == TransferOptions::Rounding::balanced);
+        });
+        if (rounding != nullptr) rounding->round_shared_outlines(filled);
+        std::vector<std::vector<bool>> selected;
+        for (FilledRegion& region : filled) selected.push_back(std::move(region.selected));
+        if (options_.cover == TransferOptions::Cover::overlapping)
+            keep_disjoint(
+                source_, set_, [&]() -> const SurfaceSearch& { return regions_.source_search(); }, on(), selected);
+        for_each_annotation([&](std::size_t i) {
             if (set_.annotations[i].type == AnnotationType::region) finish(i, transferred[i], selected[i]);
             if (set_.annotations[i].type == AnnotationType::line) finish_line(i, transferred[i]);
-        }
+        });
     }
 
     /// A line that is shorter than the target's edges becomes a point.
@@ -291,7 +311,8 @@ private:
         if (score.outcome != TransferOutcome::lost) add_note(to.note, "was a region, too small for this mesh");
     }
 
-    void score(const Annotation& from, Annotation& to, TransferScore& score);
+    void score_all(const std::vector<Annotation>& transferred);
+    std::optional<OverlapQuestion> score(const Annotation& from, const Annotation& to, TransferScore& score);
 
     const Mesh& source_;
     const AnnotationSet& set_;
@@ -302,15 +323,32 @@ private:
     RegionTransfer regions_;
     std::vector<std::vector<SourcePath>> vertex_paths_;
     std::vector<std::vector<TracedPath>> traced_;
-    std::unique_ptr<SurfaceSearch> source_search_;  ///< built when a score needs it
     TransferResult result_;
 };
 
-void Transfer::score(const Annotation& from, Annotation& to, TransferScore& score) {
+void Transfer::score_all(const std::vector<Annotation>& transferred) {
+    Progress progress("scores", transferred.size());
+    std::vector<std::optional<OverlapQuestion>> asked(transferred.size());
+    for_each_annotation([&](std::size_t i) {
+        asked[i] = score(set_.annotations[i], transferred[i], result_.scores[i]);
+        progress.advance();
+    });
+    std::vector<OverlapQuestion> questions;
+    for (auto& question : asked)
+        if (question) questions.push_back(std::move(*question));
+    if (!questions.empty())
+        score_overlaps({source_, regions_.source_search()}, {on(), search_}, questions, options_.correspondence);
+}
+
+/// All but the overlap, which is asked for if it is to be measured.
+std::optional<OverlapQuestion> Transfer::score(const Annotation& from, const Annotation& to, TransferScore& score) {
+    OverlapQuestion question{&from.faces, &to.faces, {}, {}, {}, &score};
+    question.source_outlines = extract_outlines(source_, from.faces);
+    question.target_outlines = extract_outlines(on(), to.faces);
     score.target_type = to.type;
     if (score.outcome == TransferOutcome::kept && to.points.empty() && to.polylines.empty() && to.faces.empty())
         score.outcome = TransferOutcome::lost;
-    const Segments a = segments_of(source_, from), b = segments_of(on(), to);
+    const Segments a = segments_of(source_, from, question.source_outlines), b = segments_of(on(), to, question.target_outlines);
     score.source_length = length_of(a);
     score.target_length = length_of(b);
     if (a.empty() == b.empty()) score.hausdorff = hausdorff_distance(a, b);
@@ -319,28 +357,28 @@ void Transfer::score(const Annotation& from, Annotation& to, TransferScore& scor
     if (from.type != AnnotationType::region) {
         if (from.type == AnnotationType::point && to.points.size() > std::set<Index>(to.points.begin(), to.points.end()).size())
             add_note(score.note, "several points fell on one vertex");
-        return;
+        return {};
     }
     score.source_area = area_of(source_, from.faces);
     score.target_area = area_of(on(), to.faces);
-    if (!options_.overlap || to.faces.empty()) return;
+    if (!options_.overlap || to.faces.empty()) return {};
     if (from.all) {
         // All of one mesh is all of the other, if they are the same object.
         if (distortions(score).area < 0.05) {
             score.overlap = 1;
             score.wrong_side = 0;
         }
-        return;
+        return {};
     }
-    if (!source_search_) source_search_ = std::make_unique<SurfaceSearch>(source_);
-    score_overlap({source_, from.faces, *source_search_}, {on(), to.faces, search_}, options_.correspondence,
-                  regions_.membership(to.faces, on(), result_.refined ? &result_.refined->face_origin : nullptr), score);
+    question.in_target = regions_.membership(to.faces);
+    return question;
 }
 
 }  // namespace
 
 TransferResult transfer(const Mesh& source, const AnnotationSet& annotations, const SurfaceSearch& target,
                         const TransferOptions& options) {
+    Clock clock;
     check_options(options, "transfer");
     check_annotations(source, annotations);
     if (!options.force) {
@@ -349,7 +387,7 @@ TransferResult transfer(const Mesh& source, const AnnotationSet& annotations, co
     }
     if (options.refine && options.cover != TransferOptions::Cover::overlapping)
         fail_usage("a refined target follows the outline exactly", "leave out --cover with --refine");
-    return Transfer(source, annotations, target, options).run();
+    return Transfer(source, annotations, target, options).run(clock);
 }
 
 std::string to_string(TransferOutcome outcome) {

@@ -17,7 +17,8 @@ enum class PathMetric {
 };
 PathMetric path_metric(const std::string& name);  ///< Error (usage) for an unknown name
 
-/// Searches paths on one mesh again and again without allocating anew. Not for use by several threads at once.
+/// Searches paths on one mesh again and again without allocating anew; what it holds grows with the largest search, not with the
+/// mesh. Not for use by several threads at once.
 class PathSearch {
 public:
     explicit PathSearch(const Mesh& mesh);
@@ -40,16 +41,22 @@ private:
     std::vector<Index> search(Vertex from, const std::function<bool(Vertex)>& is_goal, const std::function<double(Vertex)>& bound,
                               const std::vector<Point>& guide, const Query& query);
 
+    /// A vertex that a search has come upon.
     struct Record {
-        std::uint32_t stamp = 0;
-        bool settled = false;
+        Index vertex = no_index;
+        std::uint32_t search = 0;  ///< the number of the search it belongs to; of another one: the place is free
         Index previous = no_index;
+        bool settled = false;
         double cost = 0;
         double length = 0;
     };
+    /// Makes one, without a cost, for a vertex that has none yet. Valid until the next call.
+    Record& record(Index vertex);
+
     const Mesh& mesh_;
-    std::uint32_t stamp_ = 0;
-    std::vector<Record> records_;
+    std::uint32_t search_ = 0;
+    std::size_t used_ = 0;
+    std::vector<Record> records_;  ///< a hash table: each as soon after its place as there is room; a power of two in size
 };
 
 /// Distance from a point to a segment or a polyline.

@@ -1,4 +1,4 @@
-// Nearest-point queries on a mesh (a tree of boxes with normal cones) and ray queries (CGAL AABB tree).
+// Nearest points on a mesh and what segments meet, from one tree of boxes with normal cones.
 #pragma once
 
 #include "ostraka/core/mesh.h"
@@ -18,13 +18,13 @@ struct SurfaceHit {
     double distance = 0;                         ///< to the query point; signed along the direction for line hits
 };
 
-/// A search tree over the faces of a mesh, which must outlive it. Queries may run in parallel and give the same answers
-/// for any number of threads. Faces without area are left out. Building costs O(n log n), a query O(log n) typically.
+/// A search tree over the faces of a mesh, which must outlive it and have no garbage. Queries may run in parallel. Faces without
+/// area are left out. A query costs O(log n) typically.
 class SurfaceSearch {
 public:
-    /// What rays and nearest points are looked up in is made with the first query of its kind; `closest`: that for nearest points
-    /// at once.
-    explicit SurfaceSearch(const Mesh& mesh, bool closest = true);
+    /// Builds all that queries need, in O(n) on all threads; answers do not depend on their number. Throws Error (input) if no
+    /// face has an area.
+    explicit SurfaceSearch(const Mesh& mesh);
     ~SurfaceSearch();
     SurfaceSearch(SurfaceSearch&&) noexcept;
 
@@ -36,7 +36,7 @@ public:
     [[nodiscard]] Vector normal(Index face) const;
 
     /// All faces met by the segment from origin - max_distance * direction to origin + max_distance * direction, nearest first
-    /// (ties by face index). `direction` is a unit vector.
+    /// (ties by face index). `direction` is a unit vector. Which faces are met is exact for the segment's ends as rounded.
     [[nodiscard]] std::vector<SurfaceHit> line_hits(const Point& origin, const Vector& direction, double max_distance) const;
 
     /// True if the segment meets a face other than those that `ignored` accepts. Exact for the coordinates as given.
@@ -58,7 +58,8 @@ private:
 /// Barycentric coordinates of the point of triangle abc nearest to p (Ericson 2005, section 5.1.5), clamped to it.
 std::array<double, 3> nearest_barycentric(const Point& a, const Point& b, const Point& c, const Point& p);
 
-/// The point with the given barycentric coordinates.
+/// The point with the given barycentric coordinates, of triangle abc and of a face.
+Point point_at(const Point& a, const Point& b, const Point& c, const std::array<double, 3>& barycentric);
 Point point_at(const Mesh& mesh, Index face, const std::array<double, 3>& barycentric);
 
 }  // namespace ostraka

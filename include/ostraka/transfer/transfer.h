@@ -55,7 +55,7 @@ struct Distortions {
 Distortions distortions(const TransferScore& score);
 
 struct TransferTimes {
-    double correspondence = 0, paths = 0, regions = 0, scores = 0;  ///< seconds
+    double checks = 0, correspondence = 0, paths = 0, regions = 0, scores = 0;  ///< seconds
 };
 
 struct TransferResult {
