@@ -75,7 +75,7 @@ void PageReporter::write(const Path& page) const {
     const std::string head = today() + ", " + processor() + ", " + std::to_string(threads()) + " threads. Memory is read at " +
                              digits(1e-9 * memory_bandwidth(1), 3) + " GB/s by one thread\nand at " +
                              digits(1e-9 * memory_bandwidth(threads()), 3) + " GB/s by all.\n\n" +
-                             "| benchmark | seconds | of all processors | figures |\n|---|---|---|---|\n";
+                             "| benchmark | seconds | processor seconds | figures |\n|---|---|---|---|\n";
     std::map<std::string, std::string> tables;
     for (const Run& run : runs_) tables.try_emplace(group_of(run), head).first->second += row_of(run);
     for (const auto& [group, table] : tables) {

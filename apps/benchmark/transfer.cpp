@@ -121,8 +121,11 @@ void register_transfer_benchmarks() {
         add("tree/search", [=](benchmark::State& state) { build_search(state, vertices); });
         add("transfer/without_overlap", transferring(false, false));
         add("transfer/with_overlap", transferring(false, true));
-        set_aim(add("transfer/and_tree_without_overlap", transferring(true, false)), "of_cgal_tree", 1);
-        set_aim(add("transfer/and_tree_with_overlap", transferring(true, true)), "of_cgal_tree", 1.3);
+        const std::string both = add("transfer/and_tree_without_overlap", transferring(true, false)),
+                          all = add("transfer/and_tree_with_overlap", transferring(true, true));
+        if (vertices < 1'000'000) continue;  // below, the source is most of the work
+        set_aim(both, "of_cgal_tree", 1);
+        set_aim(all, "of_cgal_tree", 1.3);
     }
 }
 

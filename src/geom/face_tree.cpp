@@ -218,8 +218,7 @@ void FaceTree::fill(const FaceOrder& order, std::uint32_t begin, std::uint32_t e
         leaf.cone = floats(axis.normalized(), 0);
         const Vector3d stored = axis_of(leaf.cone).normalized();
         double cosine = 1;
-        for (std::uint32_t i = 0; i < leaf.count; ++i)
-            cosine = std::min(cosine, stored.dot(normals[i]));
+        for (std::uint32_t i = 0; i < leaf.count; ++i) cosine = std::min(cosine, stored.dot(normals[i]));
         opening = Opening{cosine, std::sqrt(std::max(0.0, 1 - cosine * cosine))}.wider_by(rounding_angle);
     } else {
         leaf.cone = floats(Vector3d::UnitZ(), 0);

@@ -42,8 +42,8 @@ struct Deform final : Operation {
         tolerances.describe(p.options);
         p.report.values(boolean("acceptable"), texts("objections"), number("followed.share"), integer("followed.vertices"),
                         number("followed.mean"), number("followed.largest"), integer("selfIntersections"),
-                        integer("selfIntersectionsBefore"), integer("folds"), integer("iterations"), integer("rounds"),
-                        text("stopped"), integer("passes"));
+                        integer("selfIntersectionsBefore"), integer("selfIntersectionsNew"), integer("folds"),
+                        integer("iterations"), integer("rounds"), text("stopped"), integer("passes"));
         p.report.table("constraints", integer("id", "id"), text("type", "constraint"), texts("parts", "parts"),
                        number("weight", "weight"), boolean("hard"), boolean("used"), text("before"), text("verdict", "verdict"),
                        text("text"), any("deviations", "how well"), number("residual.mean"), number("residual.median"),
@@ -248,8 +248,8 @@ struct Deform final : Operation {
         report("followed.share", followed.share)("followed.vertices", followed.vertices)("followed.mean", followed.mean)(
             "followed.largest", followed.largest);
         const SurfaceChange& surface = result.surface;
-        report("selfIntersections", surface.crossings)("selfIntersectionsBefore", surface.crossings_before)("folds",
-                                                                                                            surface.folds);
+        report("selfIntersections", surface.crossings)("selfIntersectionsBefore", surface.crossings_before)(
+            "selfIntersectionsNew", surface.crossings_new)("folds", surface.folds);
         report.empty_table("moved", false);
         for (const EditFollowed::Moved& part : followed.others)
             report.row("moved")("id", part.annotation)("tag", part.tag)("share", 100 * part.share);

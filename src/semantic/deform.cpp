@@ -92,9 +92,10 @@ public:
             result.objections.push_back("the edit is followed by " + percent(result.followed.share) + ", " +
                                         percent(options_.followed) + " are asked");
         result.surface = semantic::surface_change(space_.mesh, with_points(space_.mesh, result.points));
-        const auto& [crossings, before, folds] = result.surface;
-        if (crossings > before)
-            result.objections.push_back(counted(crossings, "pair") + " of faces cross, " + std::to_string(before) + " at rest");
+        const auto& [crossings, before, added, folds] = result.surface;
+        if (added > 0)
+            result.objections.push_back(counted(added, "pair") + " of faces cross that did not at rest (" +
+                                        std::to_string(crossings) + " in all, " + std::to_string(before) + " at rest)");
         if (folds > 0) result.objections.push_back(counted(folds, "edge") + (folds == 1 ? " is" : " are") + " folded over");
         if (space_.cage != nullptr)
             for (const std::string& reason : unfit_for_deformation(check_cage(*space_.cage, space_.mesh), *space_.coordinates))

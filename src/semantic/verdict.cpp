@@ -56,9 +56,13 @@ EditFollowed followed_edit(const HandleSpace& space, const EditState& last, cons
 
 SurfaceChange surface_change(const Mesh& rest, const Mesh& now) {
     SurfaceChange change;
-    const auto crossings = [](const Mesh& mesh) { return self_intersections(to_soup(mesh), 100'000).pairs.size(); };
-    change.crossings = crossings(now);
-    if (change.crossings > 0) change.crossings_before = crossings(rest);
+    const auto crossings = [](const Mesh& mesh) { return self_intersections(to_soup(mesh)).pairs; };
+    const auto pairs_now = crossings(now), pairs_before = crossings(rest);  // sorted
+    change.crossings = pairs_now.size();
+    change.crossings_before = pairs_before.size();
+    change.crossings_new = static_cast<std::size_t>(std::count_if(pairs_now.begin(), pairs_now.end(), [&](const auto& pair) {
+        return !std::binary_search(pairs_before.begin(), pairs_before.end(), pair);
+    }));
     const auto bend = [](const Mesh& mesh, Halfedge h) {
         const Vector a = area_vector(mesh, mesh.face(h)), b = area_vector(mesh, mesh.face(mesh.opposite(h)));
         const double cross = std::sqrt(CGAL::cross_product(a, b).squared_length());

@@ -1,5 +1,6 @@
 // What a deformation says of its result is what is there.
 #include "caged.h"
+#include "io/soups.h"
 #include "ostraka/geom/with_points.h"
 #include "ostraka/measure/measure.h"
 #include "ostraka/semantic/edit_words.h"
@@ -85,6 +86,21 @@ TEST(DeformVerdict, WithoutConstraintsAnEditIsFollowedAndItsSurroundingsFollow) 
         return std::sqrt(CGAL::squared_distance(mesh.point(mesh.source(h)), mesh.point(mesh.target(h))));
     };
     for (const Edge e : now.edges()) ASSERT_LT(length(now, now.halfedge(e)), 3 * length(hand.made.mesh, now.halfedge(e)));
+}
+
+TEST(DeformVerdict, OtherCrossingsThanAtRestAreNotAcceptable) {
+    // Two spheres that cross move apart until they cross in a smaller circle: fewer pairs, and others.
+    const Mesh mesh = build_mesh(soups::both(soups::sphere(16, 32), soups::sphere(16, 32, 0.8, {0.9, 0, 0})));
+    const auto half = static_cast<Index>(soups::sphere(16, 32).points.size());
+    std::string vertices;
+    for (Index v = half; v < mesh.number_of_vertices(); ++v) vertices += (vertices.empty() ? "" : ", ") + std::to_string(v);
+    const AnnotationSet none;
+    const DeformResult result =
+        deform({mesh, none}, {}, edit(R"({"select": {"vertices": [)" + vertices + R"(]}, "translate": [0.6, 0, 0]})"), "e");
+    EXPECT_GT(result.surface.crossings, 0U);
+    EXPECT_LT(result.surface.crossings, result.surface.crossings_before);
+    EXPECT_GT(result.surface.crossings_new, 0U);
+    EXPECT_FALSE(result.acceptable);
 }
 
 TEST(DeformVerdict, CrossingsAreNotAcceptable) {

@@ -70,6 +70,7 @@ struct EditFollowed {
 /// What became of the surface as such.
 struct SurfaceChange {
     std::size_t crossings = 0, crossings_before = 0;  ///< pairs of faces that cross each other, after and at rest
+    std::size_t crossings_new = 0;                    ///< of those after: pairs that did not cross at rest
     std::size_t folds = 0;  ///< edges whose faces turn away from each other by more than 150 degrees, 30 more than at rest
 };
 
