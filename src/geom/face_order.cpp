@@ -43,12 +43,12 @@ struct Lists {
     }
 };
 
-/// Sorts by the digits after the first ones, from the last on; equal ones stay in their order. `other` is room for as many.
-void sort_bucket(const Lists& list, const Lists& other, std::size_t count) {
+/// Sorts by the last bits, digit by digit from the last one on; equal ones stay in their order. `other` is room for as many.
+void sort_by_last(unsigned bits, const Lists& list, const Lists& other, std::size_t count) {
     constexpr unsigned digit_bits = 9;
     constexpr std::size_t digits = std::size_t{1} << digit_bits;
     Lists from = list, to = other;
-    for (unsigned shift = 0; shift < code_bits - bucket_bits; shift += digit_bits) {
+    for (unsigned shift = 0; shift < bits; shift += digit_bits) {
         const auto digit = [shift](std::uint64_t code) { return (code >> shift) % digits; };
         std::array<std::uint32_t, digits> places{};
         for (std::size_t i = 0; i < count; ++i) ++places[digit(from.codes[i])];
@@ -70,6 +70,10 @@ void sort_by_code(FaceOrder& order) {
     auto codes = std::make_unique_for_overwrite<std::uint64_t[]>(count);
     auto faces = std::make_unique_for_overwrite<Index[]>(count);
     const Lists unsorted{order.codes.get(), order.faces.get()}, sorted{codes.get(), faces.get()};
+    if (blocks <= 1) {
+        if (count > 0) sort_by_last(code_bits, unsorted, sorted, count);
+        return;
+    }
     const auto bucket = [](std::uint64_t code) { return code >> (code_bits - bucket_bits); };
     std::vector<std::uint32_t> places(blocks * buckets, 0);
     parallel_blocks(count, block_size, [&](std::size_t begin, std::size_t end) {
@@ -90,8 +94,8 @@ void sort_by_code(FaceOrder& order) {
         buckets,
         [&](std::size_t d) {
             const std::size_t begin = first[d], size = first[d + 1] - begin;
-            if (size > 1)
-                sort_bucket({sorted.codes + begin, sorted.faces + begin}, {unsorted.codes + begin, unsorted.faces + begin}, size);
+            const Lists list{sorted.codes + begin, sorted.faces + begin}, other{unsorted.codes + begin, unsorted.faces + begin};
+            if (size > 1) sort_by_last(code_bits - bucket_bits, list, other, size);
         },
         16);
     order.codes = std::move(codes);
