@@ -68,8 +68,9 @@ struct CageCoordinates final : Operation {
         row("negative sum", number(c.negative_sum), "largest of a point");
         row("locality", number(c.carriers_mean, 4) + " mean, " + std::to_string(c.carriers_max) + " most",
             "weights that carry 95 % at a point");
-        row("amplification", number(amplification(coordinates), 3), "a point moves at most so many times as far as the cage");
-        report("amplification", amplification(coordinates))("outside", cage.outside.size())("crossed", cage.crossing.size())(
+        const double factor = amplification(coordinates);
+        row("amplification", number(factor, 3), "a point moves at most so many times as far as the cage");
+        report("amplification", factor)("outside", cage.outside.size())("crossed", cage.crossing.size())(
             "cageIntersections", cage.intersections.size());
         std::vector<std::string> objections = unfit_for_deformation(cage, coordinates);
         if (!c.holds()) objections.emplace_back("partition of unity or linear precision fails");

@@ -91,8 +91,9 @@ struct MeshDiagnosis {
 /// not finite or beyond 1e100.
 MeshDiagnosis diagnose(const TriangleSoup& soup, const DiagnoseOptions& options = {});
 
-/// The distance within which most points of the border have another one, and half as much again, where that is far less than the
-/// edges there are long: a surface that is torn along its edges. Else 0. O(n log n).
+/// How wide cracks are where a surface is torn along its edges: four times the distance within which nine in ten points of its
+/// border, of those that have another one nearer than half of their shortest edge, have that one. 0 where fewer than nine in ten
+/// of the border do. O(n log n).
 double crack_width(const TriangleSoup& soup);
 
 struct SelfIntersections {

@@ -52,10 +52,11 @@ struct RepairResult {
 };
 
 /// Steps: merge points on open borders (closed components stay as they are), drop triangles that repeat a corner or are
-/// duplicates (of either sense where one closes the surface), orient by flooding across manifold edges, take non-manifold edges
-/// and vertices apart, drop small components, flip triangles without area away, turn closed components outwards (cavities stay),
-/// fill holes, remove self-intersections, wrap. All components stay unless the options say otherwise. `extras` as of
-/// `triangulate`. Throws Error (input) when nothing is left to mend, naming why; Error (usage) for options out of range.
+/// duplicates (of either sense where one closes the surface), insert border vertices into the sides they lie on, orient by
+/// flooding across manifold edges, take non-manifold edges and vertices apart, drop small components, flip triangles without area
+/// away, turn closed components outwards (cavities stay), fill holes, remove self-intersections, wrap. All components stay unless
+/// the options say otherwise. `extras` as of `triangulate`. Throws Error (input) when nothing is left to mend, naming why; Error
+/// (usage) for options out of range.
 RepairResult repair(const TriangleSoup& soup, const MeshExtras& extras = {}, const RepairOptions& options = {});
 
 /// Judges the result as a reader of STL sees it (`after`): single precision, vertices at one place joined. Where that would make
