@@ -52,6 +52,10 @@ private:
 inline constexpr const char* read_and_build_tree = "--read-and-build-tree";
 int run_read_and_build_tree(const std::vector<std::string>& files);
 
+/// Reading alone, as a program of its own: reads the mesh named by the argument after this one. Returns the exit code.
+inline constexpr const char* read_mesh_only = "--read-mesh";
+int run_read_mesh(const std::string& file);
+
 /// Bytes a second that loops read from memory at best.
 double memory_bandwidth(int thread_count);
 

@@ -136,17 +136,21 @@ void transfer_command(benchmark::State& state, std::size_t vertices, const std::
         state.counters["of_reading_and_cgal_tree"] = run.seconds / least->second;
 }
 
-void million_command(benchmark::State& state, std::vector<std::string> arguments, const std::vector<std::string>& more) {
-    if (!make_teapot("target1000000.ply", 1'000'000, 2)) {
+/// A command on the target alone; 'more' follows the mesh file.
+void mesh_command(benchmark::State& state, std::size_t vertices, std::vector<std::string> arguments,
+                  const std::vector<std::string>& more, const std::string& program = OSTRAKA_COMMAND) {
+    if (!make_teapot(target_file(vertices), vertices, 2)) {
         state.SkipWithError("the input could not be made");
         return;
     }
-    arguments.push_back(path_of("target1000000.ply"));
+    arguments.push_back(path_of(target_file(vertices)));
     for (const std::string& argument : more) arguments.push_back(argument);
-    measure_command(state, arguments, 1'000'000);
+    measure_command(state, arguments, vertices, program);
 }
 
 }  // namespace
+
+int run_read_mesh(const std::string& file) { return read_mesh(file).mesh.is_empty() ? 1 : 0; }
 
 int run_read_and_build_tree(const std::vector<std::string>& files) {
     const Mesh source = read_mesh(files[0]).mesh;
@@ -163,7 +167,7 @@ void register_command_benchmarks() {
             ->Unit(benchmark::kMillisecond);
         return "command/" + name;
     };
-    for (const std::size_t vertices : {1'000'000, 8'000'000}) {
+    for (const std::size_t vertices : {1'000'000, 8'000'000, 27'000'000}) {
         const std::string ending = "/" + std::to_string(vertices);
         add("reading_and_cgal_tree" + ending, [vertices](benchmark::State& state) { read_and_build(state, vertices); });
         for (const bool overlap : {false, true}) {
@@ -177,11 +181,21 @@ void register_command_benchmarks() {
             set_aim(name, "peak_B_per_vertex", 600);
         }
     }
-    add("mesh_info/1000000", [](benchmark::State& state) { million_command(state, {"mesh", "info"}, {"--quiet"}); });
-    set_aim("command/render/1000000", "seconds", 2);
-    add("render/1000000", [](benchmark::State& state) {
-        million_command(state, {"render"}, {path_of("million.png"), "--quiet"});
-    });
+    for (const std::size_t vertices : {1'000'000, 8'000'000, 27'000'000}) {
+        const auto add_mesh = [&](const std::string& name, const std::vector<std::string>& arguments,
+                                  const std::vector<std::string>& more, const std::string& program = OSTRAKA_COMMAND) {
+            return add(name + "/" + std::to_string(vertices), [vertices, arguments, more, program](benchmark::State& state) {
+                mesh_command(state, vertices, arguments, more, program);
+            });
+        };
+        add_mesh("reading", {read_mesh_only}, {}, "/proc/self/exe");
+        add_mesh("mesh_info", {"mesh", "info"}, {"--quiet"});
+        add_mesh("mesh_simplify", {"mesh", "simplify"},
+                 {path_of("simplified.ply"), "--vertices", std::to_string(vertices / 10), "--quiet"});
+        add_mesh("slice", {"slice"}, {"--output", path_of("slices.csv"), "--quiet"});
+        const std::string render = add_mesh("render", {"render"}, {path_of("picture.png"), "--quiet"});
+        if (vertices == 1'000'000) set_aim(render, "seconds", 2);
+    }
 }
 
 }  // namespace ostraka::bench
