@@ -173,8 +173,117 @@ double crack_of(const Border& border, double share) {
     return 4 * *rank;
 }
 
+/// Clusters of border points, each alone at first. Two corners of one triangle never come into one.
+class PointClusters {
+public:
+    /// `number`: of each vertex of the soup, its number among the points; no_index for others.
+    PointClusters(const TriangleSoup& soup, const std::vector<Index>& number, std::size_t count) : sets_(count), beside_(count) {
+        for (const auto& t : soup.triangles)
+            for (std::size_t k = 0; k < 3; ++k) {
+                const Index a = number[t[k]], b = number[t[(k + 1) % 3]];
+                if (a == no_index || b == no_index || a == b) continue;
+                beside_[a].push_back(b);
+                beside_[b].push_back(a);
+            }
+    }
+
+    /// Unites the clusters of two points, unless a triangle has corners in both.
+    void unite(Index a, Index b) {
+        a = sets_.find(a), b = sets_.find(b);
+        if (a == b || !may_unite(a, b)) return;
+        auto &kept = beside_[std::min(a, b)], &gone = beside_[std::max(a, b)];
+        if (kept.size() < gone.size()) kept.swap(gone);
+        kept.insert(kept.end(), gone.begin(), gone.end());
+        std::vector<Index>().swap(gone);
+        sets_.unite(a, b);  // the lower root stays
+    }
+
+    /// Unites a with q and b with p, the ends of two edges, unless a triangle has corners in both of either pair.
+    void unite_ends(Index a, Index q, Index b, Index p) {
+        if (!may_unite(a, q) || !may_unite(b, p)) return;
+        unite(a, q);
+        unite(b, p);
+    }
+
+    Index find(Index i) { return sets_.find(i); }
+
+private:
+    bool may_unite(Index a, Index b) {
+        a = sets_.find(a), b = sets_.find(b);
+        if (a == b) return true;
+        if (beside_[a].size() > beside_[b].size()) std::swap(a, b);
+        return std::none_of(beside_[a].begin(), beside_[a].end(), [&](Index i) { return sets_.find(i) == b; });
+    }
+
+    DisjointSets sets_;
+    std::vector<std::vector<Index>> beside_;  ///< of a root: points that share a triangle with one of its cluster
+};
+
+/// Unites the points of one place where edges are as short as cracks are wide, so that distance alone does not tell the points of
+/// one place from those of the next: first the ends of pairs of border edges that run opposite ways, then points; the nearest
+/// pairs first, and never two corners of one triangle. `crack`: how far points of one place are apart at most, in the mesh's
+/// unit; 0: nothing is done. Returns for each border vertex whether it is at such a place.
+std::vector<std::uint8_t> settle_knots(const TriangleSoup& soup, const Border& border, const PointTree& tree, double crack,
+                                       DisjointSets& sets) {
+    const std::size_t count = border.vertices.size();
+    constexpr std::size_t most = 64;  // neighbours of a point that are looked at, so that heaps of points take no square time
+    std::vector<std::uint8_t> knotted(count, 0);
+    std::vector<Index> open;
+    for (Index i = 0; i < count; ++i)
+        if (border.shortest[i] < 3 * crack) knotted[i] = 1, open.push_back(i);
+    if (open.empty()) return knotted;
+    struct Pair {
+        double squared;
+        Index a, q, b, p;
+        auto operator<=>(const Pair&) const = default;
+    };
+    std::vector<Pair> points, sides;
+    while (!open.empty()) {  // and all that is within a crack of those
+        const Index i = open.back();
+        open.pop_back();
+        for (const auto& near : tree.neighbours(border.places[i], most)) {
+            if (near.squared > crack * crack || near.index == i) continue;
+            points.push_back({near.squared, std::min(i, near.index), std::max(i, near.index), 0, 0});
+            if (knotted[near.index] == 0) knotted[near.index] = 1, open.push_back(near.index);
+        }
+    }
+    std::sort(points.begin(), points.end());
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+
+    std::vector<Index> number(soup.points.size(), no_index);
+    for (Index i = 0; i < count; ++i) number[border.vertices[i]] = i;
+    std::vector<std::vector<Index>> from(count), to(count);  // other ends of border edges at knots
+    const SoupEdges edges = group_edges(soup);
+    for (std::size_t e = 0; e < edges.count(); ++e) {
+        if (edges.valence(e) != 1) continue;
+        const Index a = number[origin(soup, *edges.first(e))], b = number[target(soup, *edges.first(e))];
+        if (a == no_index || b == no_index) continue;
+        if (knotted[a] != 0) from[a].push_back(b);
+        if (knotted[b] != 0) to[b].push_back(a);
+    }
+    const auto match = [&](Index a, Index q, double squared) {  // a -> b and p -> q
+        if (from[a].size() * to[q].size() > most * most) return;
+        for (const Index b : from[a])
+            for (const Index p : to[q]) {
+                const double other = CGAL::squared_distance(border.places[b], border.places[p]);
+                if (other <= crack * crack && b != p) sides.push_back({squared + other, a, q, b, p});
+            }
+    };
+    for (const Pair& pair : points) {
+        match(pair.a, pair.q, pair.squared);
+        match(pair.q, pair.a, pair.squared);
+    }
+    std::sort(sides.begin(), sides.end());
+    PointClusters clusters(soup, number, count);
+    for (const Pair& pair : sides) clusters.unite_ends(pair.a, pair.q, pair.b, pair.p);
+    for (const Pair& pair : points) clusters.unite(pair.a, pair.q);
+    for (Index i = 0; i < count; ++i) sets.unite(border.vertices[clusters.find(i)], border.vertices[i]);
+    return knotted;
+}
+
 /// Unites border vertices that are near each other: closer than `limits.distance`, or across a crack. Vertices in the order of
-/// their indices; each is united with those around it that are not united yet. Returns the width of cracks.
+/// their indices; each is united with those around it that are not united yet. Returns the width of cracks. Where edges are as
+/// short as cracks are wide `settle_knots` does it.
 double merge_near(const TriangleSoup& soup, const MergeDistances& limits, DisjointSets& sets) {
     // Border vertices only: merging inside a surface would eat its detail.
     TriangleSoup joined = soup;
@@ -182,12 +291,15 @@ double merge_near(const TriangleSoup& soup, const MergeDistances& limits, Disjoi
         for (Index& v : t) v = sets.find(v);
     const Border border = find_border(joined, limits.gap);
     const double crack = crack_of(border, 0.5);
-    const auto radius = [&](Index i) { return std::max(limits.distance, std::min(crack, border.shortest[i] / 2)); };
     const PointTree tree(border.places);
+    const std::vector<std::uint8_t> knotted = settle_knots(joined, border, tree, crack, sets);
+    const auto radius = [&](Index i) {
+        return std::max(limits.distance, knotted[i] != 0 ? 0 : std::min(crack, border.shortest[i] / 2));
+    };
     std::vector<Index> near;
     std::vector<std::uint8_t> merged(border.vertices.size(), 0);
     for (Index i = 0; i < merged.size(); ++i) {
-        if (merged[i] != 0) continue;
+        if (merged[i] != 0 || radius(i) == 0) continue;
         tree.within(border.places[i], radius(i), near);
         for (const Index other : near) {
             if (other <= i || merged[other] != 0) continue;

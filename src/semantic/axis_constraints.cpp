@@ -118,6 +118,10 @@ Statement structural_continuity(const ReaderPtr& read, const RelationOptions& to
     };
     // The axis is constrained, and the surface follows: it may turn, which displacements from neighbours could not.
     statement.rotating = read->vertices(0);
+    // The reference stands, else both lean over together, pass by pass. What the part has of it is the part's.
+    const std::set<Index> own(statement.rotating.begin(), statement.rotating.end());
+    for (const Index v : read->vertices(1))
+        if (own.count(v) == 0) statement.referred.push_back(v);
     statement.support = [read, rotating = statement.rotating](const State& edited, const State&) {
         const Mesh& mesh = read->shape().mesh;
         // As it is at rest, but where the edit makes all of the object larger or smaller.

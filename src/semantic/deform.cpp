@@ -178,9 +178,10 @@ private:
         }
         // Measures are held to a thousandth of a part.
         const double still = (gauges ? 1e-6 : 1e-4) * box_diagonal(space_.mesh);
+        Points before;
         while (outcome.passes < (follows ? options_.passes : 1)) {
             if (outcome.passes > 0 && !another_pass(active, outcome)) break;
-            const Points before = outcome.points;
+            before = outcome.points;
             if (!solve_once(active, outcome)) break;
             outcome.solved = true;
             ++outcome.passes;
@@ -198,6 +199,7 @@ private:
         }
         const Mesh deformed = with_points(space_.mesh, list_of(outcome.points));
         const semantic::State state(deformed);
+        keep_residuals(active, before, state, outcome);
         for (const semantic::Statement& statement : statements_)
             outcome.measured.push_back(statement.unknown.empty() ? statement.measure(state) : semantic::Measured());
         return outcome;
@@ -221,6 +223,7 @@ private:
         owner_.clear();
         anchors_.clear();
         rotating_.clear();
+        referred_.clear();
         const Mesh mesh = with_points(space_.mesh, list_of(outcome.points));
         const semantic::State now(mesh);
         semantic::State edited(edited_mesh_);
@@ -229,6 +232,7 @@ private:
             if (!active[i]) continue;
             anchors_.insert(statements_[i].anchors.begin(), statements_[i].anchors.end());
             rotating_.insert(statements_[i].rotating.begin(), statements_[i].rotating.end());
+            referred_.insert(statements_[i].referred.begin(), statements_[i].referred.end());
             for (auto& constraint : statements_[i].lower(edited, now)) {
                 lowered_.push_back(std::move(constraint));
                 owner_.push_back(i);
@@ -269,7 +273,8 @@ private:
         for (const Vertex v : space_.mesh.vertices()) {
             if (space_.mesh.is_isolated(v)) continue;
             const bool handle = space_.cage == nullptr && last_.touched[v], anchor = anchors_.count(v.idx()) > 0;
-            (anchor || (handle && !constrained[v]) ? held : handle ? yielding : free).push_back(static_cast<int>(v.idx()));
+            const bool stands = handle || (referred_.count(v.idx()) > 0 && rotating_.count(v.idx()) == 0);
+            (anchor || (stands && !constrained[v]) ? held : handle ? yielding : free).push_back(static_cast<int>(v.idx()));
         }
         const double edge = mean_edge_length(space_.mesh);
         add_closeness(free, closeness(options_, space_.mesh, edge), edited_, 0, rest_, list);
@@ -292,11 +297,9 @@ private:
             outcome.summary = summary.last;
             outcome.rounds += summary.rounds;
             hard_scale_ = std::sqrt(summary.scale);
-            keep_residuals(outcome, outcome.points, [&](std::size_t i) -> const Constraint& { return solver.constraint(i); });
         } else {
             MeshSpaceSolver solver(std::move(all), rest_);
             outcome.summary = solver.solve(outcome.points, options_.solve);
-            keep_residuals(outcome, outcome.points, [&](std::size_t i) -> const Constraint& { return solver.constraint(i); });
         }
     }
 
@@ -336,20 +339,27 @@ private:
             if (statements_[owner_[i]].hard) solver.set_weight(first_ + i, 1e3 * solver.constraint(first_ + i).weight());
         outcome.cage = edited_cage;
         outcome.summary = solver.solve(outcome.cage, options_.solve);
-        const Points all = points_of(extended, outcome.cage);
-        keep_residuals(outcome, all, [&](std::size_t i) -> const Constraint& { return solver.constraint(i); });
-        outcome.points = all.leftCols(n);
+        outcome.points = points_of(extended, outcome.cage).leftCols(n);
     }
 
-    /// Of the low-level constraints of each, divided by their points (section 4.2.3).
-    template <class Get>
-    void keep_residuals(Outcome& outcome, const Points& points, Get&& get) const {
+    /// Of the low-level constraints of each, divided by their points (section 4.2.3), on the finished shape: against axes as they
+    /// are there, and measures as they were before the last pass.
+    void keep_residuals(const std::vector<bool>& active, const Points& before, const semantic::State& finished,
+                        Outcome& outcome) const {
+        if (!outcome.solved) return;
         outcome.residuals.assign(statements_.size(), {});
-        for (std::size_t i = 0; i < owner_.size(); ++i) {
-            const Constraint& constraint = get(first_ + i);
-            auto& residuals = outcome.residuals[owner_[i]];
-            residuals.of_low_level.push_back(constraint.normalised_residual(points));
-            residuals.distance = std::max(residuals.distance, constraint.greatest_distance(points));
+        const Mesh mesh = with_points(space_.mesh, list_of(before));
+        const semantic::State last(mesh);
+        semantic::State edited(edited_mesh_);
+        edited.asked = asked_;
+        for (std::size_t i = 0; i < statements_.size(); ++i) {
+            if (!active[i]) continue;
+            const bool axes = statements_[i].follows && !statements_[i].until_it_holds;
+            Outcome::Residuals& residuals = outcome.residuals[i];
+            for (const auto& constraint : statements_[i].lower(edited, axes ? finished : last)) {
+                residuals.of_low_level.push_back(constraint->normalised_residual(finished.points));
+                residuals.distance = std::max(residuals.distance, constraint->greatest_distance(finished.points));
+            }
         }
     }
 
@@ -430,7 +440,7 @@ private:
     std::vector<std::unique_ptr<Constraint>> support_;
     std::vector<std::size_t> owner_;  ///< of each lowered constraint, in the report
     std::size_t first_ = 0;           ///< its place in the solver's list
-    std::set<Index> anchors_, rotating_;
+    std::set<Index> anchors_, rotating_, referred_;
     double hard_scale_ = 1;  ///< from which hard constraints are enforced, as passes so far tell
 };
 

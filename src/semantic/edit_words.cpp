@@ -59,17 +59,18 @@ Amount amount_of(const std::string& text, const char* option, const AnnotationSe
     Amount amount;
     amount.parts = text.substr(0, equals);
     const auto number = number_of(text.substr(equals + 1, comma == std::string::npos ? comma : comma - equals - 1));
-    if (!number || !std::isfinite(*number)) fail("the amount is no number", "give PART=NUMBER, like back=1.2");
+    if (!number || !std::isfinite(*number))
+        fail("the amount is no number", "give PART=NUMBER without a unit (a length is in the mesh's own), like back=1.2");
     amount.number = *number;
-    if (comma == std::string::npos) {
-        if (!set.up) fail("no direction is up", "add the axis, like " + text + ",z, or up to the annotations");
+    const std::string axis = comma == std::string::npos ? "up" : text.substr(comma + 1);
+    if (axis == "up") {
+        if (!set.up) fail("no direction is up", "add the axis, like " + text.substr(0, comma) + ",z, or up to the annotations");
         amount.axis = *set.up;
         return amount;
     }
-    const std::string axis = text.substr(comma + 1);
     const std::size_t k = axis.empty() ? std::string::npos : std::string("xyz").find(axis.back());
     if (k == std::string::npos || (axis.size() == 2 ? axis[0] != '-' : axis.size() != 1))
-        fail("'" + printable(axis, 20) + "' is no axis", "use x, y, z, -x, -y or -z");
+        fail("'" + printable(axis, 20) + "' is no axis", "use up, x, y, z, -x, -y or -z");
     amount.axis = {0, 0, 0};
     amount.axis.at(k) = axis.size() == 2 ? -1 : 1;
     return amount;
@@ -148,10 +149,16 @@ struct Kept {
     std::string measure;
 };
 Kept kept_by(const std::string& text, const AnnotationSet& set) {
-    // The parts' words come first; the longest name of a measure counts.
+    // The parts' words come first. A whole tag, the longest, goes before a word ("part 0 thickness" is not "0 thickness" of
+    // "part"); else the longest name of a measure counts.
+    if (!parts_of_word(set, text).empty()) return {parts_named(set, text), ""};
+    for (std::size_t end = text.rfind(' '); end != std::string::npos && end > 0; end = text.rfind(' ', end - 1))
+        if (std::any_of(set.annotations.begin(), set.annotations.end(),
+                        [&](const Annotation& one) { return one.tag == text.substr(0, end); }))
+            return {parts_named(set, text.substr(0, end)), text.substr(end + 1)};
     std::size_t space = text.find(' ');
     while (space != std::string::npos && parts_of_word(set, text.substr(0, space)).empty()) space = text.find(' ', space + 1);
-    if (!parts_of_word(set, text).empty() || space == std::string::npos) return {parts_named(set, text), ""};
+    if (space == std::string::npos) return {parts_named(set, text), ""};
     return {parts_named(set, text.substr(0, space)), text.substr(space + 1)};
 }
 

@@ -42,8 +42,10 @@ struct Statement {
     std::function<Measured(const State& deformed)> measure;
     /// Where to start from: the part where it is to be, so that it need not be pulled there through itself. May be empty.
     std::function<void(const State& now, Points& start)> prepare;
-    std::vector<Index> rotating;               ///< vertices whose surface is kept by `support` alone, since it has to turn
-    std::vector<Index> anchors;                ///< vertices that are to stay where the edit leaves them
+    std::vector<Index> rotating;  ///< vertices whose surface is kept by `support` alone, since it has to turn
+    std::vector<Index> anchors;   ///< vertices that are to stay where the edit leaves them
+    /// Vertices of the part that is referred to: they stay where the edit leaves them unless another constraint moves them.
+    std::vector<Index> referred;
     std::optional<Reattachment> reattachment;  ///< features that are put back on the deformed base
     bool follows = false;                      ///< lower gives others when the shape has moved
     bool until_it_holds = false;               ///< follows only as long as it does not hold

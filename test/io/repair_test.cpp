@@ -55,6 +55,8 @@ std::size_t counted(const RepairResult& r, const std::string& step, const std::s
     return 0;
 }
 
+double length_of(const Place& a, const Place& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
+
 RepairOptions no_filling() {
     RepairOptions options;
     options.fill_holes = 0;
@@ -131,6 +133,40 @@ TEST(Repair, TriangleSoupIsJoined) {
     const auto joined = repair(loose, {}, near);
     EXPECT_TRUE(joined.after.defects().empty()) << joined.after.defects().front();
     EXPECT_EQ(joined.mesh.number_of_vertices(), sphere().points.size());
+}
+
+// Points of one place, up to 3.5 times `noise` apart, are told from those of the next where edges are about as short.
+TEST(Repair, CracksAreClosedWhereEdgesAreAsShort) {
+    auto whole = sphere(20, 40);
+    const double noise = 1e-5 * diagnose(whole).diagonal;
+    for (std::size_t t = 100; t < 1400; t += 130) {  // an end of an edge comes close to the other
+        const Place to = whole.points[whole.triangles[t][1]];
+        Place& from = whole.points[whole.triangles[t][0]];
+        const double share = 5 * noise / length_of(from, to);
+        for (std::size_t k = 0; k < 3; ++k) from[k] = to[k] + share * (from[k] - to[k]);
+    }
+    const auto was = diagnose(whole);
+    ASSERT_TRUE(was.closed() && was.manifold());
+    for (const unsigned seed : {1u, 2u, 3u}) {
+        std::mt19937 random(seed);
+        std::uniform_real_distribution<double> move(-noise, noise);
+        TriangleSoup loose;
+        for (const auto& t : whole.triangles) {
+            const auto n = static_cast<Index>(loose.points.size());
+            loose.triangles.push_back({n, n + 1, n + 2});
+            for (const Index v : t) {
+                loose.points.push_back(whole.points[v]);
+                for (double& x : loose.points.back()) x += move(random);
+            }
+        }
+        const auto r = repair(loose, {}, no_filling());
+        EXPECT_TRUE(r.after.closed() && r.after.manifold() && r.after.oriented()) << seed;
+        EXPECT_EQ(r.after.euler(), 2) << seed;
+        EXPECT_EQ(r.after.components.size(), 1u) << seed;
+        EXPECT_EQ(r.mesh.number_of_vertices(), whole.points.size()) << "nothing is lost";
+        EXPECT_EQ(r.mesh.number_of_faces(), whole.triangles.size());
+        EXPECT_NEAR(r.after.volume / was.volume, 1, 1e-4);
+    }
 }
 
 TEST(Repair, CubesThatShareAnEdgeAVertexOrAWallComeApart) {

@@ -135,6 +135,72 @@ TEST(Deform, APartThatContinuesAnotherAlreadyKeepsItsThickness) {
     EXPECT_NEAR(area, rest, 0.02 * rest);
 }
 
+TEST(Deform, AReferenceStandsWhileAPartIsBroughtToIt) {
+    // A leg cut in halves, the lower one rotated. Let free, the upper half leans over with it, further pass by pass.
+    const SyntheticMesh made = make_mesh(synthetic_object("chair"), {.vertices = 8000});
+    AnnotationSet set = apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data/chair.recipe.json", made.mesh, made.face_labels);
+    Annotation& leg = *std::find_if(set.annotations.begin(), set.annotations.end(), [](const auto& a) { return a.id == 7; });
+    double low = 1e300, high = -1e300;
+    for (const Index v : vertices_of(made.mesh, leg)) {
+        const double z = made.mesh.point(Vertex(v)).z();
+        low = std::min(low, z), high = std::max(high, z);
+    }
+    Annotation half = leg;
+    half.id = 60;
+    half.tag = "lower half";
+    half.attributes.clear();
+    half.faces.clear();
+    std::vector<Index> upper;
+    for (const Index f : leg.faces) {
+        double z = 0;
+        for (const Index v : corners(made.mesh, Face(f))) z += made.mesh.point(Vertex(v)).z() / 3;
+        (z < (low + high) / 2 ? half.faces : upper).push_back(f);
+    }
+    leg.faces = upper;
+    leg.attributes.clear();
+    Eigen::Vector3d joint = Eigen::Vector3d::Zero();
+    int shared = 0;
+    const auto above = vertices_of(made.mesh, leg);
+    for (const Index v : vertices_of(made.mesh, half))
+        if (std::find(above.begin(), above.end(), v) != above.end()) joint += eigen(made.mesh.point(Vertex(v))), ++shared;
+    joint /= shared;
+    set.annotations.push_back(half);
+    const std::string steps =
+        R"({"select": {"annotation": "lower half"}, "rotate": {"axis": [0, 1, 0], "angle": 8, "centre": [)" +
+        std::to_string(joint.x()) + ", " + std::to_string(joint.y()) + ", " + std::to_string(joint.z()) + "]}}";
+    for (const int passes : {1, DeformOptions().passes}) {
+        RelationGraph graph;
+        graph.relationships.push_back(constraint(0, "structural continuity", {60, 7}, R"({"hard": true})"));
+        DeformOptions options;
+        options.passes = passes;
+        const DeformResult result = deform({made.mesh, set}, graph, edit(steps), "e", options);
+        const ConstraintReport& report = result.constraints.at(0);
+        ASSERT_EQ(report.deviations.size(), 2U);
+        std::cout << "angle " << report.before_values[0] << " -> " << *report.deviations[0].value << " in " << result.passes
+                  << " passes, distance " << *report.deviations[1].value << ", greatest residual " << report.distance << '\n';
+        EXPECT_GT(report.before_values[0], 5);
+        EXPECT_LT(*report.deviations[0].value, 0.5);
+        EXPECT_EQ(result.surface.crossings_new, 0U);
+        // The residual is that of the shape that is given back: the distance that its verdict measures.
+        EXPECT_NEAR(report.distance, *report.deviations[1].value, 1e-9 * box_diagonal(made.mesh));
+    }
+}
+
+TEST(Deform, ResidualsAreThoseOfTheShapeWithItsFeaturesSeated) {
+    const Caged& object = teapot();
+    RelationGraph graph;
+    graph.relationships.push_back(constraint(0, "plane", {7}, "{}", 10));
+    graph.relationships.push_back(constraint(1, "keep shape", {7}, R"({"mode": "seat"})"));
+    const DeformResult result = deform(
+        object.handles(), graph, edit(R"({"select": {"all": true}, "stretch": {"direction": [0, 0, 1], "factor": 1.3}})"), "e");
+    const ConstraintReport& report = result.constraints.at(0);
+    ASSERT_EQ(report.low_level, 1U);
+    Eigen::AlignedBox3d box;
+    for (const Index v : vertices_of(object.made.mesh, *object.set.find(7))) box.extend(eigen(object.made.mesh.point(Vertex(v))));
+    EXPECT_GT(*report.deviations.at(0).value, 1e-3);
+    EXPECT_NEAR(100 * report.maximum / box.diagonal().norm(), *report.deviations[0].value, 1e-9);
+}
+
 TEST(Deform, TellsWhichConstraintsFight) {
     // The ring finger twice as long as the little finger, and the little finger as long as the ring finger.
     const Hand hand;

@@ -231,6 +231,17 @@ TEST(EditWords, StepsAndConstraints) {
     refused(&EditWords::raise, "back=inf");
     refused(&EditWords::keep, "seat colour");
     refused(&EditWords::level, "seat");
+    refused(&EditWords::raise, "back=2cm");
+    EditWords counted;  // a tag that ends in a number is a part, and its number no part of a measure's name
+    counted.keep = {"part 0 thickness"};
+    counted.stretch = {"part 0=1.2,up"};
+    chair.tagged("seat").tag = "part 0";
+    graph.relationships.clear();
+    take_measures(counted, chair.made.mesh, chair.set);
+    add_constraints(counted, chair.set, graph);
+    ASSERT_EQ(graph.relationships.size(), 1U);
+    EXPECT_NE(graph.relationships[0].constraint.find("\"thickness\""), std::string::npos) << graph.relationships[0].constraint;
+    EXPECT_EQ(edit_of(counted, chair.set)["steps"][0]["stretch"]["factor"].GetDouble(), 1.2);
     chair.set.up.reset();
     refused(&EditWords::stretch, "back=1.2");
 }

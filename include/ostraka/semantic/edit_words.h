@@ -23,9 +23,9 @@ struct EditWords {
 std::vector<const Annotation*> parts_named(const AnnotationSet& set, const std::string& words);
 
 /// An edit (the format of doc/schema/edit.schema.json) with a step for each text: its parts together are stretched along the axis
-/// from their base, moved by a length along it, or rotated about it through the middle of their handles. The axis is x, y, z, -x,
-/// -y, -z, by default up. Throws Error (usage) for a text without "=", a number that is none, a stretch that is not positive, an
-/// unknown axis and where no direction is up; (input) as parts_named.
+/// from their base, moved by a length along it, or rotated about it through the middle of their handles. The axis is up, x, y, z,
+/// -x, -y, -z, by default up. Throws Error (usage) for a text without "=", a number that is none, a stretch that is not positive,
+/// an unknown axis and where no direction is up; (input) as parts_named.
 Json edit_of(const EditWords& words, const AnnotationSet& set);
 
 /// Adds the measures "height" and "thickness" that the words keep and parts have not: the extent along up.
