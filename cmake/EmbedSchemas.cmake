@@ -1,11 +1,11 @@
-# Writes a C++ source that holds each schema's text under its name. Raw strings are cut into pieces, since the
+# Writes a C++ source that holds each schema's or model's text under its name. Raw strings are cut into pieces, since the
 # language limits their length.
 set(code "#include <map>\n#include <string>\n#include <string_view>\n\nnamespace ostraka {\n\n")
 string(APPEND code "const std::map<std::string, std::string_view>& schema_texts();\n\n")
 string(APPEND code "const std::map<std::string, std::string_view>& schema_texts() {\n    static const std::map<std::string, std::string_view> texts = {\n")
 foreach(file IN LISTS SCHEMAS)
   get_filename_component(name ${file} NAME)
-  string(REPLACE ".schema.json" "" name ${name})
+  string(REGEX REPLACE "(.schema)?.json$" "" name ${name})
   file(READ ${file} text)
   string(LENGTH "${text}" length)
   set(pieces "")

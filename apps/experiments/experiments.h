@@ -159,6 +159,18 @@ struct BreakExperiment {
     int motions = 3;                      ///< random ones of all sherds
     int pots = 4;                         ///< synthetic vessels of each kind
 };
+struct JoinExperiment {
+    std::vector<std::string> boxes;  ///< see read_box
+    std::string output = "experiments-output/joins";
+    std::string model;  ///< to train and write
+    int pieces = 8;
+    std::uint64_t seed = 0;
+    bool found = false;          ///< facets as found instead of as known
+    bool adjacent_only = false;  ///< only pairs that touch
+};
+/// Pairs of fragments of broken objects: right poses and calibration.
+void joins(const JoinExperiment& options);
+
 /// The sherds on the template made of them as a surface of revolution: axes, heights and rotations.
 void sherd_rotations(const BreakExperiment& options);
 /// Synthetic vessels, broken: rotations by breaks with wear, noise, a piece that is missing, one of another vessel.

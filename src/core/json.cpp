@@ -211,6 +211,12 @@ void validate(const JsonValue& value, const std::string& schema, const std::stri
                "see doc/schema/" + schema + ".schema.json");
 }
 
+Json built_in_document(const std::string& name) {
+    const auto found = schema_texts().find(name);
+    if (found == schema_texts().end()) throw std::logic_error("no document named " + name + " is built in");
+    return parse_json(found->second, name + ".json");
+}
+
 std::size_t utf8_length(std::string_view text, std::size_t at) {
     const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[at + k]); };
     const std::size_t length = byte(0) < 0x80                      ? 1

@@ -10,30 +10,12 @@ namespace ostraka {
 
 using Eigen::Vector3d;
 
-namespace {
-
-std::vector<Point> places_of(const std::vector<RimFrame>& frames) {
-    std::vector<Point> points;
-    for (const RimFrame& frame : frames) points.push_back(point_of(frame.place));
-    return points;
-}
-
-/// Normals face each other, sides continue each other: cosines.
-constexpr double min_facing = 0.5, continued = 0.7;
-
-}  // namespace
-
-BreakAligner::BreakAligner(const Mesh& a, const BreakSide& side_a, const BreakSide& side_b, double search_radius,
-                           double last_search_radius, double edges)
-    : a_(side_a),
-      b_(side_b),
-      search_radius_(search_radius),
-      last_search_radius_(last_search_radius),
-      edges_(edges),
-      fractures_(points_of(side_a.fracture.places)),
-      frames_(places_of(side_a.frames)),
-      whole_(a),
-      surface_(a.number_of_faces() > 0 ? std::make_unique<SurfaceSearch>(whole_) : nullptr) {}
+BreakTrees::BreakTrees(Mesh mesh, const BreakSide& side)
+    : mesh_(std::move(mesh)),
+      side_(side),
+      fracture_(points_of(side.fracture.places)),
+      frames_(places_of(side.frames)),
+      surface_(mesh_.number_of_faces() > 0 ? std::make_unique<SurfaceSearch>(mesh_) : nullptr) {}
 
 template <class Visit>
 void BreakAligner::for_each_continued(const Motion& pose, double search_radius, Visit&& visit) const {
@@ -66,7 +48,7 @@ Motion BreakAligner::align(const Motion& start, std::size_t samples, int steps, 
         for (std::size_t i = 0; i < count; ++i) {
             const std::size_t k = (2 * i + 1) * b_.fracture.places.size() / (2 * count);
             const Vector3d p = pose(b_.fracture.places[k]), n = pose.rotation * b_.fracture.normals[k];
-            const PointTree::Near near = fractures_.nearest(point_of(p), search_radius);
+            const PointTree::Near near = fracture_.nearest(point_of(p), search_radius);
             if (near.index == no_index) continue;
             const Vector3d& normal = a_.fracture.normals[near.index];
             const double against = -normal.dot(n);
@@ -142,7 +124,7 @@ PairCandidate BreakAligner::judge(const Motion& pose, std::size_t samples, doubl
         result.depth = std::max(result.depth, hit.distance);
     };
     over(b_.fracture, [&](const Vector3d& p, const Vector3d& n, double area) {
-        const PointTree::Near near = fractures_.nearest(point_of(p), last_search_radius_);
+        const PointTree::Near near = fracture_.nearest(point_of(p), last_search_radius_);
         if (near.index != no_index) {
             const double against = -a_.fracture.normals[near.index].dot(n);
             if (against > min_facing) {

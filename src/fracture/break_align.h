@@ -10,9 +10,21 @@ namespace ostraka {
 /// Aligns the second fragment's fracture and rim with those of the first.
 class BreakAligner {
 public:
-    /// Without a mesh (empty) nothing penetrates.
-    BreakAligner(const Mesh& a, const BreakSide& side_a, const BreakSide& side_b, double search_radius, double last_search_radius,
-                 double edges);
+    /// The first fragment with its search trees; they outlive this.
+    struct Target {
+        const BreakSide& side;
+        const PointTree &fracture, &frames;
+        const SurfaceSearch* surface;  ///< none where nothing penetrates
+    };
+    BreakAligner(const Target& a, const BreakSide& side_b, double search_radius, double last_search_radius, double edges)
+        : a_(a.side),
+          b_(side_b),
+          search_radius_(search_radius),
+          last_search_radius_(last_search_radius),
+          edges_(edges),
+          fracture_(a.fracture),
+          frames_(a.frames),
+          surface_(a.surface) {}
 
     /// Closest points, point to plane, with at most `samples` points of the fracture; the search radius falls over `steps` steps.
     /// With `hold`, the intact surface stays where `start` has it, but for sliding on itself, with that weight against the
@@ -29,9 +41,21 @@ private:
 
     const BreakSide &a_, &b_;
     double search_radius_, last_search_radius_, edges_;
-    PointTree fractures_, frames_;
-    Mesh whole_;
-    std::unique_ptr<SurfaceSearch> surface_;  ///< none where there is no mesh
+    const PointTree &fracture_, &frames_;
+    const SurfaceSearch* surface_;
+};
+
+/// Trees of a side that are made for one alignment.
+struct BreakTrees {
+    /// Without a mesh (empty) nothing penetrates.
+    BreakTrees(Mesh mesh, const BreakSide& side);
+    [[nodiscard]] BreakAligner::Target target() const { return {side_, fracture_, frames_, surface_.get()}; }
+
+private:
+    Mesh mesh_;
+    const BreakSide& side_;
+    PointTree fracture_, frames_;
+    std::unique_ptr<SurfaceSearch> surface_;
 };
 
 }  // namespace ostraka

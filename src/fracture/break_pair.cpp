@@ -2,7 +2,7 @@
 #include "ostraka/core/angles.h"
 
 #include "break_align.h"
-#include "break_side.h"
+#include "break_parts.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/json_build.h"
 #include "ostraka/core/parallel.h"
@@ -18,20 +18,6 @@ namespace ostraka {
 using Eigen::Vector3d;
 
 namespace {
-
-/// All of the first fragment, for quick questions.
-struct QuickTarget {
-    std::vector<Vector3d> places, normals;
-    std::size_t fractures = 0;  ///< these come first
-    std::unique_ptr<SampleGrid> grid;
-
-    QuickTarget(const BreakSide& side, double margin) : places(side.fracture.places), normals(side.fracture.normals) {
-        fractures = places.size();
-        places.insert(places.end(), side.intact.places.begin(), side.intact.places.end());
-        normals.insert(normals.end(), side.intact.normals.begin(), side.intact.normals.end());
-        grid = std::make_unique<SampleGrid>(places, margin);
-    }
-};
 
 /// Every n-th element so that about `count` remain.
 std::vector<std::size_t> thinned(std::size_t size, std::size_t count) {
@@ -68,8 +54,9 @@ std::vector<Scored> distinct(std::vector<Scored> list, std::size_t count, const 
 /// Scores poses quickly, by a few places of the second side.
 class QuickScore {
 public:
-    QuickScore(const BreakSide& on, const BreakSide& of, double search_radius)
-        : target_(on, 2 * search_radius),
+    QuickScore(const PreparedBreak::Parts& on, const BreakSide& of, double search_radius)
+        : on_(on),
+          fractures_on_(on.side.fracture.places.size()),
           of_(of),
           search_radius_(search_radius),
           fractures_(thinned(of.fracture.places.size(), 160)),
@@ -81,12 +68,12 @@ public:
         double score = 0;
         const auto look = [&](const Vector3d& place, const Vector3d& normal, double area, bool fracture) {
             const Vector3d p = pose(place);
-            const Index i = target_.grid->near(p);
+            const Index i = on_.grid->near(p);
             if (i == no_index) return;
-            const Vector3d off = p - target_.places[i];
-            const double above = target_.normals[i].dot(off), squared = off.squaredNorm() / (search_radius_ * search_radius_);
-            if (fracture && i < target_.fractures && squared < 1) {
-                const double against = -target_.normals[i].dot(pose.rotation * normal);
+            const Vector3d off = p - on_.places[i];
+            const double above = on_.normals[i].dot(off), squared = off.squaredNorm() / (search_radius_ * search_radius_);
+            if (fracture && i < fractures_on_ && squared < 1) {
+                const double against = -on_.normals[i].dot(pose.rotation * normal);
                 if (against > 0.3) score += area * (1 - squared) * against;
             }
             if (above < -0.5 * search_radius_) score -= area * std::min(1.0, -above / search_radius_ - 0.5);
@@ -97,7 +84,8 @@ public:
     }
 
 private:
-    QuickTarget target_;
+    const PreparedBreak::Parts& on_;
+    std::size_t fractures_on_;  ///< the first of its places
     const BreakSide& of_;
     double search_radius_;
     std::vector<std::size_t> fractures_, others_;
@@ -105,9 +93,10 @@ private:
 };
 
 /// The best of all poses that lay a frame onto a frame; `tried` counts them.
-std::vector<Scored> best_of_frames(const BreakSide& a, const BreakSide& b, double search_radius, std::size_t count,
+std::vector<Scored> best_of_frames(const PreparedBreak::Parts& on, const BreakSide& b, double search_radius, std::size_t count,
                                    std::size_t& tried) {
-    const QuickScore quick_score(a, b, search_radius);
+    const QuickScore quick_score(on, b, search_radius);
+    const BreakSide& a = on.side;
     const std::size_t columns = b.frames.size();
     std::vector<double> scores(a.frames.size() * columns);
     const double none = -std::numeric_limits<double>::infinity();
@@ -129,40 +118,67 @@ std::vector<Scored> best_of_frames(const BreakSide& a, const BreakSide& b, doubl
 
 /// How sure the best candidate is, or why it is not.
 void decide(BreakPair& result, const PairOptions& options) {
-    if (result.candidates.empty() || result.candidates.front().contact < options.min_contact) {
-        result.undecided = "no pose brings " + std::to_string(static_cast<int>(std::lround(100 * options.min_contact))) +
-                           " % of the smaller fracture into contact with the other";
+    if (result.candidates.empty()) {
+        result.undecided = "no pose brings the fractures into contact";
         return;
     }
-    const PairCandidate& best = result.candidates.front();
-    const double next = result.candidates.size() > 1 ? std::max(0.0, result.candidates[1].score) : 0;
-    const double ahead = best.score > 0 ? std::clamp(1 - next / best.score, 0.0, 1.0) : 0;
-    // Even a half of the fracture in contact, a third ahead, is sure.
-    result.confidence = std::min(1.0, 2 * best.contact) * std::min(1.0, 3 * ahead) * std::max(0.0, 1 - best.penetration);
+    const double best = result.candidates.front().log_odds;
+    result.confidence = join_probability(
+        best, result.candidates.size() > 1 ? best - result.candidates[1].log_odds : std::numeric_limits<double>::infinity());
     if (result.confidence < options.min_confidence)
-        result.undecided = "the best pose is not far enough ahead of the next, or little of the fracture is in contact";
+        result.undecided = "as much is seen of fragments that do not belong together, or of another pose: " +
+                           weakest_evidence(result.candidates.front().evidence);
 }
 
 }  // namespace
 
-BreakPair pair_breaks(const Fragment& a, const Fragment& b, const PairOptions& options) {
+PreparedBreak::PreparedBreak(const Fragment& fragment, const PairOptions& options) : parts_(std::make_unique<Parts>()) {
     check_options(options, "pair");
+    Parts& parts = *parts_;
+    parts.mesh = fragment.mesh;
+    parts.name = fragment.name;
+    parts.size = fragment_size(parts.mesh);
+    if (!(parts.size > 0)) fail_input("fragment " + fragment.name, "has no area", "look at its faces");
+    const double search_radius = options.search_radius * parts.size;
+    parts.side = BreakSide(fragment, 0.75 * search_radius, options.frames, options.samples);
+    parts.width = 2 * parts.side.fracture.area / parts.side.rim_length;
+    parts.fracture = PointTree(points_of(parts.side.fracture.places));
+    parts.frames = PointTree(places_of(parts.side.frames));
+    parts.places = parts.side.fracture.places;
+    parts.normals = parts.side.fracture.normals;
+    parts.places.insert(parts.places.end(), parts.side.intact.places.begin(), parts.side.intact.places.end());
+    parts.normals.insert(parts.normals.end(), parts.side.intact.normals.begin(), parts.side.intact.normals.end());
+    parts.grid = std::make_unique<SampleGrid>(parts.places, 2 * search_radius);
+    parts.surface = std::make_unique<SurfaceSearch>(parts.mesh);
+}
+
+PreparedBreak::~PreparedBreak() = default;
+PreparedBreak::PreparedBreak(PreparedBreak&&) noexcept = default;
+PreparedBreak& PreparedBreak::operator=(PreparedBreak&&) noexcept = default;
+const std::string& PreparedBreak::name() const { return parts_->name; }
+const Mesh& PreparedBreak::mesh() const { return parts_->mesh; }
+double PreparedBreak::size() const { return parts_->size; }
+double PreparedBreak::fracture_area() const { return parts_->side.fracture.area; }
+double PreparedBreak::rim_length() const { return parts_->side.rim_length; }
+double PreparedBreak::width() const { return parts_->width; }
+
+BreakPair pair_breaks(const PreparedBreak& a, const PreparedBreak& b, const PairOptions& options) {
+    check_options(options, "pair");
+    const PreparedBreak::Parts &first = a.parts(), &second = b.parts();
     BreakPair result;
-    result.size = std::min(fragment_size(a.mesh), fragment_size(b.mesh));
-    if (!(result.size > 0)) fail_input("fragment", "has no area", "look at its faces");
-    const double search_radius = options.search_radius * result.size, radius = 0.75 * search_radius;
-    const BreakSide side_a(a, radius, options.frames, std::max(4 * options.samples, 4000)),
-        side_b(b, radius, options.frames, options.samples);
-    result.fracture_a = side_a.fracture.area;
-    result.fracture_b = side_b.fracture.area;
+    result.size = std::min(first.size, second.size);
+    const double search_radius = options.search_radius * result.size, tolerance = options.last_search_radius * result.size;
+    result.fracture_a = first.side.fracture.area;
+    result.fracture_b = second.side.fracture.area;
     Vector3d middle = Vector3d::Zero();
-    for (const Vector3d& p : side_b.fracture.places) middle += p / static_cast<double>(side_b.fracture.places.size());
+    for (const Vector3d& p : second.side.fracture.places) middle += p / static_cast<double>(second.side.fracture.places.size());
     const auto starts = static_cast<std::size_t>(options.starts), samples = static_cast<std::size_t>(options.samples);
-    std::vector<Scored> poses = distinct(best_of_frames(side_a, side_b, search_radius, 40 * starts, result.tried), starts, middle,
-                                         0.5 * search_radius, 6 * pi / 180);
+    std::vector<Scored> poses = distinct(best_of_frames(first, second.side, search_radius, 40 * starts, result.tried), starts,
+                                         middle, 0.5 * search_radius, 6 * pi / 180);
 
     // The best refined: quickly, then to the end.
-    const BreakAligner aligner(a.mesh, side_a, side_b, search_radius, options.last_search_radius * result.size, options.edges);
+    const BreakAligner aligner({first.side, first.fracture, first.frames, first.surface.get()}, second.side, search_radius,
+                               tolerance, options.edges);
     parallel_for(
         poses.size(),
         [&](std::size_t i) {
@@ -174,17 +190,49 @@ BreakPair pair_breaks(const Fragment& a, const Fragment& b, const PairOptions& o
     std::vector<PairCandidate> candidates(poses.size());
     parallel_for(
         poses.size(),
-        [&](std::size_t i) { candidates[i] = aligner.judge(aligner.align(poses[i].pose, samples, 40), samples, 0.25); }, 1);
+        [&](std::size_t i) {
+            const Motion pose = aligner.align(poses[i].pose, samples, 40);
+            candidates[i] = aligner.judge(pose, samples, 0.25);
+            candidates[i].evidence = measure_join(a, b, pose, tolerance);
+            candidates[i].log_odds = join_log_odds(candidates[i].evidence);
+        },
+        1);
     std::stable_sort(candidates.begin(), candidates.end(),
-                     [](const PairCandidate& x, const PairCandidate& y) { return x.score > y.score; });
+                     [](const PairCandidate& x, const PairCandidate& y) { return x.log_odds > y.log_odds; });
     for (const PairCandidate& one : candidates) {
         if (result.candidates.size() == static_cast<std::size_t>(options.candidates)) break;
-        if (std::none_of(result.candidates.begin(), result.candidates.end(),
+        if (one.evidence.area > 0 &&
+            std::none_of(result.candidates.begin(), result.candidates.end(),
                          [&](const PairCandidate& k) { return alike(k.pose, one.pose, middle, search_radius, 10 * pi / 180); }))
             result.candidates.push_back(one);
     }
     decide(result, options);
     return result;
+}
+
+double quick_fit(const PreparedBreak& a, const PreparedBreak& b, const PairOptions& options) {
+    const PreparedBreak::Parts &first = a.parts(), &second = b.parts();
+    const double size = std::min(first.size, second.size);
+    const QuickScore quick_score(first, second.side, options.search_radius * size);
+    constexpr std::size_t few = 64;
+    const auto rows = thinned(first.side.frames.size(), few), columns = thinned(second.side.frames.size(), few);
+    std::vector<double> best(rows.size(), 0);
+    parallel_for(
+        rows.size(),
+        [&](std::size_t r) {
+            const RimFrame& frame = first.side.frames[rows[r]];
+            for (const std::size_t c : columns) {
+                const RimFrame& other = second.side.frames[c];
+                if (other.facet == frame.facet) best[r] = std::max(best[r], quick_score(other.onto(frame)));
+            }
+        },
+        4);
+    const double most = best.empty() ? 0 : *std::max_element(best.begin(), best.end());
+    return most / std::min(first.side.fracture.area, second.side.fracture.area);
+}
+
+BreakPair pair_breaks(const Fragment& a, const Fragment& b, const PairOptions& options) {
+    return pair_breaks(PreparedBreak(a, options), PreparedBreak(b, options), options);
 }
 
 JsonValue pair_to_json(const BreakPair& pair, const std::string& a, const std::string& b, JsonAllocator& allocator) {
@@ -211,7 +259,6 @@ void PairOptions::describe(OptionList& visit) {
     visit("last-reach", last_search_radius, "the same at the end; deeper in each other than this they do not go together",
           Range{1e-4, 1});
     visit("edges", edges, "weight of the fractures' rims against their surfaces", Range{0, 1000});
-    visit("least-contact", min_contact, "share of the smaller fracture that must be in contact", Range{0, 1});
     visit("least-confidence", min_confidence, "below this it cannot be told how they go together", Range{0, 1});
     visit("candidates", candidates, "poses told, best first", Range{1, 1000});
 }

@@ -36,6 +36,12 @@ SurfaceSamples sample_faces(const Mesh& mesh, const std::vector<Vector>& normals
     return samples;
 }
 
+std::vector<Point> places_of(const std::vector<RimFrame>& frames) {
+    std::vector<Point> points;
+    for (const RimFrame& frame : frames) points.push_back(point_of(frame.place));
+    return points;
+}
+
 Eigen::Matrix3d RimFrame::axes() const {
     Eigen::Matrix3d axes;
     axes << side, fracture, side.cross(fracture);

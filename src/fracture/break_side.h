@@ -19,6 +19,11 @@ struct RimFrame {
     [[nodiscard]] Motion onto(const RimFrame& other) const;
 };
 
+/// Normals of fractures face each other, sides continue each other: cosines.
+constexpr double min_facing = 0.5, continued = 0.7;
+
+std::vector<Point> places_of(const std::vector<RimFrame>& frames);
+
 /// Points evenly spread over faces, each for the same area.
 struct SurfaceSamples {
     std::vector<Eigen::Vector3d> places, normals;

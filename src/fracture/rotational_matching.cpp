@@ -226,7 +226,8 @@ private:
                     to.normals.insert(to.normals.end(), side.fracture.normals.begin(), side.fracture.normals.end());
                 }
                 if (around.frames.empty()) continue;
-                const BreakAligner aligner(Mesh(), around, sherds_[k].side, wall_, 0.5 * wall_, 1);
+                const BreakTrees trees(Mesh(), around);
+                const BreakAligner aligner(trees.target(), sherds_[k].side, wall_, 0.5 * wall_, 1);
                 // From the rotation alone: what breaks say is not added up over the sweeps.
                 const double rotation = rotation_about_axis(now_[k]);
                 now_[k] = aligner.align(rotated_by(rotation), static_cast<std::size_t>(options_.samples), 16, options_.hold);
@@ -237,7 +238,8 @@ private:
         const std::size_t n = given_.size();
         for (BreakJoint& joint : result_.joints) {
             const auto a = static_cast<std::size_t>(joint.first), b = static_cast<std::size_t>(joint.second);
-            const BreakAligner aligner(sherds_[a].mesh, sherds_[a].side, sherds_[b].side, wall_, 0.5 * wall_, 1);
+            const BreakTrees trees(sherds_[a].mesh, sherds_[a].side);
+            const BreakAligner aligner(trees.target(), sherds_[b].side, wall_, 0.5 * wall_, 1);
             const PairCandidate fit =
                 aligner.judge(now_[a].inverse().after(now_[b]), static_cast<std::size_t>(options_.samples), 0.6);
             joint.rotation = 180 / pi * wrapped(rotation_about_axis(now_[b]) - rotation_about_axis(now_[a]));

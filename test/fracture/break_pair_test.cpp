@@ -129,9 +129,8 @@ TEST(BreakPair, WhatCannotBeLaidTogetherIsSaid) {
     PairOptions options;
     options.search_radius = 2;
     EXPECT_THROW(pair_breaks(a, a, options), Error);
-    // Far too small to touch a share of the other's break: cannot be determined.
+    // A stranger, far smaller: cannot be determined.
     options = quick();
-    options.min_contact = 1;
     Motion smaller;
     smaller.scale = 0.2;
     const BreakPair pair = pair_breaks(a, fragment_of(synthetic_sherd(4, 5, 0, 1), "small", smaller), options);

@@ -31,6 +31,10 @@ std::string to_compact_text(const JsonValue& value);
 /// the JSON pointer and what was expected. Throws std::logic_error for an unknown schema name.
 void validate(const JsonValue& value, const std::string& schema, const std::string& where);
 
+/// A document that is built into the library: `data/<name>.json` of the models that were trained. Throws std::logic_error for an
+/// unknown name.
+Json built_in_document(const std::string& name);
+
 /// Bytes of the UTF-8 character that begins at byte `at` of a text that is longer than that; 0 if none does.
 std::size_t utf8_length(std::string_view text, std::size_t at);
 

@@ -1,0 +1,250 @@
+// Pairs of fragments of broken objects: how often the pose found is right, and whether the confidence says so.
+#include "boxes.h"
+#include "breaks.h"
+#include "experiments.h"
+#include "report.h"
+
+#include "ostraka/core/dense.h"
+#include "ostraka/core/error.h"
+#include "ostraka/core/json_build.h"
+#include "ostraka/fracture/break_pair.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iostream>
+#include <sstream>
+
+namespace ostraka::experiments {
+
+namespace {
+
+/// A pair as it was found.
+struct Row {
+    std::string box;
+    std::size_t first = 0, second = 0;
+    double contact = 0;  ///< truth: share of the smaller break; 0 for strangers
+    bool stranger = false;
+    std::vector<bool> right;  ///< of each candidate
+    std::vector<JoinEvidence> evidence;
+    std::vector<double> log_odds;
+    double confidence = 0;
+    double seconds = 0;
+};
+
+Row try_pair(const Box& of, std::size_t i, const Box& with, std::size_t j, const PreparedBreak& a, const PreparedBreak& moved_b,
+             const Motion& motion) {
+    Row row;
+    row.box = of.name;
+    row.first = i, row.second = j;
+    row.stranger = &of != &with;
+    if (!row.stranger) row.contact = of.contact[std::min(i, j)][std::max(i, j)];
+    const Stopwatch watch;
+    const BreakPair pair = pair_breaks(a, moved_b);
+    row.seconds = watch.seconds().processor;
+    const Mesh& mesh = with.fragments[j].mesh;
+    for (const PairCandidate& one : pair.candidates) {
+        const Motion off = one.pose.after(motion);
+        row.right.push_back(!row.stranger && degrees_of(off) < 6 && off_of(mesh, off) < 0.06 * box_diagonal(mesh));
+        row.evidence.push_back(one.evidence);
+        row.log_odds.push_back(one.log_odds);
+    }
+    row.confidence = pair.confidence;
+    return row;
+}
+
+/// Weights of a logistic regression, held to 0 by `ridge` (iteratively reweighted least squares). Each row begins with a 1.
+Eigen::VectorXd logistic(const std::vector<Eigen::VectorXd>& rows, const std::vector<bool>& truth, double ridge) {
+    const Eigen::Index n = rows.front().size();
+    Eigen::VectorXd weights = Eigen::VectorXd::Zero(n);
+    for (int step = 0; step < 60; ++step) {
+        Eigen::MatrixXd hessian = ridge * Eigen::MatrixXd::Identity(n, n);
+        hessian(0, 0) = 1e-9;
+        Eigen::VectorXd gradient = -ridge * weights;
+        gradient[0] = 0;
+        for (std::size_t k = 0; k < rows.size(); ++k) {
+            const double p = 1 / (1 + std::exp(-weights.dot(rows[k])));
+            hessian += std::max(1e-9, p * (1 - p)) * rows[k] * rows[k].transpose();
+            gradient += ((truth[k] ? 1 : 0) - p) * rows[k];
+        }
+        const Eigen::VectorXd move = solve_ldlt<Eigen::Dynamic>(hessian, gradient);
+        weights += move / std::max(1.0, move.norm());
+        if (move.norm() < 1e-9) break;
+    }
+    return weights;
+}
+
+struct Trained {
+    Eigen::VectorXd weights, pair;
+    std::array<double, JoinEvidence::count> usual{};
+};
+
+Trained train(const std::vector<Row>& rows) {
+    Trained model;
+    std::vector<Eigen::VectorXd> inputs;
+    std::vector<bool> truth;
+    std::size_t joins = 0;
+    for (const Row& row : rows)
+        for (std::size_t c = 0; c < row.evidence.size(); ++c) {
+            // Of pairs that hardly touch the right pose shows little, and teaches that little is enough.
+            const auto features = row.evidence[c].features();
+            Eigen::VectorXd x(JoinEvidence::count + 1);
+            x[0] = 1;
+            for (std::size_t k = 0; k < features.size(); ++k) x[static_cast<Eigen::Index>(k + 1)] = features[k];
+            inputs.push_back(x);
+            truth.push_back(row.right[c]);
+            if (!row.right[c]) continue;
+            ++joins;
+            for (std::size_t k = 0; k < features.size(); ++k) model.usual[k] += features[k];
+        }
+    for (double& one : model.usual) one /= static_cast<double>(std::max<std::size_t>(1, joins));
+    model.weights = logistic(inputs, truth, 3);
+    inputs.clear();
+    truth.clear();
+    for (const Row& row : rows) {
+        if (row.evidence.empty()) continue;
+        std::vector<std::pair<double, bool>> scored;
+        for (std::size_t c = 0; c < row.evidence.size(); ++c) {
+            double sum = model.weights[0];
+            const auto features = row.evidence[c].features();
+            for (std::size_t k = 0; k < features.size(); ++k)
+                sum += model.weights[static_cast<Eigen::Index>(k + 1)] * features[k];
+            scored.emplace_back(-sum, row.right[c]);
+        }
+        std::stable_sort(scored.begin(), scored.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
+        const double lead = scored.size() > 1 ? scored[1].first - scored[0].first : 4;
+        inputs.push_back(Eigen::Vector3d(1, -scored[0].first, std::min(lead, 4.0)));
+        truth.push_back(scored[0].second);
+    }
+    model.pair = logistic(inputs, truth, 0.01);
+    return model;
+}
+
+void write_model(const Path& file, const Trained& model, const std::string& recipe) {
+    Json document;
+    document.SetObject();
+    auto& allocator = document.GetAllocator();
+    const auto list = [&](auto&& values, std::size_t from, std::size_t to) {
+        JsonValue result(rapidjson::kArrayType);
+        for (std::size_t k = from; k < to; ++k)
+            result.PushBack(static_cast<double>(values[static_cast<Eigen::Index>(k)]), allocator);
+        return result;
+    };
+    add_members(document, allocator, "recipe", recipe, "bias", model.weights[0]);
+    document.AddMember("weights", list(model.weights, 1, JoinEvidence::count + 1), allocator);
+    JsonValue usual(rapidjson::kArrayType);
+    for (const double one : model.usual) usual.PushBack(one, allocator);
+    document.AddMember("usual", usual, allocator);
+    document.AddMember("pair", list(model.pair, 0, 3), allocator);
+    write_json(file, document);
+}
+
+void report(const std::vector<Row>& rows, const std::string& what, std::ostream& out) {
+    std::size_t sure = 0, sure_right = 0, even = 0, even_right = 0, joins = 0, found = 0, reached = 0, strangers = 0,
+                strangers_sure = 0, strangers_even = 0;
+    double error = 0, seconds = 0;
+    std::array<std::array<double, 3>, 10> bins{};
+    for (const Row& row : rows) {
+        const bool right = !row.right.empty() && row.right.front();
+        seconds += row.seconds;
+        if (row.confidence >= 0.9) ++sure, sure_right += right ? 1 : 0;
+        if (row.confidence >= 0.5) ++even, even_right += right ? 1 : 0;
+        if (row.stranger)
+            ++strangers, strangers_sure += row.confidence > 0.9 ? 1 : 0, strangers_even += row.confidence >= 0.5 ? 1 : 0;
+        if (row.contact > 0.1) {
+            ++joins;
+            found += right && row.confidence >= 0.5 ? 1 : 0;
+            reached += std::find(row.right.begin(), row.right.end(), true) != row.right.end() ? 1 : 0;
+        }
+        auto& bin = bins[static_cast<std::size_t>(std::min(9.0, 10 * row.confidence))];
+        ++bin[0], bin[1] += row.confidence, bin[2] += right ? 1 : 0;
+    }
+    for (const auto& bin : bins) error += std::abs(bin[1] - bin[2]);
+    const auto share = [](std::size_t x, std::size_t y) {
+        return y > 0 ? 100.0 * static_cast<double>(x) / static_cast<double>(y) : 0;
+    };
+    out << format(
+               "| %s | %zu | %zu of %zu (%.1f %%) | %zu of %zu (%.1f %%) | %zu, %zu of %zu | %zu of %zu (%.0f %%), among "
+               "candidates %zu | %.3f | %.2f |\n",
+               what.c_str(), rows.size(), sure_right, sure, share(sure_right, sure), even_right, even, share(even_right, even),
+               strangers_sure, strangers_even, strangers, found, joins, share(found, joins), reached,
+               error / static_cast<double>(std::max<std::size_t>(1, rows.size())),
+               seconds / static_cast<double>(std::max<std::size_t>(1, rows.size())))
+        << std::flush;
+}
+
+}  // namespace
+
+void joins(const JoinExperiment& options) {
+    std::vector<Row> all;
+    std::cout
+        << "| box | pairs | right of those at 0.9 | right of those at 0.5 | strangers above 0.9, at 0.5, of | true joins found | "
+           "calibration error | s of processor a pair |\n|---|---|---|---|---|---|---|---|\n";
+    Box before;
+    std::vector<PreparedBreak> prepared_before;
+    std::ostringstream csv;
+    csv << "box,first,second,contact,stranger,candidate,right,log_odds,confidence";
+    for (const std::string& name : JoinEvidence::names()) csv << ',' << name;
+    csv << '\n';
+    std::uint64_t seed = options.seed;
+    for (const std::string& source : options.boxes) {
+        Box box;
+        ++seed;
+        try {
+            box = read_box(source, options.pieces, seed, options.found ? FacetChoice::found : FacetChoice::known);
+        } catch (const Error& error) {
+            std::cerr << source << " is left out: " << error.what() << '\n';
+            continue;
+        }
+        Random random(seed, 9);
+        std::vector<PreparedBreak> prepared, moved_ones;
+        std::vector<Motion> motions;
+        std::vector<std::size_t> index;
+        for (std::size_t k = 0; k < box.fragments.size(); ++k) {
+            const Motion motion = random_motion(random, 2 * box.diagonal);
+            Fragment there = box.fragments[k];
+            there.mesh = moved(there.mesh, motion);
+            try {
+                PreparedBreak here(box.fragments[k]), away(there);
+                prepared.push_back(std::move(here));
+                moved_ones.push_back(std::move(away));
+            } catch (const Error& error) {
+                std::cerr << box.name << ' ' << box.fragments[k].name << " has no part in it: " << error.what() << '\n';
+                continue;
+            }
+            motions.push_back(motion);
+            index.push_back(k);
+        }
+        std::vector<Row> rows;
+        for (std::size_t i = 0; i < index.size(); ++i)
+            for (std::size_t j = i + 1; j < index.size(); ++j) {
+                if (options.adjacent_only && !(box.contact[index[i]][index[j]] > 0.1)) continue;
+                rows.push_back(try_pair(box, index[i], box, index[j], prepared[i], moved_ones[j], motions[j]));
+            }
+        // Against the box before: strangers.
+        for (std::size_t i = 0; i < std::min<std::size_t>(4, prepared_before.size()); ++i)
+            for (std::size_t j = 0; j < std::min<std::size_t>(4, index.size()); ++j)
+                rows.push_back(try_pair(before, i, box, index[j], prepared_before[i], moved_ones[j], motions[j]));
+        report(rows, box.name, std::cout);
+        for (const Row& row : rows)
+            for (std::size_t c = 0; c < row.right.size(); ++c) {
+                csv << row.box << ',' << row.first << ',' << row.second << ',' << row.contact << ',' << row.stranger << ',' << c
+                    << ',' << row.right[c] << ',' << row.log_odds[c] << ',' << row.confidence;
+                for (const double x : row.evidence[c].features()) csv << ',' << x;
+                csv << '\n';
+            }
+        all.insert(all.end(), rows.begin(), rows.end());
+        before = std::move(box);
+        prepared_before = std::move(prepared);
+    }
+    report(all, "all", std::cout);
+    write_file(Path(options.output) / "joins.csv", csv.str());
+    if (options.model.empty()) return;
+    std::string recipe = "ostraka_experiments joins --pieces " + std::to_string(options.pieces) + " --seed " +
+                         std::to_string(options.seed) + (options.found ? " --found" : "") + " --model FILE --boxes ";
+    for (const std::string& one : options.boxes)
+        recipe += (&one == &options.boxes.front() ? "" : ",") + Path(one).filename().string();
+    write_model(options.model, train(all), recipe);
+}
+
+}  // namespace ostraka::experiments

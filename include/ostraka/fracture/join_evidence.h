@@ -1,0 +1,45 @@
+// What would be seen of two breaks if they belonged together, and how likely that makes it.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace ostraka {
+
+/// Of two breaks laid against each other. Lengths are shares of the tolerance (the last search radius), areas of its square,
+/// unless they are shares of something else.
+struct JoinEvidence {
+    double area = 0;       ///< in contact: within the tolerance, facing each other; mean of both sides
+    double share = 0;      ///< of the smaller fracture
+    double coverage = 0;   ///< contact by the area that could touch: within three tolerances of the other's fracture
+    double residual = 0;   ///< root mean square distance along the normals
+    double relief = 0;     ///< root mean square deviation of what is in contact from a quadric
+    double bending = 0;    ///< from a plane
+    double grip = 0;       ///< how firmly contact and rim hold the pose: smallest eigenvalue of their normal equations over the
+                           ///< mean one (Gelfand et al. 2003), 0 where they slide on each other
+    double facing = 0;     ///< mean cosine between opposite normals in contact
+    double rim = 0;        ///< length of the rim whose side the other continues
+    double rim_share = 0;  ///< of the shorter rim
+    double rim_coverage = 0;  ///< continued by what could be: within three tolerances of the other's rim
+    double rim_step = 0;      ///< root mean square step across the side where it is continued
+    double penetration = 0;   ///< area deeper in the other than the tolerance, both ways, by the contact
+    double depth = 0;         ///< of the deepest point
+    double widths = 0;        ///< absolute logarithm of the ratio of the two fractures' widths
+
+    static constexpr std::size_t count = 15;
+    /// What the model adds up: each between about -3 and 3.
+    [[nodiscard]] std::array<double, count> features() const;
+    static const std::array<std::string, count>& names();
+};
+
+/// Of the evidence alone: that two fragments were joined so, against what is seen by chance, as learnt from breaks whose truth is
+/// known (data/joins.model.json).
+double join_log_odds(const JoinEvidence& seen);
+/// Calibrated: that a candidate is right, by its log odds and how far they are ahead of the best other candidate of its pair
+/// (below 0: behind).
+double join_probability(double log_odds, double lead);
+/// What speaks most against a join, in words.
+std::string weakest_evidence(const JoinEvidence& seen);
+
+}  // namespace ostraka

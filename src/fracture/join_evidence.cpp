@@ -1,0 +1,242 @@
+#include "ostraka/fracture/join_evidence.h"
+
+#include "break_parts.h"
+#include "ostraka/core/dense.h"
+#include "ostraka/geom/eigen.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ostraka {
+
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr double could_touch = 3;  // tolerances
+
+/// Contact seen from one side: the samples of `from`, moved by `pose`, on the break of `on`.
+struct Contact {
+    std::vector<Vector3d> places, normals;
+    std::vector<double> off;
+    double area = 0, could = 0, square = 0, facing = 0;
+};
+
+Contact contact(const PreparedBreak::Parts& on, const PreparedBreak::Parts& from, const Motion& pose, double tolerance) {
+    Contact result;
+    const SurfaceSamples& samples = from.side.fracture;
+    const double each = samples.area / static_cast<double>(samples.places.size());
+    for (std::size_t i = 0; i < samples.places.size(); ++i) {
+        const Vector3d p = pose(samples.places[i]);
+        const PointTree::Near found = on.fracture.nearest(point_of(p), could_touch * tolerance);
+        if (found.index == no_index) continue;
+        result.could += each;
+        const Vector3d& normal = on.side.fracture.normals[found.index];
+        const double facing = -normal.dot(pose.rotation * samples.normals[i]);
+        if (found.squared > tolerance * tolerance || facing < min_facing) continue;
+        const double off = normal.dot(p - on.side.fracture.places[found.index]);
+        result.area += each;
+        result.square += each * off * off;
+        result.facing += each * facing;
+        result.places.push_back(p);
+        result.normals.push_back(normal);
+        result.off.push_back(off);
+    }
+    return result;
+}
+
+/// Area of `from` that lies deeper than the tolerance in `on`.
+void penetrate(const PreparedBreak::Parts& on, const PreparedBreak::Parts& from, const Motion& pose, double tolerance,
+               double& area, double& depth) {
+    const auto over = [&](const SurfaceSamples& samples) {
+        const std::size_t count = std::min<std::size_t>(600, samples.places.size());
+        const double each = count > 0 ? samples.area / static_cast<double>(count) : 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::size_t k = (2 * i + 1) * samples.places.size() / (2 * count);
+            const Vector3d p = pose(samples.places[k]);
+            const Index cell = on.grid->near(p);
+            // Outside the box, or clearly above the nearest place.
+            if (cell == no_index) continue;
+            const Vector3d away = p - on.places[cell];
+            if (on.normals[cell].dot(away) > 0.5 * away.norm() && away.norm() > 2 * tolerance) continue;
+            const SurfaceHit hit = on.surface->closest(point_of(p));
+            if (hit.face == no_index || hit.distance < tolerance) continue;
+            if (eigen(on.surface->normal(hit.face)).dot(p - eigen(hit.point)) > -0.7 * hit.distance) continue;
+            area += each;
+            depth = std::max(depth, hit.distance);
+        }
+    };
+    over(from.side.fracture);
+    over(from.side.intact);
+}
+
+/// Root mean square deviations of places from their plane and from a quadric over it.
+std::pair<double, double> deviations(const std::vector<Vector3d>& places) {
+    if (places.size() < 10) return {0, 0};
+    Vector3d middle = Vector3d::Zero();
+    for (const Vector3d& p : places) middle += p / static_cast<double>(places.size());
+    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+    for (const Vector3d& p : places) spread += (p - middle) * (p - middle).transpose() / static_cast<double>(places.size());
+    const SymmetricEigen3 axes(spread);
+    const double plane = std::sqrt(std::max(0.0, axes.eigenvalues()[0])),
+                 unit = std::sqrt(std::max(1e-300, axes.eigenvalues()[2]));
+    using Row = Eigen::Matrix<double, 6, 1>;
+    Eigen::Matrix<double, 6, 6> matrix = 1e-6 * Eigen::Matrix<double, 6, 6>::Identity();
+    Row right = Row::Zero();
+    double square = 0;
+    for (const Vector3d& p : places) {
+        const Vector3d d = axes.eigenvectors().transpose() * (p - middle) / unit;
+        Row row;
+        row << 1, d[1], d[2], d[1] * d[1], d[1] * d[2], d[2] * d[2];
+        matrix += row * row.transpose() / static_cast<double>(places.size());
+        right += d[0] * row / static_cast<double>(places.size());
+        square += d[0] * d[0] / static_cast<double>(places.size());
+    }
+    const double rest = square - right.dot(solve_ldlt<6>(matrix, right));
+    return {plane, unit * std::sqrt(std::max(0.0, rest))};
+}
+
+}  // namespace
+
+JoinEvidence measure_join(const PreparedBreak& first, const PreparedBreak& second, const Motion& pose, double tolerance) {
+    const PreparedBreak::Parts &a = first.parts(), &b = second.parts();
+    JoinEvidence seen;
+    const Motion back = pose.inverse();
+    const Contact on_a = contact(a, b, pose, tolerance), on_b = contact(b, a, back, tolerance);
+    const double area = 0.5 * (on_a.area + on_b.area), both = on_a.area + on_b.area,
+                 smaller = std::min(a.side.fracture.area, b.side.fracture.area);
+    seen.area = area / (tolerance * tolerance);
+    seen.share = area / smaller;
+    seen.coverage = both / std::max(1e-300, on_a.could + on_b.could);
+    if (both > 0) {
+        seen.residual = std::sqrt((on_a.square + on_b.square) / both) / tolerance;
+        seen.facing = (on_a.facing + on_b.facing) / both;
+    }
+    const auto [plane, quadric] = deviations(on_a.places);
+    seen.bending = plane / tolerance;
+    seen.relief = quadric / tolerance;
+
+    std::vector<Vector3d> places = on_a.places, normals = on_a.normals;
+    double could = 0, square = 0;
+    const double each = b.side.frames.empty() ? 0 : b.side.rim_length / static_cast<double>(b.side.frames.size());
+    for (const RimFrame& frame : b.side.frames) {
+        const Vector3d p = pose(frame.place);
+        const PointTree::Near found = a.frames.nearest(point_of(p), could_touch * tolerance);
+        if (found.index == no_index) continue;
+        could += each;
+        const RimFrame& other = a.side.frames[found.index];
+        if (other.facet != frame.facet || other.side.dot(pose.rotation * frame.side) < continued ||
+            other.fracture.dot(pose.rotation * frame.fracture) > -min_facing)
+            continue;
+        const double step = other.side.dot(p - other.place);
+        if (std::abs(step) > tolerance) continue;
+        seen.rim += each;
+        square += each * step * step;
+        places.push_back(p);
+        normals.push_back(other.side);
+    }
+    const double shorter = std::min(a.side.rim_length, b.side.rim_length);
+    seen.rim_coverage = could > 0 ? seen.rim / could : 0;
+    seen.rim_step = seen.rim > 0 ? std::sqrt(square / seen.rim) / tolerance : 1;
+    seen.rim_share = seen.rim / shorter;
+    seen.rim /= tolerance;
+
+    if (places.size() >= 6) {
+        Vector3d middle = Vector3d::Zero();
+        for (const Vector3d& p : places) middle += p / static_cast<double>(places.size());
+        double unit = 0;
+        for (const Vector3d& p : places) unit += (p - middle).squaredNorm() / static_cast<double>(places.size());
+        unit = std::sqrt(std::max(1e-300, unit));
+        Eigen::MatrixXd system = Eigen::MatrixXd::Zero(6, 6);
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            Eigen::VectorXd row(6);
+            row << ((places[i] - middle) / unit).cross(normals[i]), normals[i];
+            system += row * row.transpose();
+        }
+        seen.grip = std::max(0.0, SymmetricEigenX(system).eigenvalues()[0]) / std::max(1e-300, system.trace() / 6);
+    }
+    double inside = 0, depth = 0;
+    penetrate(a, b, pose, tolerance, inside, depth);
+    penetrate(b, a, back, tolerance, inside, depth);
+    seen.penetration = inside / std::max(area, 0.01 * smaller);
+    seen.depth = depth / tolerance;
+    seen.widths = std::abs(std::log(a.width / b.width));
+    return seen;
+}
+
+std::vector<ContactPoint> contact_points(const PreparedBreak& first, const PreparedBreak& second, const Motion& pose,
+                                         double search_radius, std::size_t samples) {
+    const PreparedBreak::Parts &a = first.parts(), &b = second.parts();
+    std::vector<ContactPoint> result;
+    const SurfaceSamples& from = b.side.fracture;
+    const std::size_t count = std::min(samples, from.places.size());
+    double all = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t k = (2 * i + 1) * from.places.size() / (2 * count);
+        const PointTree::Near found = a.fracture.nearest(point_of(pose(from.places[k])), search_radius);
+        if (found.index == no_index) continue;
+        const Vector3d& normal = a.side.fracture.normals[found.index];
+        if (-normal.dot(pose.rotation * from.normals[k]) < min_facing) continue;
+        const double share = found.squared / (search_radius * search_radius);
+        result.push_back({a.side.fracture.places[found.index], normal, from.places[k], (1 - share) * (1 - share)});
+        all += result.back().weight;
+    }
+    const std::size_t fractures = result.size();
+    double rim = 0;
+    for (const RimFrame& frame : b.side.frames) {
+        const PointTree::Near found = a.frames.nearest(point_of(pose(frame.place)), search_radius);
+        if (found.index == no_index) continue;
+        const RimFrame& other = a.side.frames[found.index];
+        if (other.facet != frame.facet || other.side.dot(pose.rotation * frame.side) < continued ||
+            other.fracture.dot(pose.rotation * frame.fracture) > -min_facing)
+            continue;
+        const double share = found.squared / (search_radius * search_radius), weight = (1 - share) * (1 - share);
+        result.push_back({other.place, other.side, frame.place, weight});
+        result.push_back({other.place, other.fracture, frame.place, weight});
+        rim += 2 * weight;
+    }
+    // Rims weigh as much as fractures.
+    if (rim > 0 && all > 0)
+        for (std::size_t k = fractures; k < result.size(); ++k) result[k].weight *= all / rim;
+    return result;
+}
+
+std::array<double, JoinEvidence::count> JoinEvidence::features() const {
+    const auto logarithm = [](double x, double low, double high) { return std::log(std::clamp(x, low, high)); };
+    return {logarithm(area, 1, 1e4) - 4,
+            4 * share,
+            4 * coverage,
+            -3 * residual,
+            logarithm(relief / std::max(residual, 0.02), 0.1, 30),
+            logarithm(bending / std::max(residual, 0.02), 0.1, 100) - 1,
+            logarithm(grip, 1e-4, 1) / 2 + 2,
+            10 * (facing - 0.9),
+            logarithm(rim, 0.5, 500) - 3,
+            4 * rim_share,
+            4 * rim_coverage,
+            -3 * rim_step,
+            -logarithm(0.01 + penetration, 0.01, 10) - 2,
+            -logarithm(1 + depth, 1, 100),
+            -3 * std::min(widths, 1.5)};
+}
+
+const std::array<std::string, JoinEvidence::count>& JoinEvidence::names() {
+    static const std::array<std::string, count> names{"area in contact",
+                                                      "share of the smaller break in contact",
+                                                      "what could touch does touch",
+                                                      "close contact",
+                                                      "matching relief",
+                                                      "matching form",
+                                                      "firm hold",
+                                                      "facing normals",
+                                                      "length of common rim",
+                                                      "share of the shorter rim",
+                                                      "rim continues where it could",
+                                                      "sides without step",
+                                                      "no penetration",
+                                                      "no depth",
+                                                      "breaks as wide"};
+    return names;
+}
+
+}  // namespace ostraka

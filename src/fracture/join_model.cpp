@@ -1,0 +1,64 @@
+#include "ostraka/fracture/join_evidence.h"
+
+#include "ostraka/core/json.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ostraka {
+
+namespace {
+
+/// Logistic regression. Of a candidate: weights of what is seen. Of a pair: of a candidate's log odds and its lead.
+struct JoinModel {
+    std::array<double, JoinEvidence::count> weights{}, usual{};  ///< usual: mean of each feature over true joins
+    double bias = 0;
+    std::array<double, 3> pair{};  ///< bias, weight of the log odds, weight of the lead
+};
+constexpr double max_lead = 4;
+
+/// The one that is built in (data/joins.model.json).
+const JoinModel& join_model() {
+    static const JoinModel model = [] {
+        JoinModel result;
+        const Json document = built_in_document("joins.model");
+        const auto read = [&](const char* name, auto& to) {
+            const JsonValue& list = document[name];
+            for (std::size_t k = 0; k < to.size(); ++k) to[k] = list[static_cast<rapidjson::SizeType>(k)].GetDouble();
+        };
+        result.bias = document["bias"].GetDouble();
+        read("weights", result.weights);
+        read("usual", result.usual);
+        read("pair", result.pair);
+        return result;
+    }();
+    return model;
+}
+
+}  // namespace
+
+double join_log_odds(const JoinEvidence& seen) {
+    const JoinModel& model = join_model();
+    const auto features = seen.features();
+    double sum = model.bias;
+    for (std::size_t k = 0; k < features.size(); ++k) sum += model.weights[k] * features[k];
+    return sum;
+}
+
+double join_probability(double log_odds, double lead) {
+    const JoinModel& model = join_model();
+    return 1 /
+           (1 + std::exp(-(model.pair[0] + model.pair[1] * log_odds + model.pair[2] * std::clamp(lead, -max_lead, max_lead))));
+}
+
+std::string weakest_evidence(const JoinEvidence& seen) {
+    const JoinModel& model = join_model();
+    const auto features = seen.features();
+    std::size_t worst = 0;
+    const auto against = [&](std::size_t k) { return model.weights[k] * (features[k] - model.usual[k]); };
+    for (std::size_t k = 1; k < features.size(); ++k)
+        if (against(k) < against(worst)) worst = k;
+    return "there is too little of \"" + JoinEvidence::names()[worst] + '"';
+}
+
+}  // namespace ostraka

@@ -1,0 +1,474 @@
+#include "ostraka/reassembly/reassembly.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/core/progress.h"
+#include "ostraka/geom/eigen.h"
+#include "refine_group.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+namespace ostraka {
+
+using Eigen::Vector3d;
+
+namespace {
+
+double logit(double p) { return std::log(p / (1 - p)); }
+double probability(double log_odds) { return 1 / (1 + std::exp(-log_odds)); }
+
+/// How much likelier it is that a right pose closes a loop with two right ones than that a wrong one does: the inverse of the
+/// share of poses within the tolerances of `agree`, by far on the safe side (poses are not spread evenly over all motions).
+constexpr double loop_gain = 1000;
+/// Log odds of a candidate before anything is seen of it: there are several to a pair, and most pairs do not meet.
+constexpr double prior = -2;
+
+/// A candidate of a pair.
+struct Edge {
+    std::size_t a, b;  ///< a < b
+    Motion pose;       ///< b onto a
+    double own;        ///< log odds by the two alone
+    double boosted;    ///< with loops
+    std::size_t pair;  ///< number of its pair
+};
+
+class Assembler {
+public:
+    Assembler(const std::vector<Fragment>& given, const ReassemblyOptions& options, const PairMemory& memory)
+        : options_(options), memory_(memory), count_(given.size()) {
+        result_.poses.resize(count_);
+        result_.group.assign(count_, -1);
+        result_.alone.resize(count_);
+        prepared_.resize(count_);
+        prepare(given);
+    }
+
+    Reassembly run() {
+        try_pairs();
+        make_edges();
+        close_loops();
+        merge();
+        report();
+        return std::move(result_);
+    }
+
+private:
+    void prepare(const std::vector<Fragment>& given) {
+        Progress progress("prepare fragments", count_);
+        for (std::size_t k = 0; k < count_; ++k) {
+            progress.advance();
+            if (given[k].mesh.number_of_faces() < static_cast<std::size_t>(options_.min_faces)) {
+                result_.alone[k] =
+                    "it has " + std::to_string(given[k].mesh.number_of_faces()) + " faces, too few to show how it broke";
+                continue;
+            }
+            try {
+                prepared_[k] = std::make_unique<PreparedBreak>(given[k], options_.pairs);
+            } catch (const Error& error) {
+                if (error.kind() != ErrorKind::input) throw;
+                result_.alone[k] = "it " + error.problem();
+                continue;
+            }
+            Vector3d middle = Vector3d::Zero();
+            for (const Vertex v : given[k].mesh.vertices())
+                middle += eigen(given[k].mesh.point(v)) / static_cast<double>(given[k].mesh.number_of_vertices());
+            double radius = 0;
+            for (const Vertex v : given[k].mesh.vertices())
+                radius = std::max(radius, (eigen(given[k].mesh.point(v)) - middle).norm());
+            middle_.resize(count_);
+            radius_.resize(count_, 0);
+            middle_[k] = middle;
+            radius_[k] = radius;
+        }
+    }
+
+    [[nodiscard]] double tolerance(std::size_t a, std::size_t b) const {
+        return options_.pairs.last_search_radius * std::min(prepared_[a]->size(), prepared_[b]->size());
+    }
+
+    void try_pairs() {
+        std::vector<std::pair<std::size_t, std::size_t>> list;
+        for (std::size_t i = 0; i < count_; ++i)
+            for (std::size_t j = i + 1; j < count_; ++j)
+                if (prepared_[i] && prepared_[j]) list.emplace_back(i, j);
+        list = promising(list);
+        Progress progress("lay breaks against each other", list.size());
+        for (const auto& [i, j] : list) {
+            check_cancelled();
+            std::optional<PairOfMany> pair;
+            if (memory_.recall) pair = memory_.recall(i, j);
+            if (!pair) {
+                BreakPair found = pair_breaks(*prepared_[i], *prepared_[j], options_.pairs);
+                pair = PairOfMany{i, j, std::move(found.candidates), found.confidence};
+                if (memory_.keep) memory_.keep(*pair);
+            }
+            ++result_.pairs_tried;
+            pairs_.push_back(std::move(*pair));
+            progress.advance();
+        }
+    }
+
+    /// Of many fragments those pairs of which one is among the partners that the other quickly fits best with.
+    std::vector<std::pair<std::size_t, std::size_t>> promising(
+        const std::vector<std::pair<std::size_t, std::size_t>>& list) const {
+        const auto partners = static_cast<std::size_t>(options_.partners);
+        if (count_ <= partners + 1) return list;
+        std::vector<double> score(list.size());
+        Progress progress("compare breaks quickly", list.size());
+        for (std::size_t p = 0; p < list.size(); ++p) {
+            check_cancelled();
+            score[p] = quick_fit(*prepared_[list[p].first], *prepared_[list[p].second], options_.pairs);
+            progress.advance();
+        }
+        std::vector<std::vector<std::size_t>> of(count_);
+        for (std::size_t p = 0; p < list.size(); ++p) of[list[p].first].push_back(p), of[list[p].second].push_back(p);
+        std::vector<bool> keep(list.size(), false);
+        for (auto& own : of) {
+            std::stable_sort(own.begin(), own.end(), [&](std::size_t x, std::size_t y) { return score[x] > score[y]; });
+            for (std::size_t k = 0; k < std::min(partners, own.size()); ++k) keep[own[k]] = true;
+        }
+        std::vector<std::pair<std::size_t, std::size_t>> result;
+        for (std::size_t p = 0; p < list.size(); ++p)
+            if (keep[p]) result.push_back(list[p]);
+        return result;
+    }
+
+    void make_edges() {
+        constexpr double least = 0.002;
+        of_pair_.assign(count_, std::vector<std::vector<std::size_t>>(count_));
+        for (std::size_t p = 0; p < pairs_.size(); ++p) {
+            const PairOfMany& pair = pairs_[p];
+            for (std::size_t c = 0; c < pair.candidates.size(); ++c) {
+                const double here = pair.candidates[c].log_odds, best = pair.candidates.front().log_odds,
+                             lead = c > 0                        ? here - best
+                                    : pair.candidates.size() > 1 ? here - pair.candidates[1].log_odds
+                                                                 : 1e9;
+                const double likely = std::clamp(join_probability(here, lead), 1e-9, 1 - 1e-9);
+                if (likely < least) continue;
+                of_pair_[pair.first][pair.second].push_back(edges_.size());
+                edges_.push_back({pair.first, pair.second, pair.candidates[c].pose, logit(likely), logit(likely), p});
+            }
+        }
+    }
+
+    /// Two poses of fragment `k` into the frame of another are the same for what a loop asks.
+    [[nodiscard]] bool agree(const Motion& x, const Motion& y, std::size_t k, double length) const {
+        constexpr double angle = 0.2;  // radians
+        return (x(middle_[k]) - y(middle_[k])).norm() < length &&
+               Eigen::AngleAxisd(x.rotation.transpose() * y.rotation).angle() < angle;
+    }
+    [[nodiscard]] double loop_length(std::size_t i, std::size_t j, std::size_t k) const {
+        return 0.1 * std::min({prepared_[i]->size(), prepared_[j]->size(), prepared_[k]->size()});
+    }
+
+    /// Edges that close loops of three get surer by how sure the other two are.
+    void close_loops() {
+        constexpr int rounds = 2;
+        for (int round = 0; round < rounds; ++round) {
+            std::vector<double> support(edges_.size(), 0);
+            for (std::size_t i = 0; i < count_; ++i)
+                for (std::size_t j = i + 1; j < count_; ++j) {
+                    if (of_pair_[i][j].empty()) continue;
+                    for (std::size_t k = j + 1; k < count_; ++k)
+                        for (const std::size_t ij : of_pair_[i][j])
+                            for (const std::size_t jk : of_pair_[j][k])
+                                for (const std::size_t ik : of_pair_[i][k]) {
+                                    if (!agree(edges_[ij].pose.after(edges_[jk].pose), edges_[ik].pose, k, loop_length(i, j, k)))
+                                        continue;
+                                    const double p = probability(edges_[ij].boosted), q = probability(edges_[jk].boosted),
+                                                 r = probability(edges_[ik].boosted);
+                                    support[ij] += q * r, support[jk] += p * r, support[ik] += p * q;
+                                }
+                }
+            for (std::size_t e = 0; e < edges_.size(); ++e)
+                edges_[e].boosted = edges_[e].own + std::log(1 + loop_gain * support[e]);
+        }
+    }
+
+    struct Verdict {
+        double log_odds = 0;
+        std::string against;  ///< empty: nothing
+    };
+
+    /// What is seen when the groups of an edge's fragments are joined by it.
+    [[nodiscard]] Verdict examine(const Edge& edge) const {
+        Verdict verdict;
+        const Motion join = result_.poses[edge.a].after(edge.pose).after(result_.poses[edge.b].inverse());
+        double others = 0;
+        std::vector<std::pair<std::size_t, std::size_t>> close;
+        for (const std::size_t i : members_.at(edge.a))
+            for (const std::size_t j : members_.at(edge.b))
+                if ((result_.poses[i](middle_[i]) - join.after(result_.poses[j])(middle_[j])).norm() < radius_[i] + radius_[j])
+                    close.emplace_back(i, j);
+        std::vector<JoinEvidence> seen(close.size());
+        parallel_for(
+            close.size(),
+            [&](std::size_t k) {
+                const auto [i, j] = close[k];
+                seen[k] = measure_join(*prepared_[i], *prepared_[j],
+                                       result_.poses[i].inverse().after(join).after(result_.poses[j]), tolerance(i, j));
+            },
+            1);
+        for (std::size_t k = 0; k < close.size(); ++k) {
+            const auto [i, j] = close[k];
+            const double t = tolerance(i, j), smaller = std::min(prepared_[i]->fracture_area(), prepared_[j]->fracture_area()),
+                         inside = seen[k].penetration * std::max(seen[k].area * t * t, 0.01 * smaller);
+            constexpr double too_much = 0.2;
+            if (inside > too_much * smaller) {
+                verdict.against = prepared_[j]->name() + " would lie inside " + prepared_[i]->name();
+                verdict.log_odds = -1e9;
+                return verdict;
+            }
+            const bool itself = i == edge.a && j == edge.b;
+            constexpr double touches = 0.03;
+            if (!itself && seen[k].share > touches) others += std::clamp(join_log_odds(seen[k]) - prior, -3.0, 5.0);
+            if (!itself && seen[k].share <= touches && inside > 0.02 * smaller) others -= 1;
+        }
+        verdict.log_odds = std::max(edge.boosted + std::min(0.0, others), edge.own + others);
+        return verdict;
+    }
+
+    void merge() {
+        for (std::size_t k = 0; k < count_; ++k) {
+            if (prepared_[k]) members_[k] = {k};
+            version_.push_back(0);
+        }
+        std::vector<std::size_t> order(edges_.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        std::stable_sort(order.begin(), order.end(),
+                         [&](std::size_t x, std::size_t y) { return edges_[x].boosted > edges_[y].boosted; });
+        const double needed = logit(std::clamp(options_.min_join, 1e-6, 1 - 1e-6));
+        struct Seen {
+            std::size_t a, b;
+            Verdict verdict;
+        };
+        std::vector<std::optional<Seen>> seen(edges_.size());
+        constexpr double hopeless = 4;  // below what is needed
+        while (true) {
+            check_cancelled();
+            std::size_t best = edges_.size();
+            double maximum = needed;
+            for (const std::size_t e : order) {
+                const Edge& edge = edges_[e];
+                if (edge.boosted < needed - hopeless) break;
+                if (members_.at(edge.a) == members_.at(edge.b)) continue;
+                if (!seen[e] || seen[e]->a != version_[edge.a] || seen[e]->b != version_[edge.b])
+                    seen[e] = Seen{version_[edge.a], version_[edge.b], examine(edge)};
+                if (seen[e]->verdict.log_odds > maximum) maximum = seen[e]->verdict.log_odds, best = e;
+                // None further down can overtake it: what others add is bounded in practice by how sure they are.
+                if (best < edges_.size() && edge.boosted < maximum - 12) break;
+            }
+            if (best == edges_.size()) break;
+            join(edges_[best]);
+        }
+        for (const std::size_t e : order) {
+            const Edge& edge = edges_[e];
+            if (edge.own < needed) continue;
+            const double likely = probability(edge.own);
+            if (members_.at(edge.a) == members_.at(edge.b)) {
+                const Motion here = result_.poses[edge.a].inverse().after(result_.poses[edge.b]);
+                if (!agree(here, edge.pose, edge.b, loop_length(edge.a, edge.b, edge.b)))
+                    result_.undone.push_back({edge.a, edge.b, likely, "surer joins put the two elsewhere"});
+            } else if (seen[e] && !seen[e]->verdict.against.empty()) {
+                result_.undone.push_back({edge.a, edge.b, likely, seen[e]->verdict.against});
+            } else {
+                result_.undone.push_back({edge.a, edge.b, likely, "what else would touch does not fit"});
+            }
+        }
+    }
+
+    void join(const Edge& edge) {
+        const Motion move = result_.poses[edge.a].after(edge.pose).after(result_.poses[edge.b].inverse());
+        std::vector<std::size_t> all = members_.at(edge.a);
+        for (const std::size_t j : members_.at(edge.b)) {
+            result_.poses[j] = move.after(result_.poses[j]);
+            all.push_back(j);
+        }
+        ++versions_;
+        for (const std::size_t k : all) {
+            members_[k] = all;
+            version_[k] = versions_;
+        }
+        refine(all, 3);
+    }
+
+    /// Pairs of a group that touch where they are.
+    [[nodiscard]] std::vector<std::pair<std::pair<std::size_t, std::size_t>, JoinEvidence>> meetings(
+        const std::vector<std::size_t>& group) const {
+        std::vector<std::pair<std::pair<std::size_t, std::size_t>, JoinEvidence>> list;
+        for (std::size_t x = 0; x < group.size(); ++x)
+            for (std::size_t y = x + 1; y < group.size(); ++y) {
+                const std::size_t i = std::min(group[x], group[y]), j = std::max(group[x], group[y]);
+                if ((result_.poses[i](middle_[i]) - result_.poses[j](middle_[j])).norm() < radius_[i] + radius_[j])
+                    list.push_back({{i, j}, {}});
+            }
+        parallel_for(
+            list.size(),
+            [&](std::size_t k) {
+                const auto [i, j] = list[k].first;
+                list[k].second = measure_join(*prepared_[i], *prepared_[j], result_.poses[i].inverse().after(result_.poses[j]),
+                                              tolerance(i, j));
+            },
+            1);
+        std::erase_if(list, [](const auto& one) { return one.second.share < 0.02; });
+        return list;
+    }
+
+    void refine(const std::vector<std::size_t>& group, int rounds) {
+        std::vector<const PreparedBreak*> fragments;
+        std::vector<Motion> poses;
+        std::map<std::size_t, std::size_t> place;
+        for (const std::size_t k : group) {
+            place[k] = fragments.size();
+            fragments.push_back(prepared_[k].get());
+            poses.push_back(result_.poses[k]);
+        }
+        std::vector<MeetingPair> pairs;
+        for (const auto& [pair, evidence] : meetings(group))
+            pairs.push_back({place[pair.first], place[pair.second], tolerance(pair.first, pair.second)});
+        refine_group(fragments, pairs, poses, rounds);
+        for (std::size_t k = 0; k < group.size(); ++k) result_.poses[group[k]] = poses[k];
+    }
+
+    void report() {
+        std::set<std::vector<std::size_t>> groups;
+        for (const auto& [k, group] : members_)
+            if (group.size() > 1) groups.insert(group);
+        std::vector<std::vector<std::size_t>> list(groups.begin(), groups.end());
+        const auto area = [&](const std::vector<std::size_t>& group) {
+            double sum = 0;
+            for (const std::size_t k : group) sum += prepared_[k]->size() * prepared_[k]->size();
+            return sum;
+        };
+        std::stable_sort(list.begin(), list.end(), [&](const auto& x, const auto& y) { return area(x) > area(y); });
+        for (std::size_t g = 0; g < list.size(); ++g) {
+            refine(list[g], 6);
+            const std::size_t root = *std::max_element(list[g].begin(), list[g].end(), [&](std::size_t x, std::size_t y) {
+                return std::pair(prepared_[x]->size(), y) < std::pair(prepared_[y]->size(), x);
+            });
+            const Motion home = result_.poses[root].inverse();
+            for (const std::size_t k : list[g]) {
+                result_.poses[k] = home.after(result_.poses[k]);
+                result_.group[k] = static_cast<int>(g);
+            }
+            result_.poses[root] = Motion();
+            joins_of(list[g]);
+        }
+        for (std::size_t k = 0; k < count_; ++k) {
+            if (result_.group[k] >= 0 || !result_.alone[k].empty()) continue;
+            result_.poses[k] = Motion();
+            result_.alone[k] = why_alone(k);
+        }
+    }
+
+    void joins_of(const std::vector<std::size_t>& group) {
+        struct Meeting {
+            std::size_t i, j;
+            JoinEvidence evidence;
+            double own;
+        };
+        std::vector<Meeting> list;
+        std::map<std::pair<std::size_t, std::size_t>, double> own;
+        for (const auto& [pair, evidence] : meetings(group)) {
+            const auto [i, j] = pair;
+            const Motion here = result_.poses[i].inverse().after(result_.poses[j]);
+            double likely = std::clamp(join_probability(join_log_odds(evidence), -1), 1e-9, 1 - 1e-9);
+            for (const std::size_t e : of_pair_[i][j])
+                if (agree(here, edges_[e].pose, j, loop_length(i, j, j))) likely = std::max(likely, probability(edges_[e].own));
+            list.push_back({i, j, evidence, logit(std::clamp(likely, 1e-9, 1 - 1e-9))});
+            own[{i, j}] = likely;
+        }
+        const auto between = [&](std::size_t x, std::size_t y) {
+            const auto found = own.find({std::min(x, y), std::max(x, y)});
+            return found == own.end() ? 0 : found->second;
+        };
+        std::vector<FragmentJoin> joins;
+        for (const Meeting& one : list) {
+            FragmentJoin join;
+            join.first = one.i;
+            join.second = one.j;
+            join.pose = result_.poses[one.i].inverse().after(result_.poses[one.j]);
+            join.pair = probability(one.own);
+            join.evidence = one.evidence;
+            double support = 0;
+            for (const std::size_t k : group) {
+                if (k == one.i || k == one.j) continue;
+                const double both = between(one.i, k) * between(one.j, k);
+                if (both > 0.01) ++join.loops;
+                support += both;
+            }
+            join.confidence = probability(one.own + std::log(1 + loop_gain * support));
+            join.reason = join.loops > 0 ? "confirmed by " + std::to_string(join.loops) + (join.loops > 1 ? " loops" : " loop")
+                                         : "by the two alone";
+            joins.push_back(std::move(join));
+        }
+        std::stable_sort(joins.begin(), joins.end(),
+                         [](const FragmentJoin& x, const FragmentJoin& y) { return x.confidence > y.confidence; });
+        std::map<std::size_t, std::size_t> set;
+        for (const std::size_t k : group) set[k] = k;
+        const auto find = [&](std::size_t k) {
+            while (set[k] != k) k = set[k];
+            return k;
+        };
+        for (FragmentJoin& join : joins) {
+            const std::size_t a = find(join.first), b = find(join.second);
+            if (a == b) continue;
+            set[std::max(a, b)] = std::min(a, b);
+            join.carries = true;
+        }
+        for (FragmentJoin& join : joins) result_.joins.push_back(std::move(join));
+    }
+
+    [[nodiscard]] std::string why_alone(std::size_t k) const {
+        const PairCandidate* best = nullptr;
+        double maximum = -1;
+        std::size_t other = k;
+        for (const PairOfMany& pair : pairs_) {
+            if ((pair.first != k && pair.second != k) || pair.candidates.empty() || pair.confidence <= maximum) continue;
+            maximum = pair.confidence;
+            best = &pair.candidates.front();
+            other = pair.first == k ? pair.second : pair.first;
+        }
+        if (best == nullptr) return "its break comes into contact with no other";
+        const int percent = static_cast<int>(std::lround(100 * maximum));
+        return "its most likely join, with " + prepared_[other]->name() + ", has a probability of " + std::to_string(percent) +
+               " %: " + weakest_evidence(best->evidence);
+    }
+
+    const ReassemblyOptions& options_;
+    const PairMemory& memory_;
+    std::size_t count_;
+    std::vector<std::unique_ptr<PreparedBreak>> prepared_;
+    std::vector<Vector3d> middle_;
+    std::vector<double> radius_;
+    std::vector<PairOfMany> pairs_;
+    std::vector<Edge> edges_;
+    std::vector<std::vector<std::vector<std::size_t>>> of_pair_;
+    std::map<std::size_t, std::vector<std::size_t>> members_;  ///< of each fragment: its group
+    std::vector<std::size_t> version_;                         ///< of each fragment's group
+    std::size_t versions_ = 0;
+    Reassembly result_;
+};
+
+}  // namespace
+
+int Reassembly::groups() const { return group.empty() ? 0 : 1 + *std::max_element(group.begin(), group.end()); }
+
+Reassembly reassemble(const std::vector<Fragment>& fragments, const ReassemblyOptions& options, const PairMemory& memory) {
+    check_options(options, "assemble");
+    check_options(options.pairs, "pair");
+    if (fragments.empty()) fail_usage("there are no fragments to assemble", "name two or more");
+    return Assembler(fragments, options, memory).run();
+}
+
+void ReassemblyOptions::describe(OptionList& visit) {
+    visit("least-join", min_join, "probability from which fragments are joined", Range{0.01, 0.999});
+    visit("partners", partners, "of each fragment, those whose breaks quickly fit best are tried in full", Range{1, 100000});
+    visit("least-faces", min_faces, "a fragment of fewer faces stays alone", Range{4, 1e9});
+    pairs.describe(visit);
+}
+
+}  // namespace ostraka
