@@ -139,7 +139,7 @@ void judge(ArcFit& fit, const std::vector<Vector2d>& places) {
     fit.deviation = std::sqrt(squares / count);
     fit.independent = count / correlation_time(residuals);
     const double freedom = std::max(1.0, fit.independent - 3);  // a shape in the residuals: hardly one of them is free
-    if (fit.deviation < 1e-12 * r) {  // rounding
+    if (fit.deviation < 1e-12 * r) {                            // rounding
         fit.radius_low = fit.radius_high = r;
         return;
     }
