@@ -117,18 +117,17 @@ Axis circle_axis(const std::vector<Point>& points) {
     const Vector3d a = oriented(solver.eigenvectors().col(0)), u = solver.eigenvectors().col(2), w = a.cross(u);
     std::vector<Eigen::Vector2d> flat;
     for (const auto& p : points) flat.emplace_back(u.dot(eigen(p) - mean), w.dot(eigen(p) - mean));
-    const Circle circle = fit_circle(flat, std::vector<double>(flat.size(), 1));
+    const ArcFit fit = fit_arc(flat);
+    const Circle& circle = fit.circle;
     if (circle.radius < 0) {
         axis.reason = "its vertices lie on one line";
         return axis;
     }
     double sum = 0;
-    std::vector<double> angles;
     for (std::size_t i = 0; i < flat.size(); ++i) {
         const Eigen::Vector2d q = flat[i] - circle.centre;
         const double off = a.dot(eigen(points[i]) - mean);
         sum += std::pow(q.norm() - circle.radius, 2) + off * off;
-        angles.push_back(std::atan2(q.y(), q.x()));
     }
     const double rms = std::sqrt(sum / double(flat.size()));
     const Vector3d centre = mean + circle.centre.x() * u + circle.centre.y() * w;
@@ -137,8 +136,11 @@ Axis circle_axis(const std::vector<Point>& points) {
     axis.found = true;
     axis.lines = {{point_of(centre - circle.radius * a), point_of(centre + circle.radius * a)}};
     axis.figures = {{"diameter", 2 * circle.radius, "length"},
-                    {"circle preserved", covered_percent(angles), "%"},
-                    {"rms distance", rms, "length"}};
+                    {"circle preserved", 100 * fit.angle / (2 * pi), "%"},
+                    {"rms distance", rms, "length"},
+                    {"diameter at least", 2 * fit.radius_low, "length"}};
+    // Where a straight line fits too there is no upper end.
+    if (std::isfinite(fit.radius_high)) axis.figures.push_back({"diameter at most", 2 * fit.radius_high, "length"});
     return axis;
 }
 

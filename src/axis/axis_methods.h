@@ -25,15 +25,8 @@ inline std::pair<Vector3d, Vector3d> across(const Vector3d& a) {
     return {u, a.cross(u)};
 }
 
-/// Per cent of the full turn that the angles cover: without the largest gap, if that is wider than five degrees and than three
-/// of the mean gaps of a full turn.
-inline double covered_percent(std::vector<double> angles) {
-    if (angles.empty()) return 0;
-    std::sort(angles.begin(), angles.end());
-    double gap = angles.front() + 2 * pi - angles.back();
-    for (std::size_t i = 1; i < angles.size(); ++i) gap = std::max(gap, angles[i] - angles[i - 1]);
-    return gap < std::max(5 * pi / 180, 6 * pi / double(angles.size())) ? 100 : 100 * (1 - gap / (2 * pi));
-}
+/// Per cent of the full turn that the angles cover (`angle_covered`).
+inline double covered_percent(std::vector<double> angles) { return 100 * angle_covered(std::move(angles)) / (2 * pi); }
 
 /// Of a part to find an axis of. Throws Error (usage) for options out of range, Error (input) where no face has an area.
 AreaMoments part_moments(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options);

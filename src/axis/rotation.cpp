@@ -274,6 +274,16 @@ struct Refinement {
         if (sum_squares > 0) count = sum * sum / sum_squares;
         if (sum > 0) radius /= sum;
     }
+    /// Variance of the shift of the axis along a vector across it, tilts free, for unit weight and noise.
+    [[nodiscard]] double radius_uncertainty(const Eigen::Vector2d& along) const {
+        const Eigen::Vector4d t(along.x(), along.y(), 0, 0);
+        const Eigen::Matrix4d information = H / weight + 1e-15 * H.trace() / weight * Eigen::Matrix4d::Identity();
+        return std::max(0.0, t.dot(solve_ldlt<4>(information, t)));
+    }
+    /// Least eigenvalue of the shifts, for unit weight: a half of a full turn, little of a short arc.
+    [[nodiscard]] double shift_information() const {
+        return std::max(0.0, SymmetricEigen2(Eigen::Matrix2d(H.topLeftCorner<2, 2>())).eigenvalues()[0]) / weight;
+    }
     /// Least eigenvalue of the tilts with the shifts eliminated, for unit weight: 0 where a tilt changes nothing.
     [[nodiscard]] double tilt_information() const {
         const Eigen::Matrix2d shifts = H.topLeftCorner<2, 2>() + 1e-12 * (H.trace() + 1e-30) * Eigen::Matrix2d::Identity();
@@ -283,8 +293,16 @@ struct Refinement {
     }
 };
 
-Line refined(const std::vector<Sample>& samples, Line axis) {
-    for (int round = 0; round < 12; ++round) {
+/// Area-weighted mean squared distance from the profile, none more than `limit`, which is that of what has no bin.
+double off_profile(const std::vector<Sample>& samples, const Profile& profile, double limit) {
+    double sum = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i)
+        sum += samples[i].weight * std::pow(profile.bin_of[i] < 0 ? limit : std::min(limit, std::abs(profile.error[i])), 2);
+    return sum;
+}
+
+Line refined(const std::vector<Sample>& samples, Line axis, int rounds) {
+    for (int round = 0; round < rounds; ++round) {
         const Profile profile(samples, axis);
         const Refinement system(samples, axis, profile);
         if (!(system.weight > 0)) break;
@@ -297,6 +315,53 @@ Line refined(const std::vector<Sample>& samples, Line axis) {
         if (step.norm() < 1e-10) break;
     }
     return axis;
+}
+
+/// The axis of a direction that the normals meet best.
+Line along(const std::vector<Sample>& samples, const Vector3d& direction) {
+    const auto [u, w] = across(direction);
+    Eigen::Matrix2d A = Eigen::Matrix2d::Zero();
+    Eigen::Vector2d b = Eigen::Vector2d::Zero();
+    for (const Sample& s : samples) {
+        const Vector3d side = s.n.cross(direction);
+        const Eigen::Vector2d row(side.dot(u), side.dot(w));
+        A += s.weight * row * row.transpose();
+        b += s.weight * side.dot(s.p) * row;
+    }
+    const Eigen::Vector2d x = (A + 1e-9 * Eigen::Matrix2d::Identity()).inverse() * b;
+    return {x[0] * u + x[1] * w, direction};
+}
+
+/// The best of the axes that steps from several guesses lead to: that of the normals, and those of their principal directions
+/// (the least is that of a short arc of a cylinder). `rival`: another one, more than 15 degrees off, has less than 1.5 times its
+/// mean squared distance from the profile.
+struct BestAxis {
+    Line line;
+    bool rival = false;
+};
+BestAxis best_axis(const std::vector<Sample>& samples, const Line& guess) {
+    Matrix3d of_normals = Matrix3d::Zero();
+    for (const Sample& s : samples) of_normals += s.weight * s.n * s.n.transpose();
+    const SymmetricEigen3 solver(of_normals);
+    std::vector<Line> starts{guess};
+    for (int k = 0; k < 3; ++k) starts.push_back(along(samples, solver.eigenvectors().col(k)));
+    std::vector<Line> lines;
+    std::vector<Profile> profiles;
+    double sigma = 1;
+    for (const Line& start : starts) {
+        lines.push_back(refined(samples, start, 30));
+        profiles.emplace_back(samples, lines.back());
+        sigma = std::min(sigma, profiles.back().sigma);
+    }
+    std::vector<double> deviations;
+    for (const Profile& profile : profiles) deviations.push_back(off_profile(samples, profile, 4.685 * std::max(sigma, 1e-4)));
+    const auto least = static_cast<std::size_t>(std::min_element(deviations.begin(), deviations.end()) - deviations.begin());
+    BestAxis best{lines[least], false};
+    const auto radius = [&](std::size_t k) { return upper_median(profiles[k].radius); };
+    for (std::size_t k = 0; k < lines.size(); ++k)
+        best.rival = best.rival || (std::abs(lines[k].direction.dot(best.line.direction)) < std::cos(pi / 12) &&
+                                    deviations[k] < 1.5 * deviations[least] && radius(k) < 3 * radius(least));
+    return best;
 }
 
 /// Median distance (as a standard deviation) of what lies on the profile from the sphere that fits it best: |p|^2 = 2 c . p + d.
@@ -337,7 +402,7 @@ Axis rotation_axis(const Mesh& mesh, const std::vector<Index>& faces, const Axis
         axis.reason = "it is flat: every line across it would do";
         return axis;
     }
-    const Line line = refined(samples, first_guess(samples, moments, options));
+    const auto [line, rival] = best_axis(samples, first_guess(samples, moments, options));
     const Profile profile(samples, line);
     const Refinement system(samples, line, profile);
     double round = 0, facing = 0, squares = 0, largest = 0;
@@ -362,13 +427,24 @@ Axis rotation_axis(const Mesh& mesh, const std::vector<Index>& faces, const Axis
     }
     const double information = system.tilt_information();
     const double error = profile.sigma / std::sqrt(std::max(1e-300, information * std::max(1.0, system.count)));
+    // The less of the turn is there, the more the radius goes with the shift of the axis towards it.
+    Vector3d towards = Vector3d::Zero();
+    for (const double angle : angles) towards += Vector3d(std::cos(angle), std::sin(angle), 0) / double(angles.size());
+    const double diameter_error =
+        2 * profile.sigma * std::sqrt((system.radius_uncertainty(towards.head<2>()) + 1) / std::max(1.0, system.count));
     axis.quality = facing > 0 ? round / facing : 0;
     axis.figures = {{"largest diameter", 2 * largest * scale, "length"},
                     {"circle preserved", covered_percent(angles), "%"},
                     {"rms distance", round > 0 ? std::sqrt(squares / round) * scale : 0, "length"},
-                    {"direction error", std::min(90.0, error * 180 / pi), "degree"}};
-    if (sphere_error(samples, profile) < 2 * profile.sigma || information < 1e-4 * system.radius * system.radius) {
+                    {"direction error", std::min(90.0, error * 180 / pi), "degree"},
+                    {"diameter error", std::min(1e6, diameter_error) * scale, "length"}};
+    if (sphere_error(samples, profile) < 2 * profile.sigma ||
+        information < 2e-4 * system.shift_information() * system.radius * system.radius) {
         axis.reason = "it is like a part of a sphere: many axes would do";
+        return axis;
+    }
+    if (rival) {
+        axis.reason = "it is round about several lines: too little of its turn is there to tell which";
         return axis;
     }
     if (axis.quality < options.min_quality) {
@@ -377,6 +453,10 @@ Axis rotation_axis(const Mesh& mesh, const std::vector<Index>& faces, const Axis
     }
     if (error > 0.09) {
         axis.reason = "the direction is not determined to within five degrees";
+        return axis;
+    }
+    if (2 * diameter_error > largest) {
+        axis.reason = "too little of its turn is there: the diameter is not determined to within a half";
         return axis;
     }
     axis.found = true;

@@ -20,6 +20,7 @@ struct PatchSlice {
 PatchSlice cut(const Mesh& mesh, const std::vector<Index>& faces, const Vector3d& point, const Vector3d& normal,
                double max_distance) {
     std::vector<Vector3d> middles;
+    std::vector<std::array<Vector3d, 2>> pieces;
     std::vector<double> lengths;
     for (const Index f : faces) {
         std::array<Vector3d, 3> p;
@@ -44,6 +45,7 @@ PatchSlice cut(const Mesh& mesh, const std::vector<Index>& faces, const Vector3d
         const double length = (ends[1] - ends[0]).norm();
         if (!(length > 0) || middle.norm() > max_distance) continue;
         middles.push_back(middle);
+        pieces.push_back(ends);
         lengths.push_back(length);
     }
     PatchSlice slice;
@@ -54,15 +56,17 @@ PatchSlice cut(const Mesh& mesh, const std::vector<Index>& faces, const Vector3d
     centre /= total;
     const auto [u, w] = across(normal);
     std::vector<double> angles;
-    std::vector<Eigen::Vector2d> flat;
     for (const auto& m : middles) {
-        flat.emplace_back(u.dot(m), w.dot(m));
         angles.push_back(std::atan2(w.dot(m - centre), u.dot(m - centre)));
     }
     if (covered_percent(angles) < 100.0 * 300 / 360) {
-        const Circle circle = fit_circle(flat, lengths);
-        if (circle.radius < 0 || circle.radius > max_distance) return slice;
-        centre = circle.centre.x() * u + circle.centre.y() * w;
+        PlaneSegments flat;
+        for (const auto& [a, b] : pieces)
+            flat.emplace_back(Eigen::Vector2d(u.dot(a), w.dot(a)), Eigen::Vector2d(u.dot(b), w.dot(b)));
+        // An arc that does not tell its radius has no centre.
+        const ArcFit arc = fit_arc(flat);
+        if (!arc.is_round() || arc.uncertainty() > 0.25 || arc.circle.radius > max_distance) return slice;
+        centre = arc.circle.centre.x() * u + arc.circle.centre.y() * w;
     }
     for (std::size_t i = 0; i < middles.size(); ++i) slice.radius += lengths[i] / total * (middles[i] - centre).norm();
     slice.centre = point + centre;

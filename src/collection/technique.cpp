@@ -6,6 +6,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/json_build.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/geom/circle.h"
 #include "ostraka/slicing/slice.h"
 #include "ostraka/slicing/slice_descriptors.h"
 
@@ -55,14 +56,22 @@ TechniqueSlice measure_slice(const Slice& slice, std::size_t outline, double min
     TechniqueSlice result;
     const Slice body = alone(slice, outline);
     const SliceDescriptors d = describe_slice(body);
-    if (!(d.fitted_radius > 0)) return result;
     const Contour& contour = body.contours[0];
-    const OutlineHarmonics shape = outline_harmonics(contour, d.fitted_centre);
+    Circle circle{d.fitted_centre, contour.closed ? d.fitted_radius : -1};
+    double roundness = d.roundness_fitted_relative;
+    if (!contour.closed) {
+        PlaneSegments pieces;
+        for (std::size_t i = 0; i + 1 < contour.points.size(); ++i) pieces.emplace_back(contour.points[i], contour.points[i + 1]);
+        circle = fit_circle(pieces);
+        roundness = circle_deviation(pieces, circle).absolute / circle.radius;  // of an almost full turn
+    }
+    if (!(circle.radius > 0)) return result;
+    const OutlineHarmonics shape = outline_harmonics(contour, circle.centre);
     result.turn = contour.closed ? 1 : shape.turn;
     if (result.turn < min_turn) return result;
-    result.radius = d.fitted_radius;
-    result.centre = {d.fitted_centre.x(), d.fitted_centre.y()};
-    result.roundness = d.roundness_fitted_relative;
+    result.radius = circle.radius;
+    result.centre = {circle.centre.x(), circle.centre.y()};
+    result.roundness = roundness;
     result.ovality = {shape.cosine[2] / shape.radius, shape.sine[2] / shape.radius};
     double squares = 0;
     for (std::size_t k = 3; k <= max_harmonics; ++k)

@@ -1,9 +1,13 @@
 // Circle fits, and integrals of the distance from a circle along straight pieces.
 #include "ostraka/geom/circle.h"
+#include "ostraka/core/angles.h"
 #include "ostraka/core/dense.h"
 
 #include <Eigen/LU>
 
+#include <boost/math/distributions/students_t.hpp>
+
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -81,6 +85,93 @@ Fit fit_at(const PlaneSegments& segments, const Vector2d& centre, double guess) 
     return fit;
 }
 
+/// Places of an arc in the order of their angle around the centre, from behind the widest gap on.
+std::vector<Vector2d> in_order(std::vector<Vector2d> places, const Vector2d& centre) {
+    std::vector<std::pair<double, std::size_t>> angles;
+    for (std::size_t i = 0; i < places.size(); ++i)
+        angles.emplace_back(std::atan2(places[i].y() - centre.y(), places[i].x() - centre.x()), i);
+    std::sort(angles.begin(), angles.end());
+    std::size_t first = 0;
+    double widest = angles.front().first + 2 * pi - angles.back().first;
+    for (std::size_t i = 1; i < angles.size(); ++i)
+        if (const double gap = angles[i].first - angles[i - 1].first; gap > widest) widest = gap, first = i;
+    std::vector<Vector2d> sorted;
+    for (std::size_t i = 0; i < angles.size(); ++i) sorted.push_back(places[angles[(first + i) % angles.size()].second]);
+    return sorted;
+}
+
+/// Sum of the correlations of a sequence with itself, both ways, until two neighbouring ones have a sum that is not positive.
+double correlation_time(const std::vector<double>& values) {
+    const std::size_t n = values.size();
+    const auto product = [&](std::size_t lag) {
+        double sum = 0;
+        for (std::size_t i = 0; i + lag < n; ++i) sum += values[i] * values[i + lag];
+        return sum;
+    };
+    const double variance = product(0);
+    if (!(variance > 0)) return 1;
+    double sum = -1;
+    for (std::size_t lag = 0; lag + 1 < n; lag += 2) {
+        const double pair = (product(lag) + product(lag + 1)) / variance;
+        if (!(pair > 0)) break;
+        sum += 2 * pair;
+    }
+    return std::max(1.0, sum);
+}
+
+/// What the places say of a circle that fits them.
+void judge(ArcFit& fit, const std::vector<Vector2d>& places) {
+    const double r = fit.circle.radius;
+    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+    std::vector<double> residuals;
+    double squares = 0;
+    for (const Vector2d& p : in_order(places, fit.circle.centre)) {
+        const Vector2d q = p - fit.circle.centre;
+        const double d = q.norm();
+        if (!(d > 0)) continue;
+        const Eigen::Vector3d j(q.x() / d, q.y() / d, 1);
+        information += j * j.transpose();
+        residuals.push_back(d - r);
+        squares += residuals.back() * residuals.back();
+    }
+    if (residuals.empty()) return;
+    const auto count = static_cast<double>(residuals.size());
+    fit.deviation = std::sqrt(squares / count);
+    fit.independent = count / correlation_time(residuals);
+    const double freedom = std::max(1.0, fit.independent - 3);  // a shape in the residuals: hardly one of them is free
+    if (fit.deviation < 1e-12 * r) {                            // rounding
+        fit.radius_low = fit.radius_high = r;
+        return;
+    }
+    const Eigen::Matrix3d inverse = (information / count).inverse();
+    const double variance = squares / count / freedom * inverse(2, 2);
+    if (!(std::isfinite(variance) && variance >= 0)) return;
+    const double t = boost::math::quantile(boost::math::complement(boost::math::students_t_distribution<double>(freedom), 0.025));
+    const double half = t * std::sqrt(variance) / (r * r), curvature = 1 / r;
+    fit.radius_low = 1 / (curvature + half);
+    if (half < curvature) fit.radius_high = 1 / (curvature - half);
+}
+
+/// Gauss-Newton steps of the geometric fit to points.
+Circle refined(const std::vector<Vector2d>& points, Circle circle) {
+    for (int step = 0; step < 100; ++step) {
+        Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
+        Eigen::Vector3d g = Eigen::Vector3d::Zero();
+        for (const Vector2d& p : points) {
+            const Vector2d q = p - circle.centre;
+            const double d = q.norm();
+            if (!(d > 0)) continue;
+            const Eigen::Vector3d j(q.x() / d, q.y() / d, 1);
+            H += j * j.transpose(), g += (d - circle.radius) * j;
+        }
+        const Eigen::Vector3d move = H.inverse() * g;
+        if (!move.allFinite() || move.norm() > 1e3 * circle.radius) break;
+        circle.centre += move.head<2>(), circle.radius += move[2];
+        if (move.norm() < 1e-13 * circle.radius) break;
+    }
+    return circle;
+}
+
 }  // namespace
 
 Circle fit_circle(const std::vector<Vector2d>& points, const std::vector<double>& weights) {
@@ -140,6 +231,93 @@ Circle fit_circle(const PlaneSegments& segments) {
     }
     circle.radius = fit.radius;
     return circle;
+}
+
+double angle_covered(const PlaneSegments& segments, const Vector2d& centre) {
+    constexpr double turn = 2 * pi;
+    std::vector<std::pair<double, double>> arcs;
+    for (const auto& [p, q] : segments) {
+        const Vector2d a = p - centre, b = q - centre;
+        double from = std::atan2(a.y(), a.x()), to = std::atan2(b.y(), b.x());
+        if (from > to) std::swap(from, to);
+        if (to - from <= turn / 2) {
+            arcs.emplace_back(from, to);
+        } else {
+            arcs.emplace_back(to, turn / 2);
+            arcs.emplace_back(-turn / 2, from);
+        }
+    }
+    std::sort(arcs.begin(), arcs.end());
+    double sum = 0, reached = -turn / 2;
+    for (const auto& [from, to] : arcs) {
+        sum += std::max(0.0, to - std::max(from, reached));
+        reached = std::max(reached, to);
+    }
+    return std::min(sum, turn);
+}
+
+double angle_covered(std::vector<double> angles) {
+    if (angles.size() < 2) return 0;
+    std::sort(angles.begin(), angles.end());
+    std::vector<double> gaps{angles.front() + 2 * pi - angles.back()};
+    for (std::size_t i = 1; i < angles.size(); ++i) gaps.push_back(angles[i] - angles[i - 1]);
+    std::sort(gaps.begin(), gaps.end());
+    const std::size_t n = gaps.size();
+    const double plain = 5 * degree, common = std::max(plain, 6 * gaps[(n - 1) / 2]);
+    double covered = 2 * pi;
+    for (std::size_t i = 0; i < n; ++i) {
+        const bool widest = i + 1 == n;
+        if (gaps[i] > (widest ? std::max(plain, std::min(common, 1.5 * gaps[n - 2])) : common)) covered -= gaps[i];
+    }
+    return std::max(0.0, covered);
+}
+
+bool ArcFit::is_round() const {
+    if (!(circle.radius > 0) || deviation > circle.radius / 20) return false;
+    const double bulge = circle.radius * (1 - std::cos(std::min(angle / 2, pi / 2)));
+    // So many signs that change are no shape.
+    return deviation <= bulge / 20 || independent >= 20;
+}
+
+double ArcFit::uncertainty() const { return (radius_high - radius_low) / 2 / circle.radius; }
+
+std::pair<double, double> ArcFit::angles() const {
+    const double low = std::isfinite(radius_high) ? angle * circle.radius / radius_high : 0;
+    return {low, radius_low > 0 ? std::min(2 * pi, angle * circle.radius / radius_low) : 2 * pi};
+}
+
+ArcFit fit_arc(const PlaneSegments& segments) {
+    ArcFit fit;
+    fit.circle = fit_circle(segments);
+    if (!(fit.circle.radius > 0)) return fit;
+    fit.angle = angle_covered(segments, fit.circle.centre);
+    double length = 0;
+    for (const auto& [a, b] : segments) length += (b - a).norm();
+    const double step = length / static_cast<double>(std::clamp<std::size_t>(2 * segments.size(), 200, 2000));
+    std::vector<Vector2d> places;
+    // One in each step, not at the same place of it: pieces of one length would show the same of their chords each time.
+    const auto place = [&](double k) { return step * (k + std::fmod(0.5 + k * 0.6180339887498949, 1.0)); };
+    double passed = 0, k = 0;
+    for (const auto& [a, b] : segments) {
+        const double piece = (b - a).norm();
+        for (; place(k) < passed + piece; ++k) places.push_back(a + (place(k) - passed) / piece * (b - a));
+        passed += piece;
+    }
+    judge(fit, places);
+    return fit;
+}
+
+ArcFit fit_arc(const std::vector<Vector2d>& points) {
+    ArcFit fit;
+    fit.circle = fit_circle(points, std::vector<double>(points.size(), 1));
+    if (!(fit.circle.radius > 0)) return fit;
+    fit.circle = refined(points, fit.circle);
+    judge(fit, points);
+    // Points beside each other have what is between them, but for the widest gap if it stands out.
+    std::vector<double> angles;
+    for (const Vector2d& p : points) angles.push_back(std::atan2(p.y() - fit.circle.centre.y(), p.x() - fit.circle.centre.x()));
+    fit.angle = angle_covered(std::move(angles));
+    return fit;
 }
 
 CircleDeviation circle_deviation(const PlaneSegments& segments, const Circle& circle) {

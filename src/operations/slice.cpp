@@ -259,11 +259,17 @@ struct SliceObject final : Operation {
         const double turn = angle ? *angle * M_PI / 180 : std::numeric_limits<double>::quiet_NaN();
         const SliceFrame axis = direction == "rotation" ? cut.frames[0] : median_frame(cut);
         const Profile found = find_profile(mesh->mesh, axis, turn);
-        const std::string name = file.filename().string(),
-                          not_turned = "not a turned object about this axis (fewer than half of 24 slices are round): ";
+        const std::string name = file.filename().string();
+        const std::string not_turned = 2 * found.open >= 24
+                                           ? "the contours of " + std::to_string(found.open) +
+                                                 " of 24 slices do not close, so that whether the object is round is not known: "
+                                           : "not a turned object about this axis (fewer than half of 24 slices are round): ";
         if (!found.turned && !asked)
             return report.note(not_turned + name + " is not written; --profile FILE draws it all the same");
-        if (!found.turned) report.note(not_turned + "a profile drawing says little of it");
+        if (!found.turned)
+            report.note(not_turned + (found.rim_high > 0
+                                          ? "the drawing shows one section, and the circle of the rim as far as its arc tells it"
+                                          : "a profile drawing says little of it"));
         if (found.hides)
             report.note(name + " does not show all that stands out from the turned body: some of it lies before or behind it");
         write_profile_drawing(file, found, name_of_drawing(), unit_of_lengths);

@@ -2,6 +2,7 @@
 #include "slice_report.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace ostraka {
 
@@ -72,6 +73,19 @@ std::vector<std::string> slice_remarks(const CutObject& cut, bool one_plane) {
     else if (open > 0)
         list.push_back(std::to_string(open) + " of " + all +
                        " slices have open contours; their descriptors are of the closed ones only");
+    std::size_t untold = 0, arcs = 0;
+    for (const auto& slice : cut.slices) {
+        if (slice.completeness.complete()) continue;
+        (std::isfinite(slice.completeness.share) ? arcs : untold) += 1;
+    }
+    if (arcs > 0)
+        list.push_back(std::to_string(arcs) + " of " + all +
+                       " slices are open arcs of a circle: complete % is what they show of its turn (95 % interval), if what is "
+                       "not there is round as well");
+    if (untold > 0)
+        list.push_back(std::to_string(untold) + " of " + all +
+                       " slices have open contours that are no arcs of one circle: how much of their outline is missing cannot "
+                       "be told (complete %: at most as said)");
     add_slice_soundness(list, cut);
     return list;
 }

@@ -73,7 +73,7 @@ JsonValue slice_json(const Contour& contour, JsonAllocator& allocator) {
         if (contour.crosses) add_members(object, allocator, "crosses", true);
         if (contour.turned) add_members(object, allocator, "turned", true);
     } else {
-        add_members(object, allocator, "gap", contour.gap, "share", contour.length / (contour.length + contour.gap));
+        add_members(object, allocator, "gap", contour.gap);
     }
     add_members(object, allocator, "length", contour.length, "points", slice_points(contour.points, allocator));
     return object;
@@ -96,9 +96,15 @@ void add_slice_completeness(Report::Row& row, const Slice& slice) {
     row("completeness.empty", empty)("completeness.complete", !empty && c.complete());
     row.shown("completeness.share", "empty");
     if (empty) return;
-    row("completeness.closed_share", c.closed_share)("completeness.share", c.share, number(100 * c.share, 3))(
-        "completeness.angle_degrees", c.angle / slice_degree)("completeness.crossing_contours", c.crossing)(
+    const auto percent = [](double share) { return number(100 * share, 3); };
+    std::string shown = percent(c.share);
+    if (!std::isfinite(c.share)) shown = "at most " + percent(c.share_at_most);
+    else if (c.share_low < c.share_high) shown += " (" + percent(c.share_low) + " to " + percent(c.share_high) + ")";
+    row("completeness.closed_share", c.closed_share)("completeness.share", c.share)("completeness.share_low", c.share_low)(
+        "completeness.share_high", c.share_high)("completeness.share_at_most", c.share_at_most)(
+        "completeness.angle_degrees", c.angle() / slice_degree)("completeness.crossing_contours", c.crossing)(
         "completeness.turned_contours", c.turned)("completeness.doubtful_share", c.doubtful);
+    row.shown("completeness.share", shown);
 }
 
 void add_slice_descriptors(Report::Row& row, const SliceDescriptors& descriptors) {
@@ -185,6 +191,9 @@ void declare_slices(ReportLayout& layout) {
                                boolean("completeness.empty"),
                                boolean("completeness.complete"),
                                number("completeness.closed_share"),
+                               number("completeness.share_low"),
+                               number("completeness.share_high"),
+                               number("completeness.share_at_most"),
                                number("completeness.angle_degrees", "", "degrees"),
                                integer("completeness.crossing_contours"),
                                integer("completeness.turned_contours"),
@@ -230,7 +239,8 @@ void add_slices(Report& report, const SliceFindings& found) {
 std::string slice_table(const CutObject& cut, const std::string& unit) {
     std::vector<std::string> header{"slice",           "unit",          cut.parallel ? "height" : "along_the_curve",
                                     "contours",        "open_contours", "closed_share",
-                                    "share",           "angle_degrees", "crossing_contours",
+                                    "share",           "share_low",     "share_high",
+                                    "share_at_most",   "angle_degrees", "crossing_contours",
                                     "turned_contours", "doubtful_share"};
     for (const auto& entry : list_descriptors({})) header.emplace_back(entry.name);
     std::string text = csv_row(header);
@@ -246,7 +256,10 @@ std::string slice_table(const CutObject& cut, const std::string& unit) {
                                      std::to_string(open),
                                      known(slice.completeness.closed_share),
                                      known(slice.completeness.share),
-                                     known(slice.completeness.angle / slice_degree),
+                                     known(slice.completeness.share_low),
+                                     known(slice.completeness.share_high),
+                                     known(slice.completeness.share_at_most),
+                                     known(slice.completeness.angle() / slice_degree),
                                      known(slice.completeness.crossing),
                                      known(slice.completeness.turned),
                                      known(slice.completeness.doubtful)};

@@ -118,7 +118,9 @@ void write_profile_drawing(const Path& file, const Profile& profile, const std::
             sheet.line(placing({-r, 0})[0], top, placing({r, 0})[0], top, ink, 0.6);
             dimension(sheet, placing({-r, 0})[0], top - 16, placing({r, 0})[0], top - 16);
             std::string words = "\u2300 " + length_text(profile.rim_diameter, unit);
-            if (profile.rim_share < 0.999) words += " (" + fixed(100 * profile.rim_share, 0) + " %)";
+            if (profile.rim_high > 0)
+                words += " (" + length_text(profile.rim_low, unit) + " to " + length_text(profile.rim_high, unit) + "; " +
+                         fixed(100 * profile.rim_share, 0) + " % is there)";
             sheet.text(words, middle, top - 21, 0.5, 9.5);
         }
         const double side = placing({right, 0})[0] + 18;

@@ -56,7 +56,8 @@ void draw_slice(Sheet& sheet, const DrawnSlice& drawn, const Placing& placing) {
         for (const auto& contour : part.contours) curves.push_back(placing(contour.points, false));
         sheet.fill(curves, clay);
     }
-    if (drawn.descriptors != nullptr && drawn.descriptors->fitted_radius > 0) {
+    if (drawn.descriptors != nullptr && drawn.descriptors->fitted_radius > 0 &&
+        !(drawn.descriptors->fitted_radius_low < 0.8 * drawn.descriptors->fitted_radius)) {
         const auto& d = *drawn.descriptors;
         std::vector<Vector2d> circle;
         for (int k = 0; k <= 90; ++k)
@@ -85,7 +86,10 @@ std::string second_line(const DrawnSlice& drawn) {
     if (std::isfinite(d.eccentricity)) text = "m/M " + fixed(d.eccentricity, 2);
     if (std::isfinite(d.roundness_fitted_relative))
         text += (text.empty() ? "" : ", ") + std::string("off ") + fixed(100 * d.roundness_fitted_relative, 1) + " %";
-    if (!drawn.slice->completeness.complete()) text = "open, " + fixed(100 * drawn.slice->completeness.share, 0) + " %";
+    const Completeness& there = drawn.slice->completeness;
+    if (!there.complete())
+        text = std::isfinite(there.share) ? "open, arc " + fixed(100 * there.share, 0) + " %"
+                                          : "open, at most " + fixed(100 * there.share_at_most, 0) + " %";
     if (!drawn.slice->completeness.has_areas()) text = "contours cross";
     if (drawn.slice->contours.empty()) text = "empty";
     return text;

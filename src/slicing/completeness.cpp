@@ -2,10 +2,11 @@
 #include "settling.h"
 
 #include "ostraka/core/angles.h"
-#include "ostraka/geom/circle.h"
+#include "ostraka/geom/point_tree.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace ostraka::detail {
 
@@ -13,56 +14,69 @@ using Eigen::Vector2d;
 
 namespace {
 
-/// What the contours cover of the full turn around a place, radians.
-double angle_covered(const std::vector<Contour>& contours, const Vector2d& centre) {
-    constexpr double turn = 2 * pi;
-    std::vector<std::pair<double, double>> arcs;
-    const auto add = [&](double from, double to) { arcs.emplace_back(from, to); };
-    for (const auto& contour : contours)
-        for (std::size_t i = 0; i < contour.faces.size(); ++i) {
-            const Vector2d a = contour.points[i] - centre, b = contour.points[(i + 1) % contour.points.size()] - centre;
-            double from = std::atan2(a.y(), a.x()), to = std::atan2(b.y(), b.x());
-            if (from > to) std::swap(from, to);
-            if (to - from <= turn / 2) {
-                add(from, to);
-            } else {
-                add(to, turn / 2);
-                add(-turn / 2, from);
-            }
-        }
-    std::sort(arcs.begin(), arcs.end());
-    double sum = 0, reached = -turn / 2;
-    for (const auto& [from, to] : arcs) {
-        sum += std::max(0.0, to - std::max(from, reached));
-        reached = std::max(reached, to);
-    }
-    return std::min(sum, turn);
+void add_pieces(PlaneSegments& segments, const Contour& contour) {
+    for (std::size_t i = 0; i < contour.faces.size(); ++i)
+        segments.emplace_back(contour.points[i], contour.points[(i + 1) % contour.points.size()]);
+}
+
+/// What joins the ends of open contours is at least as long: from each end to the nearest beginning.
+double least_gap(const std::vector<Contour>& contours) {
+    std::vector<Point> beginnings;
+    for (const Contour& contour : contours)
+        if (!contour.closed) beginnings.emplace_back(contour.points.front().x(), contour.points.front().y(), 0);
+    if (beginnings.empty()) return 0;
+    const PointTree tree(beginnings);
+    double sum = 0;
+    for (const Contour& contour : contours)
+        if (!contour.closed) sum += std::sqrt(tree.nearest({contour.points.back().x(), contour.points.back().y(), 0}).squared);
+    return sum;
 }
 
 }  // namespace
 
+OpenArc open_arc(const std::vector<Contour>& contours) {
+    PlaneSegments outer, inner;
+    double closed = 0, length_outer = 0, length_inner = 0;
+    for (const Contour& contour : contours) {
+        if (contour.closed) {
+            if (!contour.hole) closed = std::max(closed, contour.length);
+            continue;
+        }
+        PlaneSegments pieces;
+        add_pieces(pieces, contour);
+        const Circle circle = fit_circle(pieces);
+        if (!(circle.radius > 0)) continue;
+        double turned = 0;
+        for (const auto& [a, b] : pieces) {
+            const Vector2d p = a - circle.centre, q = b - circle.centre;
+            turned += p.x() * q.y() - p.y() * q.x();
+        }
+        PlaneSegments& side = turned > 0 ? outer : inner;
+        (turned > 0 ? length_outer : length_inner) += contour.length;
+        side.insert(side.end(), pieces.begin(), pieces.end());
+    }
+    const bool outside = !outer.empty();
+    if (!((outside ? length_outer : length_inner) > closed)) return {};
+    return {fit_arc(outside ? outer : inner), outside};
+}
+
 Completeness completeness(const std::vector<Contour>& contours) {
     Completeness result;
-    double length = 0, closed = 0, gaps = 0;
-    Vector2d centre = Vector2d::Zero();
+    double length = 0, closed = 0;
     for (const auto& contour : contours) {
-        length += contour.length, gaps += contour.gap;
+        length += contour.length;
         if (contour.closed) closed += contour.length;
         result.crossing += contour.crosses ? 1 : 0, result.turned += contour.turned ? 1 : 0;
-        for (std::size_t i = 0; i < contour.faces.size(); ++i) {
-            const Vector2d &a = contour.points[i], &b = contour.points[(i + 1) % contour.points.size()];
-            centre += (b - a).norm() * (a + b) / 2;
-        }
     }
     if (contours.empty() || contours.back().closed) return result;
     result.closed_share = closed / length;
-    result.share = length / (length + gaps);
-    PlaneSegments segments;
-    for (const auto& contour : contours)
-        for (std::size_t i = 0; i < contour.faces.size(); ++i)
-            segments.emplace_back(contour.points[i], contour.points[(i + 1) % contour.points.size()]);
-    const Circle circle = fit_circle(segments);
-    result.angle = angle_covered(contours, circle.radius > 0 ? circle.centre : Vector2d(centre / length));
+    result.share_at_most = length / (length + least_gap(contours));
+    result.share = result.share_low = result.share_high = std::numeric_limits<double>::quiet_NaN();
+    const ArcFit arc = open_arc(contours).fit;
+    if (!arc.is_round()) return result;
+    constexpr double turn = 2 * pi;
+    result.share = arc.angle / turn;
+    result.share_low = arc.angles().first / turn, result.share_high = arc.angles().second / turn;
     return result;
 }
 

@@ -88,6 +88,11 @@ SliceFrame median_frame(const CutObject& cut) {
     std::vector<double> x, y;
     for (const auto& d : cut.descriptors)
         if (d.outline_barycentre.allFinite()) x.push_back(d.outline_barycentre.x()), y.push_back(d.outline_barycentre.y());
+    // Of open contours the centres of circles that are told to a tenth.
+    if (x.empty())
+        for (const auto& d : cut.descriptors)
+            if (d.fitted_radius_high - d.fitted_radius_low < 0.2 * d.fitted_radius)
+                x.push_back(d.fitted_centre.x()), y.push_back(d.fitted_centre.y());
     if (x.empty()) return frame;
     frame.origin = frame.point({upper_median(std::move(x)), upper_median(std::move(y))}, 0);
     return frame;

@@ -139,9 +139,10 @@ Profile find_profile(const Mesh& mesh, const SliceFrame& axis, double angle) {
             std::stable_sort(halves.begin(), halves.end(), [](const Half& a, const Half& b) { return a.area < b.area; });
             angle = halves[(halves.size() - 1) / 2].angle;
         } else {
-            angle = std::min_element(halves.begin(), halves.end(), [](const Half& a, const Half& b) {
-                        return a.open < b.open;
-                    })->angle;
+            if (std::any_of(halves.begin(), halves.end(), [](const Half& half) { return half.open > 0; }))
+                std::erase_if(halves, [](const Half& half) { return !(half.open > 0); });
+            std::stable_sort(halves.begin(), halves.end(), [](const Half& a, const Half& b) { return a.open < b.open; });
+            angle = halves[(halves.size() - 1) / 2].angle;
         }
     }
     profile.angle = angle;
@@ -154,7 +155,10 @@ Profile find_profile(const Mesh& mesh, const SliceFrame& axis, double angle) {
     const auto stack = slice_mesh(mesh, axis, heights);
     const auto descriptors = describe_slices(stack.slices);
     std::size_t round = 0;
-    for (std::size_t i = 0; i < 24; ++i) round += descriptors[i].roundness_fitted_relative < 0.05 ? 1 : 0;
+    for (std::size_t i = 0; i < 24; ++i) {
+        round += descriptors[i].roundness_fitted_relative < 0.05 ? 1 : 0;
+        profile.open += descriptors[i].open_length > descriptors[i].closed_length ? 1 : 0;
+    }
     profile.turned = 2 * round >= 24;
     // A wall without thickness has its mouth where the mesh ends.
     const bool ends_open = std::any_of(mesh.vertices().begin(), mesh.vertices().end(), [&](Vertex v) {
@@ -163,9 +167,12 @@ Profile find_profile(const Mesh& mesh, const SliceFrame& axis, double angle) {
     for (std::size_t i = 24; i < heights.size(); ++i) {
         const auto& d = descriptors[i];
         const bool mouth = ends_open || d.holes > 0 || !stack.slices[i].completeness.complete();
-        if (!mouth || !(d.roundness_fitted_relative < 0.1) || 2 * d.fitted_radius <= profile.rim_diameter) continue;
+        const bool arc =
+            d.fitted_radius_high - d.fitted_radius_low < 0.2 * d.fitted_radius && d.fitted_centre.norm() < 0.1 * d.fitted_radius;
+        if (!mouth || !(arc || d.roundness_fitted_relative < 0.1) || 2 * d.fitted_radius <= profile.rim_diameter) continue;
         profile.rim_diameter = 2 * d.fitted_radius;
-        profile.rim_share = stack.slices[i].completeness.angle / (2 * pi);
+        profile.rim_share = arc ? stack.slices[i].completeness.share : 1;
+        profile.rim_low = arc ? 2 * d.fitted_radius_low : 0, profile.rim_high = arc ? 2 * d.fitted_radius_high : 0;
     }
     profile.view_angle = angle + pi;
     if (profile.turned) {

@@ -1,6 +1,7 @@
 // What is done with the contours of slices once they are joined.
 #pragma once
 
+#include "ostraka/geom/circle.h"
 #include "ostraka/slicing/slice.h"
 
 namespace ostraka::detail {
@@ -24,6 +25,13 @@ struct Crossings {
 /// length) do not cross, whatever they share; two that lie along one another in the same sense count as crossing. Edges are
 /// compared with those of their strip (strips.h) whose boxes overlap theirs.
 Crossings find_crossings(std::vector<Contour>& contours, double tolerance);
+
+/// The circle of the open contours, if they are longer than the longest closed outer contour; else none.
+struct OpenArc {
+    ArcFit fit;
+    bool outside = false;  ///< of those that run counter-clockwise around their own circle; there are only others: of those
+};
+OpenArc open_arc(const std::vector<Contour>& contours);
 
 /// How much of its outline a slice with these contours has: all but `doubtful` (completeness.cpp).
 Completeness completeness(const std::vector<Contour>& contours);

@@ -3,6 +3,7 @@
 #include "ostraka/core/angles.h"
 
 #include "segment_tree.h"
+#include "settling.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
@@ -118,17 +119,25 @@ void describe_roundness(SliceDescriptors& d, const Contour& main) {
     d.roundness_equivalent_relative = circle.absolute / d.equivalent_radius;
 }
 
-/// Pieces of an open contour if it runs counter-clockwise around the circle that fits it.
-PlaneSegments outer_arc(const Contour& contour) {
+/// The circle of open contours: what is not there need not be round.
+void describe_arc(SliceDescriptors& d, const ArcFit& arc) {
+    if (!arc.is_round()) return;
+    d.fitted_radius = arc.circle.radius, d.fitted_centre = arc.circle.centre;
+    d.fitted_radius_low = arc.radius_low;
+    if (std::isfinite(arc.radius_high)) d.fitted_radius_high = arc.radius_high;
+}
+
+void describe_circle(SliceDescriptors& d, const Contour& main) {
     PlaneSegments pieces;
-    add_pieces(pieces, contour);
-    const Circle circle = fit_circle(pieces);
-    double turned = 0;
-    for (const auto& [a, b] : pieces) {
-        const Vector2d p = a - circle.centre, q = b - circle.centre;
-        turned += p.x() * q.y() - p.y() * q.x();
-    }
-    return circle.radius > 0 && turned > 0 ? pieces : PlaneSegments{};
+    add_pieces(pieces, main);
+    Circle circle = fit_circle(pieces);
+    // The circle that fits a bar best is as good as a straight line.
+    if (!(circle.radius > 0) || circle.radius > d.box_length)
+        circle = {main.points[0] + polygon_centre(main), d.equivalent_radius};
+    if (!(circle.radius > 0)) return;
+    d.fitted_radius = circle.radius, d.fitted_centre = circle.centre;
+    d.roundness_fitted = circle_deviation(pieces, circle).absolute;
+    d.roundness_fitted_relative = d.roundness_fitted / circle.radius;
 }
 
 /// What is known of contours that cross: the hull is that of all.
@@ -149,11 +158,11 @@ SliceDescriptors describe_crossing(const Slice& slice) {
 SliceDescriptors describe_slice(const Slice& slice) {
     if (!slice.completeness.has_areas()) return describe_crossing(slice);
     SliceDescriptors d;
-    PlaneSegments outline, fitted;
+    PlaneSegments outline;
     const Contour* main = nullptr;
     std::vector<Vector2d> corners;
     PolygonMoments whole, filled;
-    double perimeter = 0, holes = 0, outline_length = 0, arcs = 0;
+    double perimeter = 0, holes = 0, outline_length = 0;
     Walls walls;
     const auto parts = components(slice);
     const Vector2d reference = parts.empty() ? Vector2d(0, 0) : parts[0].contours[0].points[0];
@@ -175,10 +184,6 @@ SliceDescriptors describe_slice(const Slice& slice) {
             outline_length += contour.length;
             add_pieces(outline, contour);
             corners.insert(corners.end(), contour.points.begin(), contour.points.end());
-        } else if (!contour.closed) {
-            const PlaneSegments pieces = outer_arc(contour);
-            fitted.insert(fitted.end(), pieces.begin(), pieces.end());
-            if (!pieces.empty()) arcs += contour.length;
         }
     }
     d.euler_number = d.components - d.holes;
@@ -191,21 +196,10 @@ SliceDescriptors describe_slice(const Slice& slice) {
         d.compactness = 4 * pi * d.area / (perimeter * perimeter);
         describe_outline(d, outline, corners);
         describe_roundness(d, *main);
-        if (main->length >= arcs) {
-            fitted.clear();
-            add_pieces(fitted, *main);
-        }
     }
-    Circle circle = fit_circle(fitted);
-    // The circle that fits a bar best is as good as a straight line.
-    const bool around = circle.radius > 0 && !(circle.radius > d.box_length);
-    if (!around && main != nullptr && main->length >= arcs)
-        circle = {main->points[0] + polygon_centre(*main), d.equivalent_radius};
-    if (circle.radius > 0) {
-        d.fitted_radius = circle.radius, d.fitted_centre = circle.centre;
-        d.roundness_fitted = circle_deviation(fitted, circle).absolute;
-        d.roundness_fitted_relative = d.roundness_fitted / circle.radius;
-    }
+    const detail::OpenArc arc = d.open_length > 0 ? detail::open_arc(slice.contours) : detail::OpenArc{};
+    if (arc.outside) describe_arc(d, arc.fit);
+    else if (main != nullptr && filled.area > 0) describe_circle(d, *main);
     if (walls.length > 0) {
         d.thickness_mean = walls.first / walls.length;
         d.thickness_variance = std::max(0.0, walls.second / walls.length - d.thickness_mean * d.thickness_mean);
@@ -241,6 +235,8 @@ std::vector<NamedDescriptor> list_descriptors(const SliceDescriptors& d) {
             {"roundness_equivalent", "length", d.roundness_equivalent},
             {"roundness_equivalent_relative", "", d.roundness_equivalent_relative},
             {"fitted_radius", "length", d.fitted_radius},
+            {"fitted_radius_low", "length", d.fitted_radius_low},
+            {"fitted_radius_high", "length", d.fitted_radius_high},
             {"fitted_centre_x", "length", d.fitted_centre.x()},
             {"fitted_centre_y", "length", d.fitted_centre.y()},
             {"roundness_fitted", "length", d.roundness_fitted},

@@ -117,6 +117,29 @@ TEST(RotationAxis, HandlesAndSpoutsDoNotTurnIt) {
     }
 }
 
+TEST(RotationAxis, OfAQuarterOfACylinder) {
+    for (const double degrees : {90.0, 180.0}) {
+        const Mesh wall = build_mesh(grid(80, 20, false, false, [&](double s, double t) {
+            const double a = s * degrees * M_PI / 180;
+            return std::array<double, 3>{100 * std::cos(a), 100 * std::sin(a), 40 * t};
+        }));
+        const Axis axis = rotation_axis(wall, all(wall));
+        ASSERT_TRUE(axis.found) << degrees << axis.reason;
+        EXPECT_LT(angle(axis, Vector(0, 0, 1)), 1e-3);
+        EXPECT_LT(offset(axis, Point(0, 0, 0)), 1e-2);
+        EXPECT_NEAR(axis.figure("largest diameter")->value, 200, 0.1);
+        EXPECT_NEAR(axis.figure("circle preserved")->value, degrees / 3.6, 0.5);
+        EXPECT_LT(axis.figure("diameter error")->value, 0.01);
+    }
+    // A short arc with noise: many lines do as well.
+    Mesh strip = build_mesh(grid(60, 20, false, false, [](double s, double t) {
+        const double a = s * 4.6 * M_PI / 180;
+        return std::array<double, 3>{100 * std::cos(a), 100 * std::sin(a), 40 * t};
+    }));
+    add_noise(strip, 0.002);
+    EXPECT_FALSE(rotation_axis(strip, all(strip)).found);
+}
+
 TEST(RotationAxis, NoneWhereThereIsNone) {
     for (const double noise : {0.0, 0.001, 0.005}) {
         Mesh sphere = build_mesh(octahedron_sphere(4));
@@ -218,6 +241,11 @@ TEST(CircleAxis, OfARim) {
     EXPECT_LT(offset(axis, Point(5, 6, 7)), 1e-9);
     EXPECT_NEAR(axis.figure("diameter")->value, 6, 1e-9);
     EXPECT_NEAR(axis.figure("circle preserved")->value, 25, 1e-6);
+    EXPECT_NEAR(axis.figure("diameter at least")->value, 6, 1e-9);
+    EXPECT_NEAR(axis.figure("diameter at most")->value, 6, 1e-9);
+    // Three points of a short arc are not all of the circle.
+    const Axis three = circle_axis({rim[0], rim[5], rim[10]});
+    EXPECT_NEAR(three.figure("circle preserved")->value, 1000.0 / 360, 1e-6);
     EXPECT_FALSE(circle_axis({{0, 0, 0}, {1, 0, 0}}).found);
     EXPECT_FALSE(circle_axis({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {5, 0, 0}}).found);
 }

@@ -2,6 +2,7 @@
 #include "ostraka/geom/circle.h"
 #include "ostraka/geom/line.h"
 #include "ostraka/geom/planar.h"
+#include "ostraka/stats/random.h"
 
 #include <gtest/gtest.h>
 
@@ -49,6 +50,66 @@ TEST(CircleFit, IsTheLeastSquares) {
     for (const Vector2d& step : {Vector2d(1e-3, 0), Vector2d(-1e-3, 0), Vector2d(0, 1e-3), Vector2d(0, -1e-3)})
         EXPECT_GT(circle_deviation(egg, {best.centre + step, best.radius}).square, minimum);
     for (const double r : {-1e-3, 1e-3}) EXPECT_GT(circle_deviation(egg, {best.centre, best.radius + r}).square, minimum);
+}
+
+TEST(ArcFit, TellsTheRadiusAsFarAsTheArcDoes) {
+    for (const double degrees : {4.6, 30.0, 90.0, 180.0, 330.0}) {
+        const ArcFit fit = fit_arc(arc(0.3, 0.3 + degrees * M_PI / 180, 100, {20, -3}, 400));
+        EXPECT_NEAR(fit.angle * 180 / M_PI, degrees, 1e-3 * degrees);
+        EXPECT_TRUE(fit.is_round()) << degrees;
+        EXPECT_NEAR(fit.radius_low, 100, 0.02);
+        EXPECT_NEAR(fit.radius_high, 100, 0.02);
+    }
+    EXPECT_FALSE(fit_arc(PlaneSegments{}).is_round());
+    EXPECT_FALSE(fit_arc(PlaneSegments{{{0, 0}, {1, 1}}}).is_round());
+    // Sides of a square: no arc, however well a circle goes through.
+    const PlaneSegments corner{{{1, 0}, {0, 0}}, {{0, 0}, {0, 1}}};
+    EXPECT_FALSE(fit_arc(corner).is_round());
+    EXPECT_GT(fit_arc(corner).uncertainty(), 0.3);
+}
+
+TEST(ArcFit, IntervalsHoldTheTruthAsOftenAsTheySay) {
+    // Of 200 points with noise s along an arc of length L the curvature has the standard error s sqrt(720 / n) / L^2 where the
+    // arc is short; for any arc the intervals hold the radius in 95 of 100 cases, give or take what 200 draws leave open.
+    const int n = 200, draws = 200;
+    for (const double degrees : {5.0, 20.0, 90.0, 180.0}) {
+        const double noise = degrees < 10 ? 0.02 : 0.3, length = 100 * degrees * M_PI / 180;
+        int held = 0;
+        double width = 0;
+        for (int draw = 0; draw < draws; ++draw) {
+            Random random(11, static_cast<std::uint64_t>(draw));
+            std::vector<Vector2d> points;
+            for (int k = 0; k < n; ++k) {
+                const double a = degrees * M_PI / 180 * k / (n - 1), r = 100 + noise * random.normal();
+                points.emplace_back(5 + r * std::cos(a), r * std::sin(a));
+            }
+            random.shuffle(points);  // in any order
+            const ArcFit fit = fit_arc(points);
+            EXPECT_TRUE(fit.is_round());
+            if (fit.radius_low <= 100 && 100 <= fit.radius_high) ++held;
+            width += (1 / fit.radius_low - 1 / fit.radius_high) / 2 / draws;
+        }
+        EXPECT_GE(held, 0.88 * draws) << degrees;
+        if (degrees < 30) {
+            EXPECT_NEAR(width / (1.96 * noise * std::sqrt(720.0 / n) / length / length), 1, 0.2) << degrees;
+        }
+    }
+}
+
+TEST(AngleCovered, ByPoints) {
+    const auto degrees = [](std::vector<double> list) {
+        for (double& a : list) a *= M_PI / 180;
+        return angle_covered(list) * 180 / M_PI;
+    };
+    EXPECT_NEAR(degrees({0, 120, 240}), 360, 1e-9);
+    EXPECT_NEAR(degrees({0, 5, 10}), 10, 1e-9);  // three points on a short arc are no circle
+    EXPECT_NEAR(degrees({0, 90, 180}), 180, 1e-9);
+    std::vector<double> ring, arcs;
+    for (int k = 0; k < 90; ++k) ring.push_back(4 * k), arcs.push_back(k < 45 ? k : k + 135);
+    EXPECT_NEAR(degrees(ring), 360, 1e-9);
+    EXPECT_NEAR(degrees(arcs), 88, 1e-9);  // both gaps count
+    EXPECT_EQ(degrees({7}), 0);
+    EXPECT_EQ(degrees({}), 0);
 }
 
 TEST(CircleFit, OfLinesAndNothing) {

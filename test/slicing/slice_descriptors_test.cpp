@@ -248,11 +248,22 @@ TEST(SliceDescriptors, WhatOpenContoursHave) {
     const SliceFrame frame = slice_frame({0, 0, 0}, {0, 0, 1});
     const auto open = describe_slice(slice_mesh(arc(0, 4, 2), frame, {0.4}).slices[0]);
     for (const auto& [name, value] : numbers(open)) {
-        if (name.find("fitted") != std::string::npos || name == "euler number") continue;
-        EXPECT_TRUE(std::isnan(value)) << name;
+        if (name == "fitted radius" || name == "euler number") continue;
+        EXPECT_TRUE(std::isnan(value)) << name;  // and none is round
     }
     EXPECT_NEAR(open.fitted_radius, 2, 1e-4);
-    EXPECT_LT(open.roundness_fitted, 1e-4);
+    EXPECT_LE(open.fitted_radius_low, 2);
+    EXPECT_GT(open.fitted_radius_high, 1.9999);
+    EXPECT_LT(open.fitted_radius_high - open.fitted_radius_low, 1e-4);
+    // A corner is no arc.
+    const auto corner = describe_slice(
+        slice_mesh(build_mesh(grid(80, 1, false, false,
+                                   [](double s, double t) {
+                                       return std::array<double, 3>{std::max(0.0, 1 - 2 * s), std::max(0.0, 2 * s - 1), t};
+                                   })),
+                   frame, {0.4})
+            .slices[0]);
+    EXPECT_TRUE(std::isnan(corner.fitted_radius));
     EXPECT_NEAR(open.open_length, 8, 1e-3);
     EXPECT_EQ(open.components, 0);
     // An inner wall runs clockwise: it is no outline.

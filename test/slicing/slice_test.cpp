@@ -5,6 +5,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/io/mesh_file.h"
+#include "ostraka/stats/random.h"
 #include "prisms.h"
 
 #include <gtest/gtest.h>
@@ -290,8 +291,8 @@ TEST(SliceMesh, OpenScansStayOpen) {
     EXPECT_NEAR(contour.length, 2 * M_PI - missing, 1e-4);
     EXPECT_FALSE(slice.completeness.complete());
     EXPECT_EQ(slice.completeness.closed_share, 0);
-    EXPECT_NEAR(slice.completeness.share, contour.length / (contour.length + 1), 1e-12);
-    EXPECT_NEAR(slice.completeness.angle, 2 * M_PI - missing, 1e-6);
+    EXPECT_NEAR(slice.completeness.share_at_most, contour.length / (contour.length + 1), 1e-12);
+    EXPECT_NEAR(slice.completeness.angle(), 2 * M_PI - missing, 1e-6);
     EXPECT_TRUE(components(slice).empty());
     // It runs with the material, which lies within, to its left.
     EXPECT_GT(contour.points[0].x() * contour.points[1].y() - contour.points[0].y() * contour.points[1].x(), 0);
@@ -303,8 +304,50 @@ TEST(SliceMesh, OpenScansStayOpen) {
     const Slice part = slice_mesh(ball, slice_frame({0, 0, 0}, {0, 0, 1}), {0.3}, half).slices[0];
     ASSERT_EQ(part.contours.size(), 1U);
     EXPECT_FALSE(part.contours[0].closed);
-    EXPECT_NEAR(part.completeness.angle, M_PI, 0.2);
+    EXPECT_NEAR(part.completeness.angle(), M_PI, 0.2);
     for (const Index f : part.contours[0].faces) EXPECT_TRUE(std::binary_search(half.begin(), half.end(), f));
+}
+
+TEST(Completeness, OfAnArcIsWhatItShowsOfItsCircle) {
+    const auto wall = [](double degrees, double noise) {
+        Random random(7);
+        return build_mesh(grid(300, 2, false, false, [&](double s, double t) {
+            const double a = s * degrees * M_PI / 180, r = 100 + noise * random.normal();
+            return std::array<double, 3>{r * std::cos(a), r * std::sin(a), 40 * t};
+        }));
+    };
+    for (const double degrees : {4.6, 30.0, 90.0, 180.0, 300.0}) {
+        const Completeness exact = cut(wall(degrees, 0), 13).completeness;
+        EXPECT_NEAR(exact.share, degrees / 360, 1e-5) << degrees;
+        EXPECT_LE(exact.share_low, exact.share);
+        EXPECT_GE(exact.share_high, exact.share);
+        EXPECT_LT(exact.share_high - exact.share_low, 1e-4);
+        EXPECT_GE(exact.share_at_most, exact.share);
+        // Noise widens the interval, which still holds the truth.
+        const Completeness noisy = cut(wall(degrees, 0.02), 13).completeness;
+        EXPECT_LT(noisy.share_low, degrees / 360) << degrees;
+        EXPECT_GT(noisy.share_high, degrees / 360) << degrees;
+        EXPECT_GT(noisy.share_high - noisy.share_low, exact.share_high - exact.share_low);
+    }
+    // Half a turn over two: the ends of a straight wall say nothing of the rest, those of three sides of a square hardly more.
+    for (const std::vector<std::array<double, 2>>& line :
+         {std::vector<std::array<double, 2>>{{0, 0}, {5, 0}}, {{5, 0}, {5, 5}, {0, 5}, {0, 0}}}) {
+        const auto pieces = static_cast<Index>(line.size() - 1);
+        const Completeness none =
+            cut(build_mesh(grid(40 * pieces, 2, false, false,
+                                [&](double s, double t) {
+                                    const double at = std::min(s * pieces, pieces - 1e-9);
+                                    const auto k = static_cast<std::size_t>(at);
+                                    const double u = at - double(k);
+                                    return std::array<double, 3>{(1 - u) * line[k][0] + u * line[k + 1][0],
+                                                                 (1 - u) * line[k][1] + u * line[k + 1][1], t};
+                                })),
+                0.3)
+                .completeness;
+        EXPECT_TRUE(std::isnan(none.share)) << pieces;
+        EXPECT_TRUE(std::isnan(none.angle()));
+        EXPECT_NEAR(none.share_at_most, pieces == 1 ? 0.5 : 0.75, 1e-3);
+    }
 }
 
 TEST(SliceMesh, InsideOutAndThroughItself) {

@@ -48,9 +48,11 @@ Axis find_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOpti
 /// Axis of the surface of revolution that fits best. Every normal of such a surface meets the axis: the linear line complex of
 /// Pottmann and Wallner (Computational Line Geometry, 2001) is fitted to random sets of normals (RANSAC), then to all with
 /// reweighting; the result is refined so that radii agree along parallels (robust least squares over heights), which needs no
-/// normals. Quality: the share of the area (without parts that face along the axis) within `tolerance` of the turned profile. No
-/// axis: flat parts, spheres (infinitely many), what is not round. Figures: largest diameter, per cent of the circle preserved,
-/// rms distance, standard error of the direction. Linear in faces.
+/// normals; steps start from the axis of the normals and from along their principal directions, and the best end counts. Quality:
+/// the share of the area (without parts that face along the axis) within `tolerance` of the turned profile. No axis: flat parts,
+/// spheres (infinitely many), what is not round, what fits about several lines or tells its diameter to no better than half
+/// (short arcs). Figures: largest diameter, per cent of the circle preserved, rms distance, standard errors of the direction and
+/// of the diameter. Linear in faces.
 Axis rotation_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options = {});
 
 /// Centroids of slices across the longest principal direction, then once more across the local tangent: for tubular parts. A
@@ -68,8 +70,9 @@ Axis skeleton_axis(const Mesh& mesh, const std::vector<Index>& faces, const Axis
 /// them. Quality: 1 - (second / first variance). No axis: the first two variances agree within a tenth.
 Axis principal_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options = {});
 
-/// Circle through the vertices of a curve (the rim of a sherd, say): its axis, diameter and the per cent of it that is there.
-/// Quality: 1 - rms distance / radius. No axis: fewer than three vertices, or all on one line.
+/// Circle through the vertices of a curve (the rim of a sherd, say): its axis, diameter with its 95 % interval (`fit_arc`; no
+/// upper end where a straight line fits too) and the per cent of it that is there. Quality: 1 - rms distance / radius. No axis:
+/// fewer than three vertices, or all on one line.
 Axis circle_axis(const std::vector<Point>& points);
 
 /// The poly-lines of an axis as a Wavefront OBJ file: exact coordinates, one element "l" each.

@@ -48,17 +48,22 @@ struct Contour {
 /// Contours that cross by more than this share of the area have no area: a fold of a scan has less.
 inline constexpr double max_doubtful = 1e-3;
 
-/// How much of its outline a slice has, and how sound that is.
+/// How much of its outline a slice has, and how sound that is. What an open contour leaves open is not known: its ends are never
+/// joined. If the longer part of it is open and runs along a circle, `share` is what is there of that circle's turn.
 struct Completeness {
-    double closed_share = 1;               ///< length of closed contours / length of all contours
-    double share = 1;                      ///< length of all contours / (that + the straight gaps of the open ones)
-    double angle = 2 * 3.141592653589793;  ///< what the contours cover of the full turn around the circle that fits them best,
-                                           ///< radians; all closed: the full turn
-    int crossing = 0;                      ///< closed contours that cross others or themselves: the mesh passes through itself
-    int turned = 0;                        ///< closed contours that were turned around, since their nesting says otherwise
+    double closed_share = 1;  ///< length of closed contours / length of all contours
+    double share = 1;         ///< of the outline: 1 if all is closed; the angle of the circle over the full turn; NaN where it
+                              ///< cannot be told: the open contours run along no circle, or beside a longer closed one
+    double share_low = 1, share_high = 1;  ///< 95 % interval of that (`ArcFit`); NaN where that is
+    /// Whatever the outline's shape: length / (that + the least by which the ends of open contours can be joined).
+    double share_at_most = 1;
+    int crossing = 0;     ///< closed contours that cross others or themselves: the mesh passes through itself
+    int turned = 0;       ///< closed contours that were turned around, since their nesting says otherwise
     double doubtful = 0;  ///< area that may count twice or not at all through crossings, at most, over that of the outer contours
 
     [[nodiscard]] bool complete() const { return closed_share == 1; }
+    /// Of the circle of the open contours, radians; NaN where there is none.
+    [[nodiscard]] double angle() const { return 2 * 3.141592653589793 * share; }
     /// Whether areas mean what they say.
     [[nodiscard]] bool has_areas() const { return doubtful <= max_doubtful; }
 };

@@ -2,7 +2,9 @@
 //
 // They are of the closed contours only: an open contour bounds nothing and is never closed by a straight line. What needs an area
 // is absent (NaN) in a slice without a closed outer contour; where open contours are there besides, `Completeness` says how much
-// is missing. Only the fitted circle may be one of open contours. The shape is the material: outer contours without their holes.
+// is missing. Only the fitted circle may be one of open
+// contours, with the interval within which they tell its radius; they have no roundness, since what is not there need not be
+// round. The shape is the material: outer contours without their holes.
 // Its outline are the outermost contours, with what is in them filled; circles are compared with the largest of these, the main
 // outline, so that handles and arms beside the body do not count. Where contours cross (a mesh that passes through itself) by
 // more than `max_doubtful`, only the hull and what is made of it, and the lengths of closed and open contours, are there.
@@ -46,10 +48,12 @@ struct SliceDescriptors {
     double roundness_equivalent_relative = absent;  ///< that / r
 
     /// The circle of least mean squared distance from the main outline, or from all open contours that run counter-clockwise
-    /// around their own circle, whichever is longer.
+    /// around their own circle, whichever is longer; of open ones only if they run along a circle (`ArcFit::is_round`).
     double fitted_radius = absent;
+    /// Of open contours: 95 % interval of the radius (`fit_arc`); the upper end absent where a straight line fits too.
+    double fitted_radius_low = absent, fitted_radius_high = absent;
     Eigen::Vector2d fitted_centre{absent, absent};
-    double roundness_fitted = absent;           ///< mean distance from it; unit (thesis, 3.2.1)
+    double roundness_fitted = absent;           ///< of the main outline: mean distance from it; unit (thesis, 3.2.1)
     double roundness_fitted_relative = absent;  ///< that / its radius
 
     /// Wall thickness: the distance from the outer contours that have holes to the nearest point of those, mean over the outer
