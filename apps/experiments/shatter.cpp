@@ -4,6 +4,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/surface_search.h"
+#include "ostraka/remesh/remesh.h"
 #include "ostraka/stats/random.h"
 
 #include <CGAL/Polygon_mesh_processing/connected_components.h>
@@ -47,22 +48,22 @@ Mesh turned(const std::vector<Vector2d>& profile, int around) {
 /// Everything on one side of a rough sheet, as a closed mesh.
 struct Sheet {
     Vector3d middle, normal, u, v;
-    double extent = 1, roughness = 0;
+    double extent = 1;
     struct Wave {
         Vector2d number;
         double phase, height;
     };
     std::vector<Wave> waves;
 
-    Sheet(const Vector3d& place, const Vector3d& across, double size, double rough, Random& random)
-        : middle(place), normal(across), extent(size), roughness(rough) {
+    Sheet(const Vector3d& place, const Vector3d& across, double size, const ShatterOptions& options, Random& random)
+        : middle(place), normal(across), extent(size) {
         u = normal.cross(std::abs(normal.x()) < 0.6 ? Vector3d::UnitX() : Vector3d::UnitY()).normalized();
         v = normal.cross(u);
-        constexpr int count = 14;
+        const int count = std::max(2, static_cast<int>(std::lround(14 * std::log(options.finest) / std::log(0.06))));
         for (int k = 0; k < count; ++k) {
-            const double length = extent * std::pow(0.06, k / (count - 1.0)), angle = random.uniform(0, 2 * pi);
-            waves.push_back({2 * pi / length * Vector2d(std::cos(angle), std::sin(angle)), random.uniform(0, 2 * pi),
-                             roughness * std::sqrt(length * extent) * std::sqrt(2.0 / count)});
+            const double share = std::pow(options.finest, k / (count - 1.0)), angle = random.uniform(0, 2 * pi);
+            waves.push_back({2 * pi / (share * extent) * Vector2d(std::cos(angle), std::sin(angle)), random.uniform(0, 2 * pi),
+                             options.roughness * extent * std::pow(share, options.hurst) * std::sqrt(2.0 / count)});
         }
     }
     [[nodiscard]] double height(const Vector2d& p) const {
@@ -162,6 +163,9 @@ void wear(Sherd& sherd, double depth) {
     // Distances from the rim over edges, as far as they matter.
     std::vector<Vertex> front = rim;
     const double reach = 2 * depth;
+    // Smoothing reaches an edge farther a round.
+    const double edges = depth / mean_edge_length(mesh);
+    const int rounds = std::clamp(static_cast<int>(std::ceil(edges * edges)), 3, 100);
     while (!front.empty()) {
         std::vector<Vertex> next;
         for (const Vertex v : front)
@@ -172,7 +176,7 @@ void wear(Sherd& sherd, double depth) {
             }
         front = std::move(next);
     }
-    for (int round = 0; round < 3; ++round) {
+    for (int round = 0; round < rounds; ++round) {
         std::vector<Point> moved(n);
         for (const Vertex v : mesh.vertices()) {
             Vector3d mean = Vector3d::Zero();
@@ -184,6 +188,33 @@ void wear(Sherd& sherd, double depth) {
         }
         for (const Vertex v : mesh.vertices()) mesh.point(v) = moved[v];
     }
+}
+
+/// The sherd with vertices and edges of its own.
+Sherd meshed_anew(const Sherd& sherd, double edge, Random& random) {
+    // Sizes and orders of chance: from equal triangles equal ones would come again.
+    const TriangleSoup soup = to_soup(sherd.mesh);
+    TriangleSoup shuffled;
+    const std::vector<std::size_t> points = random.permutation(soup.points.size()),
+                                   triangles = random.permutation(soup.triangles.size());
+    std::vector<Index> place(points.size());
+    for (const std::size_t i : points) {
+        place[i] = static_cast<Index>(shuffled.points.size());
+        shuffled.points.push_back(soup.points[i]);
+    }
+    for (const std::size_t t : triangles) {
+        const auto& corner = soup.triangles[t];
+        shuffled.triangles.push_back({place[corner[0]], place[corner[1]], place[corner[2]]});
+    }
+    const double length = edge * random.uniform(0.85, 1.15);
+    RemeshOptions how;
+    // Of equilateral triangles, two a vertex.
+    how.vertices = std::max<std::uint64_t>(
+        60, static_cast<std::uint64_t>(std::lround(surface_area(sherd.mesh) / (std::sqrt(3.0) / 2 * length * length))));
+    Sherd result{remesh(build_mesh(shuffled), how).mesh, {}};
+    const SurfaceSearch cut(sherd.mesh);
+    for (const Face f : result.mesh.faces()) result.broken.push_back(sherd.broken[cut.closest(centroid(result.mesh, f)).face]);
+    return result;
 }
 
 }  // namespace
@@ -220,6 +251,32 @@ Mesh make_pot(const PotOptions& options) {
     return turned(line, std::max(12, static_cast<int>(std::lround(2 * pi * 0.8 * options.radius / options.edge))));
 }
 
+Mesh with_relief(const Mesh& mesh, double height, double longest, std::uint64_t seed) {
+    Random random(seed, 5);
+    const double diagonal = box_diagonal(mesh);
+    struct Wave {
+        Vector3d number;
+        double phase, height;
+    };
+    std::vector<Wave> waves;
+    constexpr int count = 16;
+    double power = 0;
+    for (int k = 0; k < count; ++k) {
+        const double share = std::pow(0.1, k / (count - 1.0));
+        const Vector3d direction = Vector3d(random.normal(), random.normal(), random.normal()).normalized();
+        waves.push_back({2 * pi / (share * longest * diagonal) * direction, random.uniform(0, 2 * pi), std::sqrt(share)});
+        power += share / 2;
+    }
+    Mesh result = mesh;
+    for (const Vertex v : mesh.vertices()) {
+        const Vector3d p = eigen(mesh.point(v));
+        double sum = 0;
+        for (const Wave& wave : waves) sum += wave.height * std::sin(wave.number.dot(p) + wave.phase);
+        result.point(v) = point_of(p + height * diagonal / std::sqrt(power) * sum * eigen(vertex_normal(mesh, v)));
+    }
+    return result;
+}
+
 std::vector<Sherd> shatter(const Mesh& whole, const ShatterOptions& options) {
     check_options(options, "shatter");
     namespace PMP = CGAL::Polygon_mesh_processing;
@@ -240,7 +297,7 @@ std::vector<Sherd> shatter(const Mesh& whole, const ShatterOptions& options) {
         Vector3d across(random.normal(), random.normal(), random.normal());
         const double extent = extent_of(piece, middle);
         const Sheet sheet(middle + 0.15 * extent * random.uniform(-1, 1) * across.normalized(), across.normalized(), 1.2 * extent,
-                          options.roughness, random);
+                          options, random);
         std::vector<Mesh> parts;
         bool sound = true;
         for (const double side : {1.0, -1.0}) {
@@ -270,6 +327,10 @@ std::vector<Sherd> shatter(const Mesh& whole, const ShatterOptions& options) {
             const SurfaceHit hit = skin.closest(centroid(sherd.mesh, f));
             sherd.broken.push_back(hit.distance > 1e-7 * diagonal);
         }
+        if (options.edge > 0) {
+            Random own(options.seed, 10000 + sherds.size());
+            sherd = meshed_anew(sherd, options.edge * diagonal, own);
+        }
         if (options.erosion > 0) wear(sherd, options.erosion * diagonal);
         if (options.noise > 0) {
             Random own(options.seed, 100 + sherds.size());
@@ -296,6 +357,9 @@ void PotOptions::describe(OptionList& visit) {
 void ShatterOptions::describe(OptionList& visit) {
     visit("pieces", pieces, "at least so many pieces", Range{1, 1000});
     visit("roughness", roughness, "height of the breaks' waves", Range{0, 0.2}, "share of the piece's extent");
+    visit("hurst", hurst, "power of a wave's length that its height goes with", Range{0, 2});
+    visit("finest", finest, "shortest wave of a break", Range{0.002, 0.5}, "share of the piece's extent");
+    visit("remesh-edge", edge, "edges of each sherd, meshed by itself; 0: as cut", Range{0, 0.2}, "share of the diagonal");
     visit("erosion", erosion, "what is worn off breaks and their edges", Range{0, 0.1}, "share of the diagonal");
     visit("noise", noise, "standard deviation along the normal", Range{0, 0.1}, "share of the diagonal");
     visit("seed", seed, "of cuts and noise", Range{0, 9007199254740992.0});

@@ -9,6 +9,7 @@
 #include <CGAL/boost/graph/helpers.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace ostraka {
@@ -78,6 +79,44 @@ TEST(Shatter, SameSeedSamePieces) {
     double worn = 0;
     for (const Sherd& one : a) worn += volume(one.mesh);
     EXPECT_LT(worn, volume(pot));
+}
+
+TEST(Shatter, SherdsMeshedAnewShareNothingButTheirShape) {
+    const Mesh pot = make_pot(coarse());
+    ShatterOptions options;
+    options.pieces = 3;
+    const auto cut = shatter(pot, options);
+    options.edge = 0.012;
+    const auto anew = shatter(pot, options);
+    ASSERT_EQ(anew.size(), cut.size());
+    const double length = options.edge * box_diagonal(pot);
+    std::vector<std::array<double, 3>> places;
+    for (std::size_t k = 0; k < anew.size(); ++k) {
+        EXPECT_TRUE(CGAL::is_closed(anew[k].mesh));
+        EXPECT_NEAR(mean_edge_length(anew[k].mesh), length, 0.25 * length);
+        EXPECT_NEAR(volume(anew[k].mesh), volume(cut[k].mesh), 0.02 * volume(cut[k].mesh));
+        ASSERT_EQ(anew[k].broken.size(), anew[k].mesh.number_of_faces());
+        double before = 0, after = 0;
+        for (const Face f : cut[k].mesh.faces()) before += cut[k].broken[f] ? face_area(cut[k].mesh, f) : 0;
+        for (const Face f : anew[k].mesh.faces()) after += anew[k].broken[f] ? face_area(anew[k].mesh, f) : 0;
+        EXPECT_NEAR(after, before, 0.1 * before);
+        const SurfaceSearch surface(cut[k].mesh);
+        for (const Vertex v : anew[k].mesh.vertices()) {
+            EXPECT_LT(surface.closest(anew[k].mesh.point(v)).distance, 0.1 * length);
+            const Point p = anew[k].mesh.point(v);
+            places.push_back({p.x(), p.y(), p.z()});
+        }
+    }
+    std::sort(places.begin(), places.end());
+    EXPECT_EQ(std::adjacent_find(places.begin(), places.end()), places.end()) << "no vertex is on two sherds";
+}
+
+TEST(Shatter, ReliefMovesTheSurfaceAsFarAsAsked) {
+    const Mesh ball = build_mesh(test::octahedron_sphere(5));
+    const Mesh rough = with_relief(ball, 0.005, 0.2, 1);
+    double square = 0;
+    for (const Vertex v : rough.vertices()) square += std::pow(eigen(rough.point(v)).norm() - 1, 2);
+    EXPECT_NEAR(std::sqrt(square / static_cast<double>(rough.number_of_vertices())), 0.005 * box_diagonal(ball), 0.002);
 }
 
 TEST(Shatter, NeedsAnInside) {
