@@ -104,7 +104,7 @@ Box read_box(const std::string& source, int pieces, std::uint64_t seed, FacetCho
         breaking.roughness = random.uniform(0.008, 0.04);
         const double piece = std::sqrt(surface_area(whole) / pieces) / box_diagonal(whole);  // share of the diagonal
         breaking.noise = 0.002 * static_cast<double>(seed % 3) * piece;
-        breaking.erosion = 0.015 * static_cast<double>(seed / 3 % 3) * piece;
+        breaking.erosion = 0.0075 * static_cast<double>(seed / 3 % 3) * piece;  // of each side: up to 3 % between two pieces
         box.diagonal = box_diagonal(whole);
         box.gap = (0.004 + 2.2 * breaking.erosion + 4 * breaking.noise) * box.diagonal;
         const SurfaceSearch skin(whole);

@@ -14,6 +14,7 @@
 #include <fstream>
 #include <iostream>
 #include <sstream>
+#include "ostraka/core/text.h"
 
 namespace ostraka::experiments {
 

@@ -117,9 +117,8 @@ PairCandidate BreakAligner::judge(const Motion& pose, std::size_t samples, doubl
         if (!surface_) return;
         const SurfaceHit hit = surface_->closest(point_of(p));
         if (hit.face == no_index || hit.distance < last_search_radius_) return;
-        // Beyond an edge the nearest face may look either way: the place must be well below it.
-        const double above = eigen(surface_->normal(hit.face)).dot(p - eigen(hit.point));
-        if (above > -0.7 * hit.distance) return;
+        if (eigen(surface_->normal(hit.face)).dot(p - eigen(hit.point)) > -0.3 * hit.distance || !surface_->inside(point_of(p)))
+            return;
         inside += area;
         result.depth = std::max(result.depth, hit.distance);
     };

@@ -7,6 +7,7 @@
 #include "ostraka/core/json_build.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/registration/pose_json.h"
+#include "rim_stretches.h"
 
 #include <algorithm>
 #include <cmath>
@@ -65,7 +66,15 @@ public:
           each_other_(others_.empty() ? 0 : of.intact.area / static_cast<double>(others_.size())) {}
 
     [[nodiscard]] double operator()(const Motion& pose) const {
-        double score = 0;
+        const auto [touching, inside] = look_at(pose);
+        return touching - inside;
+    }
+    /// Area of the second side that lies inside the first, counted by how deep.
+    [[nodiscard]] double inside(const Motion& pose) const { return look_at(pose).second; }
+
+private:
+    [[nodiscard]] std::pair<double, double> look_at(const Motion& pose) const {
+        double touching = 0, inside = 0;
         const auto look = [&](const Vector3d& place, const Vector3d& normal, double area, bool fracture) {
             const Vector3d p = pose(place);
             const Index i = on_.grid->near(p);
@@ -74,16 +83,15 @@ public:
             const double above = on_.normals[i].dot(off), squared = off.squaredNorm() / (search_radius_ * search_radius_);
             if (fracture && i < fractures_on_ && squared < 1) {
                 const double against = -on_.normals[i].dot(pose.rotation * normal);
-                if (against > 0.3) score += area * (1 - squared) * against;
+                if (against > 0.3) touching += area * (1 - squared) * against;
             }
-            if (above < -0.5 * search_radius_) score -= area * std::min(1.0, -above / search_radius_ - 0.5);
+            if (above < -0.5 * search_radius_) inside += area * std::min(1.0, -above / search_radius_ - 0.5);
         };
         for (const std::size_t i : fractures_) look(of_.fracture.places[i], of_.fracture.normals[i], each_fracture_, true);
         for (const std::size_t i : others_) look(of_.intact.places[i], of_.intact.normals[i], each_other_, false);
-        return score;
+        return {touching, inside};
     }
 
-private:
     const PreparedBreak::Parts& on_;
     std::size_t fractures_on_;  ///< the first of its places
     const BreakSide& of_;
@@ -113,6 +121,15 @@ std::vector<Scored> best_of_frames(const PreparedBreak::Parts& on, const BreakSi
     if (order.size() > count) order.resize(count);
     std::vector<Scored> poses;
     for (const std::size_t k : order) poses.push_back({b.frames[k % columns].onto(a.frames[k / columns]), scores[k]});
+    return poses;
+}
+
+/// Poses that lay stretches of the rims onto each other, those first that say most.
+std::vector<Scored> best_of_stretches(const PreparedBreak::Parts& on, const BreakSide& b, double tolerance, std::size_t count) {
+    const double shortest = 0.05 * std::min(on.side.rim_length, b.rim_length);
+    std::vector<Scored> poses;
+    for (const StretchFit& fit : matching_stretches(on.side.loops, b.loops, shortest, tolerance, count))
+        poses.push_back({fit.pose, fit.told});
     return poses;
 }
 
@@ -162,28 +179,40 @@ double PreparedBreak::fracture_area() const { return parts_->side.fracture.area;
 double PreparedBreak::rim_length() const { return parts_->side.rim_length; }
 double PreparedBreak::width() const { return parts_->width; }
 
+double join_scale(const PreparedBreak& a, const PreparedBreak& b) {
+    return std::min({a.size(), b.size(), 6 * a.width(), 6 * b.width()});
+}
+
 BreakPair pair_breaks(const PreparedBreak& a, const PreparedBreak& b, const PairOptions& options) {
     check_options(options, "pair");
     const PreparedBreak::Parts &first = a.parts(), &second = b.parts();
     BreakPair result;
     result.size = std::min(first.size, second.size);
-    const double search_radius = options.search_radius * result.size, tolerance = options.last_search_radius * result.size;
+    result.scale = join_scale(a, b);
+    const double search_radius = options.search_radius * result.size, tolerance = options.last_search_radius * result.scale;
     result.fracture_a = first.side.fracture.area;
     result.fracture_b = second.side.fracture.area;
     Vector3d middle = Vector3d::Zero();
     for (const Vector3d& p : second.side.fracture.places) middle += p / static_cast<double>(second.side.fracture.places.size());
     const auto starts = static_cast<std::size_t>(options.starts), samples = static_cast<std::size_t>(options.samples);
-    std::vector<Scored> poses = distinct(best_of_frames(first, second.side, search_radius, 40 * starts, result.tried), starts,
-                                         middle, 0.5 * search_radius, 6 * pi / 180);
+    std::vector<Scored> poses = distinct(best_of_stretches(first, second.side, tolerance, 20 * starts), starts, middle,
+                                         0.5 * search_radius, 6 * pi / 180);
+    const std::vector<Scored> by_frames = distinct(best_of_frames(first, second.side, search_radius, 40 * starts, result.tried),
+                                                   starts / 2, middle, 0.5 * search_radius, 6 * pi / 180);
+    poses.insert(poses.end(), by_frames.begin(), by_frames.end());
 
     // The best refined: quickly, then to the end.
     const BreakAligner aligner({first.side, first.fracture, first.frames, first.surface.get()}, second.side, search_radius,
                                tolerance, options.edges);
+    const BreakAligner rough({first.side, first.fracture, first.frames, nullptr}, second.side, search_radius, tolerance,
+                             options.edges);
+    const QuickScore quick_score(first, second.side, search_radius);
+    const double smaller = std::min(result.fracture_a, result.fracture_b);
     parallel_for(
         poses.size(),
         [&](std::size_t i) {
-            poses[i].pose = aligner.align(poses[i].pose, 200, 8);
-            poses[i].score = aligner.judge(poses[i].pose, 300, 0.6).score;
+            poses[i].pose = rough.align(poses[i].pose, 300, 10);
+            poses[i].score = rough.judge(poses[i].pose, 400, 0.3).score - quick_score.inside(poses[i].pose) / smaller;
         },
         1);
     poses = distinct(poses, static_cast<std::size_t>(options.refined), middle, 0.5 * search_radius, 5 * pi / 180);

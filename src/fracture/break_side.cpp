@@ -57,6 +57,97 @@ Motion RimFrame::onto(const RimFrame& other) const {
     return motion;
 }
 
+namespace {
+
+/// A loop with places and sides averaged along it over about `reach`, so that steps from face to face do not lengthen it.
+RimLoop smoothed(const RimLoop& loop, double reach) {
+    const std::size_t n = loop.places.size();
+    RimLoop result = loop;
+    const auto step = [&](std::size_t k) { return (loop.places[(k + 1) % n] - loop.places[k]).norm(); };
+    for (std::size_t k = 0; k < n; ++k) {
+        Vector3d place = Vector3d::Zero(), side = Vector3d::Zero();
+        double all = 0;
+        const auto add = [&](std::size_t i, double far) {
+            const double weight = std::pow(1 - far / reach, 2) * 0.5 * (step(i) + step((i + n - 1) % n));
+            place += weight * loop.places[i];
+            side += weight * loop.sides[i];
+            all += weight;
+        };
+        add(k, 0);
+        double far = 0;
+        for (std::size_t i = 1; i < n; ++i) {
+            if (!loop.closed && k + i >= n) break;
+            far += step((k + i - 1) % n);
+            if (far >= reach) break;
+            add((k + i) % n, far);
+        }
+        far = 0;
+        for (std::size_t i = 1; i < n; ++i) {
+            if (!loop.closed && i > k) break;
+            far += step((k + n - i) % n);
+            if (far >= reach) break;
+            add((k + n - i) % n, far);
+        }
+        if (all > 0) result.places[k] = place / all;
+        if (side.norm() > 0) result.sides[k] = side.normalized();
+    }
+    return result;
+}
+
+/// The rim in order: edges between broken faces and others, followed about their ends.
+std::vector<RimLoop> loops_of(const Mesh& mesh, const std::vector<bool>& broken, const std::vector<Vector>& normals,
+                              const std::vector<Facet>& facets, double reach) {
+    const auto on_rim = [&](Halfedge h) {
+        const Face f = mesh.face(h), g = mesh.face(mesh.opposite(h));
+        return f != Mesh::null_face() && g != Mesh::null_face() && broken[f] && !broken[g];
+    };
+    // The next edge of the rim: about the target, through broken faces.
+    const auto after = [&](Halfedge h) {
+        Halfedge g = mesh.next(h);
+        while (!on_rim(g)) {
+            const Halfedge o = mesh.opposite(g);
+            if (mesh.is_border(o)) return Mesh::null_halfedge();
+            g = mesh.next(o);
+        }
+        return g;
+    };
+    const auto before = [&](Halfedge h) {
+        Halfedge g = mesh.prev(h);
+        while (!on_rim(g)) {
+            const Halfedge o = mesh.opposite(g);
+            if (mesh.is_border(o)) return Mesh::null_halfedge();
+            g = mesh.prev(o);
+        }
+        return g;
+    };
+    std::vector<bool> seen(mesh.num_halfedges(), false);
+    std::vector<RimLoop> loops;
+    for (const Halfedge start : mesh.halfedges()) {
+        if (seen[start] || !on_rim(start)) continue;
+        RimLoop loop;
+        Halfedge first = start;
+        for (Halfedge h = before(start); h != start; h = before(h)) {
+            if (h == Mesh::null_halfedge()) {
+                loop.closed = false;
+                break;
+            }
+            first = h;
+        }
+        if (loop.closed) first = start;
+        for (Halfedge h = first; h != Mesh::null_halfedge() && !seen[h]; h = after(h)) {
+            seen[h] = true;
+            const Face side = mesh.face(mesh.opposite(h));
+            loop.places.push_back(0.5 * (eigen(mesh.point(mesh.source(h))) + eigen(mesh.point(mesh.target(h)))));
+            loop.sides.push_back(eigen(normals[side]));
+            loop.facets.push_back(facets[side]);
+        }
+        if (loop.places.size() >= 3) loops.push_back(smoothed(loop, reach));
+    }
+    return loops;
+}
+
+}  // namespace
+
 double fragment_size(const Mesh& mesh) { return std::sqrt(surface_area(mesh)); }
 
 BreakSide::BreakSide(const Fragment& fragment, double radius, int frame_count, int sample_count) {
@@ -132,6 +223,7 @@ BreakSide::BreakSide(const Fragment& fragment, double radius, int frame_count, i
         16);
     for (std::size_t i = 0; i < found.size(); ++i)
         if (sound[i] != 0) frames.push_back(found[i]);
+    loops = loops_of(mesh, broken, normals, fragment.facets, 0.4 * radius);
     if (frames.empty()) fail_input(where, "has a rim whose surfaces have no normals", "repair it: run 'ostraka mesh repair'");
 }
 
@@ -141,6 +233,10 @@ BreakSide BreakSide::moved(const Motion& motion) const {
         frame.place = motion(frame.place);
         frame.side = motion.rotation * frame.side;
         frame.fracture = motion.rotation * frame.fracture;
+    }
+    for (RimLoop& loop : result.loops) {
+        for (Vector3d& p : loop.places) p = motion(p);
+        for (Vector3d& n : loop.sides) n = motion.rotation * n;
     }
     for (SurfaceSamples* samples : {&result.fracture, &result.intact}) {
         for (Vector3d& p : samples->places) p = motion(p);

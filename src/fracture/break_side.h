@@ -19,6 +19,13 @@ struct RimFrame {
     [[nodiscard]] Motion onto(const RimFrame& other) const;
 };
 
+/// A part of the rim in its order, the fracture on its left seen from outside: closed, or cut by the border of the mesh.
+struct RimLoop {
+    std::vector<Eigen::Vector3d> places, sides;  ///< smoothed along the loop; unit normals of the sides
+    std::vector<Facet> facets;                   ///< of the sides
+    bool closed = true;
+};
+
 /// Normals of fractures face each other, sides continue each other: cosines.
 constexpr double min_facing = 0.5, continued = 0.7;
 
@@ -39,6 +46,7 @@ struct BreakSide {
 
     std::vector<RimFrame> frames;
     SurfaceSamples fracture, intact;
+    std::vector<RimLoop> loops;
     double rim_length = 0;
     [[nodiscard]] BreakSide moved(const Motion& motion) const;
 };

@@ -61,7 +61,9 @@ void penetrate(const PreparedBreak::Parts& on, const PreparedBreak::Parts& from,
             if (on.normals[cell].dot(away) > 0.5 * away.norm() && away.norm() > 2 * tolerance) continue;
             const SurfaceHit hit = on.surface->closest(point_of(p));
             if (hit.face == no_index || hit.distance < tolerance) continue;
-            if (eigen(on.surface->normal(hit.face)).dot(p - eigen(hit.point)) > -0.7 * hit.distance) continue;
+            if (eigen(on.surface->normal(hit.face)).dot(p - eigen(hit.point)) > -0.3 * hit.distance ||
+                !on.surface->inside(point_of(p)))
+                continue;
             area += each;
             depth = std::max(depth, hit.distance);
         }

@@ -1,5 +1,6 @@
 #include "ostraka/fracture/join_evidence.h"
 
+#include "ostraka/core/file.h"
 #include "ostraka/core/json.h"
 
 #include <algorithm>
@@ -49,6 +50,11 @@ double join_probability(double log_odds, double lead) {
     const JoinModel& model = join_model();
     return 1 /
            (1 + std::exp(-(model.pair[0] + model.pair[1] * log_odds + model.pair[2] * std::clamp(lead, -max_lead, max_lead))));
+}
+
+std::string join_model_version() {
+    static const std::string version = sha256(to_text(built_in_document("joins.model")));
+    return version;
 }
 
 std::string weakest_evidence(const JoinEvidence& seen) {

@@ -107,6 +107,19 @@ std::array<double, 3> nearest_barycentric(const Point& a, const Point& b, const 
     return {1 - v - w, v, w};
 }
 
+bool SurfaceSearch::inside(const Point& query) const {
+    // Two lines, each seen from the query both ways, in directions that no mesh is likely to be aligned with.
+    const Vector lines[] = {Vector(0.36, 0.48, 0.8), Vector(-0.48, 0.64, 0.6)};
+    const double far = 2 * diagonal() + std::sqrt(CGAL::squared_distance(query, mesh().point(Vertex(0))));
+    int odd = 0;
+    for (const Vector& direction : lines) {
+        int ahead = 0, behind = 0;
+        for (const SurfaceHit& hit : line_hits(query, direction, far)) ++(hit.distance > 0 ? ahead : behind);
+        odd += ahead % 2 + behind % 2;
+    }
+    return odd >= 3;
+}
+
 Point point_at(const Point& a, const Point& b, const Point& c, const std::array<double, 3>& barycentric) {
     const auto& [u, v, w] = barycentric;
     if (u == 1) return a;

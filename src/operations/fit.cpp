@@ -1,4 +1,5 @@
 // fit: from fragments to the whole object.
+#include "completed_output.h"
 #include "constraint_report.h"
 
 #include "ostraka/measure/measure.h"
@@ -155,7 +156,7 @@ struct Fit final : Operation {
         output.write("fit.assembly.json", content);
         if (!searches.empty()) output.write(searches_file, searches.to_json(document.GetAllocator()));
         if (!result.points.empty()) {
-            write_object(result.object);
+            write_completed(output, "completed.ply", result.object);
             for (std::size_t k = 0; k < result.notes.size(); ++k) context.notes(names.fragments[k], result.notes[k]);
             for (const CompletionNote& note : result.object.notes)
                 report.note(names.fragments[static_cast<std::size_t>(note.fragment)] + ": " + note.text +
@@ -167,25 +168,6 @@ struct Fit final : Operation {
         for (std::size_t k = 0; placed && k < fragments.size(); ++k)
             if (const FragmentPlacement& one = result.placement.fragments[k]; one.problem.empty())
                 output.write(names.fragments[k] + ".placed.ply", moved(fragments[k]->mesh, one.pose));
-    }
-
-    /// Colours and labels say what was seen.
-    void write_object(const CompletedObject& object) const {
-        MeshExtras extras;
-        WriteOptions how;
-        FaceValues fragment{"fragment", {}}, distance{"distance", {}}, confidence{"confidence", {}};
-        for (std::size_t f = 0; f < object.origin.size(); ++f) {
-            const Origin origin = object.origin[f];
-            extras.face_labels.push_back(static_cast<std::int32_t>(origin));
-            extras.face_colours.push_back(origin == Origin::observed       ? Colour{186, 120, 82, 255}
-                                          : origin == Origin::interpolated ? Colour{214, 180, 120, 255}
-                                                                           : Colour{200, 205, 210, 255});
-            fragment.values.push_back(static_cast<float>(object.fragment[f] + 1));
-            distance.values.push_back(static_cast<float>(object.distance[f]));
-            confidence.values.push_back(static_cast<float>(object.confidence[f]));
-        }
-        how.face_values = {std::move(fragment), std::move(distance), std::move(confidence)};
-        output.write("completed.ply", object.mesh, extras, how);
     }
 
     void report_result(Report& report, const Reconstruction& result) const {

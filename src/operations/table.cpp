@@ -22,7 +22,7 @@ std::unique_ptr<Operation> make_template_pack(), make_template_check(), make_tem
 std::unique_ptr<Operation> make_cage_make(), make_cage_edit(), make_cage_check(), make_cage_weights(), make_cage_influence();
 std::unique_ptr<Operation> make_study_make_proportions(), make_study_make_moulds(), make_study_make_technique(),
     make_study_landmarks(), make_study_proportions(), make_study_moulds(), make_study_technique(), make_study_segments();
-std::unique_ptr<Operation> make_axis(), make_slice(), make_deform(), make_fit(), make_pair(), make_render(),
+std::unique_ptr<Operation> make_axis(), make_slice(), make_deform(), make_fit(), make_pair(), make_assemble(), make_render(),
     make_operations();
 
 namespace {
@@ -91,6 +91,7 @@ constexpr OperationEntry entries[]{
     {"deform", "edit a shape so that its meaning survives (exit code 3: a constraint does not hold)", make_deform},
     {"fit", "complete an object from fragments by a template of its class, and say whether they go together (exit code 3: they do not, or it cannot be told)", make_fit},
     {"pair", "lay two fragments together by the break they share; exit code 3 if it cannot be told how", make_pair},
+    {"assemble", "put a box of fragments together by their breaks, leave out what does not belong, and say how sure each join is; exit code 3 if nothing is joined", make_assemble},
     {"render", "make a picture of meshes, their annotations and maps", make_render},
     {"operations", "what the toolkit can do: every operation with its inputs, outputs, options, ranges, defaults and units", make_operations},
 };

@@ -86,7 +86,7 @@ private:
     }
 
     [[nodiscard]] double tolerance(std::size_t a, std::size_t b) const {
-        return options_.pairs.last_search_radius * std::min(prepared_[a]->size(), prepared_[b]->size());
+        return options_.pairs.last_search_radius * join_scale(*prepared_[a], *prepared_[b]);
     }
 
     void try_pairs() {

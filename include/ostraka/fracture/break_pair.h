@@ -16,9 +16,9 @@ struct PairOptions {
     int frames = 160;             ///< places along the rim of each fragment's fracture
     int samples = 2000;           ///< points on each fracture, and on the rest of each surface
     int starts = 200;             ///< poses that are refined quickly, the best of all
-    int refined = 24;             ///< poses that are refined to the end
+    int refined = 32;             ///< poses that are refined to the end
     double search_radius = 0.05;  ///< farthest that faces of a break lie apart at first, share of the smaller fragment's size
-    double last_search_radius = 0.025;  ///< at the end
+    double last_search_radius = 0.025;  ///< at the end, share of join_scale
     double edges = 1;                   ///< weight of the rims against the fracture surfaces
     double min_confidence = 0.5;        ///< below it cannot be determined how the fragments go together
     int candidates = 5;                 ///< reported
@@ -52,6 +52,10 @@ private:
     std::unique_ptr<Parts> parts_;
 };
 
+/// What two breaks are compared in units of: the size of the smaller fragment, or six times the width of the narrower break if
+/// that is less, so that a thin wall is not as thick as what counts as contact.
+double join_scale(const PreparedBreak& a, const PreparedBreak& b);
+
 /// A way to lay the second fragment onto the first.
 struct PairCandidate {
     Motion pose;             ///< rigid: the second fragment onto the first
@@ -72,6 +76,7 @@ struct BreakPair {
     std::string undecided;  ///< why it cannot be determined, in words; empty: the first candidate is the answer
     double fracture_a = 0, fracture_b = 0;  ///< areas
     double size = 0;                        ///< square root of the area of the smaller fragment
+    double scale = 0;                       ///< join_scale
     std::size_t tried = 0;                  ///< poses
     [[nodiscard]] bool decided() const { return undecided.empty(); }
 };

@@ -39,6 +39,8 @@ double join_log_odds(const JoinEvidence& seen);
 /// Calibrated: that a candidate is right, by its log odds and how far they are ahead of the best other candidate of its pair
 /// (below 0: behind).
 double join_probability(double log_odds, double lead);
+/// SHA-256 of the model: what was said by another one is not said by this.
+std::string join_model_version();
 /// What speaks most against a join, in words.
 std::string weakest_evidence(const JoinEvidence& seen);
 

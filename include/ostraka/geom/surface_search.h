@@ -50,6 +50,10 @@ public:
     [[nodiscard]] std::optional<SurfaceHit> closest_compatible(const Point& query, const Vector& normal, double min_cosine,
                                                                double search_radius) const;
 
+    /// True if at least three of four rays leave the surface an odd number of times: inside a closed surface, even if it has
+    /// small folds or holes.
+    [[nodiscard]] bool inside(const Point& query) const;
+
 private:
     struct Tree;
     std::unique_ptr<Tree> tree_;

@@ -1,0 +1,288 @@
+// assemble: a box of fragments put together by their breaks.
+#include "completed_output.h"
+#include "operations.h"
+
+#include "ostraka/collection/objects.h"
+#include "ostraka/geom/eigen.h"
+#include "ostraka/reassembly/odd_fragments.h"
+#include "ostraka/reassembly/reassembly_json.h"
+#include "ostraka/reconstruction/fragment_file.h"
+#include "ostraka/reconstruction/reconstruct.h"
+#include "ostraka/registration/pose_json.h"
+#include "ostraka/render/render.h"
+#include "ostraka/shape_classes/fragment_thresholds.h"
+#include "ostraka/shape_classes/member_file.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace ostraka {
+
+namespace {
+
+struct Assemble final : Operation {
+    void describe(Parameters& p) override {
+        p.input(
+             "fragments", Kind::collection, files,
+             "mesh files, or points without faces, and folders of such files; NAME.ant.json beside one with regions \"outer\", "
+             "\"inner\", \"fracture\" overrides what is found of its facets")
+            .many();
+        p.output(
+             "output", Kind::folder, output,
+             "folder for assembly.json and, of each group, group-N.ply (face labels: the number of the fragment), group-N.png "
+             "and "
+             "NAME.placed.ply; pairs that were tried are kept in its folder pairs, and not tried again; made if it is missing")
+            .flag();
+        p.input_option("template", Kind::template_package, known,
+                       "template of the objects' class: each group is completed by it");
+        p.input_option("class", Kind::shape_class, class_file, "a class learnt with the template (NAME.class.json)");
+        p.options("no-pictures", no_pictures, "draw no pictures");
+        p.options("fresh", fresh, "try all pairs anew, whatever an earlier run found").unrecorded();
+        options.describe(p.options);
+        reading.describe(p.options);
+        p.report.schema = "reassembly";
+        p.report.people_table("fragments", {"fragment", "facets by", "fracture %", "group", "why alone"});
+        p.report.people_table("joins", {"joined", "confidence", "by the two alone", "contact %", "confirmed by"});
+    }
+
+    void check() const override {
+        if (class_file && !known) fail_usage("--class needs the template that it was learnt with", "give --template");
+    }
+
+    void run(Context& context, Report& report) override {
+        read(context, report);
+        const Path folder = output.open();
+        const ResultStore store(is_memory(folder) ? Path() : folder / "pairs");
+        const Reassembly result = reassemble(fragments, options, memory_of(store, report));
+        if (recalled > 0)
+            report.note(std::to_string(recalled) + " of " + std::to_string(result.pairs_tried) +
+                        " pairs were tried by an earlier run in " + output.file() + ": fragments and options are the same");
+        write(context, report, result);
+    }
+
+private:
+    /// A file that was named, or found in a folder.
+    struct Given {
+        Path file;
+        std::size_t slot;
+        bool listed;  ///< found in a folder
+    };
+
+    void read(Context& context, Report& report) {
+        std::vector<Given> list;
+        for (std::size_t k = 0; k < files.size(); ++k) {
+            const Path file = files.path(k);
+            if (!is_folder(file)) {
+                list.push_back({file, k, false});
+                continue;
+            }
+            const std::vector<std::string> endings = endings_of(Kind::mesh);
+            const std::size_t before = list.size();
+            for (const std::string& name : files_in(file))
+                if (std::find(endings.begin(), endings.end(), extension(name)) != endings.end())
+                    list.push_back({file / name, k, true});
+            if (list.size() == before)
+                fail_input(file.string(), "holds no mesh files",
+                           "name the folder that holds the fragments (.ply, .obj, .off, .stl)");
+        }
+        if (list.size() < 2)
+            fail_usage("there is one fragment, and nothing to join it with", "name two or more, or their folder");
+        std::set<std::string> taken;
+        Progress progress("read fragments", list.size());
+        for (const Given& one : list) {
+            progress.advance();
+            const std::string name = one.file.stem().string();
+            if (!taken.insert(name).second) fail_usage("two fragments are called '" + name + "'", "rename one of the files");
+            try {
+                FragmentFile file;
+                if (one.listed) context.record([&] { file = read_fragment(one.file, reading); });
+                else
+                    file = files.load<FragmentFile>([&](const Path& path) { return read_fragment(path, reading); }, one.slot,
+                                                    options_text(reading));
+                context.notes(one.file.string(), file.notes);
+                file.fragment.name = name;
+                fragments.push_back(std::move(file.fragment));
+                facets_from.push_back(file.facets_from);
+            } catch (const Error& error) {
+                if (error.kind() != ErrorKind::input || list.size() < 3) throw;
+                unreadable.emplace_back(name, error.problem());
+                report.note(printable(one.file.string()) + " is left out: it " + error.problem());
+            }
+        }
+        if (fragments.size() < 2)
+            fail_input(files.file(0), "and the others leave fewer than two fragments that can be read", "see the notes above");
+        find_odd(report);
+    }
+
+    /// Copies count once; what is of another size altogether is said.
+    void find_odd(Report& report) {
+        for (const OddFragment& odd : odd_fragments(fragments)) {
+            report.note(printable(fragments[odd.fragment].name) + " " + odd.text);
+            if (!odd.left_out) continue;
+            left_out[odd.fragment] = odd.text;
+            // Without a surface of its own it meets nothing.
+            fragments[odd.fragment].mesh = Mesh();
+            fragments[odd.fragment].facets.clear();
+        }
+    }
+
+    PairMemory memory_of(const ResultStore& store, const Report& /*report*/) {
+        std::vector<std::string> sums;
+        for (const Fragment& one : fragments) sums.push_back(fragment_checksum(one));
+        const std::string how = options_text(options.pairs) + join_model_version();
+        const auto key = [sums, how](std::size_t i, std::size_t j) { return ResultStore::key({sums[i], sums[j], how}); };
+        PairMemory memory;
+        memory.recall = [this, key, &store](std::size_t i, std::size_t j) -> std::optional<PairOfMany> {
+            if (fresh) return {};
+            const std::string known_by = key(i, j);
+            const std::optional<Json> found = store.find(known_by.substr(0, 32), known_by);
+            if (!found) return {};
+            ++recalled;
+            return pair_of_many_from_json(*found, i, j);
+        };
+        memory.keep = [key, &store](const PairOfMany& pair) {
+            const std::string known_by = key(pair.first, pair.second);
+            Json document;
+            store.keep(known_by.substr(0, 32), known_by, pair_of_many_to_json(pair, document.GetAllocator()));
+        };
+        return memory;
+    }
+
+    void write(Context& context, Report& report, const Reassembly& result) {
+        std::vector<std::string> names;
+        for (const Fragment& one : fragments) names.push_back(one.name);
+        Json document;
+        auto& allocator = document.GetAllocator();
+        JsonValue content = json_object(allocator, "format", "ostraka-reassembly", "version", 1);
+        JsonValue list(rapidjson::kArrayType);
+        for (std::size_t k = 0; k < fragments.size(); ++k) {
+            std::string alone = left_out.contains(k) ? left_out.at(k) : result.alone[k];
+            const double broken = fracture_share(fragments[k]);
+            JsonValue one = json_object(allocator, "name", names[k], "group", result.group[k] + 1, "facetsBy", facets_from[k],
+                                        "fracture", broken, "pose", pose_to_json(result.poses[k], allocator));
+            if (!alone.empty()) add_members(one, allocator, "alone", alone);
+            list.PushBack(one, allocator);
+            report.row("fragments", {names[k], facets_from[k], number(100 * broken, 3),
+                                     result.group[k] < 0 ? std::string("-") : std::to_string(result.group[k] + 1), alone});
+        }
+        for (const auto& [name, problem] : unreadable) {
+            list.PushBack(json_object(allocator, "name", name, "group", 0, "alone", "it " + problem), allocator);
+            report.row("fragments", {name, std::string("-"), std::string("-"), std::string("-"), "it " + problem});
+        }
+        add_members(content, allocator, "fragments", list);
+        const JsonValue found = reassembly_to_json(result, names, allocator);
+        for (const auto& member : found.GetObject()) add_members(content, allocator, member.name.GetString(), member.value);
+        for (const FragmentJoin& join : result.joins)
+            report.row("joins", {names[join.first] + " - " + names[join.second], number(join.confidence, 3), number(join.pair, 3),
+                                 number(100 * join.evidence.share, 3), join.reason});
+        for (const UndoneJoin& one : result.undone)
+            report.line("not joined: " + printable(names[one.first]) + " and " + printable(names[one.second]) + " (" +
+                        number(one.pair, 2) + " by the two alone): " + one.reason);
+        for (int g = 0; g < result.groups(); ++g)
+            write_group(context, report, result, g, content["groups"][static_cast<unsigned>(g)], allocator);
+        report.values(content);
+        output.write("assembly.json", content);
+        const std::size_t joined =
+            static_cast<std::size_t>(std::count_if(result.group.begin(), result.group.end(), [](int g) { return g >= 0; }));
+        report.line(std::to_string(joined) + " of " + std::to_string(fragments.size() + unreadable.size()) +
+                    " fragments are in " + std::to_string(result.groups()) + (result.groups() == 1 ? " group; " : " groups; ") +
+                    std::to_string(fragments.size() + unreadable.size() - joined) + " stay alone");
+        if (result.groups() == 0) report.answer_no();
+    }
+
+    static double fracture_share(const Fragment& fragment) {
+        double broken = 0, all = 0;
+        for (const Face f : fragment.mesh.faces()) {
+            const double area = face_area(fragment.mesh, f);
+            all += area;
+            if (!fragment.facets.empty() && fragment.facets[f] == Facet::fracture) broken += area;
+        }
+        return all > 0 ? broken / all : 0;
+    }
+
+    void write_group(Context& context, Report& report, const Reassembly& result, int g, JsonValue& entry,
+                     JsonAllocator& allocator) {
+        TriangleSoup soup;
+        Fragment whole;
+        MeshExtras extras;
+        Scene scene;
+        std::size_t shown = 0;
+        for (std::size_t k = 0; k < fragments.size(); ++k) {
+            if (result.group[k] != g) continue;
+            const Mesh placed = moved(fragments[k].mesh, result.poses[k]);
+            MeshExtras facets;
+            for (const Facet facet : fragments[k].facets) facets.face_labels.push_back(static_cast<std::int32_t>(facet));
+            output.write(fragments[k].name + ".placed.ply", placed, facets);
+            const TriangleSoup own = to_soup(placed);
+            const auto offset = static_cast<Index>(soup.points.size());
+            soup.points.insert(soup.points.end(), own.points.begin(), own.points.end());
+            const Rgb colour = category_colour(shown);
+            for (auto triangle : own.triangles) {
+                for (Index& v : triangle) v += offset;
+                soup.triangles.push_back(triangle);
+                extras.face_labels.push_back(static_cast<std::int32_t>(k + 1));
+                scene.face_colours.push_back(colour);
+            }
+            whole.facets.insert(whole.facets.end(), fragments[k].facets.begin(), fragments[k].facets.end());
+            constexpr std::size_t named = 16;
+            if (shown < named) scene.legend.push_back({fragments[k].name, colour, LegendMark::area});
+            ++shown;
+        }
+        const std::string name = "group-" + std::to_string(g + 1);
+        whole.name = name;
+        whole.mesh = build_mesh(soup);
+        output.write(name + ".ply", whole.mesh, extras);
+        add_members(entry, allocator, "mesh", name + ".ply");
+        if (!no_pictures) {
+            scene.mesh = std::move(soup);
+            RenderOptions drawing;
+            drawing.views = RenderOptions::Views::six;
+            drawing.size = "1500x1000";
+            write_png(output.in(name + ".png"), render({scene}, drawing).picture);
+            add_members(entry, allocator, "picture", name + ".png");
+        }
+        if (known) complete(context, report, whole, name, entry, allocator);
+    }
+
+    void complete(Context& context, Report& report, const Fragment& whole, const std::string& name, JsonValue& entry,
+                  JsonAllocator& allocator) {
+        if (!known->annotations) fail_input(known.file(), "has no annotations", "pack them");
+        std::optional<ShapePrior> prior;
+        if (class_file) {
+            const ShapeClass& learnt = class_file.load<ShapeClass>(read_class);
+            check_topology(learnt, class_file.file(), known->mesh->mesh, known.file());
+            prior = prior_of(learnt.modes);
+        }
+        const RelationGraph& graph = class_template(*known).graph;
+        const Reconstruction completed =
+            reconstruct(known->mesh->mesh, *known->annotations, graph, {&whole}, {}, {}, prior ? &*prior : nullptr);
+        for (const auto& notes : completed.notes) context.notes(name, notes);
+        add_members(entry, allocator, "completion", to_string(completed.verdict), "observed", completed.observed_share);
+        if (!completed.undecided.empty()) add_members(entry, allocator, "because", completed.undecided);
+        report.line(name + " on the template: " + to_string(completed.verdict) +
+                    (completed.undecided.empty() ? "" : ", because " + completed.undecided) + "; observed " +
+                    number(100 * completed.observed_share, 3) + " % of the surface");
+        if (completed.points.empty()) return;
+        write_completed(output, name + ".completed.ply", completed.object);
+        add_members(entry, allocator, "completed", name + ".completed.ply");
+    }
+
+    FileInput files, class_file;
+    TemplateInput known;
+    FolderOutput output;
+    ReassemblyOptions options;
+    FragmentFileOptions reading;
+    bool no_pictures = false, fresh = false;
+    std::vector<Fragment> fragments;
+    std::vector<std::string> facets_from;
+    std::vector<std::pair<std::string, std::string>> unreadable;  ///< name, what is wrong
+    std::map<std::size_t, std::string> left_out;                  ///< of copies
+    std::size_t recalled = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_assemble() { return make<Assemble>(); }
+
+}  // namespace ostraka
