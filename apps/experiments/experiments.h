@@ -2,6 +2,7 @@
 
 #include "ostraka/annotation/annotation.h"
 #include "ostraka/core/mesh.h"
+#include "ostraka/reassembly/reassembly.h"
 #include "ostraka/registration/pose_search.h"
 
 #include <cstdint>
@@ -170,6 +171,18 @@ struct JoinExperiment {
 };
 /// Pairs of fragments of broken objects: right poses and calibration.
 void joins(const JoinExperiment& options);
+
+/// Boxes in which the fragments of one object lie among strangers, one of each other box, put together.
+struct AssemblyExperiment {
+    std::vector<std::string> boxes;  ///< see read_box
+    std::string output = "experiments-output/assemblies";
+    int pieces = 10;
+    int strangers = 10;  ///< in each box, at most as many as there are other boxes
+    std::uint64_t seed = 0;
+    bool found = false;  ///< facets as found instead of as known
+    ReassemblyOptions reassembly;
+};
+void assemblies(const AssemblyExperiment& options);
 
 /// The sherds on the template made of them as a surface of revolution: axes, heights and rotations.
 void sherd_rotations(const BreakExperiment& options);

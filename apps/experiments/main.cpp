@@ -139,6 +139,19 @@ void declare_joins(CLI::App& command, JoinExperiment& options) {
     command.add_flag("--adjacent-only", options.adjacent_only, "only pairs that touch");
 }
 
+void declare_assemblies(CLI::App& command, AssemblyExperiment& options) {
+    command
+        .add_option("--boxes", options.boxes,
+                    "pot:SHAPE, made:NAME or a mesh file, to be broken; or a folder of fragments in assembled layout")
+        ->delimiter(',')
+        ->required();
+    command.add_option("--output", options.output, "folder for tables")->capture_default_str();
+    ranged(command, "--pieces", options.pieces, "that an object is broken into", 2, 100);
+    ranged(command, "--strangers", options.strangers, "in each box, of the others", 0, 100);
+    command.add_option("--seed", options.seed, "of breaks, noise and wear");
+    command.add_flag("--found", options.found, "facets as the library finds them, not as they are known");
+}
+
 void declare_moulds(CLI::App& command, MouldExperimentOptions& options) {
     command.add_option("output", options.output, "folder for tables and plots")->capture_default_str();
     command.add_option("--part", options.parts, "choices, wear, runs, scans; all if not given")
@@ -244,6 +257,7 @@ constexpr Experiment list[] = {
     {"pose-search", "pieces broken off objects, and where a search lays them", declared<declare_pose_search, pose_search>},
     {"break-pairs", "two halves of a bottle, and neighbours among scanned sherds", declared<declare_breaks, break_pairs>},
     {"joins", "pairs of fragments of broken objects: right poses and calibration", declared<declare_joins, joins>},
+    {"assemblies", "fragments of one object among strangers put together", declared<declare_assemblies, assemblies>},
     {"sherd-turns", "scanned sherds on the template turned from them, turns by breaks",
      declared<declare_breaks, sherd_rotations>},
     {"broken-pots", "made vessels, broken: turns by breaks", declared<declare_breaks, broken_pots>},

@@ -49,6 +49,33 @@ TEST(SurfaceSearch, LineThroughASphereMeetsItTwice) {
     }
 }
 
+TEST(SurfaceSearch, InsideIsToldByRays) {
+    std::mt19937_64 random(11);
+    std::uniform_real_distribution<double> uniform(-1.2, 1.2);
+    for (const auto& [scale, shift] : {std::pair(1.0, 0.0), std::pair(1e-6, 0.0), std::pair(1e6, 3e6)}) {
+        // A bowl: two shells, the space between them is inside; with one face missing.
+        TriangleSoup soup = octahedron_sphere(5);
+        const std::size_t n = soup.points.size(), m = soup.triangles.size();
+        for (std::size_t k = 0; k < n; ++k)
+            soup.points.push_back({0.7 * soup.points[k][0], 0.7 * soup.points[k][1], 0.7 * soup.points[k][2]});
+        for (std::size_t k = 0; k < m; ++k) {
+            const auto t = soup.triangles[k];
+            soup.triangles.push_back({static_cast<Index>(t[0] + n), static_cast<Index>(t[2] + n), static_cast<Index>(t[1] + n)});
+        }
+        soup.triangles.erase(soup.triangles.begin() + 3);
+        for (auto& p : soup.points)
+            for (double& x : p) x = scale * x + shift;
+        const Mesh mesh = build_mesh(soup);
+        const SurfaceSearch search(mesh);
+        for (int k = 0; k < 300; ++k) {
+            const Vector p(uniform(random), uniform(random), uniform(random));
+            const double r = std::sqrt(p.squared_length());
+            if (std::abs(r - 1) < 0.01 || std::abs(r - 0.7) < 0.01) continue;
+            EXPECT_EQ(search.inside(Point(shift, shift, shift) + scale * p), r > 0.7 && r < 1) << r;
+        }
+    }
+}
+
 TEST(SurfaceSearch, CompatibleNormalChoosesTheSheet) {
     // A flat box: from just above the lower sheet, an upward normal finds the upper one.
     TriangleSoup soup = box(8);

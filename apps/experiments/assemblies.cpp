@@ -1,0 +1,148 @@
+// Boxes in which the fragments of one object lie among strangers, put together: what is placed, what is joined wrongly.
+#include "boxes.h"
+#include "breaks.h"
+#include "experiments.h"
+#include "report.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/file.h"
+#include "ostraka/reassembly/reassembly.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <sstream>
+
+namespace ostraka::experiments {
+
+namespace {
+
+/// What became of a box, or of several.
+struct Outcome {
+    std::size_t own = 0, placed = 0, strangers = 0, strangers_joined = 0;
+    std::size_t joins = 0, wrong = 0, sure = 0, sure_right = 0, even = 0, even_right = 0, pairs = 0;
+    double degrees = 0, off = 0;  ///< root mean square over the object's fragments that are in its main group; share of diagonal
+    Seconds seconds;
+
+    Outcome& operator+=(const Outcome& o) {
+        own += o.own, placed += o.placed, strangers += o.strangers, strangers_joined += o.strangers_joined;
+        joins += o.joins, wrong += o.wrong, sure += o.sure, sure_right += o.sure_right, even += o.even;
+        even_right += o.even_right, pairs += o.pairs, seconds += o.seconds;
+        return *this;
+    }
+};
+
+/// A fragment of the mixture: whether it is of the box's object, and the motion before it was given.
+struct Given {
+    bool own = false;
+    Motion motion;
+};
+
+/// How far a fragment, given after its motion, is from where it belongs: `way` is its deviation in the object's frame.
+std::pair<double, double> deviation(const Mesh& mesh, const Given& given, const Motion& way) {
+    return {degrees_of(way), off_of(mesh, given.motion.after(way).after(given.motion.inverse()))};
+}
+
+Outcome judge(const std::vector<Fragment>& fragments, const std::vector<Given>& given, const Reassembly& result, double diagonal,
+              const std::string& name, std::ostream& joins) {
+    constexpr double near_degrees = 2, near_share = 0.01;
+    Outcome outcome;
+    std::vector<Motion> home(given.size());  // from where it belongs in its object into its group's frame
+    for (std::size_t k = 0; k < given.size(); ++k) home[k] = result.poses[k].after(given[k].motion);
+    // The frame of that fragment by which most are right.
+    for (std::size_t r = 0; r < given.size(); ++r) {
+        if (!given[r].own || result.group[r] < 0) continue;
+        std::size_t right = 0, members = 0;
+        double angles = 0, ways = 0;
+        for (std::size_t k = 0; k < given.size(); ++k) {
+            if (!given[k].own || result.group[k] != result.group[r]) continue;
+            const auto [angle, off] = deviation(fragments[k].mesh, given[k], home[r].inverse().after(home[k]));
+            ++members;
+            angles += angle * angle, ways += off * off / diagonal / diagonal;
+            right += angle <= near_degrees && off <= near_share * diagonal ? 1 : 0;
+        }
+        if (right <= outcome.placed) continue;
+        outcome.placed = right;
+        outcome.degrees = std::sqrt(angles / static_cast<double>(members));
+        outcome.off = std::sqrt(ways / static_cast<double>(members));
+    }
+    for (std::size_t k = 0; k < given.size(); ++k) {
+        (given[k].own ? outcome.own : outcome.strangers) += 1;
+        outcome.strangers_joined += !given[k].own && result.group[k] >= 0 ? 1 : 0;
+    }
+    for (const FragmentJoin& join : result.joins) {
+        const std::size_t i = join.first, j = join.second;
+        bool right = given[i].own && given[j].own;
+        if (right) {
+            const auto [angle, off] = deviation(fragments[j].mesh, given[j], home[i].inverse().after(home[j]));
+            right = angle < 6 && off < 0.06 * box_diagonal(fragments[j].mesh);
+        }
+        ++outcome.joins;
+        outcome.wrong += right ? 0 : 1;
+        if (join.confidence >= 0.9) ++outcome.sure, outcome.sure_right += right ? 1 : 0;
+        if (join.confidence >= 0.5) ++outcome.even, outcome.even_right += right ? 1 : 0;
+        joins << name << ',' << fragments[i].name << ',' << fragments[j].name << ',' << right << ',' << join.confidence << ','
+              << join.pair << ',' << join.loops << ',' << join.carries << ',' << join.evidence.share << '\n';
+    }
+    outcome.pairs = result.pairs_tried;
+    return outcome;
+}
+
+}  // namespace
+
+void assemblies(const AssemblyExperiment& options) {
+    std::filesystem::create_directories(options.output);
+    std::vector<Box> boxes;
+    std::uint64_t seed = options.seed;
+    for (const std::string& source : options.boxes) {
+        ++seed;
+        try {
+            boxes.push_back(read_box(source, options.pieces, seed, options.found ? FacetChoice::found : FacetChoice::known));
+        } catch (const Error& error) {
+            std::cerr << source << " is left out: " << error.what() << '\n';
+        }
+    }
+    std::cout << "| box | placed, of | strangers joined, of | joins, wrong | right of those at 0.9 | at 0.5 | degrees off | % of "
+                 "the diagonal off | pairs | s wall | s processor |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
+    std::ostringstream joins;
+    joins << "box,first,second,right,confidence,pair,loops,carries,share\n";
+    const auto line = [](const std::string& name, const Outcome& one) {
+        std::cout
+            << format("| %s | %zu of %zu | %zu of %zu | %zu, %zu | %zu of %zu | %zu of %zu | %.2f | %.2f | %zu | %.1f | %.1f |\n",
+                      name.c_str(), one.placed, one.own, one.strangers_joined, one.strangers, one.joins, one.wrong,
+                      one.sure_right, one.sure, one.even_right, one.even, one.degrees, 100 * one.off, one.pairs, one.seconds.wall,
+                      one.seconds.processor)
+            << std::flush;
+    };
+    Outcome all;
+    for (std::size_t b = 0; b < boxes.size(); ++b) {
+        Random random(options.seed + b, 11);
+        std::vector<Fragment> fragments;
+        std::vector<Given> given;
+        const auto add = [&](const Box& from, std::size_t k) {
+            Fragment fragment = from.fragments[k];
+            fragment.name = from.name + "-" + fragment.name;
+            given.push_back({&from == &boxes[b], random_motion(random, 2 * boxes[b].diagonal)});
+            fragment.mesh = moved(fragment.mesh, given.back().motion);
+            fragments.push_back(std::move(fragment));
+        };
+        for (std::size_t k = 0; k < boxes[b].fragments.size(); ++k) add(boxes[b], k);
+        for (std::size_t s = 1; s <= std::min<std::size_t>(static_cast<std::size_t>(options.strangers), boxes.size() - 1); ++s) {
+            const Box& other = boxes[(b + s) % boxes.size()];
+            add(other, (b + s) % other.fragments.size());
+        }
+        const Stopwatch watch;
+        const Reassembly result = reassemble(fragments, options.reassembly);
+        const Seconds seconds = watch.seconds();
+        Outcome one = judge(fragments, given, result, boxes[b].diagonal, boxes[b].name, joins);
+        one.seconds = seconds;
+        line(boxes[b].name, one);
+        all += one;
+        all.degrees += one.degrees / static_cast<double>(boxes.size());
+        all.off += one.off / static_cast<double>(boxes.size());
+    }
+    line("all", all);
+    write_file(Path(options.output) / "assemblies.csv", joins.str());
+}
+
+}  // namespace ostraka::experiments

@@ -1,0 +1,252 @@
+#include "ostraka/reassembly/reassembly.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/geom/eigen.h"
+#include "ostraka/io/mesh_file.h"
+#include "ostraka/reassembly/odd_fragments.h"
+#include "ostraka/stats/random.h"
+#include "scratch.h"
+#include "sherds.h"
+
+#include <set>
+
+namespace ostraka {
+namespace {
+
+using test::synthetic_bar;
+using test::synthetic_sherd;
+using test::SyntheticSherd;
+
+Motion random_motion(std::uint64_t seed) {
+    Random random(seed);
+    Motion motion;
+    motion.rotation =
+        Eigen::Quaterniond(random.normal(), random.normal(), random.normal(), random.normal()).normalized().toRotationMatrix();
+    motion.translation = 30 * Eigen::Vector3d(random.normal(), random.normal(), random.normal());
+    return motion;
+}
+
+Fragment fragment_of(const SyntheticSherd& sherd, const std::string& name, const Motion& motion) {
+    Fragment fragment;
+    fragment.name = name;
+    fragment.mesh = moved(sherd.mesh, motion);
+    fragment.facets = sherd.facets;
+    return fragment;
+}
+
+/// Three sherds of a pot, side by side, and the two halves of a bar, each anywhere.
+struct Mixture {
+    std::vector<Fragment> fragments;
+    std::vector<Motion> motions;
+
+    Mixture() {
+        add(synthetic_sherd(1, 2, 0, 1), "left");
+        add(synthetic_bar(), "below");
+        add(synthetic_sherd(2, 3, 1, 2), "middle");
+        add(synthetic_bar(1, true), "above");
+        add(synthetic_sherd(3, 4, 2, 3), "right");
+    }
+    /// How far a vertex of fragment k is, where it was put, from where it belongs in the frame of fragment r, at most.
+    [[nodiscard]] double off(const Reassembly& result, std::size_t r, std::size_t k) const {
+        const Motion way = motions[r].inverse().after(result.poses[r].inverse()).after(result.poses[k]);
+        double farthest = 0;
+        for (const Vertex v : fragments[k].mesh.vertices()) {
+            const Eigen::Vector3d p = eigen(fragments[k].mesh.point(v));
+            farthest = std::max(farthest, (way(p) - motions[k].inverse()(p)).norm());
+        }
+        return farthest;
+    }
+
+private:
+    void add(const SyntheticSherd& sherd, const std::string& name) {
+        motions.push_back(random_motion(motions.size() + 1));
+        fragments.push_back(fragment_of(sherd, name, motions.back()));
+    }
+};
+
+ReassemblyOptions quick() {
+    ReassemblyOptions options;
+    options.pairs.frames = 80;
+    options.pairs.samples = 600;
+    options.pairs.starts = 60;
+    options.pairs.refined = 10;
+    return options;
+}
+
+TEST(Reassembly, TwoObjectsInOneBox) {
+    const Mixture box;
+    const Reassembly result = reassemble(box.fragments, quick());
+    EXPECT_EQ(result.pairs_tried, 10u);
+    ASSERT_EQ(result.groups(), 2);
+    EXPECT_EQ(result.group[0], result.group[2]);
+    EXPECT_EQ(result.group[0], result.group[4]);
+    EXPECT_EQ(result.group[1], result.group[3]);
+    EXPECT_NE(result.group[0], result.group[1]) << "strangers stay apart";
+    EXPECT_LT(box.off(result, 2, 0), 0.1) << "of a diagonal of 9";
+    EXPECT_LT(box.off(result, 2, 4), 0.1);
+    EXPECT_LT(box.off(result, 1, 3), 0.05);
+    for (const std::string& text : result.alone) EXPECT_TRUE(text.empty());
+    std::set<std::pair<std::size_t, std::size_t>> carried;
+    for (const FragmentJoin& join : result.joins) {
+        EXPECT_EQ(result.group[join.first], result.group[join.second]);
+        EXPECT_GE(join.confidence, 0.5);
+        EXPECT_LE(join.confidence, 1);
+        if (join.carries) carried.insert({join.first, join.second});
+    }
+    EXPECT_EQ(carried, (std::set<std::pair<std::size_t, std::size_t>>{{0, 2}, {1, 3}, {2, 4}}));
+}
+
+TEST(Reassembly, ThreadsAndWhatWasTriedBeforeDoNotMatter) {
+    std::vector<Fragment> three = Mixture().fragments;
+    three = {three[1], three[2], three[3]};
+    const auto same = [](const Reassembly& x, const Reassembly& y) {
+        EXPECT_EQ(x.group, y.group);
+        ASSERT_EQ(x.poses.size(), y.poses.size());
+        for (std::size_t k = 0; k < x.poses.size(); ++k) {
+            EXPECT_EQ(x.poses[k].rotation, y.poses[k].rotation);
+            EXPECT_EQ(x.poses[k].translation, y.poses[k].translation);
+        }
+        ASSERT_EQ(x.joins.size(), y.joins.size());
+        for (std::size_t k = 0; k < x.joins.size(); ++k) EXPECT_EQ(x.joins[k].confidence, y.joins[k].confidence);
+    };
+    std::vector<PairOfMany> known;
+    std::size_t tried = 0;
+    PairMemory memory;
+    memory.keep = [&](const PairOfMany& pair) { known.push_back(pair), ++tried; };
+    const int before = threads();
+    set_threads(1);
+    const Reassembly one = reassemble(three, quick(), memory);
+    set_threads(3);
+    const Reassembly parallel = reassemble(three, quick());
+    set_threads(before);
+    same(one, parallel);
+    EXPECT_EQ(tried, 3u);
+    memory.recall = [&](std::size_t i, std::size_t j) -> std::optional<PairOfMany> {
+        for (const PairOfMany& pair : known)
+            if (pair.first == i && pair.second == j) return pair;
+        return {};
+    };
+    same(one, reassemble(three, quick(), memory));
+    EXPECT_EQ(tried, 3u) << "none was tried again";
+}
+
+TEST(Reassembly, WhatCannotBeJoinedStaysAloneWithItsReason) {
+    EXPECT_THROW(reassemble({}), Error);
+    std::vector<Fragment> list(4);
+    list[0] = fragment_of(synthetic_bar(), "bar", {});
+    list[1] = fragment_of(synthetic_bar(1, true), "whole", {});
+    list[1].facets.assign(list[1].facets.size(), Facet::outer);
+    list[2].name = "nothing";
+    TriangleSoup chip;
+    chip.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    chip.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
+    list[3].name = "chip";
+    list[3].mesh = build_mesh(chip);
+    const Reassembly result = reassemble(list, quick());
+    EXPECT_EQ(result.groups(), 0);
+    EXPECT_EQ(result.pairs_tried, 0u);
+    EXPECT_TRUE(result.joins.empty());
+    EXPECT_NE(result.alone[0].find("no other"), std::string::npos) << result.alone[0];
+    EXPECT_NE(result.alone[1].find("fracture"), std::string::npos) << result.alone[1];
+    EXPECT_NE(result.alone[2].find("0 faces"), std::string::npos) << result.alone[2];
+    EXPECT_NE(result.alone[3].find("4 faces"), std::string::npos) << result.alone[3];
+    ReassemblyOptions options;
+    options.min_join = 2;
+    EXPECT_THROW(reassemble(list, options), Error);
+}
+
+TEST(OddFragments, CopiesMirrorImagesUnitsAndInsideOut) {
+    const SyntheticSherd bar = synthetic_bar();
+    std::vector<Fragment> list;
+    for (int k = 0; k < 3; ++k) list.push_back(fragment_of(synthetic_sherd(k, k + 1, k, k + 1), std::to_string(k), {}));
+    EXPECT_TRUE(odd_fragments(list).empty());
+    list.push_back(fragment_of(synthetic_sherd(1, 2, 1, 2), "copy", random_motion(5)));
+    Mesh mirrored = list[0].mesh;
+    for (const Vertex v : mirrored.vertices()) {
+        const Point p = mirrored.point(v);
+        mirrored.point(v) = Point(-p.x(), p.y(), p.z());
+    }
+    TriangleSoup turned = to_soup(mirrored);
+    for (auto& t : turned.triangles) std::swap(t[1], t[2]);
+    list.push_back(fragment_of({build_mesh(turned), list[0].facets}, "mirror", {}));
+    Motion inch;
+    inch.scale = 1 / 25.4;
+    list.push_back(fragment_of(synthetic_sherd(6, 7, 1, 2), "inches", inch));
+    turned = to_soup(bar.mesh);
+    for (auto& t : turned.triangles) std::swap(t[1], t[2]);
+    list.push_back(fragment_of({build_mesh(turned), bar.facets}, "turned", {}));
+    std::map<std::size_t, OddFragment> odd;
+    for (const OddFragment& one : odd_fragments(list)) odd[one.fragment] = one;
+    ASSERT_EQ(odd.size(), 4u);
+    EXPECT_EQ(odd[3].text, "is a copy of 1");
+    EXPECT_TRUE(odd[3].left_out);
+    EXPECT_EQ(odd[4].text, "is a mirror image of 0");
+    EXPECT_TRUE(odd[4].left_out);
+    EXPECT_NE(odd[5].text.find("times smaller than most"), std::string::npos) << odd[5].text;
+    EXPECT_FALSE(odd[5].left_out);
+    EXPECT_NE(odd[6].text.find("inside out"), std::string::npos) << odd[6].text;
+}
+
+std::string quoted(const Path& path) { return "'" + path.string() + "'"; }
+
+TEST(AssembleCommand, ABoxAgainAndWithWhatCannotBeRead) {
+    const test::Scratch scratch;
+    std::filesystem::create_directory(scratch / "box");
+    const Mixture box;
+    for (const std::size_t k : {1, 2, 3}) write_mesh(scratch / "box" / (box.fragments[k].name + ".ply"), box.fragments[k].mesh);
+    write_file(scratch / "box" / "broken.ply", "ply\nformat ascii 1.0\nelement vertex 3\n");
+    const std::string small = " --frames 60 --samples 500 --starts 40 --refined 6",
+                      command = "assemble " + quoted(scratch / "box") + " --output " + quoted(scratch / "out") + small;
+    const auto run = test::run_command(command);
+    ASSERT_EQ(run.code, 0) << run.err << run.out;
+    const Json report = read_json(scratch / "out" / "assembly.json");
+    validate(report, "reassembly", "assembly.json");
+    ASSERT_EQ(report["groups"].Size(), 1u);
+    ASSERT_EQ(report["fragments"].Size(), 4u);
+    for (const auto& one : report["fragments"].GetArray()) {
+        const std::string name = one["name"].GetString();
+        EXPECT_EQ(one["group"].GetInt(), name == "above" || name == "below" ? 1 : 0) << name;
+        EXPECT_EQ(one.HasMember("alone"), name == "middle" || name == "broken") << name;
+    }
+    for (const char* name : {"group-1.ply", "group-1.png", "above.placed.ply", "below.placed.ply"})
+        EXPECT_TRUE(std::filesystem::exists(scratch / "out" / name)) << name;
+    EXPECT_FALSE(std::filesystem::exists(scratch / "out" / "middle.placed.ply"));
+    const Mesh above = read_mesh(scratch / "out" / "above.placed.ply").mesh;
+    const Mesh below = read_mesh(scratch / "out" / "below.placed.ply").mesh;
+    EXPECT_EQ(read_mesh(scratch / "out" / "group-1.ply").mesh.number_of_faces(),
+              above.number_of_faces() + below.number_of_faces());
+    const auto again = test::run_command(command);
+    EXPECT_EQ(again.code, 0);
+    EXPECT_NE((again.out + again.err).find("3 of 3 pairs were tried by an earlier run"), std::string::npos)
+        << again.out << again.err;
+    Json second = read_json(scratch / "out" / "assembly.json");
+    EXPECT_EQ(to_text(second["joins"]), to_text(report["joins"]));
+    EXPECT_EQ(to_text(second["fragments"]), to_text(report["fragments"]));
+}
+
+TEST(AssembleCommand, WhatMakesNoSense) {
+    const test::Scratch scratch;
+    std::filesystem::create_directory(scratch / "empty");
+    write_mesh(scratch / "bar.ply", synthetic_bar().mesh);
+    const std::string out = " --output " + quoted(scratch / "out");
+    const auto empty = test::run_command("assemble " + quoted(scratch / "empty") + out);
+    EXPECT_EQ(empty.code, 1);
+    EXPECT_NE(empty.err.find("holds no mesh files"), std::string::npos) << empty.err;
+    const auto one = test::run_command("assemble " + quoted(scratch / "bar.ply") + out);
+    EXPECT_EQ(one.code, 2);
+    EXPECT_NE(one.err.find("one fragment"), std::string::npos) << one.err;
+    const auto twice = test::run_command("assemble " + quoted(scratch / "bar.ply") + " " + quoted(scratch / "bar.ply") + out);
+    EXPECT_EQ(twice.code, 2);
+    EXPECT_NE(twice.err.find("two fragments are called"), std::string::npos) << twice.err;
+    std::filesystem::copy(scratch / "bar.ply", scratch / "copy.ply");
+    const auto copies = test::run_command("assemble " + quoted(scratch / "bar.ply") + " " + quoted(scratch / "copy.ply") + out +
+                                          " --no-pictures");
+    EXPECT_EQ(copies.code, 3) << copies.err << copies.out;
+    EXPECT_NE((copies.out + copies.err).find("is a copy of"), std::string::npos) << copies.out << copies.err;
+    EXPECT_EQ(test::run_command("assemble " + quoted(scratch / "bar.ply") + " " + quoted(scratch / "gone.ply") + out).code, 1);
+    EXPECT_EQ(test::run_command("assemble " + quoted(scratch / "bar.ply") + " --least-join 7" + out).code, 2);
+}
+
+}  // namespace
+}  // namespace ostraka
