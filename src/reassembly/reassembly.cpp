@@ -4,6 +4,7 @@
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
 #include "ostraka/geom/eigen.h"
+#include "ostraka/geom/plane_motion.h"
 #include "refine_group.h"
 
 #include <algorithm>
@@ -189,20 +190,96 @@ private:
     }
 
     struct Verdict {
+        Motion join;  ///< of the second group onto the first
         double log_odds = 0;
         std::string against;  ///< empty: nothing
     };
 
+    using Pairs = std::vector<std::pair<std::size_t, std::size_t>>;
+
+    /// Pairs of fragments of two groups that may touch where `join` lays the second group.
+    [[nodiscard]] Pairs close_pairs(std::size_t a, std::size_t b, const Motion& join) const {
+        Pairs close;
+        for (const std::size_t i : members_.at(a))
+            for (const std::size_t j : members_.at(b))
+                if ((result_.poses[i](middle_[i]) - join.after(result_.poses[j])(middle_[j])).norm() < radius_[i] + radius_[j])
+                    close.emplace_back(i, j);
+        return close;
+    }
+
+    /// The second group as one body onto the first, by all that then comes into contact: what one join leaves of an error
+    /// grows with the distance from it.
+    [[nodiscard]] Motion settled(std::size_t a, std::size_t b, Motion join) const {
+        if (members_.at(a).size() + members_.at(b).size() < 3) return join;
+        constexpr int steps = 12;
+        constexpr double widest = 4;  // tolerances
+        constexpr std::size_t samples = 300;
+        for (int step = 0; step < steps; ++step) {
+            const double wide = std::pow(widest, 1 - std::min(1.0, 1.5 * step / (steps - 1)));
+            const Pairs close = close_pairs(a, b, join);
+            std::vector<std::vector<ContactPoint>> contacts(2 * close.size());
+            parallel_for(
+                close.size(),
+                [&](std::size_t k) {
+                    const auto [i, j] = close[k];
+                    const Motion pose = result_.poses[i].inverse().after(join).after(result_.poses[j]);
+                    contacts[2 * k] = contact_points(*prepared_[i], *prepared_[j], pose, wide * tolerance(i, j), samples);
+                    contacts[2 * k + 1] =
+                        contact_points(*prepared_[j], *prepared_[i], pose.inverse(), wide * tolerance(i, j), samples);
+                },
+                1);
+            struct Plane {
+                Vector3d point, normal;
+                double off, weight;
+            };
+            std::vector<Plane> planes;
+            Vector3d centre = Vector3d::Zero();
+            double total = 0;
+            for (std::size_t k = 0; k < close.size(); ++k) {
+                const auto [i, j] = close[k];
+                const Motion moved_b = join.after(result_.poses[j]);
+                // A sample stands for the same area whichever fragment it is of.
+                for (const bool back : {false, true}) {
+                    const Motion &on = back ? moved_b : result_.poses[i], &from = back ? result_.poses[i] : moved_b;
+                    const double each = prepared_[back ? i : j]->fracture_area();
+                    for (const ContactPoint& one : contacts[2 * k + (back ? 1 : 0)]) {
+                        Vector3d point = from(one.on_b), normal = on.rotation * one.normal;
+                        const double off = normal.dot(on(one.on_a) - point);
+                        // Seen from the second, its plane moves onto the first's place.
+                        if (back) point += off * normal, normal = -normal;
+                        planes.push_back({point, normal, off, each * one.weight});
+                        centre += planes.back().weight * point;
+                        total += planes.back().weight;
+                    }
+                }
+            }
+            if (planes.size() < 12) break;
+            centre /= total;
+            double unit = 0;
+            for (const Plane& plane : planes) unit += plane.weight / total * (plane.point - centre).squaredNorm();
+            if (!(unit > 0)) break;
+            PlaneMotion system(centre, std::sqrt(unit));
+            for (const Plane& plane : planes) system.add(plane.point, plane.normal, plane.off, plane.weight);
+            join = system.motion(system.solve(1e-3 / 6)).after(join);
+            join.rotation = Eigen::Quaterniond(join.rotation).normalized().toRotationMatrix();
+        }
+        return join;
+    }
+
     /// What is seen when the groups of an edge's fragments are joined by it.
     [[nodiscard]] Verdict examine(const Edge& edge) const {
         Verdict verdict;
-        const Motion join = result_.poses[edge.a].after(edge.pose).after(result_.poses[edge.b].inverse());
+        const Motion told = result_.poses[edge.a].after(edge.pose).after(result_.poses[edge.b].inverse());
+        const Motion join = settled(edge.a, edge.b, told);
+        verdict.join = join;
+        const Motion here = result_.poses[edge.a].inverse().after(join).after(result_.poses[edge.b]);
+        if (!agree(here, edge.pose, edge.b, loop_length(edge.a, edge.b, edge.b))) {
+            verdict.against = "what else would touch draws them apart";
+            verdict.log_odds = -1e9;
+            return verdict;
+        }
         double others = 0;
-        std::vector<std::pair<std::size_t, std::size_t>> close;
-        for (const std::size_t i : members_.at(edge.a))
-            for (const std::size_t j : members_.at(edge.b))
-                if ((result_.poses[i](middle_[i]) - join.after(result_.poses[j])(middle_[j])).norm() < radius_[i] + radius_[j])
-                    close.emplace_back(i, j);
+        const Pairs close = close_pairs(edge.a, edge.b, join);
         std::vector<JoinEvidence> seen(close.size());
         parallel_for(
             close.size(),
@@ -262,7 +339,7 @@ private:
                 if (best < edges_.size() && edge.boosted < maximum - 12) break;
             }
             if (best == edges_.size()) break;
-            join(edges_[best]);
+            join(edges_[best], seen[best]->verdict.join);
         }
         for (const std::size_t e : order) {
             const Edge& edge = edges_[e];
@@ -280,8 +357,7 @@ private:
         }
     }
 
-    void join(const Edge& edge) {
-        const Motion move = result_.poses[edge.a].after(edge.pose).after(result_.poses[edge.b].inverse());
+    void join(const Edge& edge, const Motion& move) {
         std::vector<std::size_t> all = members_.at(edge.a);
         for (const std::size_t j : members_.at(edge.b)) {
             result_.poses[j] = move.after(result_.poses[j]);
