@@ -78,6 +78,7 @@ Eigen::VectorXd logistic(const std::vector<Eigen::VectorXd>& rows, const std::ve
 struct Trained {
     Eigen::VectorXd weights, pair;
     std::array<double, JoinEvidence::count> usual{};
+    double joined = 0;  ///< share of the pairs whose first candidate is right
 };
 
 Trained train(const std::vector<Row>& rows) {
@@ -113,10 +114,12 @@ Trained train(const std::vector<Row>& rows) {
             scored.emplace_back(-sum, row.right[c]);
         }
         std::stable_sort(scored.begin(), scored.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
-        const double lead = scored.size() > 1 ? scored[1].first - scored[0].first : 4;
-        inputs.push_back(Eigen::Vector3d(1, -scored[0].first, std::min(lead, 4.0)));
+        const double lead = scored.size() > 1 ? scored[1].first - scored[0].first : 2;
+        inputs.push_back(Eigen::Vector3d(1, -scored[0].first, std::min(lead, 2.0)));
         truth.push_back(scored[0].second);
+        model.joined += scored[0].second ? 1 : 0;
     }
+    model.joined /= static_cast<double>(rows.size());
     model.pair = logistic(inputs, truth, 0.01);
     return model;
 }
@@ -131,7 +134,7 @@ void write_model(const Path& file, const Trained& model, const std::string& reci
             result.PushBack(static_cast<double>(values[static_cast<Eigen::Index>(k)]), allocator);
         return result;
     };
-    add_members(document, allocator, "recipe", recipe, "bias", model.weights[0]);
+    add_members(document, allocator, "recipe", recipe, "bias", model.weights[0], "joined", model.joined);
     document.AddMember("weights", list(model.weights, 1, JoinEvidence::count + 1), allocator);
     JsonValue usual(rapidjson::kArrayType);
     for (const double one : model.usual) usual.PushBack(one, allocator);
@@ -223,8 +226,9 @@ void joins(const JoinExperiment& options) {
                 rows.push_back(try_pair(box, index[i], box, index[j], prepared[i], moved_ones[j], motions[j]));
             }
         // Against the box before: strangers.
-        for (std::size_t i = 0; i < std::min<std::size_t>(4, prepared_before.size()); ++i)
-            for (std::size_t j = 0; j < std::min<std::size_t>(4, index.size()); ++j)
+        constexpr std::size_t met = 5;
+        for (std::size_t i = 0; i < std::min(met, prepared_before.size()); ++i)
+            for (std::size_t j = 0; j < std::min(met, index.size()); ++j)
                 rows.push_back(try_pair(before, i, box, index[j], prepared_before[i], moved_ones[j], motions[j]));
         report(rows, box.name, std::cout);
         for (const Row& row : rows)

@@ -15,8 +15,9 @@ struct JoinModel {
     std::array<double, JoinEvidence::count> weights{}, usual{};  ///< usual: mean of each feature over true joins
     double bias = 0;
     std::array<double, 3> pair{};  ///< bias, weight of the log odds, weight of the lead
+    double joined = 0.5;           ///< share of the pairs learnt from that were joined as their first candidate says
 };
-constexpr double max_lead = 4;
+constexpr double max_lead = 2;
 
 /// The one that is built in (data/joins.model.json).
 const JoinModel& join_model() {
@@ -28,6 +29,7 @@ const JoinModel& join_model() {
             for (std::size_t k = 0; k < to.size(); ++k) to[k] = list[static_cast<rapidjson::SizeType>(k)].GetDouble();
         };
         result.bias = document["bias"].GetDouble();
+        result.joined = document["joined"].GetDouble();
         read("weights", result.weights);
         read("usual", result.usual);
         read("pair", result.pair);
@@ -50,6 +52,13 @@ double join_probability(double log_odds, double lead) {
     const JoinModel& model = join_model();
     return 1 /
            (1 + std::exp(-(model.pair[0] + model.pair[1] * log_odds + model.pair[2] * std::clamp(lead, -max_lead, max_lead))));
+}
+
+double log_odds_of_a_join_among(std::size_t fragments) {
+    constexpr double neighbours = 4;  // of a sherd, about
+    const double usual = join_model().joined,
+                 here = std::min(usual, neighbours / std::max(1.0, static_cast<double>(fragments) - 1));
+    return std::log(here / (1 - here)) - std::log(usual / (1 - usual));
 }
 
 std::string join_model_version() {

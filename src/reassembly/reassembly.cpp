@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <set>
 
@@ -57,6 +58,8 @@ public:
     }
 
 private:
+    using Pairs = std::vector<std::pair<std::size_t, std::size_t>>;
+
     void prepare(const std::vector<Fragment>& given) {
         Progress progress("prepare fragments", count_);
         for (std::size_t k = 0; k < count_; ++k) {
@@ -91,11 +94,7 @@ private:
     }
 
     void try_pairs() {
-        std::vector<std::pair<std::size_t, std::size_t>> list;
-        for (std::size_t i = 0; i < count_; ++i)
-            for (std::size_t j = i + 1; j < count_; ++j)
-                if (prepared_[i] && prepared_[j]) list.emplace_back(i, j);
-        list = promising(list);
+        const Pairs list = promising(alike_in_width());
         Progress progress("lay breaks against each other", list.size());
         for (const auto& [i, j] : list) {
             check_cancelled();
@@ -112,9 +111,25 @@ private:
         }
     }
 
+    /// All pairs; of many fragments each with those whose breaks are most nearly as wide as its own, four times as many as will
+    /// be tried.
+    [[nodiscard]] Pairs alike_in_width() const {
+        std::vector<std::size_t> order;
+        for (std::size_t k = 0; k < count_; ++k)
+            if (prepared_[k]) order.push_back(k);
+        std::stable_sort(order.begin(), order.end(),
+                         [&](std::size_t x, std::size_t y) { return prepared_[x]->width() < prepared_[y]->width(); });
+        const std::size_t reach = std::max<std::size_t>(60, 2 * static_cast<std::size_t>(options_.partners));
+        Pairs list;
+        for (std::size_t r = 0; r < order.size(); ++r)
+            for (std::size_t s = r + 1; s < std::min(order.size(), r + 1 + reach); ++s)
+                list.emplace_back(std::min(order[r], order[s]), std::max(order[r], order[s]));
+        std::sort(list.begin(), list.end());
+        return list;
+    }
+
     /// Of many fragments those pairs of which one is among the partners that the other quickly fits best with.
-    std::vector<std::pair<std::size_t, std::size_t>> promising(
-        const std::vector<std::pair<std::size_t, std::size_t>>& list) const {
+    [[nodiscard]] Pairs promising(const Pairs& list) const {
         const auto partners = static_cast<std::size_t>(options_.partners);
         if (count_ <= partners + 1) return list;
         std::vector<double> score(list.size());
@@ -131,15 +146,19 @@ private:
             std::stable_sort(own.begin(), own.end(), [&](std::size_t x, std::size_t y) { return score[x] > score[y]; });
             for (std::size_t k = 0; k < std::min(partners, own.size()); ++k) keep[own[k]] = true;
         }
-        std::vector<std::pair<std::size_t, std::size_t>> result;
+        Pairs result;
         for (std::size_t p = 0; p < list.size(); ++p)
             if (keep[p]) result.push_back(list[p]);
         return result;
     }
 
+    /// A pair's probability among so many.
+    [[nodiscard]] double probable(double alone) const {
+        return probability(logit(std::clamp(alone, 1e-9, 1 - 1e-9)) + log_odds_of_a_join_among(count_));
+    }
+
     void make_edges() {
         constexpr double least = 0.002;
-        of_pair_.assign(count_, std::vector<std::vector<std::size_t>>(count_));
         for (std::size_t p = 0; p < pairs_.size(); ++p) {
             const PairOfMany& pair = pairs_[p];
             for (std::size_t c = 0; c < pair.candidates.size(); ++c) {
@@ -147,12 +166,19 @@ private:
                              lead = c > 0                        ? here - best
                                     : pair.candidates.size() > 1 ? here - pair.candidates[1].log_odds
                                                                  : 1e9;
-                const double likely = std::clamp(join_probability(here, lead), 1e-9, 1 - 1e-9);
+                const double likely = probable(join_probability(here, lead));
                 if (likely < least) continue;
-                of_pair_[pair.first][pair.second].push_back(edges_.size());
+                of_pair_[{pair.first, pair.second}].push_back(edges_.size());
                 edges_.push_back({pair.first, pair.second, pair.candidates[c].pose, logit(likely), logit(likely), p});
             }
         }
+    }
+
+    /// Candidates of a pair, the lower number first; none of one that was not tried.
+    [[nodiscard]] const std::vector<std::size_t>& edges_of(std::size_t i, std::size_t j) const {
+        static const std::vector<std::size_t> none;
+        const auto found = of_pair_.find({i, j});
+        return found == of_pair_.end() ? none : found->second;
     }
 
     /// Two poses of fragment `k` into the frame of another are the same for what a loop asks.
@@ -170,20 +196,21 @@ private:
         constexpr int rounds = 2;
         for (int round = 0; round < rounds; ++round) {
             std::vector<double> support(edges_.size(), 0);
-            for (std::size_t i = 0; i < count_; ++i)
-                for (std::size_t j = i + 1; j < count_; ++j) {
-                    if (of_pair_[i][j].empty()) continue;
-                    for (std::size_t k = j + 1; k < count_; ++k)
-                        for (const std::size_t ij : of_pair_[i][j])
-                            for (const std::size_t jk : of_pair_[j][k])
-                                for (const std::size_t ik : of_pair_[i][k]) {
-                                    if (!agree(edges_[ij].pose.after(edges_[jk].pose), edges_[ik].pose, k, loop_length(i, j, k)))
-                                        continue;
-                                    const double p = probability(edges_[ij].boosted), q = probability(edges_[jk].boosted),
-                                                 r = probability(edges_[ik].boosted);
-                                    support[ij] += q * r, support[jk] += p * r, support[ik] += p * q;
-                                }
+            for (const auto& [first, those] : of_pair_) {
+                const auto [i, j] = first;
+                for (auto next = of_pair_.lower_bound({j, 0}); next != of_pair_.end() && next->first.first == j; ++next) {
+                    const std::size_t k = next->first.second;
+                    for (const std::size_t ik : edges_of(i, k))
+                        for (const std::size_t ij : those)
+                            for (const std::size_t jk : next->second) {
+                                if (!agree(edges_[ij].pose.after(edges_[jk].pose), edges_[ik].pose, k, loop_length(i, j, k)))
+                                    continue;
+                                const double p = probability(edges_[ij].boosted), q = probability(edges_[jk].boosted),
+                                             r = probability(edges_[ik].boosted);
+                                support[ij] += q * r, support[jk] += p * r, support[ik] += p * q;
+                            }
                 }
+            }
             for (std::size_t e = 0; e < edges_.size(); ++e)
                 edges_[e].boosted = edges_[e].own + std::log(1 + loop_gain * support[e]);
         }
@@ -194,8 +221,6 @@ private:
         double log_odds = 0;
         std::string against;  ///< empty: nothing
     };
-
-    using Pairs = std::vector<std::pair<std::size_t, std::size_t>>;
 
     /// Pairs of fragments of two groups that may touch where `join` lays the second group.
     [[nodiscard]] Pairs close_pairs(std::size_t a, std::size_t b, const Motion& join) const {
@@ -451,8 +476,8 @@ private:
         for (const auto& [pair, evidence] : meetings(group)) {
             const auto [i, j] = pair;
             const Motion here = result_.poses[i].inverse().after(result_.poses[j]);
-            double likely = std::clamp(join_probability(join_log_odds(evidence), -1), 1e-9, 1 - 1e-9);
-            for (const std::size_t e : of_pair_[i][j])
+            double likely = probable(join_probability(join_log_odds(evidence), -1));
+            for (const std::size_t e : edges_of(i, j))
                 if (agree(here, edges_[e].pose, j, loop_length(i, j, j))) likely = std::max(likely, probability(edges_[e].own));
             list.push_back({i, j, evidence, logit(std::clamp(likely, 1e-9, 1 - 1e-9))});
             own[{i, j}] = likely;
@@ -522,9 +547,9 @@ private:
     std::vector<double> radius_;
     std::vector<PairOfMany> pairs_;
     std::vector<Edge> edges_;
-    std::vector<std::vector<std::vector<std::size_t>>> of_pair_;
-    std::map<std::size_t, std::vector<std::size_t>> members_;  ///< of each fragment: its group
-    std::vector<std::size_t> version_;                         ///< of each fragment's group
+    std::map<std::pair<std::size_t, std::size_t>, std::vector<std::size_t>> of_pair_;  ///< edges, the lower number first
+    std::map<std::size_t, std::vector<std::size_t>> members_;                          ///< of each fragment: its group
+    std::vector<std::size_t> version_;                                                 ///< of each fragment's group
     std::size_t versions_ = 0;
     Reassembly result_;
 };

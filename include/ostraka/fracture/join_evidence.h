@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,9 @@ double join_log_odds(const JoinEvidence& seen);
 /// Calibrated: that a candidate is right, by its log odds and how far they are ahead of the best other candidate of its pair
 /// (below 0: behind).
 double join_probability(double log_odds, double lead);
+/// What is added to the log odds of a pair among so many fragments: a fragment has about four neighbours, so the more there are,
+/// the fewer pairs are joined. 0 where they are as many as in what was learnt from.
+double log_odds_of_a_join_among(std::size_t fragments);
 /// SHA-256 of the model: what was said by another one is not said by this.
 std::string join_model_version();
 /// What speaks most against a join, in words.

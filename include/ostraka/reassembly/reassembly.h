@@ -12,8 +12,8 @@ namespace ostraka {
 
 struct ReassemblyOptions {
     PairOptions pairs;
-    double min_join = 0.5;  ///< probability from which two groups are joined
-    int partners = 24;      ///< of each fragment, those it quickly fits best with are tried in full; all where there are no more
+    double min_join = 0.8;  ///< probability from which two groups are joined
+    int partners = 24;      ///< of each fragment, those it quickly fits best with are tried in full, of those most nearly as wide
     int min_faces = 100;    ///< a fragment of fewer shows no relief
 
     void describe(OptionList& visit);
