@@ -32,6 +32,22 @@ Mesh whole_of(const std::string& source) {
         options.wall = random.uniform(0.35, 0.9);
         return make_pot(options);
     }
+    if (kind == "plate" || kind == "stone") {
+        // A plate or bar, a block or boulder.
+        Random random(std::stoull(rest), 79);
+        MakeOptions options;
+        options.vertices = 8000;
+        const char* body = random.uniform() < 0.5 ? "box" : kind == "plate" ? "cylinder" : "sphere";
+        const double thin = kind == "plate" ? random.uniform(0.08, 0.2) : random.uniform(0.6, 1);
+        const Vector3d factors(1, random.uniform(0.6, 1.2), thin);
+        Mesh mesh = make_mesh(synthetic_object(body), options).mesh;
+        CGAL::Bbox_3 box;
+        for (const Vertex v : mesh.vertices()) box += mesh.point(v).bbox();
+        const Vector3d extent(box.xmax() - box.xmin(), box.ymax() - box.ymin(), box.zmax() - box.zmin());
+        for (const Vertex v : mesh.vertices())
+            mesh.point(v) = point_of(eigen(mesh.point(v)).cwiseQuotient(extent).cwiseProduct(factors));
+        return mesh;
+    }
     if (kind == "made") {
         MakeOptions options;
         options.vertices = 8000;

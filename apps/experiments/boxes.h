@@ -21,7 +21,7 @@ struct Box {
 
 enum class FacetChoice { known, found };
 
-/// `source`: "pot:SHAPE", "made:NAME" or a mesh file, broken into `pieces` with noise and wear that follow from `seed` (three
+/// `source`: "pot:SHAPE", "plate:SHAPE", "stone:SHAPE", "made:NAME" or a mesh file, broken into `pieces` with noise and wear that follow from `seed` (three
 /// levels each, wear up to 3 % of a piece's size); or a folder of fragments in assembled layout. Throws Error where it cannot be
 /// broken.
 Box read_box(const std::string& source, int pieces, std::uint64_t seed, FacetChoice facets);

@@ -166,8 +166,8 @@ struct JoinExperiment {
     std::string model;  ///< to train and write
     int pieces = 8;
     std::uint64_t seed = 0;
-    bool found = false;          ///< facets as found instead of as known
-    bool adjacent_only = false;  ///< only pairs that touch
+    std::string facets = "known";  ///< or "found" by the library; "both": of each second box
+    bool adjacent_only = false;    ///< only pairs that touch
 };
 /// Pairs of fragments of broken objects: right poses and calibration.
 void joins(const JoinExperiment& options);

@@ -195,7 +195,8 @@ void joins(const JoinExperiment& options) {
         Box box;
         ++seed;
         try {
-            box = read_box(source, options.pieces, seed, options.found ? FacetChoice::found : FacetChoice::known);
+            const bool found = options.facets == "found" || (options.facets == "both" && seed % 2 == 0);
+            box = read_box(source, options.pieces, seed, found ? FacetChoice::found : FacetChoice::known);
         } catch (const Error& error) {
             std::cerr << source << " is left out: " << error.what() << '\n';
             continue;
@@ -246,7 +247,7 @@ void joins(const JoinExperiment& options) {
     write_file(Path(options.output) / "joins.csv", csv.str());
     if (options.model.empty()) return;
     std::string recipe = "ostraka_experiments joins --pieces " + std::to_string(options.pieces) + " --seed " +
-                         std::to_string(options.seed) + (options.found ? " --found" : "") + " --model FILE --boxes ";
+                         std::to_string(options.seed) + " --facets " + options.facets + " --model FILE --boxes ";
     for (const std::string& one : options.boxes)
         recipe += (&one == &options.boxes.front() ? "" : ",") + Path(one).filename().string();
     write_model(options.model, train(all), recipe);

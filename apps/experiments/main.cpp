@@ -128,21 +128,25 @@ void declare_breaks(CLI::App& command, BreakExperiment& options) {
 void declare_joins(CLI::App& command, JoinExperiment& options) {
     command
         .add_option("--boxes", options.boxes,
-                    "pot:SHAPE, made:NAME or a mesh file, to be broken; or a folder of fragments in assembled layout")
+                    "pot:SHAPE, plate:SHAPE, stone:SHAPE, made:NAME or a mesh file, to be broken; or a folder of fragments in "
+                    "assembled layout")
         ->delimiter(',')
         ->required();
     command.add_option("--output", options.output, "folder for tables")->capture_default_str();
     command.add_option("--model", options.model, "model to train and write (data/joins.model.json)");
     ranged(command, "--pieces", options.pieces, "that an object is broken into", 2, 100);
     command.add_option("--seed", options.seed, "of breaks, noise and wear");
-    command.add_flag("--found", options.found, "facets as the library finds them, not as they are known");
+    command.add_option("--facets", options.facets, "as they are known, as the library finds them, or so for each second box")
+        ->check(CLI::IsMember({"known", "found", "both"}))
+        ->capture_default_str();
     command.add_flag("--adjacent-only", options.adjacent_only, "only pairs that touch");
 }
 
 void declare_assemblies(CLI::App& command, AssemblyExperiment& options) {
     command
         .add_option("--boxes", options.boxes,
-                    "pot:SHAPE, made:NAME or a mesh file, to be broken; or a folder of fragments in assembled layout")
+                    "pot:SHAPE, plate:SHAPE, stone:SHAPE, made:NAME or a mesh file, to be broken; or a folder of fragments in "
+                    "assembled layout")
         ->delimiter(',')
         ->required();
     command.add_option("--output", options.output, "folder for tables")->capture_default_str();
