@@ -237,16 +237,31 @@ JsonValue classification_to_json(const Classification& answer, JsonAllocator& al
         if (!check.worst.empty()) add_members(item, allocator, "most", check.worst);
         return item;
     };
+    const auto place = [](const Point& p) { return std::array<double, 3>{p.x(), p.y(), p.z()}; };
+    const auto of_region = [&](const OffRegion& region) {
+        JsonValue item = json_object(allocator, "share", region.share, "middle", place(region.middle), "at", place(region.at),
+                                     "farthest", region.farthest);
+        if (!region.part.empty()) add_members(item, allocator, "part", region.part);
+        return item;
+    };
+    const auto explained = [&](const ClassAnswer& one) {
+        const FitResiduals& residuals = *one.fit.residuals;
+        return json_object(allocator, "object", 1 - residuals.unexplained, "template", 1 - residuals.unmatched, "within",
+                           one.fit.near, "liesOn", one.off.empty(), "foreign", json_list(one.fit.foreign, allocator, of_region),
+                           "missing", json_list(one.fit.missing, allocator, of_region));
+    };
     const auto of_class = [&](const ClassAnswer& one) {
         JsonValue object = json_object(allocator, "class", one.name, "verdict", to_string(one.verdict));
         if (!one.undecided.empty()) add_members(object, allocator, "undecided", one.undecided);
         if (one.fit.problem.empty())
             add_members(object, allocator, "score", one.score, "placedBy", one.fit.placed_by, "scale", one.fit.scale,
                         "coefficients", one.coordinates.coefficients, "mahalanobis", one.coordinates.mahalanobis);
+        if (one.fit.problem.empty() && one.fit.residuals) add_members(object, allocator, "explained", explained(one));
         add_members(object, allocator, "against", one.reasons(), "checks", json_list(one.checks, allocator, of_check));
         return object;
     };
     JsonValue report = json_object(allocator, "object", answer.object, "verdict", to_string(answer.verdict), "text", answer.text);
+    if (!answer.problem.empty()) add_members(report, allocator, "problem", answer.problem);
     const auto name = [&](int k) { return answer.answers[static_cast<std::size_t>(k)].name; };
     if (answer.best >= 0) add_members(report, allocator, "class", name(answer.best));
     if (answer.nearest >= 0) add_members(report, allocator, "nearest", name(answer.nearest));

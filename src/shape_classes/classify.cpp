@@ -116,6 +116,7 @@ ClassAnswer compare_with(const ShapeClass& learnt, const LearntMember& object, c
         answer.score = std::numeric_limits<double>::max();
         return answer;
     }
+    answer.off = fit_is_off(object.fit, options.fit.max_off);
     answer.coordinates = coordinates_in(learnt.modes, landmarks_of(object.fit.points));
     std::vector<ClassQuantity> quantities = object.quantities;
     const auto add = [&](const char* name, double value) {
@@ -151,6 +152,8 @@ ClassAnswer compare_with(const ShapeClass& learnt, const LearntMember& object, c
         answer.undecided = "the class was learnt from objects in correspondence and this one was fitted: " +
                            words(answer.checks[answer.against.front()]) + ", which may be the fit's own error";
         answer.against.clear();
+    } else if (answer.against.empty() && !answer.off.empty()) {
+        answer.undecided = answer.off;
     } else {
         answer.verdict = answer.against.empty() ? Membership::member : Membership::other;
     }

@@ -33,12 +33,36 @@ LearntMember learn_member(const ClassTemplate& known, const WholeObject& member,
     return measure_member(known, member, fit_by_method(known, member, options.correspondence, options.fit), options, whole);
 }
 
+namespace {
+
+/// The regions of the template that hold a face, the smallest first, in words.
+std::string parts_at(const ClassTemplate& known, Index face) {
+    std::vector<const Annotation*> list;
+    for (const Annotation& annotation : known.set.annotations)
+        if (is_part(known.mesh, annotation) &&
+            std::find(annotation.faces.begin(), annotation.faces.end(), face) != annotation.faces.end())
+            list.push_back(&annotation);
+    std::stable_sort(list.begin(), list.end(), [](const auto* a, const auto* b) { return a->faces.size() < b->faces.size(); });
+    std::string text;
+    for (const Annotation* annotation : list)
+        text += (text.empty() ? "" : ", in ") + std::to_string(annotation->id) + " (" + annotation->tag + ")";
+    return text;
+}
+
+void name_regions(const ClassTemplate& known, MemberFit& fit) {
+    for (OffRegion& region : fit.foreign) region.part = parts_at(known, region.nearest_face);
+    for (OffRegion& region : fit.missing) region.part = parts_at(known, region.face);
+}
+
+}  // namespace
+
 LearntMember measure_member(const ClassTemplate& known, const WholeObject& member, MemberFit fit, const LearnOptions& options,
                             const WholeShape* whole) {
     LearntMember learnt;
     learnt.name = member.name;
     learnt.fit = std::move(fit);
     if (!learnt.fit.problem.empty()) return learnt;
+    name_regions(known, learnt.fit);
     learnt.quantities = measure_quantities(known, learnt.fit.points, options.modes.sizes);
     for (ClassQuantity& quantity : part_quantities(known, learnt.fit.points, &member))
         learnt.quantities.push_back(std::move(quantity));
@@ -78,6 +102,11 @@ bool is_distance(const ClassQuantity& quantity) {
 bool is_never_negative(const ClassQuantity& quantity) {
     return quantity.kind == QuantityKind::proportion || quantity.kind == QuantityKind::part ||
            quantity.kind == QuantityKind::geometry;
+}
+
+/// Shares of a surface, and of disagreement: nothing is above one.
+bool is_share(const ClassQuantity& quantity) {
+    return quantity.name == "unmatched" || quantity.name == "unexplained" || quantity.name == "own annotations elsewhere";
 }
 
 void summarise_range(LearntRange& range) {
@@ -129,6 +158,11 @@ void set_bounds(LearntRange& range, const SampleMoments& known, double resolutio
     const double low = (range.logarithm ? std::exp(interval.low) : interval.low) - more,
                  high = (range.logarithm ? std::exp(interval.high) : interval.high) + more;
     if (!std::isfinite(low) || !std::isfinite(high)) return;
+    // Where members differ so much that the bound of a share is all there can be, it refuses nothing.
+    if (is_share(range.quantity) && high >= 1) {
+        range.reject = 0;
+        return;
+    }
     range.high = high;
     if (!range.quantity.one_sided) range.low = is_never_negative(range.quantity) ? std::max(0.0, low) : low;
 }

@@ -34,6 +34,7 @@ struct ClassAnswer {
     Membership verdict = Membership::undecided;
     std::string undecided;  ///< why
     MemberFit fit;
+    std::string off;  ///< in words that the template does not lie on the object, which then is no member; empty if it does
     std::vector<QuantityCheck> checks;
     std::vector<std::size_t>
         against;  ///< checks that decide and fail: proportions, constraints and relations first, then by excess
@@ -53,7 +54,8 @@ struct Classification {
     int best = -1;                     ///< the class it belongs to
     int nearest = -1;                  ///< the class with the best score, whether it belongs to it or not
     Membership verdict = Membership::undecided;
-    std::string text;  ///< the answer in words
+    std::string text;     ///< the answer in words
+    std::string problem;  ///< why there are no answers: it could not be read or measured; empty if it could
 };
 
 /// Of the classes the object belongs to the one with the best score. "other" (none) where every class that can tell says no;
