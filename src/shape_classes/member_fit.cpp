@@ -8,8 +8,11 @@
 #include "ostraka/geom/with_points.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <set>
 
 namespace ostraka {
 
@@ -204,6 +207,38 @@ void measure_distortion(const Mesh& mesh, const std::vector<Point>& points, doub
     residuals.bend = length > 0 ? std::sqrt(turned / length) : 0;
 }
 
+namespace {
+
+/// A tag without the number at its end: "part 12" is "part", "finger" stays.
+std::string without_number(const std::string& tag) {
+    std::size_t end = tag.size();
+    while (end > 0 && std::isdigit(static_cast<unsigned char>(tag[end - 1])) != 0) --end;
+    if (end == tag.size() || end == 0) return tag;
+    while (end > 0 && std::string(" _-.#").find(tag[end - 1]) != std::string::npos) --end;
+    return tag.substr(0, end);
+}
+
+/// Tags of regions that are counted up ("part 0", "part 1") become one tag in both sets, so that place and shape say which is
+/// which: who counted them need not have begun at the same one. Landmarks keep their names. Returns the tags that were counted.
+std::set<std::string> forget_numbers(AnnotationSet& a, AnnotationSet& b) {
+    std::set<std::string> counted;
+    for (const AnnotationSet* set : {&a, &b}) {
+        std::map<std::string, std::set<std::string>> tags;
+        for (const Annotation& one : set->annotations)
+            if (one.type == AnnotationType::region && without_number(one.tag) != one.tag)
+                tags[without_number(one.tag)].insert(one.tag);
+        for (const auto& [stem, list] : tags)
+            if (list.size() > 1) counted.insert(stem);
+    }
+    for (AnnotationSet* set : {&a, &b})
+        for (Annotation& one : set->annotations)
+            if (one.type == AnnotationType::region && counted.count(without_number(one.tag)) > 0)
+                one.tag = without_number(one.tag);
+    return counted;
+}
+
+}  // namespace
+
 MemberFit fit_member(const Mesh& mesh, const AnnotationSet& set, const WholeObject& member, const MemberFitOptions& options) {
     check_options(options, "fit");
     if (!(surface_area(mesh) > 0)) fail_input("template", "has no area", "is it the right file?");
@@ -230,11 +265,19 @@ MemberFit fit_member(const Mesh& mesh, const AnnotationSet& set, const WholeObje
         places = places_by_surface(mesh, member, options);
         best.placed_by = "surface";
     }
+    AnnotationSet ours, theirs;  // with tags that are not counted
+    if (!set.annotations.empty() && !member.annotations.annotations.empty()) {
+        ours = set;
+        theirs = member.annotations;
+        for (const std::string& tag : forget_numbers(ours, theirs))
+            best.notes.push_back("the regions '" + tag +
+                                 "' are counted up: they are matched by place and shape, not by their numbers");
+    }
     double minimum = std::numeric_limits<double>::infinity();
     for (const Place& place : places) {
         const Mesh scaled = scaled_by(mesh, place.scale);
         PlacedFragment placed{moved(member.mesh, place.pose), &member.annotations, {}, {}};
-        placed.matches = match_annotations(scaled, set, member.mesh, member.annotations, place.pose, {}, options.annotations);
+        placed.matches = match_annotations(scaled, ours, member.mesh, theirs, place.pose, {}, options.annotations);
         std::vector<PlacedFragment> list;
         list.push_back(std::move(placed));
         const NonRigidFit fit = fit_template(scaled, set, list, options.fit);
