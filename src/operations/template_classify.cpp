@@ -144,8 +144,7 @@ struct TemplateClassify final : Operation {
                 if (!one.undecided.empty()) report.line("  " + printable(one.name) + ": " + printable(one.undecided));
                 else if (!one.off.empty()) report.line("  " + printable(one.name) + ": " + printable(one.off));
                 if (&one == told(object))
-                    for (const std::string& line : explained_text(one.fit))
-                        report.line("  " + printable(one.name) + ": " + printable(line));
+                    for (const std::string& line : told_of(one)) report.line("  " + printable(one.name) + ": " + printable(line));
                 for (std::size_t i = 0; i < reasons.size() && i < maximum; ++i)
                     report.line("  against " + printable(one.name) + ": " + printable(reasons[i]));
                 if (reasons.size() > maximum) report.line("  and " + std::to_string(reasons.size() - maximum) + " more");
@@ -157,6 +156,13 @@ struct TemplateClassify final : Operation {
     static const ClassAnswer* told(const Classification& object) {
         const int k = object.best >= 0 ? object.best : object.nearest;
         return k < 0 ? nullptr : &object.answers[static_cast<std::size_t>(k)];
+    }
+
+    static std::vector<std::string> told_of(const ClassAnswer& one) {
+        std::vector<std::string> lines = one.odd;
+        for (const std::string& line : explained_text(one.fit)) lines.push_back(line);
+        lines.insert(lines.end(), one.fit.notes.begin(), one.fit.notes.end());
+        return lines;
     }
 
     FileInput files;

@@ -279,6 +279,7 @@ JsonValue classification_to_json(const Classification& answer, JsonAllocator& al
         if (one.fit.problem.empty())
             add_members(object, allocator, "score", one.score, "placedBy", one.fit.placed_by, "scale", one.fit.scale,
                         "coefficients", one.coordinates.coefficients, "mahalanobis", one.coordinates.mahalanobis);
+        add_given(object, allocator, "odd", one.odd, "notes", one.fit.notes);
         if (one.fit.problem.empty() && one.fit.residuals) add_members(object, allocator, "explained", explained(one));
         add_members(object, allocator, "against", one.reasons(), "checks", json_list(one.checks, allocator, of_check));
         return object;

@@ -121,6 +121,28 @@ bool only_shape(const ClassAnswer& answer) {
     });
 }
 
+std::vector<std::string> odd_of(const ShapeClass& learnt, const LearntMember& object, const ShapeCoordinates& coordinates) {
+    constexpr double times = 3, nearer = 0.5;
+    std::vector<std::string> odd;
+    const auto& sizes = learnt.modes.centroid_sizes;
+    const double largest = *std::max_element(sizes.begin(), sizes.end()),
+                 smallest = *std::min_element(sizes.begin(), sizes.end());
+    if (coordinates.centroid_size > times * largest || times * coordinates.centroid_size < smallest)
+        odd.push_back("it is " + digits(coordinates.centroid_size / learnt.modes.mean_size, 3) +
+                      " times as large as members are on average: is it in another unit?");
+    if (object.fit.residuals) return odd;
+    const Landmarks own = landmarks_of(object.fit.points);
+    Landmarks mirror = own;
+    mirror.col(0) *= -1;
+    ProcrustesOptions scaled;
+    scaled.scaling = true;
+    const double off = procrustes(own, learnt.modes.mean, scaled).sum_of_squares,
+                 mirrored = procrustes(mirror, learnt.modes.mean, scaled).sum_of_squares;
+    if (mirrored < nearer * nearer * off && off > 1e-6 * learnt.modes.mean.squaredNorm())
+        odd.emplace_back("its mirror image is nearer the members than itself: is it mirrored, or are left and right exchanged?");
+    return odd;
+}
+
 /// What is neither refused nor recognised; null if nothing is.
 const QuantityCheck* not_recognised(const ClassAnswer& answer) {
     for (const QuantityCheck& check : answer.checks)
@@ -157,6 +179,7 @@ ClassAnswer compare_with(const ShapeClass& learnt, const LearntMember& object, c
     answer.most_off = options.strict ? options.fit.max_off : std::max(options.fit.max_off, learnt.most_off.value_or(0));
     answer.off = fit_is_off(object.fit, answer.most_off);
     answer.coordinates = coordinates_in(learnt.modes, landmarks_of(object.fit.points));
+    answer.odd = odd_of(learnt, object, answer.coordinates);
     std::vector<ClassQuantity> quantities = object.quantities;
     const auto add = [&](const char* name, double value) {
         quantities.emplace_back().name = name;

@@ -1,3 +1,4 @@
+#include "ostraka/shape_classes/landmark_class.h"
 #include "ostraka/core/json.h"
 #include "ostraka/interchange/landmarks.h"
 #include "ostraka/shape_classes/class_file.h"
@@ -71,6 +72,21 @@ TEST(LandmarkClass, IsLearntAndAskedWithoutASurface) {
     const auto bad = run_command(ask + quoted(scratch / "bad.mrk.json"));
     EXPECT_EQ(bad.code, 3);
     EXPECT_NE(bad.out.find("from the mean shape"), std::string::npos) << bad.out;
+
+    // Odd ones are named, and one that cannot be read stops none.
+    LearntMember object = read_landmark_member(scratch / "good.mrk.json", read_landmark_template(scratch / "good.mrk.json"));
+    EXPECT_TRUE(compare_with(box, object).odd.empty());
+    for (::ostraka::Point& p : object.fit.points) p = ::ostraka::Point(10 * p.x(), 10 * p.y(), 10 * p.z());
+    ASSERT_EQ(compare_with(box, object).odd.size(), 1U);
+    EXPECT_NE(compare_with(box, object).odd[0].find("times as large"), std::string::npos);
+    for (::ostraka::Point& p : object.fit.points) p = ::ostraka::Point(-p.x() / 10, p.y() / 10, p.z() / 10);
+    ASSERT_EQ(compare_with(box, object).odd.size(), 1U);
+    EXPECT_NE(compare_with(box, object).odd[0].find("mirror image"), std::string::npos);
+    write_box(scratch / "short.mrk.json", 2, {}, 0, 7);
+    const auto several = run_command(ask + quoted(scratch / "short.mrk.json") + " " + quoted(scratch / "good.mrk.json"));
+    EXPECT_EQ(several.code, 3);
+    EXPECT_NE(several.err.find("corner 7"), std::string::npos) << several.err;
+    EXPECT_NE(several.out.find("good belongs to 'box'"), std::string::npos) << several.out;
 }
 
 TEST(LandmarkClass, WhatIsMissingIsNamed) {

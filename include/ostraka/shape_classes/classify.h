@@ -48,6 +48,9 @@ struct ClassAnswer {
     double score = 0;
     double parts = 0;              ///< of the score
     ShapeCoordinates coordinates;  ///< of the fitted template
+    /// In words what is odd about it: three times as large as the largest member or a third of the smallest, or, in
+    /// correspondence, a mirror image that is less than half as far from the mean. Without `sizes` neither speaks against it.
+    std::vector<std::string> odd;
     [[nodiscard]] std::vector<std::string> reasons() const;
 };
 
