@@ -286,7 +286,9 @@ public:
                 source.mesh = simplified(from.member.mesh, options.template_vertices);
                 if (!from.labels.empty()) source.parts = parts_on(source.mesh, from.original, from.labels);
                 for (std::size_t i = 0; i < objects_.size(); ++i) {
-                    if (i == source.object) continue;
+                    // The second one needs strangers for its limits, and a third of them says enough.
+                    const bool own = objects_[i].class_name == class_name;
+                    if (i == source.object || (first > 0 && !own && i % 3 != 0)) continue;
                     const Stopwatch watch;
                     const WholeObject bare{objects_[i].member.name, objects_[i].member.mesh, {}};
                     source.fits[i] = fit_member(source.mesh, {}, bare, how_.fit);
@@ -461,8 +463,9 @@ private:
         std::vector<LearntMember> members, strangers;
         const std::string of = without < objects_.size() ? objects_[without].class_name : "";
         for (std::size_t i = 0; i < objects_.size(); ++i) {
-            if (i == without || i == source.object) continue;
-            const LearntMember& one = source.measured.at(arm).at(i);
+            const auto found = source.measured.at(arm).find(i);
+            if (i == without || found == source.measured.at(arm).end()) continue;
+            const LearntMember& one = found->second;
             if (objects_[i].class_name == source.class_name) {
                 if (members.size() < way.members) members.push_back(one);
             } else if (way.strangers && objects_[i].class_name != of) {

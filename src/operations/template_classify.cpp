@@ -141,8 +141,10 @@ struct TemplateClassify final : Operation {
             for (const ClassAnswer& one : object.answers) {
                 constexpr std::size_t maximum = 8;
                 const auto reasons = one.reasons();
-                if (!one.undecided.empty()) report.line("  " + printable(one.name) + ": " + printable(one.undecided));
-                else if (!one.off.empty()) report.line("  " + printable(one.name) + ": " + printable(one.off));
+                const bool said = object.text.find(one.undecided) != std::string::npos;
+                if (!one.undecided.empty() && !said) report.line("  " + printable(one.name) + ": " + printable(one.undecided));
+                if (one.undecided.empty() && !one.off.empty())
+                    report.line("  " + printable(one.name) + ": " + printable(one.off));
                 if (&one == told(object))
                     for (const std::string& line : told_of(one)) report.line("  " + printable(one.name) + ": " + printable(line));
                 for (std::size_t i = 0; i < reasons.size() && i < maximum; ++i)

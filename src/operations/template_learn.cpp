@@ -23,7 +23,7 @@ struct TemplateLearn final : Operation {
         p.input_option(
              "strangers", Kind::mesh, strangers,
              "objects that do not belong to the class, such as members of other classes: they say how unlike the members "
-             "an object may be that is recognised")
+             "an object may be that is recognised; one file each time it is given")
             .many();
         p.output("output", Kind::folder, output, "folder for the class and a copy of the template; made if it is missing").flag();
         p.options("name", name, "of the class; else as the template says");

@@ -107,6 +107,7 @@ void set_recognised(LearntRange& range, const SampleMoments& members, double acc
     }
     const SampleMoments theirs = moments_of(logs);
     range.recognised = std::min(*range.high, std::exp(2 * theirs.mean - predict(theirs, true, accept).high));
+    range.high = std::max(*range.recognised, std::min(*range.high, std::exp(theirs.mean)));
 }
 
 }  // namespace ostraka

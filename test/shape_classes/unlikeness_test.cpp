@@ -90,7 +90,11 @@ TEST(Unlikeness, StrangersSayWhatIsRecognised) {
     for (double& log : strangers) log = -log;
     EXPECT_NEAR(*range.recognised, std::exp(-predict(moments_of(strangers), true, 0.05).high), 1e-9)
         << "what one in twenty is below";
+    EXPECT_NEAR(*range.high, 3, 1e-12) << "strangers are farther off on average";
     const double one_class = *range.recognised;
+    range.high = 6;
+    set_recognised(range, moments_of(members), 0.05, 0.15);
+    EXPECT_NEAR(*range.high, std::exp(1.5), 1e-9) << "what is as unlike as strangers are on average is no member";
     set_recognised(range, moments_of(members), 0.01, 0.15);
     EXPECT_LT(*range.recognised, one_class) << "classes asked together share the rate";
     range.high = 0.1;

@@ -35,7 +35,7 @@ void measure_unlikeness(ShapeClass& learnt);
 /// Up to which unlikeness an object is recognised as a member, where more refuses nothing yet: what at most the share `accept` of
 /// strangers falls below (three strangers or more; several classes that are asked together share it), else what at most the
 /// share `unsure` of members exceeds, and half a deviation at least. `members` are the moments of the logarithms of members'
-/// values. Never above `range.high`.
+/// values. Never above `range.high`, which strangers lower: what is as unlike as they are on average (geometric mean) is refused.
 void set_recognised(LearntRange& range, const SampleMoments& members, double accept, double unsure);
 
 }  // namespace ostraka
