@@ -135,7 +135,7 @@ struct TemplateClassify final : Operation {
         for (const Classification& object : answers)
             for (const ClassAnswer& one : object.answers)
                 report.row("", {object.object, one.name, to_string(one.verdict),
-                                one.fit.problem.empty() ? number(one.score, 4) : "-", one.against.size()});
+                                one.fit.problem.empty() ? number(one.score, 4) : "-", one.reasons().size()});
         for (const Classification& object : answers) {
             report.line("\n" + printable(object.object) + " " + printable(object.text));
             for (const ClassAnswer& one : object.answers) {

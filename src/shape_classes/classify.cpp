@@ -162,6 +162,7 @@ std::string unsure_text(const ShapeClass& learnt, const QuantityCheck& check) {
 
 std::vector<std::string> ClassAnswer::reasons() const {
     std::vector<std::string> list;
+    if (hopeless) list.push_back(off);
     for (const std::size_t i : against) list.push_back(words(checks[i]));
     return list;
 }
@@ -178,6 +179,7 @@ ClassAnswer compare_with(const ShapeClass& learnt, const LearntMember& object, c
     }
     answer.most_off = options.strict ? options.fit.max_off : std::max(options.fit.max_off, learnt.most_off.value_or(0));
     answer.off = fit_is_off(object.fit, answer.most_off);
+    answer.hopeless = !fit_is_off(object.fit, std::max(hopeless_fit, answer.most_off)).empty();
     answer.coordinates = coordinates_in(learnt.modes, landmarks_of(object.fit.points));
     answer.odd = odd_of(learnt, object, answer.coordinates);
     std::vector<ClassQuantity> quantities = object.quantities;
@@ -208,7 +210,9 @@ ClassAnswer compare_with(const ShapeClass& learnt, const LearntMember& object, c
         const QuantityCheck &x = answer.checks[a], &y = answer.checks[b];
         return std::make_tuple(rank(x), -x.excess) < std::make_tuple(rank(y), -y.excess);
     });
-    if (!any) {
+    if (answer.hopeless) {
+        answer.verdict = Membership::other;
+    } else if (!any) {
         answer.undecided = learnt.has_thresholds()      ? "nothing of what was learnt can be measured on it"
                            : learnt.members.size() == 1 ? "the class has one member, of which no threshold can be learnt"
                                                         : "the class has two members, of which no threshold can be learnt";

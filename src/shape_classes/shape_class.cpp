@@ -360,7 +360,7 @@ void add_strangers(ShapeClass& learnt, const std::vector<LearntMember>& stranger
 
 /// How off the template is on one more member: the prediction bound of the logits; more than half of both surfaces is no member.
 void learn_most_off(ShapeClass& learnt, const std::vector<const LearntMember*>& members) {
-    constexpr double least = 0.01, most = 0.5;
+    constexpr double least = 0.01;
     std::vector<double> logits;
     for (const LearntMember* member : members)
         if (member->fit.residuals) {
@@ -368,7 +368,7 @@ void learn_most_off(ShapeClass& learnt, const std::vector<const LearntMember*>& 
             logits.push_back(std::log(off / (1 - off)));
         }
     if (logits.size() < ShapeClass::min_members) return;
-    learnt.most_off = std::min(most, 1 / (1 + std::exp(-predict(moments_of(logits), true, learnt.reject).high)));
+    learnt.most_off = std::min(hopeless_fit, 1 / (1 + std::exp(-predict(moments_of(logits), true, learnt.reject).high)));
 }
 
 void add_ranges(ShapeClass& learnt, const std::vector<const LearntMember*>& members, const std::vector<LearntMember>& strangers) {
@@ -428,13 +428,12 @@ ShapeClass learn_class(const ClassTemplate& known, const std::vector<LearntMembe
     std::vector<const LearntMember*> used;
     std::vector<Landmarks> shapes;
     std::set<std::size_t> poor;  // no archetype
-    constexpr double hopeless = 0.5;
     for (const LearntMember& member : members) {
         if (!member.fit.problem.empty()) {
             learnt.notes.push_back(member.name + " is left out: " + member.fit.problem);
             continue;
         }
-        if (std::string off = fit_is_off(member.fit, hopeless); !off.empty()) {
+        if (std::string off = fit_is_off(member.fit, hopeless_fit); !off.empty()) {
             learnt.notes.push_back(member.name + " is left out: " + off);
             continue;
         }

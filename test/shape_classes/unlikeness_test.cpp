@@ -131,6 +131,12 @@ TEST(Classify, WhatTheTemplateDoesNotLieOnIsNoMember) {
     const ClassAnswer answer = compare_with(learnt, object);
     EXPECT_EQ(answer.verdict, Membership::undecided);
     EXPECT_NE(answer.undecided.find("does not lie on it"), std::string::npos) << answer.undecided;
+    LearntMember elsewhere = object;
+    elsewhere.fit.residuals->unmatched = elsewhere.fit.residuals->unexplained = 0.6;
+    const ClassAnswer none = compare_with(learnt, elsewhere);
+    EXPECT_EQ(none.verdict, Membership::other) << "more than half of both is off";
+    ASSERT_FALSE(none.reasons().empty());
+    EXPECT_NE(none.reasons().front().find("does not lie on it"), std::string::npos) << none.reasons().front();
     const auto lines = explained_text(object.fit);
     ASSERT_EQ(lines.size(), 2U);
     EXPECT_NE(lines[0].find("explains 70 %"), std::string::npos) << lines[0];

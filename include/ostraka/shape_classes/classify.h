@@ -38,6 +38,8 @@ struct ClassAnswer {
     MemberFit fit;
     std::string off;      ///< in words that the template does not lie on the object, which then is no member; empty if it does
     double most_off = 0;  ///< more of both surfaces off the other is that
+    bool hopeless =
+        false;  ///< more than half of both is off (hopeless_fit): it speaks against the object, whatever else is measured
     std::optional<double> unlike;  ///< how unlike the members it is (unlikeness.h)
     std::vector<QuantityCheck> checks;
     std::vector<std::size_t>

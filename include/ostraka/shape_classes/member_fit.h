@@ -66,6 +66,9 @@ struct MemberFit {
     std::vector<OffRegion> foreign, missing;
 };
 
+/// Above this share of both surfaces that is off the other (FitResiduals::off) a fit says nothing of the object.
+inline constexpr double hopeless_fit = 0.5;
+
 /// In words with the numbers why the template does not lie on the object: `off()` is above `maximum`. Empty where it does, or
 /// where there are no residuals.
 std::string fit_is_off(const MemberFit& fit, double maximum);
