@@ -217,6 +217,14 @@ TEST_F(ClassCommand, WrongWordsAndFilesAreSaid) {
     EXPECT_EQ(other.code, 1);
     EXPECT_NE(other.err.find("correspondence"), std::string::npos) << other.err;
     EXPECT_EQ(run_command("template classify " + member(1)).code, 2);
+    const auto stranger = run_command("template learn " + known() + " " + member(2) + " --strangers " +
+                                      quoted(scratch / "missing.ply") + " --output " + quoted(scratch / "class"));
+    EXPECT_EQ(stranger.code, 1);
+    EXPECT_NE(stranger.err.find("missing.ply"), std::string::npos) << stranger.err;
+    EXPECT_EQ(
+        run_command("template learn " + known() + " " + member(2) + " --accept 0.7 --output " + quoted(scratch / "class")).code,
+        2)
+        << "more than half of strangers is no limit";
     const auto folder =
         run_command("template learn " + known() + " " + quoted(scratch / "made") + " --output " + quoted(scratch / "class"));
     EXPECT_EQ(folder.code, 1);
