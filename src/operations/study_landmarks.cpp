@@ -22,14 +22,19 @@ struct StudyLandmarks final : StudyOperation {
         for (const char* count : {"objects", "landmarks", "iterations"}) p.report.values(integer(count));
         for (const char* size : {"meanCentroidSize", "meanNorm", "sumOfSquares"}) p.report.values(number(size));
         p.report.values(boolean("converged"), numbers("components"));
+        p.report.table("odd", text("name"), text("why"), boolean("leftOut"));
+        p.options(
+            "leave-odd-out", leave_odd_out,
+            "objects whose landmarks are mirrored, or that are three times as large as the median, or a third, are left out");
     }
 
     void run(Context& context, Report& report) override {
         const Collection collection = files.read(context);
         const std::vector<ObjectResult> read = read_object_landmarks(collection, files.store("landmarks"));
         report_failures(report, collection, read);
-        const LandmarkShapes shapes = common_landmarks(collection, read, options.scaling, files.collection.file());
+        LandmarkShapes shapes = common_landmarks(collection, read, options.scaling, files.collection.file());
         report.notes(shapes.notes);
+        report_odd(report, shapes);
         const GeneralisedProcrustes shape = generalised_procrustes(shapes.configurations, options);
         if (!shape.converged) report.note("the mean had not settled after " + std::to_string(shape.iterations) + " iterations");
         const PrincipalComponents principal = principal_components(shape_rows(shape.aligned), components);
@@ -58,6 +63,21 @@ struct StudyLandmarks final : StudyOperation {
                    significant(sizes.mean, 10) + (shapes.unit.empty() ? "" : " " + shapes.unit),
                    significant(shape.mean.norm(), 10), significant(shape.sum_of_squares, 10)});
         report.table(table);
+    }
+
+    /// Names them, and takes them out where that is wanted.
+    void report_odd(Report& report, LandmarkShapes& shapes) const {
+        std::vector<OddSpecimen> odd = odd_specimens(shapes);
+        if (leave_odd_out && odd.size() < shapes.objects.size()) {
+            shapes = without(shapes, odd);
+            for (OddSpecimen& one : odd) one.left_out = true;
+        }
+        odd.insert(odd.begin(), shapes.odd.begin(), shapes.odd.end());
+        report.empty_table("odd");
+        for (const OddSpecimen& one : odd) {
+            report.row("odd")("name", one.name)("why", one.why)("leftOut", one.left_out);
+            report.note(std::string(one.left_out ? "left out: " : "odd: ") + one.name + ": " + one.why);
+        }
     }
 
     /// The table of objects and the plot of the first two components.
@@ -94,6 +114,7 @@ struct StudyLandmarks final : StudyOperation {
     }
 
     int components = 5;
+    bool leave_odd_out = false;
     ProcrustesOptions options;
 };
 

@@ -4,6 +4,7 @@
 #include "ostraka/shape_classes/member_file.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace ostraka {
 
@@ -30,14 +31,48 @@ struct TemplateClassify final : Operation {
     void run(Context& context, Report& report) override {
         read_classes();
         std::vector<Classification> answers;
+        std::optional<Error> first;
         Progress progress("asking classes", files.size());
-        for (std::size_t i = 0; i < files.size(); ++i, progress.advance())
-            if (!is_class(i))
-                answers.push_back(decide(object_name(files.file(i)),
-                                         known.front()->landmarks ? ask_landmarks(context, i) : ask_meshes(i), options));
+        for (std::size_t i = 0; i < files.size(); ++i, progress.advance()) {
+            if (is_class(i)) continue;
+            answers.push_back(answer_of(context, i, first));
+            if (answer) keep(answers);
+        }
+        if (std::all_of(answers.begin(), answers.end(), [](const auto& a) { return !a.problem.empty(); })) throw *first;
         report_result(report, answers);
         if (!std::all_of(answers.begin(), answers.end(), [](const auto& a) { return a.verdict == Membership::member; }))
             report.answer_no();
+    }
+
+    /// An object that cannot be read or fitted does not stop the others; the first error is kept.
+    [[nodiscard]] Classification answer_of(Context& context, std::size_t i, std::optional<Error>& first) const {
+        try {
+            return decide(object_name(files.file(i)), known.front()->landmarks ? ask_landmarks(context, i) : ask_meshes(i),
+                          options);
+        } catch (const Error& error) {
+            if (error.kind() != ErrorKind::input && error.kind() != ErrorKind::failure) throw;
+            if (!first) first = error;
+            Classification unanswered;
+            unanswered.object = object_name(files.file(i));
+            unanswered.problem = error.what();
+            unanswered.text = "cannot be asked about: " + unanswered.problem;
+            return unanswered;
+        }
+    }
+
+    /// What is known so far, on the disk now: a run that ends early leaves its answers.
+    void keep(const std::vector<Classification>& answers) const {
+        OutputTransaction own;
+        answer.write(document_of(answers));
+        own.commit();
+    }
+
+    static Json document_of(const std::vector<Classification>& answers) {
+        Json document = json_document("classification");
+        auto& allocator = document.GetAllocator();
+        const auto object_json = [&](const auto& one) { return classification_to_json(one, allocator); };
+        add_members(document, allocator, "objects", json_list(answers, allocator, object_json));
+        return document;
     }
 
     [[nodiscard]] bool is_class(std::size_t i) const { return files.file(i).ends_with(".class.json"); }
@@ -87,27 +122,49 @@ struct TemplateClassify final : Operation {
     }
 
     void report_result(Report& report, const std::vector<Classification>& answers) const {
-        Json document = json_document("classification");
-        auto& allocator = document.GetAllocator();
-        const auto object_json = [&](const auto& one) { return classification_to_json(one, allocator); };
-        add_members(document, allocator, "objects", json_list(answers, allocator, object_json));
-        report.values(document);
-        if (answer) answer.write(std::move(document));
+        report.values(document_of(answers));
+        std::size_t unanswered = 0;
+        for (const Classification& object : answers) {
+            if (object.problem.empty()) continue;
+            ++unanswered;
+            report.note(object.object + ": " + object.problem);
+        }
+        if (unanswered > 0)
+            report.note(std::to_string(unanswered) + " of " + std::to_string(answers.size()) +
+                        " objects could not be asked about");
         for (const Classification& object : answers)
             for (const ClassAnswer& one : object.answers)
                 report.row("", {object.object, one.name, to_string(one.verdict),
-                                one.fit.problem.empty() ? number(one.score, 4) : "-", one.against.size()});
+                                one.fit.problem.empty() ? number(one.score, 4) : "-", one.reasons().size()});
         for (const Classification& object : answers) {
             report.line("\n" + printable(object.object) + " " + printable(object.text));
             for (const ClassAnswer& one : object.answers) {
                 constexpr std::size_t maximum = 8;
                 const auto reasons = one.reasons();
-                if (!one.undecided.empty()) report.line("  " + printable(one.name) + ": " + printable(one.undecided));
+                const bool said = object.text.find(one.undecided) != std::string::npos;
+                if (!one.undecided.empty() && !said) report.line("  " + printable(one.name) + ": " + printable(one.undecided));
+                if (one.undecided.empty() && !one.off.empty())
+                    report.line("  " + printable(one.name) + ": " + printable(one.off));
+                if (&one == told(object))
+                    for (const std::string& line : told_of(one)) report.line("  " + printable(one.name) + ": " + printable(line));
                 for (std::size_t i = 0; i < reasons.size() && i < maximum; ++i)
                     report.line("  against " + printable(one.name) + ": " + printable(reasons[i]));
                 if (reasons.size() > maximum) report.line("  and " + std::to_string(reasons.size() - maximum) + " more");
             }
         }
+    }
+
+    /// The class whose explanation is told: the one it belongs to, or else the nearest.
+    static const ClassAnswer* told(const Classification& object) {
+        const int k = object.best >= 0 ? object.best : object.nearest;
+        return k < 0 ? nullptr : &object.answers[static_cast<std::size_t>(k)];
+    }
+
+    static std::vector<std::string> told_of(const ClassAnswer& one) {
+        std::vector<std::string> lines = one.odd;
+        for (const std::string& line : explained_text(one.fit)) lines.push_back(line);
+        lines.insert(lines.end(), one.fit.notes.begin(), one.fit.notes.end());
+        return lines;
     }
 
     FileInput files;

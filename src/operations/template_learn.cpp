@@ -20,6 +20,11 @@ struct TemplateLearn final : Operation {
                 "a mesh file for each member; NAME.ant.json beside it are its annotations; or files of the same landmarks")
             .many()
             .optional();
+        p.input_option(
+             "strangers", Kind::mesh, strangers,
+             "objects that do not belong to the class, such as members of other classes: they say how unlike the members "
+             "an object may be that is recognised; one file each time it is given")
+            .many();
         p.output("output", Kind::folder, output, "folder for the class and a copy of the template; made if it is missing").flag();
         p.options("name", name, "of the class; else as the template says");
         p.options("given", given, "the same as --correspondence given");
@@ -27,12 +32,14 @@ struct TemplateLearn final : Operation {
         p.report.values(text("class"), integer("members"), text("archetype"), number("meanSize", "", "length"),
                         number("diversity"), numbers("varianceShares"));
         p.report.people_table("members", {"member", "laid on by", "scale", "centroid size", "from the mean %", "archetype"});
-        p.report.people_table("ranges", {"quantity", "n", "min", "median", "max", "mean", "sd", "from", "to", "unit"});
+        p.report.people_table("ranges",
+                              {"quantity", "n", "min", "median", "max", "mean", "sd", "from", "to", "recognised to", "unit"});
         p.report.people_table("modes", {"mode", "deviation", "% of variance", "together"});
     }
 
     void check() const override {
         if (!of_landmarks() && !members) fail_usage("the class is empty: there is no member", "give TEMPLATE MEMBER ...");
+        if (of_landmarks() && strangers) fail_usage("--strangers with a class of landmarks", "they are for classes of meshes");
         std::vector<std::string> names;
         if (of_landmarks()) names.push_back(known.file());
         for (std::size_t i = 0; i < members.size(); ++i) names.push_back(members.file(i));
@@ -60,16 +67,17 @@ struct TemplateLearn final : Operation {
         }
         std::replace(name.begin(), name.end(), ' ', '-');
         check_class_name(name);
-        std::vector<LearntMember> fitted;
-        {
-            Progress progress("laying the template onto members", members.size());
-            for (std::size_t i = 0; i < members.size(); ++i, progress.advance()) {
-                const WholeObject& member = members.load<WholeObject>(read_member, i);
-                fitted.push_back(
-                    in_file(members.file(i), [&] { return learn_member(class_template(package), member, options); }));
+        Progress progress("laying the template onto objects", members.size() + strangers.size());
+        const auto laid_onto = [&](const FileInput& files) {
+            std::vector<LearntMember> list;
+            for (std::size_t i = 0; i < files.size(); ++i, progress.advance()) {
+                const WholeObject& object = files.load<WholeObject>(read_member, i);
+                list.push_back(in_file(files.file(i), [&] { return learn_member(class_template(package), object, options); }));
             }
-        }
-        ShapeClass result = learn_class(class_template(package), fitted, options);
+            return list;
+        };
+        const std::vector<LearntMember> fitted = laid_onto(members), others = laid_onto(strangers);
+        ShapeClass result = learn_class(class_template(package), fitted, options, others);
         const bool in_place = open_for(result);
         if (!in_place) {
             for (const PackagedFile& part : package.file.contents) check_copy(part.file);
@@ -127,9 +135,9 @@ struct TemplateLearn final : Operation {
         for (const LearntRange& range : learnt.ranges) {
             if (range.count == 0) continue;
             const auto text = [](const std::optional<double>& x, int digits = 4) { return x ? number(*x, digits) : "-"; };
-            report.row("ranges",
-                       {range.quantity.text(), range.count, text(range.min), text(range.median), text(range.max),
-                        text(range.mean), text(range.deviation, 3), text(range.low), text(range.high), range.quantity.unit});
+            report.row("ranges", {range.quantity.text(), range.count, text(range.min), text(range.median), text(range.max),
+                                  text(range.mean), text(range.deviation, 3), text(range.low), text(range.high),
+                                  text(range.recognised), range.quantity.unit});
         }
         if (!modes.variances.empty()) report.line("");
         double sum = 0;
@@ -143,7 +151,7 @@ struct TemplateLearn final : Operation {
     }
 
     TemplateInput known;
-    FileInput members;
+    FileInput members, strangers;
     FolderOutput output;
     std::string name;
     bool given = false;

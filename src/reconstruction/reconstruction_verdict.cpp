@@ -2,6 +2,7 @@
 
 #include "ostraka/core/text.h"
 #include "ostraka/core/words.h"
+#include "ostraka/reconstruction/rigid_scale.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,6 +33,18 @@ double weight_of(const std::vector<LandmarkPair>& pairs, const FragmentPlacement
         if (used(i)) sum += (place(pairs[i]) - middle).squaredNorm();
     return sum;
 }
+
+/// How many times as large the template is by the landmarks used that move rigidly together.
+double rigid_scale_of(const std::vector<LandmarkPair>& pairs, const FragmentPlacement& placement) {
+    std::vector<Eigen::Vector3d> from, to;
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+        if (i >= placement.landmarks.size() || placement.landmarks[i].used)
+            from.push_back(pairs[i].on_template), to.push_back(pairs[i].on_fragment);
+    return rigid_scale(from, to);
+}
+
+/// Per cent by which the larger of two sizes is above the other.
+double per_cent_apart(double a, double b) { return 100 * (std::max(a, b) / std::min(a, b) - 1); }
 
 /// Weighs what speaks against the fragments of one reconstruction.
 class Judge {
@@ -74,6 +87,8 @@ public:
         } else if (result_.rotations && std::any_of(result_.rotations->notes.begin(), result_.rotations->notes.end(),
                                                     [](const std::string& note) { return !note.empty(); })) {
             result_.undecided = "the turns of some fragments about the axis are not decided";
+        } else if (!unsure_size_.empty()) {
+            result_.undecided = unsure_size_;
         } else if (placed == 1 && !tested) {
             result_.undecided = "one fragment and no constraint: nothing can contradict it";
         } else {
@@ -92,21 +107,16 @@ private:
     void judge_fragment(std::size_t k) {
         const FragmentPlacement& one = result_.placement.fragments[k];
         const int number = static_cast<int>(k);
-        double sum = 0, weights = 0;
+        double sum = 0, rigid_sum = 0, weights = 0;
         for (std::size_t j = 0; j < pairs_.size(); ++j) {
             const FragmentPlacement& other = result_.placement.fragments[j];
             if (j == k || !other.problem.empty() || !(other.own_scale > 0)) continue;
             const double weight = weight_of(pairs_[j], other, false);
             sum += weight * other.own_scale;
+            rigid_sum += weight * rigid_scale_of(pairs_[j], other);
             weights += weight;
         }
-        if (weights > 0 && one.own_scale > 0) {
-            const double others = sum / weights,
-                         off = 100 * (std::max(one.own_scale, others) / std::min(one.own_scale, others) - 1);
-            objection(ObjectionKind::size, number, -1, off / std::max(options_.scale_tolerance, 1e-9),
-                      "alone it would have the template " + digits(one.own_scale, 4) + " times as large, and the others " +
-                          digits(others, 4) + " times: its size is off by " + digits(off, 3) + " %");
-        }
+        if (weights > 0 && one.own_scale > 0) judge_size(k, sum / weights, rigid_scale_of(pairs_[k], one), rigid_sum / weights);
         const double count = static_cast<double>(
             std::count_if(one.landmarks.begin(), one.landmarks.end(), [](const LandmarkResidual& mark) { return mark.used; }));
         const double spread = count > 0 ? std::sqrt(weight_of(pairs_[k], one, true) / count) : 0;
@@ -114,6 +124,23 @@ private:
             objection(ObjectionKind::landmarks, number, -1, one.residual / (std::max(options_.residual, 1e-9) * spread),
                       "its landmarks are " + digits(one.residual, 3) + " off those of the template (root mean square), " +
                           digits(100 * one.residual / spread, 3) + " % of their spread");
+    }
+
+    /// Two sizes are compared: that of all landmarks, and that of those that move rigidly together, which posture does not
+    /// change. Where one of them contradicts the others and the other does not, the size is not known well enough to speak
+    /// against it.
+    void judge_size(std::size_t k, double others, double rigid, double rigid_others) {
+        const double own = result_.placement.fragments[k].own_scale, off = per_cent_apart(own, others),
+                     tolerance = std::max(options_.scale_tolerance, 1e-9);
+        const double rigid_off = rigid > 0 && rigid_others > 0 ? per_cent_apart(rigid, rigid_others) : off;
+        const std::string text = "alone it would have the template " + digits(own, 4) + " times as large, and the others " +
+                                 digits(others, 4) + " times: its size is off by " + digits(off, 3) + " %";
+        objection(ObjectionKind::size, static_cast<int>(k), -1, std::min(off, rigid_off) / tolerance, text);
+        if (std::min(off, rigid_off) <= tolerance && std::max(off, rigid_off) > tolerance && unsure_size_.empty())
+            unsure_size_ =
+                "the size of fragment " + std::to_string(k + 1) + " is uncertain: it is off by " + digits(off, 3) +
+                " % by all landmarks and by " + digits(rigid_off, 3) +
+                " % by those that move together, which a posture unlike the template's explains as well as another size";
     }
 
     /// Whether a fragment lies on the template, and where no other one does.
@@ -149,6 +176,7 @@ private:
     const std::vector<std::vector<LandmarkPair>>& pairs_;
     const std::vector<int>& placed_;
     const ReconstructOptions& options_;
+    std::string unsure_size_;  ///< why a size is neither right nor wrong
 };
 
 }  // namespace

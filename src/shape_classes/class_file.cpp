@@ -43,7 +43,9 @@ JsonValue range_to_json(const LearntRange& range, JsonAllocator& allocator) {
     if (range.deviation) add_members(object, allocator, "deviation", *range.deviation);
     if (range.low) add_members(object, allocator, "low", *range.low);
     if (range.high) add_members(object, allocator, "high", *range.high);
+    if (range.recognised) add_members(object, allocator, "recognised", *range.recognised);
     add_members(object, allocator, "values", range.values);
+    if (!range.strangers.empty()) add_members(object, allocator, "strangers", range.strangers);
     return object;
 }
 
@@ -53,7 +55,14 @@ std::vector<std::string> texts_in(const JsonValue& object, const char* name) {
     return list;
 }
 
-LearntRange range_from(const JsonValue& object, std::size_t members, const std::string& where) {
+std::vector<std::optional<double>> values_in(const JsonValue& object, const char* name) {
+    std::vector<std::optional<double>> values;
+    for (const auto& value : list_in(object, name))
+        values.push_back(value.IsNumber() ? std::optional<double>(value.GetDouble()) : std::nullopt);
+    return values;
+}
+
+LearntRange range_from(const JsonValue& object, std::size_t members, std::size_t strangers, const std::string& where) {
     LearntRange range;
     range.quantity.kind = quantity_kind(object["kind"].GetString());
     if (const JsonValue* id = find_member(object, "id")) range.quantity.id = id->GetInt();
@@ -73,13 +82,18 @@ LearntRange range_from(const JsonValue& object, std::size_t members, const std::
                    "of " + range.quantity.text() + " accepts at least " + std::to_string(*range.low) + " and at most " +
                        std::to_string(*range.high),
                    "mend it, or learn the class anew");
-    for (const auto& value : object["values"].GetArray())
-        range.values.push_back(value.IsNumber() ? std::optional<double>(value.GetDouble()) : std::nullopt);
-    if (range.values.size() != members)
-        fail_input(where,
-                   "has " + std::to_string(range.values.size()) + " values of " + range.quantity.text() + " for " +
-                       std::to_string(members) + " members",
-                   "learn the class anew");
+    range.recognised = number_in(object, "recognised");
+    const auto check = [&](const std::vector<std::optional<double>>& values, std::size_t count, const char* whose) {
+        if (values.size() != count)
+            fail_input(where,
+                       "has " + std::to_string(values.size()) + " values of " + range.quantity.text() + " for " +
+                           std::to_string(count) + " " + whose,
+                       "learn the class anew");
+    };
+    range.values = values_in(object, "values");
+    check(range.values, members, "members");
+    range.strangers = values_in(object, "strangers");
+    if (!range.strangers.empty()) check(range.strangers, strangers, "strangers");
     return range;
 }
 
@@ -132,6 +146,9 @@ void write_class(const Path& folder, const ShapeClass& learnt, const Provenance&
         if (!member.notes.empty()) add_members(object, allocator, "notes", member.notes);
         members.PushBack(object, allocator);
     }
+    add_members(document, allocator, "unsure", learnt.unsure, "accept", learnt.accept);
+    if (learnt.most_off) add_members(document, allocator, "mostOff", *learnt.most_off);
+    if (!learnt.strangers.empty()) add_members(document, allocator, "strangers", learnt.strangers);
     add_members(document, allocator, "falseReject", learnt.reject, "resolution", learnt.resolution, "members", std::move(members),
                 "archetype", learnt.members[modes.archetype].name, "diversity", learnt.diversity);
 
@@ -169,6 +186,10 @@ ShapeClass read_class(const Path& file) {
     learnt.sizes = document["sizes"].GetBool();
     learnt.reject = document["falseReject"].GetDouble();
     learnt.resolution = document["resolution"].GetDouble();
+    learnt.unsure = number_in(document, "unsure").value_or(learnt.unsure);
+    learnt.accept = number_in(document, "accept").value_or(learnt.accept);
+    learnt.most_off = number_in(document, "mostOff");
+    learnt.strangers = texts_in(document, "strangers");
     learnt.notes = texts_in(document, "notes");
     learnt.diversity = document["diversity"].GetDouble();
     ShapeModes& modes = learnt.modes;
@@ -220,9 +241,9 @@ ShapeClass read_class(const Path& file) {
     if (learnt.members[modes.archetype].name != archetype)
         fail_input(where, "has the archetype '" + archetype + "', which is none of its members", "learn the class anew");
     for (const auto& range : document["ranges"].GetArray())
-        learnt.ranges.push_back(range_from(range, learnt.members.size(), where));
+        learnt.ranges.push_back(range_from(range, learnt.members.size(), learnt.strangers.size(), where));
     for (const auto& range : document["fragments"].GetArray())
-        learnt.fragments.push_back(range_from(range, learnt.members.size(), where));
+        learnt.fragments.push_back(range_from(range, learnt.members.size(), learnt.strangers.size(), where));
     return learnt;
 }
 
@@ -233,9 +254,24 @@ JsonValue classification_to_json(const Classification& answer, JsonAllocator& al
         if (check.quantity.value) add_members(item, allocator, "value", *check.quantity.value);
         if (check.low) add_members(item, allocator, "low", *check.low);
         if (check.high) add_members(item, allocator, "high", *check.high);
+        if (check.recognised) add_members(item, allocator, "recognised", *check.recognised);
         add_members(item, allocator, "decides", check.decides, "off", check.off, "excess", check.excess);
         if (!check.worst.empty()) add_members(item, allocator, "most", check.worst);
         return item;
+    };
+    const auto place = [](const Point& p) { return std::array<double, 3>{p.x(), p.y(), p.z()}; };
+    const auto of_region = [&](const OffRegion& region) {
+        JsonValue item = json_object(allocator, "share", region.share, "middle", place(region.middle), "at", place(region.at),
+                                     "farthest", region.farthest);
+        if (!region.part.empty()) add_members(item, allocator, "part", region.part);
+        return item;
+    };
+    const auto explained = [&](const ClassAnswer& one) {
+        const FitResiduals& residuals = *one.fit.residuals;
+        return json_object(allocator, "object", 1 - residuals.unexplained, "template", 1 - residuals.unmatched, "within",
+                           one.fit.near, "liesOn", one.off.empty(), "mostOff", one.most_off, "foreign",
+                           json_list(one.fit.foreign, allocator, of_region), "missing",
+                           json_list(one.fit.missing, allocator, of_region));
     };
     const auto of_class = [&](const ClassAnswer& one) {
         JsonValue object = json_object(allocator, "class", one.name, "verdict", to_string(one.verdict));
@@ -243,10 +279,13 @@ JsonValue classification_to_json(const Classification& answer, JsonAllocator& al
         if (one.fit.problem.empty())
             add_members(object, allocator, "score", one.score, "placedBy", one.fit.placed_by, "scale", one.fit.scale,
                         "coefficients", one.coordinates.coefficients, "mahalanobis", one.coordinates.mahalanobis);
+        add_given(object, allocator, "odd", one.odd, "notes", one.fit.notes);
+        if (one.fit.problem.empty() && one.fit.residuals) add_members(object, allocator, "explained", explained(one));
         add_members(object, allocator, "against", one.reasons(), "checks", json_list(one.checks, allocator, of_check));
         return object;
     };
     JsonValue report = json_object(allocator, "object", answer.object, "verdict", to_string(answer.verdict), "text", answer.text);
+    if (!answer.problem.empty()) add_members(report, allocator, "problem", answer.problem);
     const auto name = [&](int k) { return answer.answers[static_cast<std::size_t>(k)].name; };
     if (answer.best >= 0) add_members(report, allocator, "class", name(answer.best));
     if (answer.nearest >= 0) add_members(report, allocator, "nearest", name(answer.nearest));

@@ -3,6 +3,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/text.h"
 #include "ostraka/core/words.h"
+#include "ostraka/shape_classes/unlikeness.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,6 +23,7 @@ QuantityCheck check_of(const LearntRange& range, const std::optional<double>& va
     check.quantity.value = value;
     check.low = range.low;
     check.high = range.high;
+    check.recognised = range.recognised;
     check.decides = range.quantity.kind != QuantityKind::attribute || attributes;
     if (!value || !range.high || !(range.reject > 0)) {
         check.decides = false;
@@ -64,24 +66,45 @@ void add_parts(const ShapeClass& learnt, std::vector<ClassQuantity>& quantities,
     }
 }
 
-double score_of(const ShapeClass& learnt, const LearntMember& object, const std::vector<ClassQuantity>& quantities,
-                const ShapeCoordinates& coordinates) {
+double score_of(const ShapeClass& learnt, const LearntMember& object, const ShapeCoordinates& coordinates) {
     double score = coordinates.distance;
     if (object.fit.residuals) {
         const FitResiduals& r = *object.fit.residuals;
         score = 10 * (r.distance + r.back) + r.unmatched + r.unexplained + r.stretch + r.bend;
     }
     // What no fit changes: by how much the object's own surface differs from the members' mean.
-    for (const ClassQuantity& quantity : geometry_quantities(WholeShape())) {
-        const LearntRange* range = learnt.find(quantity.key());
-        const std::optional<double> own = value_of(object.quantities, quantity.key());
+    for (const char* name : {"compactness", "geodesic mean", "geodesic most", "geodesic variation"}) {
+        const std::string key = "geometry " + std::string(name);
+        const LearntRange* range = learnt.find(key);
+        const std::optional<double> own = value_of(object.quantities, key);
         if (range != nullptr && range->count > 0 && range->mean > 0 && own && *own > 0)
             score += 2 * std::abs(std::log(*own / range->mean));
     }
-    // Parts together: roots of mean squared logarithms, and how far its own annotations are from those of the template.
+    return score;
+}
+
+/// Parts together: roots of mean squared logarithms, and how far its own annotations are from those of the template.
+double score_of_parts(const std::vector<ClassQuantity>& quantities) {
+    double score = 0;
     for (const ClassQuantity& quantity : quantities)
         if (quantity.kind == QuantityKind::part && quantity.id < 0) score += quantity.value.value_or(0);
     return score;
+}
+
+/// Adds how unlike the members it is; `worst` gets what is farthest off.
+void add_unlikeness(const ShapeClass& learnt, std::vector<ClassQuantity>& quantities, ClassAnswer& answer,
+                    std::map<std::string, std::string>& worst) {
+    std::vector<std::optional<double>> values;
+    for (const LearntRange& range : learnt.ranges) values.push_back(value_of(quantities, range.quantity.key()));
+    const auto found = unlikeness(learnt, values);
+    if (!found) return;
+    answer.unlike = found->value;
+    ClassQuantity& quantity = quantities.emplace_back();
+    quantity.name = unlike_the_members;
+    quantity.value = found->value;
+    worst[quantity.key()] = learnt.ranges[found->worst].quantity.text() + ": " + digits(*values[found->worst], 4) + ", " +
+                            digits(std::abs(found->off), 3) + " deviations " + (found->off > 0 ? "above" : "below") +
+                            " the members' mean";
 }
 
 /// Members in correspondence show nothing of the error of a fit, which slides along the surface.
@@ -98,10 +121,48 @@ bool only_shape(const ClassAnswer& answer) {
     });
 }
 
+std::vector<std::string> odd_of(const ShapeClass& learnt, const LearntMember& object, const ShapeCoordinates& coordinates) {
+    constexpr double times = 3, nearer = 0.5;
+    std::vector<std::string> odd;
+    const auto& sizes = learnt.modes.centroid_sizes;
+    const double largest = *std::max_element(sizes.begin(), sizes.end()),
+                 smallest = *std::min_element(sizes.begin(), sizes.end());
+    if (coordinates.centroid_size > times * largest || times * coordinates.centroid_size < smallest)
+        odd.push_back("it is " + digits(coordinates.centroid_size / learnt.modes.mean_size, 3) +
+                      " times as large as members are on average: is it in another unit?");
+    if (object.fit.residuals) return odd;
+    const Landmarks own = landmarks_of(object.fit.points);
+    Landmarks mirror = own;
+    mirror.col(0) *= -1;
+    ProcrustesOptions scaled;
+    scaled.scaling = true;
+    const double off = procrustes(own, learnt.modes.mean, scaled).sum_of_squares,
+                 mirrored = procrustes(mirror, learnt.modes.mean, scaled).sum_of_squares;
+    if (mirrored < nearer * nearer * off && off > 1e-6 * learnt.modes.mean.squaredNorm())
+        odd.emplace_back("its mirror image is nearer the members than itself: is it mirrored, or are left and right exchanged?");
+    return odd;
+}
+
+/// What is neither refused nor recognised; null if nothing is.
+const QuantityCheck* not_recognised(const ClassAnswer& answer) {
+    for (const QuantityCheck& check : answer.checks)
+        if (check.decides && check.recognised && *check.quantity.value > *check.recognised) return &check;
+    return nullptr;
+}
+
+std::string unsure_text(const ShapeClass& learnt, const QuantityCheck& check) {
+    const std::string number = std::to_string(learnt.strangers.size());
+    return "it is as unlike the members as strangers may be: " + digits(*check.quantity.value, 3) +
+           " deviations on average, and up to " + digits(*check.recognised, 3) + " is recognised, by what " +
+           (learnt.strangers.size() < ShapeClass::min_members ? "members are" : number + " strangers are") + ", up to " +
+           digits(*check.high, 3) + " not refused" + (check.worst.empty() ? "" : "; most of all " + check.worst);
+}
+
 }  // namespace
 
 std::vector<std::string> ClassAnswer::reasons() const {
     std::vector<std::string> list;
+    if (hopeless) list.push_back(off);
     for (const std::size_t i : against) list.push_back(words(checks[i]));
     return list;
 }
@@ -116,7 +177,11 @@ ClassAnswer compare_with(const ShapeClass& learnt, const LearntMember& object, c
         answer.score = std::numeric_limits<double>::max();
         return answer;
     }
+    answer.most_off = options.strict ? options.fit.max_off : std::max(options.fit.max_off, learnt.most_off.value_or(0));
+    answer.off = fit_is_off(object.fit, answer.most_off);
+    answer.hopeless = !fit_is_off(object.fit, std::max(hopeless_fit, answer.most_off)).empty();
     answer.coordinates = coordinates_in(learnt.modes, landmarks_of(object.fit.points));
+    answer.odd = odd_of(learnt, object, answer.coordinates);
     std::vector<ClassQuantity> quantities = object.quantities;
     const auto add = [&](const char* name, double value) {
         quantities.emplace_back().name = name;
@@ -127,7 +192,9 @@ ClassAnswer compare_with(const ShapeClass& learnt, const LearntMember& object, c
     if (learnt.sizes) add("centroid size", answer.coordinates.centroid_size);
     std::map<std::string, std::string> worst;
     add_parts(learnt, quantities, worst);
-    answer.score = score_of(learnt, object, quantities, answer.coordinates);
+    add_unlikeness(learnt, quantities, answer, worst);
+    answer.parts = score_of_parts(quantities);
+    answer.score = score_of(learnt, object, answer.coordinates) + answer.parts;
     bool any = false;
     for (const LearntRange& range : learnt.ranges) {
         answer.checks.push_back(check_of(range, value_of(quantities, range.quantity.key()), options.attributes));
@@ -143,7 +210,9 @@ ClassAnswer compare_with(const ShapeClass& learnt, const LearntMember& object, c
         const QuantityCheck &x = answer.checks[a], &y = answer.checks[b];
         return std::make_tuple(rank(x), -x.excess) < std::make_tuple(rank(y), -y.excess);
     });
-    if (!any) {
+    if (answer.hopeless) {
+        answer.verdict = Membership::other;
+    } else if (!any) {
         answer.undecided = learnt.has_thresholds()      ? "nothing of what was learnt can be measured on it"
                            : learnt.members.size() == 1 ? "the class has one member, of which no threshold can be learnt"
                                                         : "the class has two members, of which no threshold can be learnt";
@@ -151,6 +220,10 @@ ClassAnswer compare_with(const ShapeClass& learnt, const LearntMember& object, c
         answer.undecided = "the class was learnt from objects in correspondence and this one was fitted: " +
                            words(answer.checks[answer.against.front()]) + ", which may be the fit's own error";
         answer.against.clear();
+    } else if (answer.against.empty() && !answer.off.empty()) {
+        answer.undecided = answer.off;
+    } else if (const QuantityCheck* check = not_recognised(answer); answer.against.empty() && check != nullptr) {
+        answer.undecided = unsure_text(learnt, *check);
     } else {
         answer.verdict = answer.against.empty() ? Membership::member : Membership::other;
     }
@@ -162,6 +235,10 @@ Classification decide(std::string object, std::vector<ClassAnswer> answers, cons
     Classification result;
     result.object = std::move(object);
     result.answers = std::move(answers);
+    if (std::all_of(result.answers.begin(), result.answers.end(),
+                    [](const ClassAnswer& answer) { return answer.unlike || !answer.fit.problem.empty(); }))
+        for (ClassAnswer& answer : result.answers)
+            if (answer.unlike) answer.score = *answer.unlike + answer.parts;
     int second = -1;
     std::size_t silent = 0;
     for (std::size_t i = 0; i < result.answers.size(); ++i) {
@@ -184,6 +261,9 @@ Classification decide(std::string object, std::vector<ClassAnswer> answers, cons
     } else if (result.best >= 0) {
         result.verdict = Membership::member;
         result.text = "belongs to " + name(result.best);
+    } else if (const ClassAnswer* near = result.nearest < 0 ? nullptr : &result.answers[static_cast<std::size_t>(result.nearest)];
+               near != nullptr && near->verdict == Membership::undecided && silent < result.answers.size()) {
+        result.text = "cannot decide: nearest to " + name(result.nearest) + ", which cannot tell: " + near->undecided;
     } else if (silent == result.answers.size()) {
         result.text = "cannot decide, because " + result.answers.front().undecided;
         if (result.nearest >= 0 && result.answers.size() > 1) result.text += "; nearest to " + name(result.nearest);
@@ -201,6 +281,9 @@ void ClassifyOptions::describe(OptionList& visit) {
     visit("correspondence", correspondence,
           "an object whose triangles are the template's is taken as it is (auto, given); the template is fitted to it (fitted)",
           Choices{"auto", "given", "fitted"});
+    visit("strict", strict,
+          "the template lies on an object by --most-off alone; else as well where it lies as it does on the class's members",
+          Anything{});
     visit("attributes", attributes, "values of attributes out of their range speak against it, too", Anything{});
     visit("close", close, "classes whose scores differ by less than this share of the better one cannot be told apart",
           Range{0, 1});

@@ -3,6 +3,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/file.h"
 #include "ostraka/core/json_build.h"
+#include "ostraka/reconstruction/rigid_scale.h"
 #include "ostraka/registration/procrustes.h"
 #include "ostraka/shape_classes/thresholds.h"
 
@@ -23,6 +24,14 @@ Landmarks rows_of(const Landmarks& all, const std::vector<Eigen::Index>& rows) {
 }
 
 double spread_of(const Landmarks& marks) { return centroid_size(marks) / std::sqrt(static_cast<double>(marks.rows())); }
+
+double rigid_scale_between(const Landmarks& from, const Landmarks& to) {
+    std::vector<Eigen::Vector3d> a, b;
+    for (Eigen::Index i = 0; i < from.rows(); ++i) a.emplace_back(from.row(i).transpose()), b.emplace_back(to.row(i).transpose());
+    return rigid_scale(a, b);
+}
+
+double per_cent_more(double a, double b) { return 100 * (std::max(a, b) / std::min(a, b) - 1); }
 
 /// Worst residual and worst difference of scale over the pieces.
 std::optional<std::array<double, 2>> worst_piece(const Landmarks& rest, const Landmarks& member) {
@@ -50,7 +59,12 @@ std::optional<std::array<double, 2>> worst_piece(const Landmarks& rest, const La
         if (!(own > 0) || !(theirs > 0)) continue;
         any = true;
         worst[0] = std::max(worst[0], std::sqrt(std::max(0.0, left) / static_cast<double>(count)) / spread);
-        worst[1] = std::max(worst[1], 100 * (std::max(own, theirs) / std::min(own, theirs) - 1));
+        // As the verdict on fragments compares sizes: by all landmarks and by those that move rigidly together, the lesser of
+        // both.
+        const double rigid = rigid_scale_between(piece, goal), rigid_others = rigid_scale_between(others, other_goal);
+        double apart = per_cent_more(own, theirs);
+        if (rigid > 0 && rigid_others > 0) apart = std::min(apart, per_cent_more(rigid, rigid_others));
+        worst[1] = std::max(worst[1], apart);
     }
     return any ? std::optional(worst) : std::nullopt;
 }

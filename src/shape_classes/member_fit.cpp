@@ -2,15 +2,17 @@
 #include "ostraka/core/dense.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/geom/with_points.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <set>
 
 namespace ostraka {
 
@@ -24,6 +26,31 @@ std::string fit_is_off(const MemberFit& fit, double maximum) {
     return "the template does not lie on it: " + per_cent(fit.residuals->unmatched) + " of the template and " +
            per_cent(fit.residuals->unexplained) + " of the object are off the other, " + per_cent(maximum) +
            " on average is the most";
+}
+
+std::vector<std::string> explained_text(const MemberFit& fit) {
+    std::vector<std::string> lines;
+    if (!fit.residuals) return lines;
+    const auto per_cent = [](double share) { return digits(100 * share, 3) + " %"; };
+    const auto place = [](const Point& p) {
+        return "(" + digits(p.x(), 4) + ", " + digits(p.y(), 4) + ", " + digits(p.z(), 4) + ")";
+    };
+    lines.push_back("the template explains " + per_cent(1 - fit.residuals->unexplained) + " of its surface within " +
+                    digits(fit.near, 3) + "; " + per_cent(1 - fit.residuals->unmatched) + " of the template lies on it");
+    constexpr std::size_t maximum = 3;
+    for (std::size_t i = 0; i < std::min(maximum, fit.foreign.size()); ++i) {
+        const OffRegion& region = fit.foreign[i];
+        lines.push_back("foreign: " + per_cent(region.share) + " of its surface about " + place(region.middle) +
+                        ", farthest at " + place(region.at) + " by " + digits(region.farthest, 3) +
+                        (region.part.empty() ? "" : "; the nearest part of the template is " + region.part));
+    }
+    for (std::size_t i = 0; i < std::min(maximum, fit.missing.size()); ++i) {
+        const OffRegion& region = fit.missing[i];
+        lines.push_back("missing: " + per_cent(region.share) + " of the template" +
+                        (region.part.empty() ? "" : ", of its part " + region.part) + ", which came to lie about " +
+                        place(region.middle) + ", farthest by " + digits(region.farthest, 3));
+    }
+    return lines;
 }
 
 bool in_correspondence(const Mesh& mesh, const Mesh& member) {
@@ -68,56 +95,35 @@ double angle_at(const Mesh& mesh, Edge edge, const std::vector<Vector3d>& p) {
     return std::atan2((b - a).norm() > 0 ? n.cross(m).dot((b - a).normalized()) : 0, n.dot(m));
 }
 
-/// Points spread evenly over a surface: so many, or each face's middle where there are fewer faces.
-struct Spread {
-    std::vector<Point> points;
-    std::vector<Vector> normals;
+/// Residuals and regions of one placement, as the member fit keeps them.
+struct Residuals {
+    FitResiduals numbers;
+    std::vector<OffRegion> foreign, missing;
 };
-Spread spread_over(const Mesh& mesh, std::size_t count) {
-    Spread spread;
-    const double area = surface_area(mesh);
-    double sum = 0, next = 0.5 * area / static_cast<double>(count);
-    for (const Face face : mesh.faces()) {
-        sum += face_area(mesh, face);
-        if (sum < next) continue;
-        const Vector normal = area_vector(mesh, face);
-        const double length = std::sqrt(normal.squared_length());
-        for (; next < sum; next += area / static_cast<double>(count)) {
-            spread.points.push_back(centroid(mesh, face));
-            spread.normals.push_back(length > 0 ? normal / length : normal);
-        }
-    }
-    return spread;
+
+Residuals residuals_of(const Mesh& rest, const Mesh& fitted, const Mesh& object, double scale, double observed) {
+    Residuals residuals;
+    const double diagonal = scale * box_diagonal(rest);
+    SurfaceOff there = surface_off(fitted, SurfaceSearch(object), observed * diagonal),
+               back = surface_off(object, SurfaceSearch(fitted), observed * diagonal);
+    residuals.numbers.distance = there.distance / diagonal;
+    residuals.numbers.unmatched = there.share;
+    residuals.numbers.back = back.distance / diagonal;
+    residuals.numbers.unexplained = back.share;
+    residuals.missing = std::move(there.regions);
+    residuals.foreign = std::move(back.regions);
+    std::vector<Point> points(fitted.points().begin(), fitted.points().end());
+    measure_distortion(rest, points, scale, residuals.numbers);
+    return residuals;
 }
 
-constexpr std::size_t max_samples = 5000;
-constexpr double like_normals = 0.5;  ///< cosine: 60 degrees
-
-FitResiduals residuals_of(const Mesh& rest, const Mesh& fitted, const Mesh& object, double scale, double observed) {
-    FitResiduals residuals;
-    const double diagonal = scale * box_diagonal(rest);
-    const double search_radius = observed * diagonal;
-    const SurfaceSearch on_object(object), on_fitted(fitted);
-    const auto one_way = [&](const Spread& spread, const SurfaceSearch& goal, double& far) {
-        std::vector<double> squares(spread.points.size());
-        std::vector<char> off(spread.points.size());
-        parallel_for(spread.points.size(), [&](std::size_t i) {
-            const double distance = goal.closest(spread.points[i]).distance;
-            squares[i] = distance * distance;
-            off[i] = distance > search_radius ||
-                     !goal.closest_compatible(spread.points[i], spread.normals[i], like_normals, search_radius);
-        });
-        double sum = 0, count = 0;
-        for (std::size_t i = 0; i < squares.size(); ++i) sum += squares[i], count += off[i];
-        const auto n = static_cast<double>(std::max<std::size_t>(1, squares.size()));
-        far = count / n;
-        return std::sqrt(sum / n) / diagonal;
-    };
-    residuals.distance = one_way(spread_over(fitted, max_samples), on_object, residuals.unmatched);
-    residuals.back = one_way(spread_over(object, max_samples), on_fitted, residuals.unexplained);
-    std::vector<Point> points(fitted.points().begin(), fitted.points().end());
-    measure_distortion(rest, points, scale, residuals);
-    return residuals;
+/// The regions moved.
+std::vector<OffRegion> moved_regions(std::vector<OffRegion> regions, const Motion& motion) {
+    for (OffRegion& region : regions) {
+        region.middle = point_of(motion(eigen(region.middle)));
+        region.at = point_of(motion(eigen(region.at)));
+    }
+    return regions;
 }
 
 /// Where the template is at its scale, and how the object gets there.
@@ -201,6 +207,38 @@ void measure_distortion(const Mesh& mesh, const std::vector<Point>& points, doub
     residuals.bend = length > 0 ? std::sqrt(turned / length) : 0;
 }
 
+namespace {
+
+/// A tag without the number at its end: "part 12" is "part", "finger" stays.
+std::string without_number(const std::string& tag) {
+    std::size_t end = tag.size();
+    while (end > 0 && std::isdigit(static_cast<unsigned char>(tag[end - 1])) != 0) --end;
+    if (end == tag.size() || end == 0) return tag;
+    while (end > 0 && std::string(" _-.#").find(tag[end - 1]) != std::string::npos) --end;
+    return tag.substr(0, end);
+}
+
+/// Tags of regions that are counted up ("part 0", "part 1") become one tag in both sets, so that place and shape say which is
+/// which: who counted them need not have begun at the same one. Landmarks keep their names. Returns the tags that were counted.
+std::set<std::string> forget_numbers(AnnotationSet& a, AnnotationSet& b) {
+    std::set<std::string> counted;
+    for (const AnnotationSet* set : {&a, &b}) {
+        std::map<std::string, std::set<std::string>> tags;
+        for (const Annotation& one : set->annotations)
+            if (one.type == AnnotationType::region && without_number(one.tag) != one.tag)
+                tags[without_number(one.tag)].insert(one.tag);
+        for (const auto& [stem, list] : tags)
+            if (list.size() > 1) counted.insert(stem);
+    }
+    for (AnnotationSet* set : {&a, &b})
+        for (Annotation& one : set->annotations)
+            if (one.type == AnnotationType::region && counted.count(without_number(one.tag)) > 0)
+                one.tag = without_number(one.tag);
+    return counted;
+}
+
+}  // namespace
+
 MemberFit fit_member(const Mesh& mesh, const AnnotationSet& set, const WholeObject& member, const MemberFitOptions& options) {
     check_options(options, "fit");
     if (!(surface_area(mesh) > 0)) fail_input("template", "has no area", "is it the right file?");
@@ -227,23 +265,34 @@ MemberFit fit_member(const Mesh& mesh, const AnnotationSet& set, const WholeObje
         places = places_by_surface(mesh, member, options);
         best.placed_by = "surface";
     }
+    AnnotationSet ours, theirs;  // with tags that are not counted
+    if (!set.annotations.empty() && !member.annotations.annotations.empty()) {
+        ours = set;
+        theirs = member.annotations;
+        for (const std::string& tag : forget_numbers(ours, theirs))
+            best.notes.push_back("the regions '" + tag +
+                                 "' are counted up: they are matched by place and shape, not by their numbers");
+    }
     double minimum = std::numeric_limits<double>::infinity();
     for (const Place& place : places) {
         const Mesh scaled = scaled_by(mesh, place.scale);
         PlacedFragment placed{moved(member.mesh, place.pose), &member.annotations, {}, {}};
-        placed.matches = match_annotations(scaled, set, member.mesh, member.annotations, place.pose, {}, options.annotations);
+        placed.matches = match_annotations(scaled, ours, member.mesh, theirs, place.pose, {}, options.annotations);
         std::vector<PlacedFragment> list;
         list.push_back(std::move(placed));
         const NonRigidFit fit = fit_template(scaled, set, list, options.fit);
-        const FitResiduals residuals =
+        const Residuals residuals =
             residuals_of(mesh, with_points(mesh, fit.points), list.front().mesh, place.scale, options.observed);
-        const double cost = std::hypot(residuals.distance, residuals.back);
+        const double cost = std::hypot(residuals.numbers.distance, residuals.numbers.back);
         if (!(cost < minimum)) continue;
         minimum = cost;
         best.scale = place.scale;
-        best.residuals = residuals;
+        best.residuals = residuals.numbers;
+        best.near = options.observed * place.scale * box_diagonal(mesh);
         best.points.clear();
         const Motion back = place.pose.inverse();
+        best.foreign = moved_regions(residuals.foreign, back);
+        best.missing = moved_regions(residuals.missing, back);
         for (const Point& p : fit.points) best.points.push_back(point_of(back(eigen(p))));
     }
     if (best.points.empty()) best.problem = "the fit has no usable result: look at the mesh with 'mesh info'";

@@ -152,6 +152,10 @@ std::vector<ClassQuantity> measure_quantities(const ClassTemplate& known, const 
     return list;
 }
 
+bool is_share_of_surface(const ClassQuantity& quantity) {
+    return quantity.kind == QuantityKind::geometry && (quantity.name == "unmatched" || quantity.name == "unexplained");
+}
+
 std::vector<ClassQuantity> geometry_quantities(const std::optional<FitResiduals>& residuals) {
     std::vector<ClassQuantity> list;
     const auto add = [&](const char* name, double FitResiduals::*value) {
@@ -180,6 +184,12 @@ std::vector<ClassQuantity> geometry_quantities(const WholeShape& shape) {
     add("geodesic mean", shape.geodesic_mean);
     add("geodesic most", shape.geodesic_max);
     add("geodesic variation", shape.geodesic_variation);
+    add("second far point", shape.second_point);
+    add("fourth far point", shape.fourth_point);
+    add("sixth far point", shape.sixth_point);
+    add("thickness mean", shape.thickness_mean);
+    add("thickness median", shape.thickness_median);
+    add("thickness most", shape.thickness_most);
     return list;
 }
 

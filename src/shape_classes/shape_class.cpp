@@ -4,6 +4,7 @@
 #include "ostraka/shape_classes/fragment_thresholds.h"
 #include "ostraka/shape_classes/parts.h"
 #include "ostraka/shape_classes/thresholds.h"
+#include "ostraka/shape_classes/unlikeness.h"
 #include "ostraka/stats/summary.h"
 
 #include <algorithm>
@@ -33,12 +34,36 @@ LearntMember learn_member(const ClassTemplate& known, const WholeObject& member,
     return measure_member(known, member, fit_by_method(known, member, options.correspondence, options.fit), options, whole);
 }
 
+namespace {
+
+/// The regions of the template that hold a face, the smallest first, in words.
+std::string parts_at(const ClassTemplate& known, Index face) {
+    std::vector<const Annotation*> list;
+    for (const Annotation& annotation : known.set.annotations)
+        if (is_part(known.mesh, annotation) &&
+            std::find(annotation.faces.begin(), annotation.faces.end(), face) != annotation.faces.end())
+            list.push_back(&annotation);
+    std::stable_sort(list.begin(), list.end(), [](const auto* a, const auto* b) { return a->faces.size() < b->faces.size(); });
+    std::string text;
+    for (const Annotation* annotation : list)
+        text += (text.empty() ? "" : ", in ") + std::to_string(annotation->id) + " (" + annotation->tag + ")";
+    return text;
+}
+
+void name_regions(const ClassTemplate& known, MemberFit& fit) {
+    for (OffRegion& region : fit.foreign) region.part = parts_at(known, region.nearest_face);
+    for (OffRegion& region : fit.missing) region.part = parts_at(known, region.face);
+}
+
+}  // namespace
+
 LearntMember measure_member(const ClassTemplate& known, const WholeObject& member, MemberFit fit, const LearnOptions& options,
                             const WholeShape* whole) {
     LearntMember learnt;
     learnt.name = member.name;
     learnt.fit = std::move(fit);
     if (!learnt.fit.problem.empty()) return learnt;
+    name_regions(known, learnt.fit);
     learnt.quantities = measure_quantities(known, learnt.fit.points, options.modes.sizes);
     for (ClassQuantity& quantity : part_quantities(known, learnt.fit.points, &member))
         learnt.quantities.push_back(std::move(quantity));
@@ -129,51 +154,108 @@ void set_bounds(LearntRange& range, const SampleMoments& known, double resolutio
     const double low = (range.logarithm ? std::exp(interval.low) : interval.low) - more,
                  high = (range.logarithm ? std::exp(interval.high) : interval.high) + more;
     if (!std::isfinite(low) || !std::isfinite(high)) return;
+    // Where members differ so much that the bound is what chance gives, it refuses nothing.
+    if (range.quantity.name == "own annotations elsewhere" && high >= 1) {
+        range.reject = 0;
+        return;
+    }
     range.high = high;
     if (!range.quantity.one_sided) range.low = is_never_negative(range.quantity) ? std::max(0.0, low) : low;
 }
 
 using Moments = std::map<std::string, SampleMoments>;  ///< by key: what to take instead of the range's own
 
-void set_thresholds(ShapeClass& learnt, const Moments& moderated) {
+bool is_unlikeness(const ClassQuantity& quantity) {
+    return quantity.kind == QuantityKind::geometry && quantity.name == unlike_the_members;
+}
+
+/// Only with others it decides.
+bool only_together(const LearntRange& range) { return single_part(range) || counts_for_unlikeness(range.quantity); }
+
+/// Logarithms; members nearer to the others than a tenth of a deviation are so by the resolution.
+std::vector<double> unlikeness_logs(const LearntRange& range) {
+    std::vector<double> logs;
+    for (const double value : known_of(range)) logs.push_back(std::log(std::max(value, 0.1)));
+    return logs;
+}
+
+/// Less than one deviation refuses nobody, and half of one is recognised where strangers do not say otherwise.
+void set_unlikeness_bounds(ShapeClass& learnt, LearntRange& range, const SampleMoments& members, std::size_t asked) {
+    range.high = std::max(1.0, std::exp(predict(members, true, range.reject).high));
+    set_recognised(range, members, learnt.accept / static_cast<double>(asked), learnt.unsure);
+}
+
+void set_thresholds(ShapeClass& learnt, const Moments& moderated, std::size_t asked = 1) {
     std::map<QuantityKind, std::size_t> counts;
     for (const LearntRange& range : learnt.ranges)
-        if (!single_part(range) && range.count >= ShapeClass::min_members) ++counts[range.quantity.kind];
+        if (!only_together(range) && range.count >= ShapeClass::min_members) ++counts[range.quantity.kind];
     const auto kinds = std::max<std::size_t>(1, counts.size() - counts.count(QuantityKind::attribute));
     for (LearntRange& range : learnt.ranges) {
         range.low.reset();
         range.high.reset();
+        range.recognised.reset();
         range.reject = 0;
-        if (single_part(range) || range.count < ShapeClass::min_members) continue;
+        if (only_together(range) || range.count < ShapeClass::min_members) continue;
         range.reject = learnt.reject / static_cast<double>(kinds * counts.at(range.quantity.kind));
         const auto found = moderated.find(range.quantity.key());
-        set_bounds(range, found == moderated.end() ? range_moments(range) : found->second, learnt.resolution);
+        const bool own = found == moderated.end();
+        if (is_unlikeness(range.quantity))
+            set_unlikeness_bounds(learnt, range, own ? moments_of(unlikeness_logs(range)) : found->second, asked);
+        else set_bounds(range, own ? range_moments(range) : found->second, learnt.resolution);
     }
 }
 
 }  // namespace
 
-void learn_thresholds(ShapeClass& learnt) { set_thresholds(learnt, {}); }
+void learn_thresholds(ShapeClass& learnt) {
+    measure_unlikeness(learnt);
+    for (LearntRange& range : learnt.ranges)
+        if (is_unlikeness(range.quantity)) summarise_range(range);
+    set_thresholds(learnt, {});
+}
 
 void moderate_thresholds(std::vector<ShapeClass>& classes) {
     std::map<std::string, std::vector<SampleMoments>> samples;
     const auto shared = [](const LearntRange& range) {
-        return (range.logarithm || is_distance(range.quantity)) && range.count >= ShapeClass::min_members &&
-               range.quantity.id < 0 &&
+        return !only_together(range) && !is_unlikeness(range.quantity) && (range.logarithm || is_distance(range.quantity)) &&
+               range.count >= ShapeClass::min_members && range.quantity.id < 0 &&
                (range.quantity.kind == QuantityKind::geometry || range.quantity.kind == QuantityKind::part);
     };
     for (const ShapeClass& one : classes)
-        for (const LearntRange& range : one.ranges)
+        for (const LearntRange& range : one.ranges) {
             if (shared(range)) samples[range.quantity.key()].push_back(range_moments(range));
+            else if (counts_for_unlikeness(range.quantity) && range.count >= ShapeClass::min_members) {
+                samples[range.quantity.key()].push_back(unlikeness_moments(range));
+                samples[range.quantity.key()].back().variance += one.resolution * one.resolution;
+            }
+        }
     std::map<std::string, VariancePrior> priors;
     for (const auto& [key, list] : samples)
         if (const auto prior = variance_prior(list)) priors.emplace(key, *prior);
+    // How unlike the others members are is counted in deviations: it is one sample for all classes.
+    std::vector<double> unlike;
+    std::size_t several = 0;
+    for (ShapeClass& one : classes) {
+        one.variances = priors;
+        measure_unlikeness(one);
+        for (LearntRange& range : one.ranges) {
+            if (!is_unlikeness(range.quantity)) continue;
+            summarise_range(range);
+            const std::vector<double> own = unlikeness_logs(range);
+            unlike.insert(unlike.end(), own.begin(), own.end());
+            several += own.size() >= ShapeClass::min_members ? 1 : 0;
+        }
+    }
     for (ShapeClass& one : classes) {
         Moments moderated;
-        for (const LearntRange& range : one.ranges)
-            if (const auto prior = priors.find(range.quantity.key()); shared(range) && prior != priors.end())
+        for (const LearntRange& range : one.ranges) {
+            if (is_unlikeness(range.quantity)) {
+                if (several >= 3) moderated[range.quantity.key()] = moments_of(unlike);
+            } else if (const auto prior = priors.find(range.quantity.key()); shared(range) && prior != priors.end()) {
                 moderated[range.quantity.key()] = prior->second.moderate(range_moments(range));
-        set_thresholds(one, moderated);
+            }
+        }
+        set_thresholds(one, moderated, classes.size());
     }
 }
 
@@ -259,8 +341,39 @@ void add_fragment_ranges(ShapeClass& learnt, const std::vector<const LearntMembe
     }
 }
 
-void add_ranges(ShapeClass& learnt, const std::vector<const LearntMember*>& members) {
+/// What each range is on the strangers.
+void add_strangers(ShapeClass& learnt, const std::vector<LearntMember>& strangers) {
+    for (const LearntMember& stranger : strangers) {
+        if (!stranger.fit.problem.empty()) {
+            learnt.notes.push_back("the stranger " + stranger.name + " is left out: " + stranger.fit.problem);
+            continue;
+        }
+        learnt.strangers.push_back(stranger.name);
+        std::map<std::string, std::optional<double>> values;
+        for (const ClassQuantity& quantity : stranger.quantities) values[quantity.key()] = quantity.value;
+        for (LearntRange& range : learnt.ranges) {
+            const auto found = values.find(range.quantity.key());
+            range.strangers.push_back(found == values.end() ? std::nullopt : found->second);
+        }
+    }
+}
+
+/// How off the template is on one more member: the prediction bound of the logits; more than half of both surfaces is no member.
+void learn_most_off(ShapeClass& learnt, const std::vector<const LearntMember*>& members) {
+    constexpr double least = 0.01;
+    std::vector<double> logits;
+    for (const LearntMember* member : members)
+        if (member->fit.residuals) {
+            const double off = std::clamp(member->fit.residuals->off(), least, 1 - least);
+            logits.push_back(std::log(off / (1 - off)));
+        }
+    if (logits.size() < ShapeClass::min_members) return;
+    learnt.most_off = std::min(hopeless_fit, 1 / (1 + std::exp(-predict(moments_of(logits), true, learnt.reject).high)));
+}
+
+void add_ranges(ShapeClass& learnt, const std::vector<const LearntMember*>& members, const std::vector<LearntMember>& strangers) {
     learnt.ranges = collected(members, &LearntMember::quantities);
+    add_strangers(learnt, strangers);
     const auto add = [&](const char* name, const std::vector<double>& values) {
         LearntRange& range = learnt.ranges.emplace_back();
         range.quantity.name = name;
@@ -303,22 +416,24 @@ void choose_archetype(ShapeModes& modes, const std::set<std::size_t>& poor) {
 
 }  // namespace
 
-ShapeClass learn_class(const ClassTemplate& known, const std::vector<LearntMember>& members, const LearnOptions& options) {
+ShapeClass learn_class(const ClassTemplate& known, const std::vector<LearntMember>& members, const LearnOptions& options,
+                       const std::vector<LearntMember>& strangers) {
     check_options(options, "learn");
     ShapeClass learnt;
     learnt.sizes = options.modes.sizes;
     learnt.reject = options.reject;
     learnt.resolution = options.resolution;
+    learnt.unsure = options.unsure;
+    learnt.accept = options.accept;
     std::vector<const LearntMember*> used;
     std::vector<Landmarks> shapes;
     std::set<std::size_t> poor;  // no archetype
-    constexpr double hopeless = 0.5;
     for (const LearntMember& member : members) {
         if (!member.fit.problem.empty()) {
             learnt.notes.push_back(member.name + " is left out: " + member.fit.problem);
             continue;
         }
-        if (std::string off = fit_is_off(member.fit, hopeless); !off.empty()) {
+        if (std::string off = fit_is_off(member.fit, hopeless_fit); !off.empty()) {
             learnt.notes.push_back(member.name + " is left out: " + off);
             continue;
         }
@@ -335,7 +450,8 @@ ShapeClass learn_class(const ClassTemplate& known, const std::vector<LearntMembe
                    "give one or more whole objects");
     learnt.modes = learn_modes(shapes, landmarks_of({known.mesh.points().begin(), known.mesh.points().end()}), options.modes);
     learnt.diversity = mean_distance(learnt.modes, shapes);
-    add_ranges(learnt, used);
+    add_ranges(learnt, used, strangers);
+    learn_most_off(learnt, used);
     add_fragment_ranges(learnt, used);
     if (const LearntRange* range = learnt.find("geometry compactness"); range != nullptr && range->count > 0)
         for (std::size_t i = 0; i < range->values.size(); ++i)
@@ -379,6 +495,13 @@ void LearnOptions::describe(OptionList& visit) {
     visit("false-reject", reject,
           "share of members that are refused, at most, where what is measured of them is normal or log-normal: all thresholds "
           "together",
+          Range{1e-6, 0.5});
+    visit("unsure", unsure,
+          "share of members that are not recognised, at most, by how unlike the others they are; above that, and below what "
+          "refuses "
+          "them, nothing is decided. Strangers say it instead, where there are three or more",
+          Range{1e-6, 0.5});
+    visit("accept", accept, "share of strangers that are accepted, at most, by all classes that are asked together",
           Range{1e-6, 0.5});
     visit("resolution", resolution, "standard deviation of what is measured of one member", Range{0, 1}, "share of its value");
 }

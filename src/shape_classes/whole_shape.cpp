@@ -2,19 +2,60 @@
 #include "ostraka/core/angles.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/fields/thickness.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/geodesic.h"
 #include "ostraka/remesh/simplify.h"
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace ostraka {
 
 namespace {
 
-constexpr std::uint64_t vertices = 1500;
-constexpr int sources = 8;
+constexpr std::uint64_t vertices = 1500, thickness_vertices = 600;
+constexpr int sources = 8, rays = 16;
+
+Mesh simplified_to(const Mesh& mesh, std::uint64_t count) {
+    Mesh small = mesh;
+    if (mesh.number_of_vertices() <= count) return small;
+    SimplifyOptions options;
+    options.vertices = count;
+    static_cast<void>(simplify(small, options));
+    return small;
+}
+
+/// What of the surface, by area, has at most `share` of the values below it. Sorted by value.
+double area_quantile(const std::vector<std::pair<double, double>>& values, double area, double share) {
+    double sum = 0;
+    for (const auto& [value, weight] : values)
+        if ((sum += weight) >= share * area) return value;
+    return values.back().first;
+}
+
+void measure_thickness(const Mesh& small, WholeShape& shape) {
+    ThicknessOptions options;
+    options.rays = rays;
+    const std::vector<double> values = thickness(small, options);
+    std::vector<std::pair<double, double>> known;
+    double sum = 0, area = 0;
+    for (const Face face : small.faces()) {
+        const double a = face_area(small, face);
+        if (!std::isfinite(values[face]) || !(a > 0)) continue;
+        known.emplace_back(values[face], a);
+        area += a;
+        sum += a * values[face];
+    }
+    const double whole = surface_area(small);
+    if (!(area > 0.9 * whole) || !(sum > 0)) return;
+    std::sort(known.begin(), known.end());
+    const double mean = sum / area;
+    shape.thickness_mean = mean / std::sqrt(whole);
+    shape.thickness_median = area_quantile(known, area, 0.5) / mean;
+    shape.thickness_most = area_quantile(known, area, 0.9) / mean;
+}
 
 std::optional<double> compactness_of(const Mesh& mesh, double area) {
     for (const Halfedge h : mesh.halfedges())
@@ -39,12 +80,8 @@ WholeShape measure_whole_shape(const Mesh& mesh) {
     if (!(area > 0)) fail_input("mesh", "has no area", "is it the right file?");
     WholeShape shape;
     shape.compactness = compactness_of(mesh, area);
-    Mesh small = mesh;
-    if (mesh.number_of_vertices() > vertices) {
-        SimplifyOptions options;
-        options.vertices = vertices;
-        static_cast<void>(simplify(small, options));
-    }
+    const Mesh small = simplified_to(mesh, vertices);
+    measure_thickness(simplified_to(small, thickness_vertices), shape);
     std::vector<double> weights(small.number_of_vertices(), 0);
     for (const Face face : small.faces())
         for (const Vertex v : corners(small, face)) weights[v] += face_area(small, face) / 3;
@@ -56,9 +93,13 @@ WholeShape measure_whole_shape(const Mesh& mesh) {
     for (const Vertex v : small.vertices())
         if (weights[v] > 0) nearest[v] = (eigen(small.point(v)) - middle).norm();
     double sum = 0, squares = 0, weight = 0, maximum = 0;
+    const double size = std::sqrt(area);
     for (int s = 0; s < sources; ++s) {
         const auto at = std::max_element(nearest.begin(), nearest.end());
         if (!(*at > 0)) break;
+        if (s == 1) shape.second_point = *at / size;
+        if (s == 3) shape.fourth_point = *at / size;
+        if (s == 5) shape.sixth_point = *at / size;
         const auto distances = geodesic_distances(small, {static_cast<Index>(at - nearest.begin())});
         for (std::size_t v = 0; v < distances.size(); ++v) {
             if (!std::isfinite(distances[v])) continue;
@@ -73,7 +114,7 @@ WholeShape measure_whole_shape(const Mesh& mesh) {
             if (!std::isfinite(distances[v])) nearest[v] = -1;
     }
     if (!(weight > 0) || !(sum > 0)) return shape;
-    const double mean = sum / weight, size = std::sqrt(area);
+    const double mean = sum / weight;
     shape.geodesic_mean = mean / size;
     shape.geodesic_max = maximum / size;
     shape.geodesic_variation = std::sqrt(std::max(0.0, squares / weight - mean * mean)) / mean;

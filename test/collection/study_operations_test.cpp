@@ -86,6 +86,54 @@ TEST(LandmarkShapes, AreOfTheLandmarksInCommon) {
     EXPECT_EQ(common_landmarks(collection, read, false, "here").unit, "cm") << "the collection's word counts";
 }
 
+/// Eight landmarks that no mirror maps onto each other, made a little different by `seed`, times `scale`, mirrored or not.
+std::string skull(int seed, double scale = 1, bool mirrored = false, int count = 8, const std::string& unit = "mm") {
+    std::string points;
+    const double places[8][3] = {{0, 0, 0}, {4, 0, 0}, {0, 3, 0}, {0, 0, 2}, {4, 3, 1}, {1, 3, 2}, {4, 1, 2}, {2, 2, 3}};
+    for (int i = 0; i < count; ++i) {
+        points += (i == 0 ? "" : ",") + std::string("{\"label\": \"p") + std::to_string(i) + "\", \"position\": [";
+        for (int c = 0; c < 3; ++c) {
+            const double x = scale * (places[i][c] + 0.02 * ((seed * (i + 2) * (c + 3)) % 5 - 2));
+            points += (c == 0 ? "" : ",") + std::to_string(mirrored && c == 1 ? -x : x);
+        }
+        points += "], \"positionStatus\": \"defined\"}";
+    }
+    return R"({"markups": [{"type": "Fiducial", "coordinateSystem": "LPS", "coordinateUnits": ")" + unit +
+           R"(", "controlPoints": [)" + points + "]}]}";
+}
+
+TEST(LandmarkShapes, OddSpecimensAreNamedAndStopNothing) {
+    const MemoryFolder folder;
+    for (int i = 1; i <= 5; ++i) write_file(folder.path / ("s" + std::to_string(i) + ".mrk.json"), skull(i));
+    write_file(folder.path / "large.mrk.json", skull(6, 10));
+    write_file(folder.path / "mirrored.mrk.json", skull(7, 1, true));
+    write_file(folder.path / "poor.mrk.json", skull(8, 1, false, 2));
+    write_file(folder.path / "inches.mrk.json", skull(9, 1, false, 8, "in"));
+    write_file(folder.path / "unreadable.mrk.json", "{");
+    const auto report_of = [&](const char* option) {
+        Context context;
+        Call call(find_operation("study landmarks"));
+        call.set_object("collection", Object::of(folder.path, "markups"));
+        if (option != nullptr) call.set(option, true);
+        return call.run(context);
+    };
+    const Report report = report_of(nullptr);
+    EXPECT_EQ(report.result()["failed"].Size(), 1U);
+    EXPECT_EQ(report.result()["objects"].GetInt(), 7);
+    EXPECT_EQ(report.result()["landmarks"].GetInt(), 8) << "one poor object takes no landmark from the others";
+    std::map<std::string, std::pair<std::string, bool>> odd;
+    for (const auto& one : report.result()["odd"].GetArray())
+        odd[one["name"].GetString()] = {one["why"].GetString(), one["leftOut"].GetBool()};
+    ASSERT_EQ(odd.size(), 4U);
+    EXPECT_NE(odd["poor"].first.find("2 of the 8"), std::string::npos) << odd["poor"].first;
+    EXPECT_NE(odd["inches"].first.find("in in"), std::string::npos) << odd["inches"].first;
+    EXPECT_NE(odd["mirrored"].first.find("mirror"), std::string::npos);
+    EXPECT_NE(odd["large"].first.find("times as large"), std::string::npos);
+    EXPECT_TRUE(odd["poor"].second && odd["inches"].second);
+    EXPECT_FALSE(odd["mirrored"].second || odd["large"].second);
+    EXPECT_EQ(report_of("leave-odd-out").result()["objects"].GetInt(), 5);
+}
+
 TEST(TechniqueObjects, SayWhereTheirDirectionIsFrom) {
     const MemoryFolder folder;
     StatuetteParameters parameters;

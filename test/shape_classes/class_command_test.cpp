@@ -169,6 +169,37 @@ TEST_F(ClassCommand, PropagateSaysWhereTheTemplateDoesNotLie) {
               std::string::npos);
 }
 
+TEST_F(ClassCommand, AFileThatCannotBeReadStopsNoOther) {
+    const std::string vase = "'" OSTRAKA_SOURCE_DIR "/data/vase.ply'";
+    const auto learnt = run_command("template learn " + known() + " " + member(2) + " " + member(3) + " " + member(4) +
+                                    " --strangers " + vase + " --name idol --quiet --output " + quoted(scratch / "class"));
+    ASSERT_EQ(learnt.code, 0) << learnt.err;
+    const Json file = read_json(scratch / "class" / "idol.class.json");
+    validate(file, "class", "class");
+    ASSERT_EQ(file["strangers"].Size(), 1U);
+    EXPECT_STREQ(file["strangers"][0].GetString(), "vase");
+    write_file(scratch / "broken.ply", "ply\nformat ascii 1.0\nelement vertex 3\n");
+    const std::string idol = "template classify " + quoted(scratch / "class" / "idol.class.json") + " ",
+                      report = " --report " + quoted(scratch / "answer.json");
+    const auto asked = run_command(idol + quoted(scratch / "broken.ply") + " " + vase + report);
+    EXPECT_EQ(asked.code, 3) << asked.err;
+    EXPECT_NE(asked.err.find("broken.ply"), std::string::npos) << asked.err;
+    EXPECT_NE(asked.err.find("1 of 2 objects"), std::string::npos) << asked.err;
+    const Json answer = read_json(scratch / "answer.json");
+    validate(answer, "classification", "answer");
+    ASSERT_EQ(answer["objects"].Size(), 2U);
+    EXPECT_TRUE(answer["objects"][0].HasMember("problem"));
+    const auto& last = answer["objects"][1];
+    EXPECT_FALSE(last.HasMember("problem"));
+    EXPECT_STRNE(last["verdict"].GetString(), "member") << "a vase is no statuette";
+    EXPECT_TRUE(last["answers"][0]["explained"].HasMember("liesOn"));
+    EXPECT_NE(asked.out.find("the template explains"), std::string::npos) << asked.out;
+    // Of files none of which can be read nothing is left to say.
+    EXPECT_EQ(run_command(idol + quoted(scratch / "broken.ply")).code, 1);
+    // One that is not there is found out before any work.
+    EXPECT_EQ(run_command(idol + vase + " " + quoted(scratch / "missing.ply")).code, 1);
+}
+
 TEST_F(ClassCommand, WrongWordsAndFilesAreSaid) {
     // Before any work, and without leaving a folder.
     const std::string learn = "template learn " + known() + " " + quoted(scratch / "missing.ply");
@@ -186,6 +217,14 @@ TEST_F(ClassCommand, WrongWordsAndFilesAreSaid) {
     EXPECT_EQ(other.code, 1);
     EXPECT_NE(other.err.find("correspondence"), std::string::npos) << other.err;
     EXPECT_EQ(run_command("template classify " + member(1)).code, 2);
+    const auto stranger = run_command("template learn " + known() + " " + member(2) + " --strangers " +
+                                      quoted(scratch / "missing.ply") + " --output " + quoted(scratch / "class"));
+    EXPECT_EQ(stranger.code, 1);
+    EXPECT_NE(stranger.err.find("missing.ply"), std::string::npos) << stranger.err;
+    EXPECT_EQ(
+        run_command("template learn " + known() + " " + member(2) + " --accept 0.7 --output " + quoted(scratch / "class")).code,
+        2)
+        << "more than half of strangers is no limit";
     const auto folder =
         run_command("template learn " + known() + " " + quoted(scratch / "made") + " --output " + quoted(scratch / "class"));
     EXPECT_EQ(folder.code, 1);

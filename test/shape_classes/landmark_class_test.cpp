@@ -1,3 +1,4 @@
+#include "ostraka/shape_classes/landmark_class.h"
 #include "ostraka/core/json.h"
 #include "ostraka/interchange/landmarks.h"
 #include "ostraka/shape_classes/class_file.h"
@@ -71,6 +72,21 @@ TEST(LandmarkClass, IsLearntAndAskedWithoutASurface) {
     const auto bad = run_command(ask + quoted(scratch / "bad.mrk.json"));
     EXPECT_EQ(bad.code, 3);
     EXPECT_NE(bad.out.find("from the mean shape"), std::string::npos) << bad.out;
+
+    // Odd ones are named, and one that cannot be read stops none.
+    LearntMember object = read_landmark_member(scratch / "good.mrk.json", read_landmark_template(scratch / "good.mrk.json"));
+    EXPECT_TRUE(compare_with(box, object).odd.empty());
+    for (::ostraka::Point& p : object.fit.points) p = ::ostraka::Point(10 * p.x(), 10 * p.y(), 10 * p.z());
+    ASSERT_EQ(compare_with(box, object).odd.size(), 1U);
+    EXPECT_NE(compare_with(box, object).odd[0].find("times as large"), std::string::npos);
+    for (::ostraka::Point& p : object.fit.points) p = ::ostraka::Point(-p.x() / 10, p.y() / 10, p.z() / 10);
+    ASSERT_EQ(compare_with(box, object).odd.size(), 1U);
+    EXPECT_NE(compare_with(box, object).odd[0].find("mirror image"), std::string::npos);
+    write_box(scratch / "short.mrk.json", 2, {}, 0, 7);
+    const auto several = run_command(ask + quoted(scratch / "short.mrk.json") + " " + quoted(scratch / "good.mrk.json"));
+    EXPECT_EQ(several.code, 3);
+    EXPECT_NE(several.err.find("corner 7"), std::string::npos) << several.err;
+    EXPECT_NE(several.out.find("good belongs to 'box'"), std::string::npos) << several.out;
 }
 
 TEST(LandmarkClass, WhatIsMissingIsNamed) {
@@ -87,6 +103,10 @@ TEST(LandmarkClass, WhatIsMissingIsNamed) {
         run_command("template learn " + quoted(scratch / "a.mrk.json") + " " OSTRAKA_SOURCE_DIR "/data/vase.ply" + out);
     EXPECT_EQ(mixed.code, 1);
     EXPECT_NE(mixed.err.find("vase.ply"), std::string::npos) << mixed.err;
+    const auto strangers = run_command("template learn " + quoted(scratch / "a.mrk.json") + " --strangers " +
+                                       quoted(scratch / "short.mrk.json") + out);
+    EXPECT_EQ(strangers.code, 2);
+    EXPECT_NE(strangers.err.find("classes of meshes"), std::string::npos) << strangers.err;
     EXPECT_FALSE(std::filesystem::exists(scratch / "class")) << "nothing is written by what fails";
     // Of one member nothing can be refused, and nothing drawn.
     ASSERT_EQ(run_command("template learn " + quoted(scratch / "a.mrk.json") + out).code, 0);

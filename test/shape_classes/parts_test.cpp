@@ -85,6 +85,49 @@ TEST(Parts, AMembersOwnRegionsAreMeasuredWhereTheyAreTheSame) {
     EXPECT_NEAR(own_disagreement(known.known(), points_in(member.mesh), member).value_or(9), 1, 0.1);
 }
 
+TEST(Parts, ThatAreCountedUpAreMatchedByPlace) {
+    Tower known = tower();
+    known.graph.relationships.clear();
+    Tower other = tower();
+    // Corners, so that up is known.
+    for (const auto& [tag, x, y, z] : {std::tuple{"a", 0., 0., 0.}, {"b", 1., 0., 0.}, {"c", 0., 1., 0.}, {"d", 0., 0., 1.}})
+        for (const Vertex v : known.mesh.vertices())
+            if (CGAL::squared_distance(known.mesh.point(v), Point(x, y, z)) < 1e-12) {
+                Annotation corner;
+                corner.id = 10 + static_cast<int>(known.set.annotations.size());
+                corner.tag = tag;
+                corner.type = AnnotationType::point;
+                corner.points = {v.idx()};
+                known.set.annotations.push_back(corner);
+                other.set.annotations.push_back(corner);
+            }
+    // The one counts from below, the other from above.
+    known.set.annotations[0].tag = "part 0";
+    known.set.annotations[1].tag = "part 1";
+    WholeObject object = member_of(other, "object", 1, 0.5, 1);
+    object.annotations = other.set;
+    object.annotations.annotations[0].tag = "part 1";
+    object.annotations.annotations[1].tag = "part 0";
+    const MemberFit fit = fit_member(known.mesh, known.set, object);
+    ASSERT_TRUE(fit.problem.empty()) << fit.problem;
+    EXPECT_TRUE(std::any_of(fit.notes.begin(), fit.notes.end(),
+                            [](const std::string& note) { return note.find("'part' are counted up") != std::string::npos; }));
+    EXPECT_EQ(fit.placed_by, "landmarks");
+    EXPECT_LT(fit.residuals->off(), 0.1);
+    // The same as where words say which is which; words that are exchanged are believed.
+    const auto with_tags = [&](const std::string& low, const std::string& high) {
+        known.set.annotations[0].tag = "base";
+        known.set.annotations[1].tag = "top";
+        object.annotations.annotations[0].tag = low;
+        object.annotations.annotations[1].tag = high;
+        return fit_member(known.mesh, known.set, object);
+    };
+    const MemberFit words = with_tags("base", "top");
+    EXPECT_TRUE(words.notes.empty());
+    EXPECT_EQ(fit.points, words.points);
+    EXPECT_NE(fit.points, with_tags("top", "base").points);
+}
+
 TEST(Parts, TheOneThatIsFarthestOffIsNamed) {
     const std::vector<std::optional<double>> own{1.0, 4.0, std::nullopt, 0.5, 3.0}, usual{1.0, 2.0, 1.0, 1.0, std::nullopt};
     const PartsOff off = parts_off(own, usual);

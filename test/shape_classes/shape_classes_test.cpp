@@ -239,9 +239,9 @@ TEST(ShapeClass, WhatIsNeverNegativeIsNotAcceptedBelowZero) {
     double value = 0;  // one of them zero: no logarithm
     for (LearntMember& member : members)
         for (ClassQuantity& quantity : member.quantities)
-            if (quantity.name == "compactness") quantity.value = value, value += 0.1;
+            if (quantity.kind == QuantityKind::proportion) quantity.value = value, value += 0.1;
     const ShapeClass learnt = learn_class(known.known(), members);
-    const LearntRange* range = learnt.find("geometry compactness");
+    const LearntRange* range = learnt.find("proportion 7 ");
     ASSERT_NE(range, nullptr);
     ASSERT_TRUE(range->low.has_value());
     EXPECT_EQ(*range->low, 0);

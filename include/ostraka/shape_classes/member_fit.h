@@ -5,6 +5,7 @@
 #include "ostraka/reconstruction/fit.h"
 #include "ostraka/reconstruction/placement.h"
 #include "ostraka/registration/align.h"
+#include "ostraka/shape_classes/off_regions.h"
 
 #include <optional>
 
@@ -59,11 +60,23 @@ struct MemberFit {
     std::string problem;        ///< why it is not fitted, in words with the remedy; empty if it is
     std::vector<std::string> notes;
     std::optional<FitResiduals> residuals;  ///< none in correspondence
+    double near = 0;                        ///< surfaces farther apart do not lie on each other, in the object's unit
+    /// Regions of the object that no part of the template lies on, and of the fitted template that do not lie on the object,
+    /// where the object is. None in correspondence.
+    std::vector<OffRegion> foreign, missing;
 };
+
+/// Above this share of both surfaces that is off the other (FitResiduals::off) a fit says nothing of the object.
+inline constexpr double hopeless_fit = 0.5;
 
 /// In words with the numbers why the template does not lie on the object: `off()` is above `maximum`. Empty where it does, or
 /// where there are no residuals.
 std::string fit_is_off(const MemberFit& fit, double maximum);
+
+/// In words how much of the object the template explains and how much of it lies on the object, within which distance, and which
+/// regions do not: where they are, how much, how far off, and the nearest part of the template. A line each; none in
+/// correspondence.
+std::vector<std::string> explained_text(const MemberFit& fit);
 
 /// Whether an object has the template's triangles: as many vertices, and the same faces in the same order.
 bool in_correspondence(const Mesh& mesh, const Mesh& member);

@@ -52,7 +52,11 @@ std::vector<ClassQuantity> measure_quantities(const ClassTemplate& known, const 
 /// The residuals of a fit as quantities of kind geometry: "distance", "distance back", "unmatched", "unexplained", "stretch",
 /// "bend"; without values in correspondence.
 std::vector<ClassQuantity> geometry_quantities(const std::optional<FitResiduals>& residuals);
-/// The same of an object's own surface: "compactness", "geodesic mean", "geodesic most", "geodesic variation".
+/// The same of an object's own surface: "compactness", "geodesic mean", "geodesic most", "geodesic variation", "second", "fourth"
+/// and "sixth far point", "thickness mean", "thickness median", "thickness most".
 std::vector<ClassQuantity> geometry_quantities(const WholeShape& shape);
+
+/// "unmatched" and "unexplained": never above 1.
+bool is_share_of_surface(const ClassQuantity& quantity);
 
 }  // namespace ostraka

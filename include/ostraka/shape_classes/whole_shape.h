@@ -13,10 +13,18 @@ struct WholeShape {
     /// Of the lengths of shortest curves between the points of the surface, as shares of the square root of the area: mean,
     /// greatest, and standard deviation over the mean. Bending does not change them.
     std::optional<double> geodesic_mean, geodesic_max, geodesic_variation;
+    /// How far the second, the fourth and the sixth of points that are each as far as can be from those before it, is from these;
+    /// the first is the farthest from the middle. As shares of the square root of the area.
+    std::optional<double> second_point, fourth_point, sixth_point;
+    /// Shape diameter (`thickness`) over the surface: mean, as a share of the square root of the area; median, and what is
+    /// exceeded on a tenth of the surface, over the mean. None where rays leave a tenth of the surface or more without meeting
+    /// it.
+    std::optional<double> thickness_mean, thickness_median, thickness_most;
 };
 
 /// Geodesics run from 8 sources, each the farthest from those before it, over a copy simplified to 1500 vertices; pairs in
-/// different components do not count. Throws Error (input) for a mesh without area.
+/// different components do not count. Thickness is taken on a copy simplified to 600 vertices. Throws Error (input) for a mesh
+/// without area.
 WholeShape measure_whole_shape(const Mesh& mesh);
 
 }  // namespace ostraka

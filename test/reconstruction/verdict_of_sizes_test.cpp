@@ -1,0 +1,58 @@
+// What the sizes of fragments say where their landmarks depend on posture.
+#include "../../src/reconstruction/reconstruction_verdict.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+namespace ostraka {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Five landmarks on either side of a joint at the origin, bent by an angle; of one size with the template times `scale`.
+std::vector<LandmarkPair> bent(double angle, double scale) {
+    const Eigen::AngleAxisd joint(angle, Vector3d::UnitZ());
+    std::vector<LandmarkPair> pairs;
+    for (const double side : {-1.0, 1.0})
+        for (const auto& p :
+             {Vector3d(4, 0, 0), Vector3d(5, 1, 0), Vector3d(5, 0, 1), Vector3d(6, 0.5, 0.3), Vector3d(5.5, -0.8, 0.4)}) {
+            LandmarkPair pair;
+            pair.name = std::to_string(pairs.size());
+            pair.on_template = Vector3d(side * p.x(), p.y(), p.z());
+            pair.on_fragment = scale * (side > 0 ? Vector3d(joint * pair.on_template) : pair.on_template);
+            pairs.push_back(pair);
+        }
+    return pairs;
+}
+
+Reconstruction judged(const std::vector<std::vector<LandmarkPair>>& pairs) {
+    Reconstruction result;
+    result.placement = place_by_landmarks(pairs);
+    ReconstructOptions options;
+    options.residual = 10;  // sizes alone are asked
+    judge_reconstruction(result, pairs, {}, options);
+    return result;
+}
+
+TEST(VerdictOfSizes, PostureIsNoOtherSize) {
+    const Reconstruction same = judged({bent(0, 1), bent(0, 1)});
+    EXPECT_EQ(same.verdict, Compatibility::compatible) << same.undecided;
+    const Reconstruction posture = judged({bent(0, 1), bent(1.2, 1)});
+    EXPECT_LT(posture.placement.fragments[1].own_scale, 0.9) << "by all landmarks it is another size";
+    EXPECT_EQ(posture.verdict, Compatibility::undecided);
+    EXPECT_TRUE(posture.objections.empty());
+    EXPECT_NE(posture.undecided.find("posture"), std::string::npos) << posture.undecided;
+}
+
+TEST(VerdictOfSizes, AnotherSizeStaysOne) {
+    for (const double angle : {0.0, 0.2}) {
+        const Reconstruction other = judged({bent(0, 1), bent(angle, 1.4)});
+        EXPECT_EQ(other.verdict, Compatibility::incompatible) << angle;
+        ASSERT_FALSE(other.objections.empty());
+        EXPECT_EQ(other.objections.front().kind, ObjectionKind::size);
+    }
+}
+
+}  // namespace
+}  // namespace ostraka

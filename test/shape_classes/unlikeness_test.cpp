@@ -1,0 +1,182 @@
+#include "ostraka/shape_classes/unlikeness.h"
+
+#include "shape_classes/towers.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace ostraka {
+namespace {
+
+/// Three members whose logarithms of three quantities are -0.1, 0 and 0.1; "distance" is a residual.
+ShapeClass made() {
+    ShapeClass learnt;
+    learnt.resolution = 0;
+    learnt.members.resize(3);
+    for (const char* name : {"compactness", "geodesic mean", "distance"}) {
+        LearntRange& range = learnt.ranges.emplace_back();
+        range.quantity.name = name;
+        range.quantity.one_sided = std::string(name) == "distance";
+        for (const double log : {-0.1, 0.0, 0.1}) range.values.emplace_back(0.1 * std::exp(log));
+        range.count = 3;
+    }
+    return learnt;
+}
+
+std::vector<std::optional<double>> logs(double a, double b, double c) {
+    return {0.1 * std::exp(a), 0.1 * std::exp(b), 0.1 * std::exp(c)};
+}
+
+TEST(Unlikeness, CountsDeviationsOfOneMoreMember) {
+    const ShapeClass learnt = made();
+    const double deviation = 0.1 * std::sqrt(4.0 / 3);
+    EXPECT_NEAR(unlikeness(learnt, logs(0, 0, 0))->value, 0, 1e-9);
+    const auto off = unlikeness(learnt, logs(0.3, -0.6, 0.3));
+    ASSERT_TRUE(off);
+    EXPECT_NEAR(off->value, (0.3 + 0.6 + 0.3) / 3 / deviation, 1e-9);
+    EXPECT_EQ(off->worst, 1U);
+    EXPECT_NEAR(off->off, -0.6 / deviation, 1e-9);
+    EXPECT_NEAR(unlikeness(learnt, logs(0.3, 0, -5))->value, 0.1 / deviation, 1e-9) << "a small residual is no fault";
+    // Of two quantities nothing is said, nor by one member.
+    EXPECT_FALSE(unlikeness(learnt, {0.1, 0.1, std::nullopt}));
+    ShapeClass one = made();
+    for (LearntRange& range : one.ranges) range.values[1].reset(), range.values[2].reset();
+    EXPECT_FALSE(unlikeness(one, logs(0, 0, 0)));
+}
+
+TEST(Unlikeness, AMemberIsMeasuredByTheOthers) {
+    ShapeClass learnt = made();
+    measure_unlikeness(learnt);
+    const LearntRange& range = learnt.ranges.back();
+    EXPECT_EQ(range.quantity.name, unlike_the_members);
+    // The last one by the first two: mean -0.05, deviation 0.1 / sqrt(2) times sqrt(3 / 2).
+    EXPECT_NEAR(*range.values[2], 0.15 / (0.1 / std::sqrt(2.0) * std::sqrt(1.5)), 1e-9);
+    // Of the first one the residual is below the others'.
+    EXPECT_NEAR(*range.values[0], 2.0 / 3 * 0.15 / (0.1 / std::sqrt(2.0) * std::sqrt(1.5)), 1e-9);
+    const std::size_t before = learnt.ranges.size();
+    measure_unlikeness(learnt);
+    EXPECT_EQ(learnt.ranges.size(), before) << "the range is measured anew, not twice";
+    EXPECT_FALSE(unlikeness(learnt, logs(9, 9, 9)) == std::nullopt) << "it does not count for itself";
+    EXPECT_EQ(unlikeness(learnt,
+                         [] {
+                             auto values = logs(9, 9, 9);
+                             values.emplace_back(3);
+                             return values;
+                         }())
+                  ->count,
+              3U);
+}
+
+TEST(Unlikeness, SharesAreNeverFarFromAHundredPerCent) {
+    ShapeClass learnt = made();
+    learnt.ranges.back().quantity.name = "unexplained";
+    learnt.ranges.back().values = {0.2, 0.5, 0.8};
+    // Logits, a per cent from the ends: all that there is lies within a few deviations.
+    EXPECT_LT(std::abs(unlikeness(learnt, {0.1, 0.1, 1.0})->off), 4);
+    learnt.ranges.back().values = {0.0, 0.0, 0.01};
+    EXPECT_TRUE(std::isfinite(unlikeness(learnt, {0.1, 0.1, 1.0})->value));
+}
+
+TEST(Unlikeness, StrangersSayWhatIsRecognised) {
+    LearntRange range;
+    range.high = 3;
+    const std::vector<double> members{0.1, -0.2, 0.3, 0.0};
+    set_recognised(range, moments_of(members), 0.05, 0.15);
+    EXPECT_NEAR(*range.recognised, std::exp(predict(moments_of(members), true, 0.15).high), 1e-9);
+    std::vector<double> strangers{1.5, 1.0, 2.0, 1.2, 1.8};
+    for (const double log : strangers) range.strangers.emplace_back(std::exp(log));
+    set_recognised(range, moments_of(members), 0.05, 0.15);
+    for (double& log : strangers) log = -log;
+    EXPECT_NEAR(*range.recognised, std::exp(-predict(moments_of(strangers), true, 0.05).high), 1e-9)
+        << "what one in twenty is below";
+    EXPECT_NEAR(*range.high, 3, 1e-12) << "strangers are farther off on average";
+    const double one_class = *range.recognised;
+    range.high = 6;
+    set_recognised(range, moments_of(members), 0.05, 0.15);
+    EXPECT_NEAR(*range.high, std::exp(1.5), 1e-9) << "what is as unlike as strangers are on average is no member";
+    set_recognised(range, moments_of(members), 0.01, 0.15);
+    EXPECT_LT(*range.recognised, one_class) << "classes asked together share the rate";
+    range.high = 0.1;
+    set_recognised(range, moments_of(members), 0.05, 0.15);
+    EXPECT_EQ(*range.recognised, 0.1) << "what is refused is not recognised";
+}
+
+using test::ask_class;
+using test::class_of;
+using test::member_of;
+using test::Tower;
+using test::tower;
+
+std::vector<WholeObject> usual_towers(const Tower& known) {
+    std::vector<WholeObject> members;
+    for (const auto& [name, top, width] :
+         {std::tuple{"a", 0.9, 1.0}, {"b", 1.0, 1.05}, {"c", 1.1, 0.95}, {"d", 0.95, 1.0}, {"e", 1.05, 1.02}})
+        members.push_back(member_of(known, name, 1, top, width));
+    return members;
+}
+
+TEST(Classify, WhatTheTemplateDoesNotLieOnIsNoMember) {
+    const Tower known = tower();
+    const ShapeClass learnt = class_of(known, usual_towers(known));
+    LearntMember object = learn_member(known.known(), member_of(known, "x", 1, 1, 1));
+    object.fit.residuals.emplace();
+    EXPECT_EQ(compare_with(learnt, object).verdict, Membership::member);
+    object.fit.residuals->unmatched = 0.2;
+    object.fit.residuals->unexplained = 0.3;
+    OffRegion region;
+    region.share = 0.3;
+    region.part = "2 (top)";
+    object.fit.foreign.push_back(region);
+    const ClassAnswer answer = compare_with(learnt, object);
+    EXPECT_EQ(answer.verdict, Membership::undecided);
+    EXPECT_NE(answer.undecided.find("does not lie on it"), std::string::npos) << answer.undecided;
+    LearntMember elsewhere = object;
+    elsewhere.fit.residuals->unmatched = elsewhere.fit.residuals->unexplained = 0.6;
+    const ClassAnswer none = compare_with(learnt, elsewhere);
+    EXPECT_EQ(none.verdict, Membership::other) << "more than half of both is off";
+    ASSERT_FALSE(none.reasons().empty());
+    EXPECT_NE(none.reasons().front().find("does not lie on it"), std::string::npos) << none.reasons().front();
+    const auto lines = explained_text(object.fit);
+    ASSERT_EQ(lines.size(), 2U);
+    EXPECT_NE(lines[0].find("explains 70 %"), std::string::npos) << lines[0];
+    EXPECT_NE(lines[1].find("30 % of its surface"), std::string::npos) << lines[1];
+    EXPECT_NE(lines[1].find("2 (top)"), std::string::npos) << lines[1];
+    // Where members' own fits are as far off, it lies on the object as on them; not where that is not wanted.
+    std::vector<LearntMember> members;
+    for (const WholeObject& member : usual_towers(known)) {
+        members.push_back(learn_member(known.known(), member));
+        members.back().fit.residuals.emplace();
+        members.back().fit.residuals->unexplained = members.back().fit.residuals->unmatched =
+            0.2 + 0.02 * static_cast<double>(members.size());
+    }
+    const ShapeClass bent = learn_class(known.known(), members);
+    ASSERT_TRUE(bent.most_off);
+    EXPECT_GT(*bent.most_off, 0.25);
+    EXPECT_LE(*bent.most_off, 0.5) << "more than half of both is no member, whatever members do";
+    EXPECT_TRUE(compare_with(bent, object).off.empty());
+    ClassifyOptions strict;
+    strict.strict = true;
+    EXPECT_FALSE(compare_with(bent, object, strict).off.empty());
+}
+
+TEST(Classify, StrangersMakeTheAnswerCareful) {
+    const Tower known = tower();
+    std::vector<LearntMember> members, near, far;
+    for (const WholeObject& member : usual_towers(known)) members.push_back(learn_member(known.known(), member));
+    for (const double top : {1.25, 1.3, 1.35, 1.4}) near.push_back(learn_member(known.known(), member_of(known, "n", 1, top, 1)));
+    for (const double top : {4.0, 4.5, 5.0, 5.5}) far.push_back(learn_member(known.known(), member_of(known, "f", 1, top, 1)));
+    const std::string key = std::string("geometry ") + unlike_the_members;
+    const ShapeClass alone = learn_class(known.known(), members), careful = learn_class(known.known(), members, {}, near),
+                     sure = learn_class(known.known(), members, {}, far);
+    EXPECT_EQ(careful.strangers.size(), 4U);
+    EXPECT_EQ(alone.find(key)->values, careful.find(key)->values) << "strangers say nothing of what members are";
+    EXPECT_LT(*careful.find(key)->recognised, *sure.find(key)->recognised);
+    const ClassAnswer answer = ask_class(careful, known.known(), member_of(known, "x", 1, 1.2, 1));
+    if (answer.verdict == Membership::undecided)
+        EXPECT_NE(answer.undecided.find("4 strangers"), std::string::npos) << answer.undecided;
+    else EXPECT_EQ(answer.verdict, Membership::other);
+}
+
+}  // namespace
+}  // namespace ostraka
