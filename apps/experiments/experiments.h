@@ -3,6 +3,7 @@
 #include "ostraka/annotation/annotation.h"
 #include "ostraka/core/mesh.h"
 #include "ostraka/registration/pose_search.h"
+#include "ostraka/stats/boosted_trees.h"
 
 #include <cstdint>
 #include <string>
@@ -170,6 +171,17 @@ struct JoinExperiment {
 };
 /// Pairs of fragments of broken objects: right poses and calibration.
 void joins(const JoinExperiment& options);
+
+struct FacetExperiment {
+    int objects = 24;                 ///< pots and stones that the model is made from, and some made objects
+    std::uint64_t seed = 1;           ///< of objects and breaks
+    BoostOptions boosting;            ///< see stats/boosted_trees.h
+    std::string model;                ///< to make and write
+    std::vector<std::string> judged;  ///< see facet_cases
+    bool each = false;                ///< a row a fragment
+};
+/// Breaks told from intact surface, on objects left out and on others.
+void facets(const FacetExperiment& options);
 
 /// The sherds on the template made of them as a surface of revolution: axes, heights and rotations.
 void sherd_rotations(const BreakExperiment& options);

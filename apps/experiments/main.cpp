@@ -139,6 +139,20 @@ void declare_joins(CLI::App& command, JoinExperiment& options) {
     command.add_flag("--adjacent-only", options.adjacent_only, "only pairs that touch");
 }
 
+void declare_facets(CLI::App& command, FacetExperiment& options) {
+    ranged(command, "--objects", options.objects, "pots and stones that the model is made from", 4, 1000);
+    command.add_option("--seed", options.seed, "of objects and breaks");
+    ranged(command, "--trees", options.boosting.trees, "of the model", 1, 10000);
+    ranged(command, "--depth", options.boosting.depth, "of its trees", 1, 16);
+    command.add_option("--model", options.model,
+                       "model to make and write (data/facets.model.json); else the built-in one judges");
+    command
+        .add_option("--judge", options.judged,
+                    "pot:SEED, stone:SEED, made:NAME:SEED or a folder of fragments in assembled layout")
+        ->delimiter(',');
+    command.add_flag("--each", options.each, "a row a fragment");
+}
+
 void declare_moulds(CLI::App& command, MouldExperimentOptions& options) {
     command.add_option("output", options.output, "folder for tables and plots")->capture_default_str();
     command.add_option("--part", options.parts, "choices, wear, runs, scans; all if not given")
@@ -244,6 +258,8 @@ constexpr Experiment list[] = {
     {"pose-search", "pieces broken off objects, and where a search lays them", declared<declare_pose_search, pose_search>},
     {"break-pairs", "two halves of a bottle, and neighbours among scanned sherds", declared<declare_breaks, break_pairs>},
     {"joins", "pairs of fragments of broken objects: right poses and calibration", declared<declare_joins, joins>},
+    {"facets", "breaks told from intact surface: the model made, judged on objects left out and on scans",
+     declared<declare_facets, facets>},
     {"sherd-turns", "scanned sherds on the template turned from them, turns by breaks",
      declared<declare_breaks, sherd_rotations>},
     {"broken-pots", "made vessels, broken: turns by breaks", declared<declare_breaks, broken_pots>},

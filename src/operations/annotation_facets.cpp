@@ -17,7 +17,7 @@ struct AnnotationFacets final : Operation {
             .updates(annotations);
         p.options("unit", unit, "of a new file: unit of the mesh's coordinates, e.g. mm");
         options.describe(p.options);
-        p.report.values(boolean("shell"), number("thickness", "", "length"), number("confidence"));
+        p.report.values(text("answer"), boolean("shell"), number("thickness", "", "length"), number("confidence"));
         p.report.table("segments", text("facet", "facet"), integer("faces", "faces"), number("area", "area", "length^2"),
                        number("confidence", "confidence"));
     }
@@ -38,6 +38,7 @@ struct AnnotationFacets final : Operation {
         for (const FacetSegment& segment : facets.segments)
             report.row("segments")("facet", to_string(segment.facet))("faces", segment.faces.size())("area", segment.area)(
                 "confidence", segment.confidence, number(segment.confidence, 2));
+        report("answer", to_string(facets.answer));
         report("shell", facets.shell);
         if (facets.shell) report("thickness", facets.thickness);
         report("confidence", facets.confidence);
@@ -48,7 +49,8 @@ struct AnnotationFacets final : Operation {
             update_facet_annotations(set, facets);
             return output.write(std::move(set), on, mesh.file());
         }
-        report.note("no fracture is found, so " + output.file() + " is not written");
+        report.note(std::string(facets.answer == Facets::Answer::whole ? "there is no fracture" : "no fracture is found") +
+                    ", so " + output.file() + " is not written");
         report.answer_no();
     }
 
