@@ -173,11 +173,12 @@ struct JoinExperiment {
 void joins(const JoinExperiment& options);
 
 struct FacetExperiment {
-    int objects = 24;                 ///< pots and stones that the model is made from, and some made objects
+    int objects = 20;                 ///< of each kind that the model is made from
     std::uint64_t seed = 1;           ///< of objects and breaks
     BoostOptions boosting;            ///< see stats/boosted_trees.h
     std::string model;                ///< to make and write
     std::vector<std::string> judged;  ///< see facet_cases
+    std::string pictures;             ///< folder for coloured meshes of what is judged
     bool each = false;                ///< a row a fragment
 };
 /// Breaks told from intact surface, on objects left out and on others.

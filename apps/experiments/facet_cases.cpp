@@ -32,33 +32,42 @@ Mesh stretched(const Mesh& mesh, const Vector3d& factors) {
 /// A skin that is not smooth: carved or worn in the large, grainy in the small, or left as it is.
 Mesh skinned(const Mesh& mesh, Random& random, double most) {
     Mesh result = mesh;
-    if (random.uniform() < 0.5)
-        result = with_relief(result, most * random.uniform(0.2, 1), random.uniform(0.15, 0.5), random.bits() >> 12);
-    if (random.uniform() < 0.4)
-        result = with_relief(result, 0.15 * most * random.uniform(0.1, 1), random.uniform(0.04, 0.12), random.bits() >> 12);
+    const double coarse = random.uniform(0.1, 1) * most, fine = 0.15 * random.uniform(0.1, 1) * most;
+    const double far = random.uniform(0.25, 0.7), near = random.uniform(0.04, 0.12);
+    if (random.uniform() < 0.4) result = with_relief(result, coarse, far, random.bits() >> 12);
+    if (random.uniform() < 0.4) result = with_relief(result, fine, near, random.bits() >> 12);
     return result;
 }
 
-Mesh whole_object(const std::string& kind, const std::string& name, std::uint64_t seed) {
+Mesh whole_object(const std::string& kind, const std::string& name, std::uint64_t seed, bool bare) {
     Random random(seed, 177);
-    if (kind == "pot") {
+    if (kind == "pot" || kind == "thin") {
         PotOptions options;
         options.shape = seed;
         options.height = random.uniform(8, 25);
         options.radius = random.uniform(4, 10);
-        options.wall = random.uniform(0.25, 1.1);
+        options.wall = kind == "thin" ? random.uniform(0.1, 0.35) : random.uniform(0.3, 1.2);
         options.edge = random.uniform(0.25, 0.45);
-        return skinned(make_pot(options), random, 0.1 * options.wall / options.height);
+        const Mesh pot = make_pot(options);
+        return bare ? pot : skinned(pot, random, 0.1 * options.wall / options.height);
     }
     MakeOptions options;
     options.vertices = 4000 + random.below(16000);
     options.seed = 1 + random.below(1000);
-    if (kind == "made") return skinned(make_mesh(synthetic_object(name), options).mesh, random, 0.003);
-    // A stone.
-    const std::array<const char*, 6> bodies{"box", "cylinder", "sphere", "capsule", "statuette", "vase"};
-    const Mesh body = make_mesh(synthetic_object(bodies[random.below(bodies.size())]), options).mesh;
+    if (kind == "made") {
+        const Mesh mesh = make_mesh(synthetic_object(name), options).mesh;
+        return bare ? mesh : skinned(mesh, random, 0.002);
+    }
+    if (kind != "stone") fail_usage("'" + kind + "' is no source of fragments", "write pot, thin, stone or made");
+    const std::array<const char*, 8> bodies{"box", "cylinder", "sphere", "capsule", "statuette", "box", "head", "head"};
+    const std::string body = bodies[random.below(bodies.size())];
+    ArchetypeOptions head;
+    head.long_hair = random.uniform() < 0.5;
+    head.seed = seed;
+    const Mesh mesh = body == "head" ? make_mesh(*head_object(head_archetype(head)), options).mesh
+                                     : make_mesh(synthetic_object(body), options).mesh;
     const Vector3d factors(random.uniform(0.4, 1), random.uniform(0.5, 1.2), random.uniform(0.6, 1.5));
-    return skinned(stretched(body, factors), random, 0.02);
+    return skinned(stretched(mesh, factors), random, 0.01);
 }
 
 /// What a scanner's cloud of it gives: a surface through points of about even spacing, a little off.
@@ -111,9 +120,9 @@ std::vector<FacetCase> made_cases(const std::string& source) {
     const bool whole = words.back() == "whole";
     if (whole) words.pop_back();
     if (words.size() < 2 || (words[0] == "made") != (words.size() == 3))
-        fail_usage("'" + source + "' is no source of fragments", "write pot:SEED, stone:SEED or made:NAME:SEED");
+        fail_usage("'" + source + "' is no source of fragments", "write pot:SEED, thin:SEED, stone:SEED or made:NAME:SEED");
     const std::uint64_t seed = std::stoull(words.back());
-    const Mesh object = whole_object(words[0], words[1], seed);
+    const Mesh object = whole_object(words[0], words[1], seed, whole);
     Random random(seed, 178);
     ShatterOptions breaking;
     breaking.pieces = 2 + static_cast<int>(random.below(9));

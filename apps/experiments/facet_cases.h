@@ -16,7 +16,8 @@ struct FacetCase {
 };
 
 /// `source`:
-///     pot:SEED, stone:SEED    a vessel, or a block, boulder or figure with a carved or worn skin
+///     pot:SEED, thin:SEED     a vessel, or one with thin walls
+///     stone:SEED              a block, boulder, head or figure, stretched, perhaps with a carved or worn skin
 ///     made:NAME:SEED          a made object (synthetic/synthetic_object.h)
 ///     ...:whole               not broken at all
 ///     FOLDER                  scanned fragments in assembled layout: what lies close to another one and faces it is broken

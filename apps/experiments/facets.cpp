@@ -1,4 +1,5 @@
 // Breaks told from intact surface: the model is made and judged on objects left out, and on scanned fragments.
+#include "coloured_mesh.h"
 #include "experiments.h"
 #include "facet_cases.h"
 #include "report.h"
@@ -48,16 +49,21 @@ Seen seen(FacetCase given) {
     return result;
 }
 
-struct Samples {
-    FeatureTable table;
+/// Trees from what `table` gives of each fragment that is not in the fold; of all of them where `fold` is none.
+template <class Table>
+BoostedTrees learnt(const std::vector<Seen>& all, std::size_t fold, const BoostOptions& options, Table&& table) {
+    FeatureTable rows;
     std::vector<bool> truth;
-    void add(const Seen& one) {
-        for (const std::size_t p : one.sampled) {
-            table.add(one.evidence.features.row(p));
-            truth.push_back(one.broken[p] > 0.5);
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        if (all[k].fold == fold) continue;
+        const FeatureTable& features = table(k);
+        for (const std::size_t p : all[k].sampled) {
+            rows.add(features.row(p));
+            truth.push_back(all[k].broken[p] > 0.5);
         }
     }
-};
+    return boost(rows, truth, {}, options);
+}
 
 /// Log odds shift + slope x that fit the truth best (Platt 1999).
 std::pair<double, double> calibrated(const std::vector<double>& odds, const std::vector<bool>& truth) {
@@ -80,7 +86,7 @@ std::pair<double, double> calibrated(const std::vector<double>& odds, const std:
 struct Score {
     std::array<std::array<double, 2>, 2> area{};  ///< [truth][called]
     std::array<std::array<double, 3>, 10> bins{};
-    double seconds = 0, faces = 0;
+    double seconds = 0, faces = 0, alike = 0;  ///< alike: area that agrees by its own probability alone
     std::size_t fragments = 0, unclear = 0, whole = 0, passed = 0;
 
     void add(const Score& other) {
@@ -88,7 +94,7 @@ struct Score {
             for (int j = 0; j < 2; ++j) area[i][j] += other.area[i][j];
         for (std::size_t b = 0; b < bins.size(); ++b)
             for (std::size_t k = 0; k < 3; ++k) bins[b][k] += other.bins[b][k];
-        seconds += other.seconds, faces += other.faces, fragments += other.fragments;
+        seconds += other.seconds, faces += other.faces, alike += other.alike, fragments += other.fragments;
         unclear += other.unclear, whole += other.whole, passed += other.passed;
     }
     [[nodiscard]] double all() const { return area[0][0] + area[0][1] + area[1][0] + area[1][1]; }
@@ -102,15 +108,16 @@ struct Score {
     }
 };
 
-/// Of one fragment; areas as shares of its own.
-Score score(const Seen& one, const FacetModel& model) {
+/// Of one fragment.
+Score score(const Seen& one, const std::vector<double>& log_odds) {
     Score result;
     const std::clock_t begin = std::clock();
-    const Facets found = find_facets(one.given.mesh, one.evidence, model.log_odds(one.evidence.features));
+    const Facets found = find_facets(one.given.mesh, one.evidence, log_odds);
     result.seconds = one.seconds + static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
     const Mesh& mesh = one.given.mesh;
     for (const Face f : mesh.faces()) {
-        const double area = face_area(mesh, f) / one.evidence.graph.area, p = found.probability[f];
+        const double area = face_area(mesh, f), p = found.probability[f];
+        result.alike += (p > 0.5) == one.given.broken[f] ? area : 0;
         result.area[one.given.broken[f] ? 1 : 0][found.of_face[f] == Facet::fracture ? 1 : 0] += area;
         auto& bin = result.bins[static_cast<std::size_t>(std::min(9.0, 10 * p))];
         bin[0] += area, bin[1] += area * p, bin[2] += one.given.broken[f] ? area : 0;
@@ -124,42 +131,62 @@ Score score(const Seen& one, const FacetModel& model) {
 }
 
 void print(const std::string& name, const Score& s) {
-    std::cout << format("| %s | %zu | %.1f | %.1f | %.1f | %.1f | %zu | %zu, %zu | %.3f | %.2f |\n", name.c_str(), s.fragments,
-                        100 * (s.area[1][0] + s.area[1][1]) / s.all(), 100 * s.agreement(), 100 * s.recall(), 100 * s.precision(),
-                        s.passed, s.whole, s.unclear, s.calibration_error(), s.seconds / s.faces * 1e5)
+    std::cout << format("| %s | %zu | %.1f | %.1f | %.1f | %.1f | %.1f | %zu | %zu, %zu | %.3f | %.2f |\n", name.c_str(),
+                        s.fragments, 100 * (s.area[1][0] + s.area[1][1]) / s.all(), 100 * s.agreement(), 100 * s.alike / s.all(),
+                        100 * s.recall(), 100 * s.precision(), s.passed, s.whole, s.unclear, s.calibration_error(),
+                        s.seconds / s.faces * 1e5)
               << std::flush;
 }
 
 void print_head() {
-    std::cout
-        << "\n| object | fragments | broken % | agreement % | recall % | precision % | agree by 90 % | called whole, unclear "
-           "| calibration error | s for 100 000 faces |\n|---|---|---|---|---|---|---|---|---|---|\n";
+    std::cout << "\n| object | fragments | broken % | agreement % | alone % | recall % | precision % | agree by 90 % | called "
+                 "whole, unclear "
+                 "| calibration error | s for 100 000 faces |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
 }
 
 void write_model(const Path& file, const FacetModel& model, const std::string& recipe) {
     Json document;
     document.SetObject();
     auto& allocator = document.GetAllocator();
-    add_members(document, allocator, "recipe", recipe, "features", FacetEvidence::names(), "shift",
+    add_members(document, allocator, "recipe", recipe, "features", facet_feature_names(), "shift",
                 std::round(1e4 * model.shift) / 1e4, "slope", std::round(1e4 * model.slope) / 1e4);
-    JsonValue trees = model.trees.to_json(allocator);
-    for (auto& member : trees.GetObject()) document.AddMember(member.name, member.value, allocator);
+    document.AddMember("first", model.first.to_json(allocator), allocator);
+    document.AddMember("second", model.second.to_json(allocator), allocator);
     write_file(file, to_compact_text(document) + "\n");
+}
+
+/// As it is known, as it is likely, as it is found.
+void pictures(const Seen& one, const std::vector<double>& log_odds, const Path& folder) {
+    const Mesh& mesh = one.given.mesh;
+    const Facets found = find_facets(mesh, one.evidence, log_odds);
+    const auto write = [&](const std::string& what, auto&& value) {
+        std::vector<double> values;
+        for (const Vertex v : mesh.vertices()) {
+            double sum = 0, count = 1e-9;
+            for (const Face f : mesh.faces_around_target(mesh.halfedge(v)))
+                if (f != Mesh::null_face()) sum += value(f), ++count;
+            values.push_back(sum / count);
+        }
+        write_coloured(folder / (one.given.object + "-" + one.given.name + "-" + what + ".ply"), mesh, values, 1);
+    };
+    write("known", [&](Face f) { return one.given.broken[f] ? 1.0 : 0.0; });
+    write("likely", [&](Face f) { return found.probability[f]; });
+    write("found", [&](Face f) { return found.of_face[f] == Facet::fracture ? 1.0 : 0.0; });
 }
 
 std::vector<std::string> own_sources(const FacetExperiment& options) {
     std::vector<std::string> sources;
     const auto add = [&](const std::string& one) { sources.push_back(one); };
+    const std::array<const char*, 10> names{"box",     "vase",   "cylinder", "hand",  "statuette",
+                                            "capsule", "teapot", "sphere",   "chair", "torus"};
     for (int k = 1; k <= options.objects; ++k) {
-        const std::string seed = std::to_string(options.seed * 1000 + static_cast<std::uint64_t>(k));
-        add("pot:" + seed);
-        add("stone:" + seed);
-        if (k % 3 == 0) add("pot:" + seed + ":whole");
-        if (k % 3 == 1) add("stone:" + seed + ":whole");
-        if (k <= (options.objects + 1) / 2)
-            for (const char* name : {"hand", "statuette", "teapot", "vase", "box", "cylinder"})
-                if ((static_cast<std::size_t>(k) + std::string(name).size()) % 3 == 0)
-                    add(std::string("made:") + name + ":" + seed);
+        const std::string seed = ":" + std::to_string(options.seed * 1000 + static_cast<std::uint64_t>(k));
+        const std::string name = names[static_cast<std::size_t>(k) % names.size()];
+        for (const char* source : {"pot", "stone", "thin"}) add(source + seed);
+        add("made:" + name + seed);
+        if (k % 3 == 0) add("pot" + seed + ":whole");
+        if (k % 3 == 1) add("stone" + seed + ":whole");
+        add("made:" + name + seed + ":whole");
     }
     return sources;
 }
@@ -205,39 +232,41 @@ void facets(const FacetExperiment& options) {
         const Stopwatch watch;
         const std::vector<Seen> all = all_seen(own_sources(options), folds);
         std::cout << format("%zu fragments in %.0f s\n", all.size(), watch.seconds().wall) << std::flush;
-        std::vector<double> odds;
+        // Each fragment's first answers are of trees that have not seen its object: the second trees learn what such answers are
+        // worth. Calibrated and judged likewise.
+        std::vector<std::vector<double>> odds(all.size());
+        std::vector<FeatureTable> around(all.size());
+        const auto features = [&](std::size_t k) -> const FeatureTable& { return all[k].evidence.features; };
+        const auto surroundings = [&](std::size_t k) -> const FeatureTable& { return around[k]; };
+        for (std::size_t fold = 0; fold < folds; ++fold) {
+            const BoostedTrees trees = learnt(all, fold, options.boosting, features);
+            for (std::size_t k = 0; k < all.size(); ++k)
+                if (all[k].fold == fold)
+                    around[k] = with_surroundings(all[k].evidence, log_odds_of(trees, all[k].evidence.features));
+        }
+        std::vector<double> sampled;
         std::vector<bool> truth;
-        std::vector<Score> scores(all.size());
-        for (int round = 0; round < 2; ++round) {
-            // The first round calibrates, the second judges with that.
-            static std::vector<FacetModel> left_out(folds);
-            for (std::size_t fold = 0; fold < folds; ++fold) {
-                if (round == 0) {
-                    Samples samples;
-                    for (const Seen& one : all)
-                        if (one.fold != fold) samples.add(one);
-                    left_out[fold].trees = boost(samples.table, samples.truth, {}, options.boosting);
-                }
-                for (std::size_t k = 0; k < all.size(); ++k) {
-                    if (all[k].fold != fold) continue;
-                    if (round == 1) {
-                        left_out[fold].shift = model.shift, left_out[fold].slope = model.slope;
-                        scores[k] = score(all[k], left_out[fold]);
-                        continue;
-                    }
-                    for (const std::size_t p : all[k].sampled) {
-                        odds.push_back(left_out[fold].trees.log_odds(all[k].evidence.features.row(p)));
-                        truth.push_back(all[k].broken[p] > 0.5);
-                    }
+        for (std::size_t fold = 0; fold < folds; ++fold) {
+            const BoostedTrees trees = learnt(all, fold, options.boosting, surroundings);
+            for (std::size_t k = 0; k < all.size(); ++k) {
+                if (all[k].fold != fold) continue;
+                odds[k] = log_odds_of(trees, around[k]);
+                for (const std::size_t p : all[k].sampled) {
+                    sampled.push_back(odds[k][p]);
+                    truth.push_back(all[k].broken[p] > 0.5);
                 }
             }
-            if (round == 0) std::tie(model.shift, model.slope) = calibrated(odds, truth);
+        }
+        std::tie(model.shift, model.slope) = calibrated(sampled, truth);
+        std::vector<Score> scores;
+        for (std::size_t k = 0; k < all.size(); ++k) {
+            for (double& one : odds[k]) one = model.shift + model.slope * one;
+            scores.push_back(score(all[k], odds[k]));
         }
         std::cout << format("left out, calibrated by %.3f + %.3f x; %.0f s\n", model.shift, model.slope, watch.seconds().wall);
         by_object(all, scores, true);
-        Samples samples;
-        for (const Seen& one : all) samples.add(one);
-        model.trees = boost(samples.table, samples.truth, {}, options.boosting);
+        model.first = learnt(all, folds, options.boosting, features);
+        model.second = learnt(all, folds, options.boosting, surroundings);
         write_model(
             options.model, model,
             format("ostraka_experiments facets --objects %d --seed %llu --trees %d --depth %d --model FILE", options.objects,
@@ -248,7 +277,9 @@ void facets(const FacetExperiment& options) {
     std::vector<Score> scores;
     for (const std::string& source : options.judged)
         for (Seen& one : all_seen({source}, 1)) {
-            scores.push_back(score(one, model));
+            const std::vector<double> log_odds = model.log_odds(one.evidence);
+            scores.push_back(score(one, log_odds));
+            if (!options.pictures.empty()) pictures(one, log_odds, options.pictures);
             if (options.each) print(one.given.object + " " + one.given.name, scores.back());
             all.push_back(std::move(one));
         }

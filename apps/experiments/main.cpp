@@ -140,7 +140,7 @@ void declare_joins(CLI::App& command, JoinExperiment& options) {
 }
 
 void declare_facets(CLI::App& command, FacetExperiment& options) {
-    ranged(command, "--objects", options.objects, "pots and stones that the model is made from", 4, 1000);
+    ranged(command, "--objects", options.objects, "of each kind that the model is made from", 4, 1000);
     command.add_option("--seed", options.seed, "of objects and breaks");
     ranged(command, "--trees", options.boosting.trees, "of the model", 1, 10000);
     ranged(command, "--depth", options.boosting.depth, "of its trees", 1, 16);
@@ -150,6 +150,7 @@ void declare_facets(CLI::App& command, FacetExperiment& options) {
         .add_option("--judge", options.judged,
                     "pot:SEED, stone:SEED, made:NAME:SEED or a folder of fragments in assembled layout")
         ->delimiter(',');
+    command.add_option("--pictures", options.pictures, "folder for coloured meshes of what is judged");
     command.add_flag("--each", options.each, "a row a fragment");
 }
 

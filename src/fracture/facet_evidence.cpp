@@ -1,10 +1,10 @@
 #include "ostraka/fracture/facet_evidence.h"
 
+#include "facet_columns.h"
 #include "ostraka/core/angles.h"
 #include "ostraka/core/dense.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/geom/eigen.h"
-#include "ostraka/geom/point_tree.h"
 
 #include <algorithm>
 #include <array>
@@ -16,57 +16,6 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 namespace {
-
-/// Radii of neighbourhoods, as shares of the fragment's size.
-constexpr std::array<double, 4> scales{0.025, 0.05, 0.1, 0.2};
-/// Every so many samples are looked at in each: about a hundred.
-constexpr std::array<std::size_t, 4> strides{1, 1, 4, 16};
-constexpr std::size_t sample_count = 12000;
-
-/// Points spread evenly over the surface.
-struct Samples {
-    std::vector<Point> points;
-    std::vector<Index> patch;
-};
-
-Samples samples_on(const Mesh& mesh, const FacetGraph& graph) {
-    Samples samples;
-    const double step = graph.area / sample_count;
-    double sum = 0;
-    std::size_t k = 0;
-    for (const Face f : mesh.faces()) {
-        sum += face_area(mesh, f);
-        while (k < sample_count && (static_cast<double>(k) + 0.5) * step < sum) {
-            // The R2 sequence, folded into the triangle.
-            const auto share = [&](double rate) { return std::fmod(0.5 + rate * static_cast<double>(k + 1), 1.0); };
-            double u = share(0.7548776662466927), v = share(0.5698402909980532);
-            if (u + v > 1) u = 1 - u, v = 1 - v;
-            const auto [a, b, c] = corners(mesh, f);
-            const Point &p = mesh.point(a), &q = mesh.point(b), &r = mesh.point(c);
-            samples.points.push_back(p + u * (q - p) + v * (r - p));
-            samples.patch.push_back(graph.patch_of_face[f]);
-            ++k;
-        }
-    }
-    return samples;
-}
-
-/// Every `stride`-th sample, to be found by place.
-struct Level {
-    PointTree tree;
-    std::vector<Index> samples;
-};
-
-Level level_of(const Samples& samples, std::size_t stride) {
-    Level level;
-    std::vector<Point> points;
-    for (std::size_t k = stride / 2; k < samples.points.size(); k += stride) {
-        points.push_back(samples.points[k]);
-        level.samples.push_back(static_cast<Index>(k));
-    }
-    level.tree = PointTree(points);
-    return level;
-}
 
 /// The shape of the surface about a place.
 struct Shape {
@@ -149,78 +98,45 @@ double quantile(const std::vector<double>& values, const std::vector<double>& ar
 /// Roots of logarithms: of a share that may vanish.
 double level(double x) { return std::log10(1e-4 + x); }
 
-/// A column a feature, each with its name: values are handed over a feature at a time.
-class Columns {
-public:
-    explicit Columns(std::size_t rows) : rows_(rows) {}
-    template <class Of>
-    void add(const std::string& name, Of&& of) {
-        names.push_back(name);
-        auto& column = columns_.emplace_back(rows_);
-        for (std::size_t r = 0; r < rows_; ++r) {
-            const double value = of(r);
-            column[r] = static_cast<float>(std::isfinite(value) ? std::clamp(value, -1e6, 1e6) : 1e6);
-        }
-    }
-    [[nodiscard]] FeatureTable table() const {
-        FeatureTable result;
-        result.columns = columns_.size();
-        result.values.reserve(rows_ * columns_.size());
-        for (std::size_t r = 0; r < rows_; ++r)
-            for (const auto& column : columns_) result.values.push_back(column[r]);
-        return result;
-    }
-    std::vector<std::string> names;
-
-private:
-    std::size_t rows_;
-    std::vector<std::vector<float>> columns_;
-};
-
 class Measurer {
 public:
-    Measurer(const Mesh& mesh, const FacetGraph& graph, const Walls& walls)
-        : mesh_(mesh), graph_(graph), walls_(walls), columns_(graph.count()), samples_(samples_on(mesh, graph)) {
-        for (const std::size_t stride : strides) levels_.push_back(level_of(samples_, stride));
-        for (std::size_t s = 0; s < scales.size(); ++s) {
-            // Less than the mesh resolves shows nothing.
-            radii_[s] = std::max(scales[s] * graph.size, (1.5 + static_cast<double>(s)) * graph.edge);
-            radii_[s] = std::min(radii_[s], 0.4 * graph.size);
-        }
+    explicit Measurer(FacetEvidence& evidence)
+        : evidence_(evidence),
+          graph_(evidence.graph),
+          walls_(evidence.walls),
+          samples_(evidence.samples),
+          columns_(graph_.count()),
+          radii_(facet_scales(graph_)) {
+        for (const double radius : radii_) trees_.push_back(SampleTree::for_radius(graph_, samples_, radius));
     }
 
-    Columns run() {
+    FeatureColumns run() {
         shapes();
         walls();
         edges();
-        segments("part", convex_parts(graph_, 40 * degree));
-        segments("small part", convex_parts(graph_, 25 * degree));
+        segments("part", evidence_.parts[0]);
+        segments("small part", evidence_.parts[1]);
         columns_.add("edge of the mesh", [&](std::size_t) { return level(graph_.edge / graph_.size); });
         return std::move(columns_);
     }
 
 private:
-    /// Indices of samples around a patch on the same side of the surface.
-    void around(std::size_t p, double radius, const Level& of, std::vector<Index>& found) const {
-        of.tree.within(graph_.places[p], radius, found);
-        std::size_t kept = 0;
-        for (const Index k : found) {
-            const Index sample = of.samples[k];
-            if (graph_.normals[samples_.patch[sample]] * graph_.normals[p] > -0.4) found[kept++] = sample;
-        }
-        found.resize(kept);
+    /// Samples around a patch on the same side of the surface.
+    void around(std::size_t p, std::size_t s, std::vector<Index>& found) const {
+        trees_[s].within(graph_.places[p], radii_[s], found);
+        std::erase_if(found, [&](Index k) { return graph_.normals[samples_.patch[k]] * graph_.normals[p] <= -0.4; });
     }
 
     void shapes() {
         const std::size_t n = graph_.count();
-        std::array<std::vector<Shape>, scales.size()> shapes;
-        for (std::size_t s = 0; s < scales.size(); ++s) {
+        std::array<std::vector<Shape>, scale_count> shapes;
+        for (std::size_t s = 0; s < scale_count; ++s) {
             shapes[s].resize(n);
             parallel_for(
                 n,
                 [&](std::size_t p) {
                     std::vector<Index> found;
-                    around(p, radii_[s], levels_[s], found);
+                    around(p, s, found);
                     std::vector<Vector3d> points, normals;
                     for (const Index k : found) {
                         points.push_back(eigen(samples_.points[k]));
@@ -231,7 +147,7 @@ private:
                 64);
         }
         // Means over the next two larger neighbourhoods, so that a place shows what its surroundings are like.
-        for (std::size_t s = 0; s < scales.size(); ++s) {
+        for (std::size_t s = 0; s < scale_count; ++s) {
             const std::string at = " at " + std::to_string(s);
             const auto& here = shapes[s];
             columns_.add("plane" + at, [&](std::size_t p) { return level(here[p].plane); });
@@ -242,14 +158,15 @@ private:
         const std::vector<double>& areas = graph_.areas;
         for (std::size_t s = 0; s < 3; ++s) {
             const std::string at = " at " + std::to_string(s);
+            const auto& here = shapes[s];
             std::vector<double> rough(n), bent(n);
             const std::vector<double> mean_rough = [&] {
                 std::vector<double> values(n);
                 for (std::size_t p = 0; p < n; ++p) values[p] = shapes[s][p].quadric;
-                return averaged(values, std::min<std::size_t>(s + 1, 2));
+                return averaged(values, s);
             }();
             for (std::size_t p = 0; p < n; ++p) rough[p] = level(mean_rough[p]), bent[p] = shapes[s][p].bend;
-            bent = averaged(bent, std::min<std::size_t>(s + 1, 2));
+            bent = averaged(bent, s);
             const double low = quantile(rough, areas, 0.2), middle = quantile(rough, areas, 0.5);
             const std::vector<double> rank = ranks(rough, areas), bend_rank = ranks(bent, areas);
             columns_.add("roughness" + at, [&](std::size_t p) { return rough[p]; });
@@ -259,28 +176,14 @@ private:
             columns_.add("mean bend" + at, [&](std::size_t p) { return bent[p]; });
             columns_.add("rank of bend" + at, [&](std::size_t p) { return bend_rank[p]; });
             if (s == 1) rough_ = rough, bent_ = bent;
+            if (s == 0)
+                for (std::size_t p = 0; p < n; ++p) evidence_.convexity.push_back(std::max(0.0, -here[p].side));
         }
     }
 
-    /// Means over the samples around each patch that face the same way.
     [[nodiscard]] std::vector<double> averaged(const std::vector<double>& values, std::size_t s) const {
-        std::vector<double> result(values.size());
-        parallel_for(
-            values.size(),
-            [&](std::size_t p) {
-                std::vector<Index> found;
-                levels_[s].tree.within(graph_.places[p], radii_[s], found);
-                double sum = 1e-3 * values[p], count = 1e-3;
-                for (const Index k : found) {
-                    const Index q = samples_.patch[levels_[s].samples[k]];
-                    if (graph_.normals[q] * graph_.normals[p] < 0.5) continue;
-                    sum += values[q];
-                    ++count;
-                }
-                result[p] = sum / count;
-            },
-            64);
-        return result;
+        const std::size_t larger = std::min<std::size_t>(s + 1, 2);
+        return mean_about(evidence_, trees_[larger], radii_[larger], values);
     }
 
     [[nodiscard]] bool over_wall(std::size_t p) const {
@@ -298,19 +201,16 @@ private:
         const std::size_t n = graph_.count();
         std::vector<double> along(n, -1), sides(n, 0), reach(n, 1);
         const double radius = std::min(1.6 * typical, 0.3 * graph_.size);
-        // About a hundred samples.
-        const auto stride =
-            static_cast<std::size_t>(std::clamp(sample_count * pi * radius * radius / (100 * graph_.area), 1.0, 32.0));
-        const Level level = level_of(samples_, stride);
+        const SampleTree tree = SampleTree::for_radius(graph_, samples_, radius);
         parallel_for(
             n,
             [&](std::size_t p) {
                 std::vector<Index> found;
-                level.tree.within(graph_.places[p], radius, found);
+                tree.within(graph_.places[p], radius, found);
                 Matrix3d sum = Matrix3d::Zero();
                 double count = 0, nearest = radius;
                 for (const Index k : found) {
-                    const Index q = samples_.patch[level.samples[k]];
+                    const Index q = samples_.patch[k];
                     if (!over_wall(q)) continue;
                     const Vector3d normal = eigen(graph_.normals[q]);
                     sum += normal * normal.transpose();
@@ -437,34 +337,39 @@ private:
         }
     }
 
-    const Mesh& mesh_;
+    FacetEvidence& evidence_;
     const FacetGraph& graph_;
     const Walls& walls_;
-    Columns columns_;
-    Samples samples_;
-    std::vector<Level> levels_;
-    std::array<double, scales.size()> radii_{};
+    const SurfaceSamples& samples_;
+    FeatureColumns columns_;
+    std::array<double, scale_count> radii_;
+    std::vector<SampleTree> trees_;
     std::vector<double> rough_, bent_;  ///< of each patch, in the middle scale
 };
+
+FeatureColumns measure(const Mesh& mesh, FacetEvidence& evidence) {
+    evidence.graph = facet_graph(mesh);
+    evidence.walls = walls_under(mesh, evidence.graph);
+    evidence.samples = surface_samples(mesh, evidence.graph);
+    evidence.parts = {convex_parts(evidence.graph, 40 * degree), convex_parts(evidence.graph, 25 * degree)};
+    return Measurer(evidence).run();
+}
 
 }  // namespace
 
 FacetEvidence facet_evidence(const Mesh& mesh) {
     FacetEvidence evidence;
-    evidence.graph = facet_graph(mesh);
-    evidence.walls = walls_under(mesh, evidence.graph);
-    evidence.features = Measurer(mesh, evidence.graph, evidence.walls).run().table();
+    evidence.features = measure(mesh, evidence).table();
     return evidence;
 }
 
-const std::vector<std::string>& FacetEvidence::names() {
+const std::vector<std::string>& facet_feature_names() {
     static const std::vector<std::string> names = [] {
         TriangleSoup soup;
         soup.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
         soup.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
-        const Mesh mesh = build_mesh(soup);
-        const FacetGraph graph = facet_graph(mesh);
-        return Measurer(mesh, graph, walls_under(mesh, graph)).run().names;
+        FacetEvidence evidence;
+        return measure(build_mesh(soup), evidence).names;
     }();
     return names;
 }

@@ -5,17 +5,26 @@
 
 namespace ostraka {
 
-std::vector<double> FacetModel::log_odds(const FeatureTable& features) const {
-    std::vector<double> result(features.rows());
-    parallel_for(result.size(), [&](std::size_t r) { result[r] = shift + slope * trees.log_odds(features.row(r)); });
+std::vector<double> log_odds_of(const BoostedTrees& trees, const FeatureTable& table) {
+    std::vector<double> result(table.rows());
+    parallel_for(result.size(), [&](std::size_t r) { result[r] = trees.log_odds(table.row(r)); });
+    return result;
+}
+
+std::vector<double> FacetModel::log_odds(const FacetEvidence& evidence) const {
+    std::vector<double> result = log_odds_of(second, with_surroundings(evidence, log_odds_of(first, evidence.features)));
+    for (double& one : result) one = shift + slope * one;
     return result;
 }
 
 const FacetModel& facet_model() {
     static const FacetModel model = [] {
         const Json document = built_in_document("facets.model");
+        constexpr std::size_t around = 11;  // see with_surroundings
+        const std::size_t features = facet_feature_names().size();
         FacetModel result;
-        result.trees = BoostedTrees::from_json(document, FacetEvidence::names().size());
+        result.first = BoostedTrees::from_json(document["first"], features);
+        result.second = BoostedTrees::from_json(document["second"], features + around);
         result.shift = document["shift"].GetDouble();
         result.slope = document["slope"].GetDouble();
         return result;

@@ -18,7 +18,7 @@ constexpr std::size_t broken = static_cast<std::size_t>(Facet::fracture);
 class Finder {
 public:
     Finder(const Mesh& mesh, const FacetEvidence& evidence, const std::vector<double>& log_odds, const FacetOptions& options)
-        : mesh_(mesh), graph_(evidence.graph), walls_(evidence.walls), options_(options) {
+        : mesh_(mesh), graph_(evidence.graph), walls_(evidence.walls), convexity_(evidence.convexity), options_(options) {
         for (const double odds : log_odds) shown_.push_back(1 / (1 + std::exp(-std::clamp(odds, -limit, limit))));
     }
 
@@ -34,12 +34,15 @@ private:
     /// What a single patch may say at most.
     static constexpr double limit = 6;
 
-    /// Cost of a boundary at each contact: its length, less where the surface turns sharply outward.
+    /// Cost of a boundary at each contact: its length, less where the surface turns sharply outward, there or about there, since
+    /// edges are rounded.
     [[nodiscard]] std::vector<double> boundary() const {
         const double width = std::min(0.05 * graph_.size, walls_.typical > 0 ? 0.5 * walls_.typical : graph_.size);
         std::vector<double> costs;
         for (const auto& contact : graph_.contacts) {
-            const double turn = std::max(0.0, contact.turn) / (options_.edge * degree);
+            // About an edge of two planes that turn by an angle, places are mostly a quarter of it below the tangent plane.
+            const double about = 2 * (convexity_[contact.a] + convexity_[contact.b]);
+            const double turn = std::max({0.0, contact.turn, about}) / (options_.edge * degree);
             costs.push_back(options_.coherence * width * contact.length * (0.03 + std::exp(-turn * turn)));
         }
         return costs;
@@ -144,6 +147,7 @@ private:
     const Mesh& mesh_;
     const FacetGraph& graph_;
     const Walls& walls_;
+    const std::vector<double>& convexity_;
     const FacetOptions& options_;
     std::vector<double> shown_;        ///< of each patch: probability that it is of a break
     std::vector<std::size_t> labels_;  ///< of each patch: a Facet
@@ -173,7 +177,7 @@ Facets find_facets(const Mesh& mesh, const FacetEvidence& evidence, const std::v
 Facets find_facets(const Mesh& mesh, const FacetOptions& options) {
     check_options(options, "facets");
     const FacetEvidence evidence = facet_evidence(mesh);
-    return find_facets(mesh, evidence, facet_model().log_odds(evidence.features), options);
+    return find_facets(mesh, evidence, facet_model().log_odds(evidence), options);
 }
 
 void FacetOptions::describe(OptionList& visit) {

@@ -94,7 +94,7 @@ TEST(BoostedTrees, AHeavySampleCountsLikeMany) {
         weights.push_back(k % 2 == 0 ? 3 : 1);
     }
     const BoostedTrees model = boost(table, truth, weights, small());
-    EXPECT_NEAR(model.log_odds(table.row(0)), std::log(3.0), 0.01);
+    EXPECT_NEAR(model.log_odds(table.row(0)), std::log(3.0), 0.05);
 }
 
 TEST(BoostedTrees, WhatIsWrongIsSaid) {

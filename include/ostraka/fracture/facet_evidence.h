@@ -4,30 +4,48 @@
 #include "ostraka/fracture/facet_graph.h"
 #include "ostraka/stats/boosted_trees.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
 namespace ostraka {
 
+/// Points spread evenly over the surface, and the patch that each lies on.
+struct SurfaceSamples {
+    std::vector<Point> points;
+    std::vector<Index> patch;
+};
+
 /// Lengths among the features are measured in the square root of the fragment's area, so that neither unit nor place matters.
 struct FacetEvidence {
     FacetGraph graph;
     Walls walls;
-    FeatureTable features;  ///< a row a patch
-    static const std::vector<std::string>& names();
+    SurfaceSamples samples;
+    std::array<std::vector<std::size_t>, 2> parts;  ///< of each patch, between convex edges: sharp ones, and less sharp ones
+    std::vector<double> convexity;                  ///< of each patch: how sharply the surface turns outward about it
+    FeatureTable features;                          ///< a row a patch
 };
 
 /// Throws Error (input) for a mesh without area.
 FacetEvidence facet_evidence(const Mesh& mesh);
+/// In the order of the features.
+const std::vector<std::string>& facet_feature_names();
 
-/// What tells a break by these features: trees, whose log odds are then calibrated on objects the trees were not made from.
+/// The features, and by first `log_odds` of each patch what its surroundings are likely to be.
+FeatureTable with_surroundings(const FacetEvidence& evidence, const std::vector<double>& log_odds);
+
+/// What tells a break by these features: trees, then trees that see the answers of the first ones around too (auto-context; Tu
+/// and Bai 2010). Their log odds are calibrated on objects the trees were not made from.
 struct FacetModel {
-    BoostedTrees trees;
-    double shift = 0, slope = 1;  ///< calibrated log odds: shift + slope * those of the trees
+    BoostedTrees first, second;
+    double shift = 0, slope = 1;  ///< calibrated log odds: shift + slope * those of the second trees
 
-    [[nodiscard]] std::vector<double> log_odds(const FeatureTable& features) const;
+    [[nodiscard]] std::vector<double> log_odds(const FacetEvidence& evidence) const;
 };
-/// The one that is built in (data/facets.model.json), and its SHA-256.
+/// Log odds of one forest for all rows.
+std::vector<double> log_odds_of(const BoostedTrees& trees, const FeatureTable& table);
+
+/// The model that is built in (data/facets.model.json), and its SHA-256.
 const FacetModel& facet_model();
 std::string facet_model_version();
 

@@ -13,7 +13,7 @@ namespace ostraka {
 struct FacetOptions {
     double edge = 40;        ///< degrees by which a surface turns over an edge that may be where a break begins
     double wall = 0.25;      ///< a shell is thinner than this share of the square root of its area
-    double coherence = 0.5;  ///< how much neighbours count against what a face shows by itself
+    double coherence = 0.3;  ///< how much neighbours count against what a face shows by itself
 
     void describe(OptionList& visit);
 };
