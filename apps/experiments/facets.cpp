@@ -199,7 +199,8 @@ std::vector<Seen> all_seen(const std::vector<std::string>& sources, std::size_t 
                 all.push_back(seen(std::move(one)));
                 all.back().fold = k % folds;
             }
-        } catch (const Error& error) {
+        } catch (const std::exception& error) {
+            // Also where the cut itself cannot be computed.
             std::cerr << sources[k] << " is left out: " << error.what() << '\n';
         }
     }

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "ostraka/fracture/facet_evidence.h"
-#include "ostraka/geom/point_tree.h"
 
 #include <algorithm>
 #include <array>
@@ -40,29 +39,17 @@ private:
     std::vector<std::vector<float>> columns_;
 };
 
-/// Radii of neighbourhoods, the smallest first: shares of the fragment's size, or what its mesh resolves.
 constexpr std::size_t scale_count = 4;
-std::array<double, scale_count> facet_scales(const FacetGraph& graph);
 
 /// 12 000 of them, the same for the same mesh.
-SurfaceSamples surface_samples(const Mesh& mesh, const FacetGraph& graph);
+PatchSamples patch_samples(const Mesh& mesh, const FacetGraph& graph);
 
-/// Every so many samples, found by where they are.
-class SampleTree {
-public:
-    SampleTree(const SurfaceSamples& samples, std::size_t stride);
-    /// So many samples that a ball of the radius holds about a hundred.
-    static SampleTree for_radius(const FacetGraph& graph, const SurfaceSamples& samples, double radius);
-    /// Indices of samples within the radius.
-    void within(const Point& place, double radius, std::vector<Index>& found) const;
+/// Of all samples so few that about eighty lie within the radius of a place.
+Neighbourhoods neighbourhoods(const FacetGraph& graph, const PatchSamples& samples, double radius);
+/// Radii as shares of the fragment's size, or what its mesh resolves.
+std::array<Neighbourhoods, scale_count> neighbourhoods(const FacetGraph& graph, const PatchSamples& samples);
 
-private:
-    PointTree tree_;
-    std::size_t stride_;
-};
-
-/// Means of values of patches over the samples within the radius of each whose patches face about the same way.
-std::vector<double> mean_about(const FacetEvidence& evidence, const SampleTree& tree, double radius,
-                               const std::vector<double>& values);
+/// Means of values of patches over the samples about each that face about the same way.
+std::vector<double> mean_about(const FacetEvidence& evidence, std::size_t scale, const std::vector<double>& values);
 
 }  // namespace ostraka

@@ -5,6 +5,7 @@
 #include "ostraka/core/dense.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/geom/eigen.h"
+#include "ostraka/geom/point_tree.h"
 
 #include <algorithm>
 #include <array>
@@ -105,10 +106,7 @@ public:
           graph_(evidence.graph),
           walls_(evidence.walls),
           samples_(evidence.samples),
-          columns_(graph_.count()),
-          radii_(facet_scales(graph_)) {
-        for (const double radius : radii_) trees_.push_back(SampleTree::for_radius(graph_, samples_, radius));
-    }
+          columns_(graph_.count()) {}
 
     FeatureColumns run() {
         shapes();
@@ -121,12 +119,6 @@ public:
     }
 
 private:
-    /// Samples around a patch on the same side of the surface.
-    void around(std::size_t p, std::size_t s, std::vector<Index>& found) const {
-        trees_[s].within(graph_.places[p], radii_[s], found);
-        std::erase_if(found, [&](Index k) { return graph_.normals[samples_.patch[k]] * graph_.normals[p] <= -0.4; });
-    }
-
     void shapes() {
         const std::size_t n = graph_.count();
         std::array<std::vector<Shape>, scale_count> shapes;
@@ -135,14 +127,17 @@ private:
             parallel_for(
                 n,
                 [&](std::size_t p) {
-                    std::vector<Index> found;
-                    around(p, s, found);
+                    const Neighbourhoods& around = evidence_.around[s];
                     std::vector<Vector3d> points, normals;
-                    for (const Index k : found) {
-                        points.push_back(eigen(samples_.points[k]));
-                        normals.push_back(eigen(graph_.normals[samples_.patch[k]]));
+                    for (std::size_t k = around.first[p]; k < around.first[p + 1]; ++k) {
+                        const Index sample = around.samples[k];
+                        const Vector& normal = graph_.normals[samples_.patch[sample]];
+                        if (normal * graph_.normals[p] <= -0.4) continue;  // another side
+                        points.push_back(eigen(samples_.points[sample]));
+                        normals.push_back(eigen(normal));
                     }
-                    shapes[s][p] = shape_about(eigen(graph_.places[p]), eigen(graph_.normals[p]), radii_[s], points, normals);
+                    shapes[s][p] = shape_about(eigen(graph_.places[p]), eigen(graph_.normals[p]), evidence_.around[s].radius,
+                                               points, normals);
                 },
                 64);
         }
@@ -183,7 +178,7 @@ private:
 
     [[nodiscard]] std::vector<double> averaged(const std::vector<double>& values, std::size_t s) const {
         const std::size_t larger = std::min<std::size_t>(s + 1, 2);
-        return mean_about(evidence_, trees_[larger], radii_[larger], values);
+        return mean_about(evidence_, larger, values);
     }
 
     [[nodiscard]] bool over_wall(std::size_t p) const {
@@ -201,23 +196,22 @@ private:
         const std::size_t n = graph_.count();
         std::vector<double> along(n, -1), sides(n, 0), reach(n, 1);
         const double radius = std::min(1.6 * typical, 0.3 * graph_.size);
-        const SampleTree tree = SampleTree::for_radius(graph_, samples_, radius);
+        const Neighbourhoods around = neighbourhoods(graph_, samples_, radius);
         parallel_for(
             n,
             [&](std::size_t p) {
-                std::vector<Index> found;
-                tree.within(graph_.places[p], radius, found);
                 Matrix3d sum = Matrix3d::Zero();
                 double count = 0, nearest = radius;
-                for (const Index k : found) {
-                    const Index q = samples_.patch[k];
+                for (std::size_t k = around.first[p]; k < around.first[p + 1]; ++k) {
+                    const Index q = samples_.patch[around.samples[k]];
                     if (!over_wall(q)) continue;
                     const Vector3d normal = eigen(graph_.normals[q]);
                     sum += normal * normal.transpose();
                     ++count;
                     nearest = std::min(nearest, std::sqrt(CGAL::squared_distance(graph_.places[p], graph_.places[q])));
                 }
-                if (!found.empty()) sides[p] = count / static_cast<double>(found.size());
+                const auto all = static_cast<double>(around.first[p + 1] - around.first[p]);
+                if (all > 0) sides[p] = count / all;
                 reach[p] = nearest / radius;
                 if (count < 3) return;
                 const SymmetricEigen<3> main(sum);
@@ -340,17 +334,16 @@ private:
     FacetEvidence& evidence_;
     const FacetGraph& graph_;
     const Walls& walls_;
-    const SurfaceSamples& samples_;
+    const PatchSamples& samples_;
     FeatureColumns columns_;
-    std::array<double, scale_count> radii_;
-    std::vector<SampleTree> trees_;
     std::vector<double> rough_, bent_;  ///< of each patch, in the middle scale
 };
 
 FeatureColumns measure(const Mesh& mesh, FacetEvidence& evidence) {
     evidence.graph = facet_graph(mesh);
     evidence.walls = walls_under(mesh, evidence.graph);
-    evidence.samples = surface_samples(mesh, evidence.graph);
+    evidence.samples = patch_samples(mesh, evidence.graph);
+    evidence.around = neighbourhoods(evidence.graph, evidence.samples);
     evidence.parts = {convex_parts(evidence.graph, 40 * degree), convex_parts(evidence.graph, 25 * degree)};
     return Measurer(evidence).run();
 }

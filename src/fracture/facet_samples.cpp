@@ -1,19 +1,13 @@
 #include "facet_columns.h"
 #include "ostraka/core/angles.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/geom/point_tree.h"
 
 namespace ostraka {
 
-std::array<double, scale_count> facet_scales(const FacetGraph& graph) {
-    std::array<double, scale_count> radii{0.025, 0.05, 0.1, 0.2};
-    for (std::size_t s = 0; s < scale_count; ++s)
-        radii[s] = std::min(std::max(radii[s] * graph.size, (1.5 + static_cast<double>(s)) * graph.edge), 0.4 * graph.size);
-    return radii;
-}
-
-SurfaceSamples surface_samples(const Mesh& mesh, const FacetGraph& graph) {
+PatchSamples patch_samples(const Mesh& mesh, const FacetGraph& graph) {
     constexpr std::size_t count = 12000;
-    SurfaceSamples samples;
+    PatchSamples samples;
     const double step = graph.area / count;
     double sum = 0;
     std::size_t k = 0;
@@ -33,34 +27,45 @@ SurfaceSamples surface_samples(const Mesh& mesh, const FacetGraph& graph) {
     return samples;
 }
 
-SampleTree::SampleTree(const SurfaceSamples& samples, std::size_t stride) : stride_(stride) {
+Neighbourhoods neighbourhoods(const FacetGraph& graph, const PatchSamples& samples, double radius) {
+    const double held = static_cast<double>(samples.points.size()) * pi * radius * radius / graph.area;
+    const auto stride = static_cast<std::size_t>(std::clamp(held / 80, 1.0, 40.0));
     std::vector<Point> points;
     for (std::size_t k = stride / 2; k < samples.points.size(); k += stride) points.push_back(samples.points[k]);
-    tree_ = PointTree(points);
+    const PointTree tree(points);
+    std::vector<std::vector<Index>> lists(graph.count());
+    parallel_for(
+        lists.size(), [&](std::size_t p) { tree.within(graph.places[p], radius, lists[p]); }, 64);
+    Neighbourhoods result;
+    result.radius = radius;
+    for (const auto& list : lists) {
+        result.first.push_back(result.samples.size());
+        for (const Index k : list) result.samples.push_back(static_cast<Index>(stride / 2 + k * stride));
+    }
+    result.first.push_back(result.samples.size());
+    return result;
 }
 
-SampleTree SampleTree::for_radius(const FacetGraph& graph, const SurfaceSamples& samples, double radius) {
-    const double held = static_cast<double>(samples.points.size()) * pi * radius * radius / graph.area;
-    return {samples, static_cast<std::size_t>(std::clamp(held / 100, 1.0, 32.0))};
+std::array<Neighbourhoods, scale_count> neighbourhoods(const FacetGraph& graph, const PatchSamples& samples) {
+    std::array<Neighbourhoods, scale_count> result;
+    double share = 0.025;
+    for (std::size_t s = 0; s < scale_count; ++s, share *= 2) {
+        const double resolved = (1.5 + static_cast<double>(s)) * graph.edge;
+        result[s] = neighbourhoods(graph, samples, std::min(std::max(share * graph.size, resolved), 0.4 * graph.size));
+    }
+    return result;
 }
 
-void SampleTree::within(const Point& place, double radius, std::vector<Index>& found) const {
-    tree_.within(place, radius, found);
-    for (Index& k : found) k = static_cast<Index>(stride_ / 2 + k * stride_);
-}
-
-std::vector<double> mean_about(const FacetEvidence& evidence, const SampleTree& tree, double radius,
-                               const std::vector<double>& values) {
+std::vector<double> mean_about(const FacetEvidence& evidence, std::size_t scale, const std::vector<double>& values) {
     const FacetGraph& graph = evidence.graph;
+    const Neighbourhoods& around = evidence.around[scale];
     std::vector<double> result(values.size());
     parallel_for(
         values.size(),
         [&](std::size_t p) {
-            std::vector<Index> found;
-            tree.within(graph.places[p], radius, found);
             double sum = 1e-3 * values[p], count = 1e-3;
-            for (const Index k : found) {
-                const Index q = evidence.samples.patch[k];
+            for (std::size_t k = around.first[p]; k < around.first[p + 1]; ++k) {
+                const Index q = evidence.samples.patch[around.samples[k]];
                 if (graph.normals[q] * graph.normals[p] < 0.5) continue;
                 sum += values[q];
                 ++count;

@@ -20,19 +20,17 @@ std::vector<double> part_means(const FacetGraph& graph, const std::vector<std::s
     return result;
 }
 
-/// Means over the samples within the radius that face elsewhere than a patch, but not the other way; -1 where there is none.
-std::vector<double> mean_aside(const FacetEvidence& evidence, double radius, const std::vector<double>& values) {
+/// Means over the samples about each patch that face elsewhere than a patch, but not the other way; -1 where there is none.
+std::vector<double> mean_aside(const FacetEvidence& evidence, std::size_t scale, const std::vector<double>& values) {
     const FacetGraph& graph = evidence.graph;
-    const SampleTree tree = SampleTree::for_radius(graph, evidence.samples, radius);
+    const Neighbourhoods& around = evidence.around[scale];
     std::vector<double> result(values.size(), -1);
     parallel_for(
         values.size(),
         [&](std::size_t p) {
-            std::vector<Index> found;
-            tree.within(graph.places[p], radius, found);
             double sum = 0, count = 0;
-            for (const Index k : found) {
-                const Index q = evidence.samples.patch[k];
+            for (std::size_t k = around.first[p]; k < around.first[p + 1]; ++k) {
+                const Index q = evidence.samples.patch[around.samples[k]];
                 if (std::abs(graph.normals[q] * graph.normals[p]) >= 0.5) continue;
                 sum += values[q];
                 ++count;
@@ -61,11 +59,8 @@ FeatureTable with_surroundings(const FacetEvidence& evidence, const std::vector<
     };
     add("likely", log_odds);
     columns.add("likely anywhere", [&](std::size_t) { return all; });
-    const auto radii = facet_scales(graph);
-    for (std::size_t s = 0; s < scale_count; ++s)
-        add("likely at " + std::to_string(s),
-            mean_about(evidence, SampleTree::for_radius(graph, evidence.samples, radii[s]), radii[s], likely));
-    for (const std::size_t s : {std::size_t{1}, std::size_t{2}}) add("likely aside", mean_aside(evidence, radii[s], likely));
+    for (std::size_t s = 0; s < scale_count; ++s) add("likely at " + std::to_string(s), mean_about(evidence, s, likely));
+    for (const std::size_t s : {std::size_t{1}, std::size_t{2}}) add("likely aside", mean_aside(evidence, s, likely));
     for (const auto& part : evidence.parts) add("likely in the part", part_means(graph, part, likely));
     columns.add("likely behind", [&](std::size_t p) {
         const Index behind = evidence.walls.behind[p];

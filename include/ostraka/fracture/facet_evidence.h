@@ -11,16 +11,24 @@
 namespace ostraka {
 
 /// Points spread evenly over the surface, and the patch that each lies on.
-struct SurfaceSamples {
+struct PatchSamples {
     std::vector<Point> points;
     std::vector<Index> patch;
+};
+
+/// The samples about each patch.
+struct Neighbourhoods {
+    double radius = 0;
+    std::vector<std::size_t> first;  ///< of each patch, where its samples begin; and the end
+    std::vector<Index> samples;
 };
 
 /// Lengths among the features are measured in the square root of the fragment's area, so that neither unit nor place matters.
 struct FacetEvidence {
     FacetGraph graph;
     Walls walls;
-    SurfaceSamples samples;
+    PatchSamples samples;
+    std::array<Neighbourhoods, 4> around;           ///< the smallest first
     std::array<std::vector<std::size_t>, 2> parts;  ///< of each patch, between convex edges: sharp ones, and less sharp ones
     std::vector<double> convexity;                  ///< of each patch: how sharply the surface turns outward about it
     FeatureTable features;                          ///< a row a patch
