@@ -136,7 +136,7 @@ void assemblies(const AssemblyExperiment& options) {
         const Seconds seconds = watch.seconds();
         Outcome one = judge(fragments, given, result, boxes[b].diagonal, boxes[b].name, joins);
         one.seconds = seconds;
-        line(boxes[b].name, one);
+        line(boxes[b].name + boxes[b].level, one);
         all += one;
         all.degrees += one.degrees / static_cast<double>(boxes.size());
         all.off += one.off / static_cast<double>(boxes.size());

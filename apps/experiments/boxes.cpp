@@ -8,6 +8,7 @@
 #include "ostraka/reconstruction/fragment_file.h"
 #include "ostraka/stats/random.h"
 #include "ostraka/synthetic/make_mesh.h"
+#include "report.h"
 #include "shatter.h"
 
 #include <algorithm>
@@ -121,6 +122,7 @@ Box read_box(const std::string& source, int pieces, std::uint64_t seed, FacetCho
         const double piece = std::sqrt(surface_area(whole) / pieces) / box_diagonal(whole);  // share of the diagonal
         breaking.noise = 0.002 * static_cast<double>(seed % 3) * piece;
         breaking.erosion = 0.0075 * static_cast<double>(seed / 3 % 3) * piece;  // of each side: up to 3 % between two pieces
+        box.level = format(", noise %.1f %%, wear %.2f %%", 100 * breaking.noise / piece, 100 * breaking.erosion / piece);
         box.diagonal = box_diagonal(whole);
         box.gap = (0.004 + 2.2 * breaking.erosion + 4 * breaking.noise) * box.diagonal;
         const SurfaceSearch skin(whole);

@@ -11,6 +11,7 @@ namespace ostraka::experiments {
 
 struct Box {
     std::string name;
+    std::string level;                ///< of noise and wear, in words; of a box that was not broken here empty
     std::vector<Fragment> fragments;  ///< where they belong, facets known (or found, where they are `scanned`)
     double diagonal = 0;              ///< of the whole
     double gap = 0;                   ///< between neighbours, at most
@@ -21,9 +22,9 @@ struct Box {
 
 enum class FacetChoice { known, found };
 
-/// `source`: "pot:SHAPE", "plate:SHAPE", "stone:SHAPE", "made:NAME" or a mesh file, broken into `pieces` with noise and wear that follow from `seed` (three
-/// levels each, wear up to 3 % of a piece's size); or a folder of fragments in assembled layout. Throws Error where it cannot be
-/// broken.
+/// `source`: "pot:SHAPE", "plate:SHAPE", "stone:SHAPE", "made:NAME" or a mesh file, broken into `pieces` with noise and wear that
+/// follow from `seed` (three levels each, wear up to 3 % of a piece's size); or a folder of fragments in assembled layout. Throws
+/// Error where it cannot be broken.
 Box read_box(const std::string& source, int pieces, std::uint64_t seed, FacetChoice facets);
 
 /// Measures `contact`.

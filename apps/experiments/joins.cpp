@@ -231,7 +231,7 @@ void joins(const JoinExperiment& options) {
         for (std::size_t i = 0; i < std::min(met, prepared_before.size()); ++i)
             for (std::size_t j = 0; j < std::min(met, index.size()); ++j)
                 rows.push_back(try_pair(before, i, box, index[j], prepared_before[i], moved_ones[j], motions[j]));
-        report(rows, box.name, std::cout);
+        report(rows, box.name + box.level, std::cout);
         for (const Row& row : rows)
             for (std::size_t c = 0; c < row.right.size(); ++c) {
                 csv << row.box << ',' << row.first << ',' << row.second << ',' << row.contact << ',' << row.stranger << ',' << c
