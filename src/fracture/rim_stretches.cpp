@@ -67,7 +67,7 @@ public:
 
 private:
     static constexpr std::size_t few = 8;
-    static constexpr double widest = 1.5, noise = 0.2;  // of the tolerance
+    static constexpr double widest = 1.5, noise = 0.2, straight = 0.5;  // of the tolerance
 
     void compare(std::size_t i, std::size_t j, std::size_t count, std::vector<StretchFit>& found) const {
         const EvenLoop &a = a_[i], &b = b_[j];
@@ -89,6 +89,7 @@ private:
                     bend += (off - off.dot(chord) * chord).squaredNorm() / static_cast<double>(count);
                 }
                 bend = std::sqrt(bend);
+                if (bend < straight * tolerance_) return;  // lies everywhere on what is as straight
                 std::vector<Vector3d> from(2 * count), to(2 * count);
                 std::vector<double> weights(2 * count, 1);
                 const double lever = 0.3 * spacing_ * static_cast<double>(count);
