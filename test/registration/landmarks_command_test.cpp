@@ -61,7 +61,7 @@ TEST(StudyLandmarksCommand, GivesWhatTheLibraryComputes) {
         EXPECT_TRUE(std::filesystem::exists(scratch / "out" / name)) << name;
 }
 
-TEST(StudyLandmarksCommand, TellsWhatIsNotCommonAndRefusesMixedUnits) {
+TEST(StudyLandmarksCommand, TellsWhatIsNotCommonAndLeavesOddSpecimensOut) {
     const Scratch scratch;
     std::filesystem::create_directories(scratch / "in");
     const std::vector<Landmarks> shapes = some(3);
@@ -73,12 +73,23 @@ TEST(StudyLandmarksCommand, TellsWhatIsNotCommonAndRefusesMixedUnits) {
     EXPECT_EQ(parse_json(fewer.out, "report")["result"]["landmarks"].GetInt(), 6);
     EXPECT_NE(fewer.err.find("'L7', 'L8'"), std::string::npos) << fewer.err;
     write_landmarks(scratch / "in" / "c.mrk.json", shapes[2], "cm");
-    const auto mixed = run_command(command);
-    EXPECT_EQ(mixed.code, 1);
-    EXPECT_NE(mixed.err.find("--scaling"), std::string::npos) << mixed.err;
-    EXPECT_EQ(run_command(command + " --scaling").code, 0);
+    const auto left_out = [&](const std::string& more) {
+        const auto run = run_command(command + more + " --json");
+        EXPECT_EQ(run.code, 0) << run.err;
+        const Json report = parse_json(run.out, "report");
+        std::string text;
+        for (const auto& one : report["result"]["odd"].GetArray())
+            if (one["leftOut"].GetBool()) text += std::string(one["name"].GetString()) + ": " + one["why"].GetString();
+        return text;
+    };
+    const std::string other_unit = left_out("");
+    EXPECT_EQ(other_unit.substr(0, 2), "c:") << "two of three are in one unit";
+    EXPECT_NE(other_unit.find("--scaling"), std::string::npos) << other_unit;
+    EXPECT_EQ(left_out(" --scaling"), "");
     write_landmarks(scratch / "in" / "c.mrk.json", shapes[2].topRows(2));
-    EXPECT_EQ(run_command(command).code, 1) << "two landmarks in common";
+    EXPECT_NE(left_out("").find("2 of the 6"), std::string::npos) << left_out("");
+    for (const char* name : {"a.mrk.json", "b.mrk.json"}) write_landmarks(scratch / "in" / name, shapes[0].topRows(2));
+    EXPECT_EQ(run_command(command).code, 1) << "two landmarks in all";
 }
 
 }  // namespace
