@@ -14,7 +14,6 @@
 #include <fstream>
 #include <iostream>
 #include <sstream>
-#include "ostraka/core/text.h"
 
 namespace ostraka::experiments {
 
@@ -88,7 +87,6 @@ Trained train(const std::vector<Row>& rows) {
     std::size_t joins = 0;
     for (const Row& row : rows)
         for (std::size_t c = 0; c < row.evidence.size(); ++c) {
-            // Of pairs that hardly touch the right pose shows little, and teaches that little is enough.
             const auto features = row.evidence[c].features();
             Eigen::VectorXd x(JoinEvidence::count + 1);
             x[0] = 1;

@@ -125,7 +125,8 @@ void declare_breaks(CLI::App& command, BreakExperiment& options) {
     ranged(command, "--pots", options.pots, "made vessels of each kind", 1, 1000);
 }
 
-void declare_joins(CLI::App& command, JoinExperiment& options) {
+template <class Options>
+void declare_boxes(CLI::App& command, Options& options) {
     command
         .add_option("--boxes", options.boxes,
                     "pot:SHAPE, plate:SHAPE, stone:SHAPE, made:NAME or a mesh file, to be broken; or a folder of fragments in "
@@ -133,9 +134,13 @@ void declare_joins(CLI::App& command, JoinExperiment& options) {
         ->delimiter(',')
         ->required();
     command.add_option("--output", options.output, "folder for tables")->capture_default_str();
-    command.add_option("--model", options.model, "model to train and write (data/joins.model.json)");
     ranged(command, "--pieces", options.pieces, "that an object is broken into", 2, 100);
     command.add_option("--seed", options.seed, "of breaks, noise and wear");
+}
+
+void declare_joins(CLI::App& command, JoinExperiment& options) {
+    declare_boxes(command, options);
+    command.add_option("--model", options.model, "model to train and write (data/joins.model.json)");
     command.add_option("--facets", options.facets, "as they are known, as the library finds them, or so for each second box")
         ->check(CLI::IsMember({"known", "found", "both"}))
         ->capture_default_str();
@@ -143,16 +148,8 @@ void declare_joins(CLI::App& command, JoinExperiment& options) {
 }
 
 void declare_assemblies(CLI::App& command, AssemblyExperiment& options) {
-    command
-        .add_option("--boxes", options.boxes,
-                    "pot:SHAPE, plate:SHAPE, stone:SHAPE, made:NAME or a mesh file, to be broken; or a folder of fragments in "
-                    "assembled layout")
-        ->delimiter(',')
-        ->required();
-    command.add_option("--output", options.output, "folder for tables")->capture_default_str();
-    ranged(command, "--pieces", options.pieces, "that an object is broken into", 2, 100);
+    declare_boxes(command, options);
     ranged(command, "--strangers", options.strangers, "in each box, of the others", 0, 100);
-    command.add_option("--seed", options.seed, "of breaks, noise and wear");
     command.add_flag("--found", options.found, "facets as the library finds them, not as they are known");
 }
 

@@ -101,22 +101,14 @@ std::vector<RimLoop> loops_of(const Mesh& mesh, const std::vector<bool>& broken,
         const Face f = mesh.face(h), g = mesh.face(mesh.opposite(h));
         return f != Mesh::null_face() && g != Mesh::null_face() && broken[f] && !broken[g];
     };
-    // The next edge of the rim: about the target, through broken faces.
-    const auto after = [&](Halfedge h) {
-        Halfedge g = mesh.next(h);
+    // The next edge of the rim, or the one before: about the end they share, through broken faces.
+    const auto beside = [&](Halfedge h, bool after) {
+        const auto step = [&](Halfedge g) { return after ? mesh.next(g) : mesh.prev(g); };
+        Halfedge g = step(h);
         while (!on_rim(g)) {
             const Halfedge o = mesh.opposite(g);
             if (mesh.is_border(o)) return Mesh::null_halfedge();
-            g = mesh.next(o);
-        }
-        return g;
-    };
-    const auto before = [&](Halfedge h) {
-        Halfedge g = mesh.prev(h);
-        while (!on_rim(g)) {
-            const Halfedge o = mesh.opposite(g);
-            if (mesh.is_border(o)) return Mesh::null_halfedge();
-            g = mesh.prev(o);
+            g = step(o);
         }
         return g;
     };
@@ -126,7 +118,7 @@ std::vector<RimLoop> loops_of(const Mesh& mesh, const std::vector<bool>& broken,
         if (seen[start] || !on_rim(start)) continue;
         RimLoop loop;
         Halfedge first = start;
-        for (Halfedge h = before(start); h != start; h = before(h)) {
+        for (Halfedge h = beside(start, false); h != start; h = beside(h, false)) {
             if (h == Mesh::null_halfedge()) {
                 loop.closed = false;
                 break;
@@ -134,7 +126,7 @@ std::vector<RimLoop> loops_of(const Mesh& mesh, const std::vector<bool>& broken,
             first = h;
         }
         if (loop.closed) first = start;
-        for (Halfedge h = first; h != Mesh::null_halfedge() && !seen[h]; h = after(h)) {
+        for (Halfedge h = first; h != Mesh::null_halfedge() && !seen[h]; h = beside(h, true)) {
             seen[h] = true;
             const Face side = mesh.face(mesh.opposite(h));
             loop.places.push_back(0.5 * (eigen(mesh.point(mesh.source(h))) + eigen(mesh.point(mesh.target(h)))));

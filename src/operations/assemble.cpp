@@ -54,7 +54,7 @@ struct Assemble final : Operation {
         read(context, report);
         const Path folder = output.open();
         const ResultStore store(is_memory(folder) ? Path() : folder / "pairs");
-        const Reassembly result = reassemble(fragments, options, memory_of(store, report));
+        const Reassembly result = reassemble(fragments, options, memory_of(store));
         if (recalled > 0)
             report.note(std::to_string(recalled) + " of " + std::to_string(result.pairs_tried) +
                         " pairs were tried by an earlier run in " + output.file() + ": fragments and options are the same");
@@ -127,7 +127,7 @@ private:
         }
     }
 
-    PairMemory memory_of(const ResultStore& store, const Report& /*report*/) {
+    PairMemory memory_of(const ResultStore& store) {
         std::vector<std::string> sums;
         for (const Fragment& one : fragments) sums.push_back(fragment_checksum(one));
         const std::string how = options_text(options.pairs) + join_model_version();
