@@ -4,6 +4,7 @@
 #include "ostraka/core/mesh.h"
 #include "ostraka/reassembly/reassembly.h"
 #include "ostraka/registration/pose_search.h"
+#include "ostraka/stats/boosted_trees.h"
 
 #include <cstdint>
 #include <string>
@@ -183,6 +184,19 @@ struct AssemblyExperiment {
     ReassemblyOptions reassembly;
 };
 void assemblies(const AssemblyExperiment& options);
+
+struct FacetExperiment {
+    int objects = 20;                  ///< of each kind that the model is made from
+    std::uint64_t seed = 1;            ///< of objects and breaks
+    BoostOptions boosting;             ///< see stats/boosted_trees.h
+    std::string model;                 ///< to make and write
+    std::vector<std::string> scanned;  ///< folders of broken objects that the model is made from, too
+    std::vector<std::string> judged;   ///< see facet_cases
+    std::string pictures;              ///< folder for coloured meshes of what is judged
+    bool each = false;                 ///< a row a fragment
+};
+/// Breaks told from intact surface, on objects left out and on others.
+void facets(const FacetExperiment& options);
 
 /// The sherds on the template made of them as a surface of revolution: axes, heights and rotations.
 void sherd_rotations(const BreakExperiment& options);

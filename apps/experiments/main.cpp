@@ -153,6 +153,23 @@ void declare_assemblies(CLI::App& command, AssemblyExperiment& options) {
     command.add_flag("--found", options.found, "facets as the library finds them, not as they are known");
 }
 
+void declare_facets(CLI::App& command, FacetExperiment& options) {
+    ranged(command, "--objects", options.objects, "of each kind that the model is made from", 4, 1000);
+    command.add_option("--seed", options.seed, "of objects and breaks");
+    ranged(command, "--trees", options.boosting.trees, "of the model", 1, 10000);
+    ranged(command, "--depth", options.boosting.depth, "of its trees", 1, 16);
+    command.add_option("--model", options.model,
+                       "model to make and write (data/facets.model.json); else the built-in one judges");
+    command.add_option("--scanned", options.scanned, "folders of fragments in assembled layout that it is made from, too")
+        ->delimiter(',');
+    command
+        .add_option("--judge", options.judged,
+                    "pot:SEED, stone:SEED, made:NAME:SEED or a folder of fragments in assembled layout")
+        ->delimiter(',');
+    command.add_option("--pictures", options.pictures, "folder for coloured meshes of what is judged");
+    command.add_flag("--each", options.each, "a row a fragment");
+}
+
 void declare_moulds(CLI::App& command, MouldExperimentOptions& options) {
     command.add_option("output", options.output, "folder for tables and plots")->capture_default_str();
     command.add_option("--part", options.parts, "choices, wear, runs, scans; all if not given")
@@ -259,6 +276,8 @@ constexpr Experiment list[] = {
     {"break-pairs", "two halves of a bottle, and neighbours among scanned sherds", declared<declare_breaks, break_pairs>},
     {"joins", "pairs of fragments of broken objects: right poses and calibration", declared<declare_joins, joins>},
     {"assemblies", "fragments of one object among strangers put together", declared<declare_assemblies, assemblies>},
+    {"facets", "breaks told from intact surface: the model made, judged on objects left out and on scans",
+     declared<declare_facets, facets>},
     {"sherd-turns", "scanned sherds on the template turned from them, turns by breaks",
      declared<declare_breaks, sherd_rotations>},
     {"broken-pots", "made vessels, broken: turns by breaks", declared<declare_breaks, broken_pots>},

@@ -71,15 +71,17 @@ struct Sheet {
         for (const Wave& wave : waves) sum += wave.height * std::sin(wave.number.dot(p) + wave.phase);
         return sum;
     }
-    /// `side` is 1 or -1: what lies above or below.
-    [[nodiscard]] Mesh half(double side, double edge) const {
+    /// `side` is 1 or -1: what lies above or below. `uneven`: triangles of many shapes.
+    [[nodiscard]] Mesh half(double side, double edge, bool uneven) const {
         const int n = std::clamp(static_cast<int>(std::lround(2.2 * extent / edge)), 8, 300);
         TriangleSoup soup;
         const auto corner = [&](int i, int j) { return static_cast<Index>(i * (n + 1) + j); };
         const double far = 1.1 * extent;
         for (int i = 0; i <= n; ++i)
             for (int j = 0; j <= n; ++j) {
-                const Vector2d p(far * (2.0 * i / n - 1), far * (2.0 * j / n - 1));
+                Vector2d p(far * (2.0 * i / n - 1), far * (2.0 * j / n - 1));
+                if (uneven && i > 0 && j > 0 && i < n && j < n)
+                    p += 0.6 * far / n * Vector2d(std::cos(7.0 * corner(i, j)), std::sin(11.0 * corner(i, j)));
                 const Vector3d at = middle + p.x() * u + p.y() * v + height(p) * normal;
                 soup.points.push_back({at.x(), at.y(), at.z()});
             }
@@ -301,7 +303,8 @@ std::vector<Sherd> shatter(const Mesh& whole, const ShatterOptions& options) {
         std::vector<Mesh> parts;
         bool sound = true;
         for (const double side : {1.0, -1.0}) {
-            Mesh body = piece, half = sheet.half(side, edge), result;
+            Mesh body = piece, half = sheet.half(side, options.sheet > 0 ? options.sheet * extent : edge, options.sheet > 0),
+                 result;
             sound = sound && PMP::corefine_and_compute_intersection(body, half, result) && !result.is_empty();
             if (!sound) break;
             result.collect_garbage();
@@ -359,6 +362,7 @@ void ShatterOptions::describe(OptionList& visit) {
     visit("roughness", roughness, "height of the breaks' waves", Range{0, 0.2}, "share of the piece's extent");
     visit("hurst", hurst, "power of a wave's length that its height goes with", Range{0, 2});
     visit("finest", finest, "shortest wave of a break", Range{0.002, 0.5}, "share of the piece's extent");
+    visit("sheet", sheet, "edge of the breaks' facets; 0: as fine as the mesh", Range{0, 1}, "share of the piece's extent");
     visit("remesh-edge", edge, "edges of each sherd, meshed by itself; 0: as cut", Range{0, 0.2}, "share of the diagonal");
     visit("erosion", erosion, "what is worn off breaks and their edges", Range{0, 0.1}, "share of the diagonal");
     visit("noise", noise, "standard deviation along the normal", Range{0, 0.1}, "share of the diagonal");

@@ -32,6 +32,7 @@ struct ShatterOptions {
     double roughness = 0.02;  ///< height of the breaks' waves, as a share of the piece's extent
     double hurst = 0.5;       ///< a wave's height goes with its length to this power: low is grainy, high is shell-like
     double finest = 0.06;     ///< shortest wave of a break, as a share of the piece's extent
+    double sheet = 0;         ///< edge of the breaks' facets, as a share of the piece's extent; 0: as fine as the mesh
     double edge = 0;          ///< of each sherd's triangles, meshed by itself, as a share of the whole's diagonal; 0: as cut
     double erosion = 0;       ///< what is worn off breaks, and rounded at their edges, as a share of the whole's diagonal
     double noise = 0;         ///< standard deviation of each vertex along its normal, as a share of the whole's diagonal

@@ -1,6 +1,6 @@
 #include "break_side.h"
 
-#include "facet_evidence.h"
+#include "filtered_normals.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/geom/eigen.h"

@@ -1,5 +1,6 @@
 // Parts of a surface between sharp convex edges.
-#include "facet_evidence.h"
+#include "ostraka/fracture/facet_graph.h"
+
 #include "ostraka/core/disjoint_sets.h"
 
 #include <algorithm>
@@ -19,41 +20,33 @@ struct Boundary {
 
 }  // namespace
 
-std::vector<std::size_t> convex_parts(const Mesh& mesh, const std::vector<double>& areas, const std::vector<double>& turns,
-                                      double sharpest) {
-    const std::size_t n = areas.size();
-    const double total = std::accumulate(areas.begin(), areas.end(), 0.0);
-    std::vector<std::size_t> order(mesh.number_of_edges());
+std::vector<std::size_t> convex_parts(const FacetGraph& graph, double sharpest) {
+    const std::size_t n = graph.count();
+    const auto& contacts = graph.contacts;
+    std::vector<std::size_t> order(contacts.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::sort(order.begin(), order.end(),
-              [&](std::size_t a, std::size_t b) { return std::pair(std::abs(turns[a]), a) < std::pair(std::abs(turns[b]), b); });
-    const auto sides = [&](std::size_t e) {
-        const Halfedge h = mesh.halfedge(Edge(static_cast<Index>(e)));
-        return std::pair(mesh.face(h), mesh.face(mesh.opposite(h)));
-    };
-    // Patches: small, so that a gap in an edge joins little.
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return std::pair(std::abs(contacts[a].turn), a) < std::pair(std::abs(contacts[b].turn), b);
+    });
+    // Small parts first, so that a gap in an edge joins little.
     constexpr double patch = 0.002;
     DisjointSets sets(n);
-    std::vector<double> size = areas;
-    for (const std::size_t e : order) {
-        const auto [f, g] = sides(e);
-        if (f == Mesh::null_face() || g == Mesh::null_face() || std::abs(turns[e]) > sharpest) continue;
-        std::size_t a = sets.find(f), b = sets.find(g);
-        if (a == b || size[a] + size[b] > patch * total) continue;
+    std::vector<double> size = graph.areas;
+    for (const std::size_t c : order) {
+        if (std::abs(contacts[c].turn) > sharpest) break;
+        std::size_t a = sets.find(contacts[c].a), b = sets.find(contacts[c].b);
+        if (a == b || size[a] + size[b] > patch * graph.area) continue;
         if (b < a) std::swap(a, b);
         sets.unite_into(a, b);
         size[a] += size[b];
     }
     std::vector<std::map<std::size_t, Boundary>> around(n);
-    for (const Edge e : mesh.edges()) {
-        const auto [f, g] = sides(e);
-        if (f == Mesh::null_face() || g == Mesh::null_face()) continue;
-        const std::size_t a = sets.find(f), b = sets.find(g);
+    for (const auto& contact : contacts) {
+        const std::size_t a = sets.find(contact.a), b = sets.find(contact.b);
         if (a == b) continue;
-        const double length = std::sqrt(CGAL::squared_distance(mesh.point(mesh.vertex(e, 0)), mesh.point(mesh.vertex(e, 1))));
         for (const auto& [from, to] : {std::pair(a, b), std::pair(b, a)}) {
-            around[from][to].length += length;
-            around[from][to].turn += length * turns[e];
+            around[from][to].length += contact.length;
+            around[from][to].turn += contact.length * contact.turn;
         }
     }
     struct Pair {
@@ -67,7 +60,7 @@ std::vector<std::size_t> convex_parts(const Mesh& mesh, const std::vector<double
     const auto offer = [&](std::size_t a, std::size_t b, const Boundary& boundary) {
         if (b < a) std::swap(a, b);
         // What is tiny has no boundary of its own.
-        const double weight = std::min(1.0, std::min(size[a], size[b]) / (patch / 4 * total));
+        const double weight = std::min(1.0, std::min(size[a], size[b]) / (patch / 4 * graph.area));
         const double mean = boundary.length > 0 ? boundary.turn / boundary.length * weight : 0;
         if (mean < sharpest) queue.push({mean, a, b, changes[a], changes[b]});
     };

@@ -1,11 +1,9 @@
 #include "ostraka/fracture/facets.h"
 
-#include "facet_evidence.h"
-#include "ostraka/axis/axis.h"
+#include "facet_sides.h"
 #include "ostraka/core/angles.h"
-#include "ostraka/core/dense.h"
 #include "ostraka/core/error.h"
-#include "ostraka/geom/eigen.h"
+#include "ostraka/core/words.h"
 #include "ostraka/geom/submesh.h"
 
 #include <algorithm>
@@ -13,222 +11,141 @@
 
 namespace ostraka {
 
-using Eigen::Vector3d;
-
 namespace {
 
-/// 0 below `low`, 1 above `high`, straight between.
-double ramp(double x, double low, double high) { return std::clamp((x - low) / (high - low), 0.0, 1.0); }
-
-double weighted_median(std::vector<std::pair<double, double>> values) {
-    std::sort(values.begin(), values.end());
-    double half = 0;
-    for (const auto& [value, weight] : values) half += weight / 2;
-    for (const auto& [value, weight] : values)
-        if ((half -= weight) <= 0) return value;
-    return 0;
-}
+constexpr std::size_t broken = static_cast<std::size_t>(Facet::fracture);
 
 class Finder {
 public:
-    Finder(const Mesh& mesh, const FacetOptions& options) : mesh_(mesh), options_(options), areas_(mesh.number_of_faces()) {
-        for (const Face face : mesh.faces()) total_ += areas_[face] = face_area(mesh, face);
-        if (!(total_ > 0)) fail_input("fragment", "has no area whose facets could be told", "look at its faces");
-        size_ = std::sqrt(total_);
-        double border = 0;
-        for (const Edge e : mesh.edges())
-            if (mesh.is_border(e))
-                border += std::sqrt(CGAL::squared_distance(mesh.point(mesh.vertex(e, 0)), mesh.point(mesh.vertex(e, 1))));
-        closed_ = border < 0.05 * size_;  // a pinhole lets few rays out
-        normals_ = filtered_normals(mesh, 0.02 * size_);
-        turns_ = turns(mesh, normals_);
+    Finder(const Mesh& mesh, const FacetEvidence& evidence, const std::vector<double>& log_odds, const FacetOptions& options)
+        : mesh_(mesh), graph_(evidence.graph), walls_(evidence.walls), convexity_(evidence.convexity), options_(options) {
+        for (const double odds : log_odds) shown_.push_back(1 / (1 + std::exp(-std::clamp(odds, -limit, limit))));
     }
 
     Facets run() {
-        // Some faces tell whether there is a wall.
-        constexpr std::size_t enough = 2000;
-        const std::size_t step = areas_.size() / enough + 1;
-        if (closed_ && is_shell(walls_under(mesh_, normals_, step), step)) {
-            walls_ = walls_under(mesh_, normals_);
-            is_shell(walls_, 1);
-            shell();
-        } else {
-            if (!closed_) result_.notes.emplace_back("the mesh is open: walls are not looked for");
-            solid();
-        }
+        tell_breaks();
+        tell_sides();
+        answer();
         finish();
         return std::move(result_);
     }
 
 private:
-    /// More than half of the area lies over a thin wall; its thickness is the median.
-    bool is_shell(const Walls& walls, std::size_t step) {
-        std::vector<std::pair<double, double>> depths;
-        double thin = 0, all = 0;
-        for (std::size_t f = 0; f < areas_.size(); f += step) {
-            all += areas_[f];
-            if (!(walls.opposite[f] > 0.7 && walls.depth[f] < options_.wall * size_)) continue;
-            thin += areas_[f];
-            depths.emplace_back(walls.depth[f], areas_[f]);
-        }
-        if (!(thin > 0.5 * all)) return false;
-        result_.shell = true;
-        result_.thickness = weighted_median(depths);
-        return true;
-    }
+    /// What a single patch may say at most.
+    static constexpr double limit = 6;
 
-    /// How far a face lies over a wall of the usual thickness, 0 to 1.
-    [[nodiscard]] double over_wall(std::size_t f) const {
-        return ramp(walls_.opposite[f], 0.3, 0.8) * (1 - ramp(walls_.depth[f] / result_.thickness, 1.6, 2.6));
-    }
-
-    /// Cost of a boundary along each edge: its length, less where the surface turns sharply outward.
-    [[nodiscard]] std::vector<double> boundary(double width) const {
-        std::vector<double> costs(mesh_.number_of_edges());
-        for (const Edge e : mesh_.edges()) {
-            const double turn = std::max(0.0, turns_[e]) / (options_.edge * degree);
-            const double length =
-                std::sqrt(CGAL::squared_distance(mesh_.point(mesh_.vertex(e, 0)), mesh_.point(mesh_.vertex(e, 1))));
-            costs[e] = options_.coherence * width * length * (0.03 + std::exp(-turn * turn));
+    /// Cost of a boundary at each contact: its length, less where the surface turns sharply outward, there or about there, since
+    /// edges are rounded.
+    [[nodiscard]] std::vector<double> boundary() const {
+        const double width = std::min(0.05 * graph_.size, walls_.typical > 0 ? 0.5 * walls_.typical : graph_.size);
+        std::vector<double> costs;
+        for (const auto& contact : graph_.contacts) {
+            // About an edge of two planes that turn by an angle, places are mostly a quarter of it below the tangent plane.
+            const double about = 2 * (convexity_[contact.a] + convexity_[contact.b]);
+            const double turn = std::max({0.0, contact.turn, about}) / (options_.edge * degree);
+            costs.push_back(options_.coherence * width * contact.length * (0.03 + std::exp(-turn * turn)));
         }
         return costs;
     }
 
-    void shell() {
-        const std::size_t n = areas_.size();
-        std::vector<double> wall(n);
-        std::vector<Index> sides;
-        for (std::size_t f = 0; f < n; ++f) {
-            wall[f] = over_wall(f);
-            if (wall[f] > 0.7) sides.push_back(static_cast<Index>(f));
-        }
-        const std::vector<double> outward = outwardness(sides);
-        std::vector<std::vector<double>> costs(3, std::vector<double>(n));
-        for (std::size_t f = 0; f < n; ++f) {
-            const double o = ramp(outward[f], -0.3, 0.3);
-            costs[0][f] = areas_[f] * ((1 - wall[f]) + 0.5 * (1 - o));
-            costs[1][f] = areas_[f] * ((1 - wall[f]) + 0.5 * o);
-            costs[2][f] = areas_[f] * (wall[f] + 0.25);
-        }
-        labels_ = min_labels(mesh_, costs, boundary(result_.thickness));
-        shown_.resize(n);
-        for (std::size_t f = 0; f < n; ++f) {
-            const double o = ramp(outward[f], -0.3, 0.3);
-            shown_[f] = labels_[f] == 0 ? std::min(wall[f], o) : labels_[f] == 1 ? std::min(wall[f], 1 - o) : 1 - wall[f];
-        }
+    /// Where there is a break at all, a place is taken for one at a lower probability: most are missed at their worn edges.
+    void tell_breaks() {
+        constexpr double even = 0, likely = 0.4;  // added to log odds
+        if (label_breaks(even)) label_breaks(likely);
     }
 
-    /// Cosine of the angle between each normal and the direction away from the object's axis or middle.
-    std::vector<double> outwardness(const std::vector<Index>& sides) {
-        std::vector<double> result(areas_.size(), 0);
-        if (sides.empty()) return result;
-        AxisOptions how;
-        how.tolerance = 0.03;
-        how.min_quality = 0.5;
-        const Axis axis = find_axis(mesh_, sides, how);
-        if (axis.found) {
-            result_.notes.emplace_back("outer and inner are told by an axis of rotation");
-            const Vector3d place = eigen(axis.point), along = eigen(axis.direction);
-            for (const Face face : mesh_.faces()) {
-                Vector3d away = eigen(centroid(mesh_, face)) - place;
-                away -= along.dot(away) * along;
-                if (away.norm() > 0) result[face] = away.normalized().dot(eigen(normals_[face]));
-            }
-            return result;
+    bool label_breaks(double shift) {
+        const std::size_t n = graph_.count();
+        std::vector<std::vector<double>> costs(2, std::vector<double>(n));
+        for (std::size_t p = 0; p < n; ++p) {
+            const double odds = shift + std::log(shown_[p] / (1 - shown_[p]));
+            costs[0][p] = graph_.areas[p] * std::log1p(std::exp(odds));
+            costs[1][p] = graph_.areas[p] * std::log1p(std::exp(-odds));
         }
-        // The point nearest to all lines along normals; held to the centroid where they do not say.
-        Vector3d middle = Vector3d::Zero();
-        double area = 0;
-        for (const Index f : sides) {
-            middle += areas_[f] * eigen(centroid(mesh_, Face(f)));
-            area += areas_[f];
-        }
-        middle /= area;
-        Eigen::Matrix3d matrix = 1e-4 * area * Eigen::Matrix3d::Identity();
-        Vector3d right = Vector3d::Zero();
-        for (const Index f : sides) {
-            const Vector3d normal = eigen(normals_[f]);
-            const Eigen::Matrix3d across = areas_[f] * (Eigen::Matrix3d::Identity() - normal * normal.transpose());
-            matrix += across;
-            right += across * (eigen(centroid(mesh_, Face(f))) - middle);
-        }
-        const Vector3d focus = middle + solve_ldlt<3>(matrix, right);
-        result_.notes.emplace_back("outer and inner are told by where normals meet: there is no axis of rotation");
-        for (const Face face : mesh_.faces()) {
-            const Vector3d away = eigen(centroid(mesh_, face)) - focus;
-            if (away.norm() > 0) result[face] = away.normalized().dot(eigen(normals_[face]));
-        }
-        return result;
+        labels_ = min_labels(graph_, costs, boundary());
+        for (std::size_t& label : labels_) label = label == 1 ? broken : 0;
+        return std::find(labels_.begin(), labels_.end(), broken) != labels_.end();
     }
 
-    void solid() {
-        const std::vector<std::size_t> part = convex_parts(mesh_, areas_, turns_, options_.edge * degree);
-        std::size_t count = 0;
-        for (const std::size_t p : part) count = std::max(count, p + 1);
-        std::vector<std::vector<Index>> faces(count);
-        std::vector<double> area(count, 0);
-        for (std::size_t f = 0; f < part.size(); ++f) {
-            faces[part[f]].push_back(static_cast<Index>(f));
-            area[part[f]] += areas_[f];
+    /// Whether what is intact is mostly a wall between two sides, both intact.
+    [[nodiscard]] bool is_shell(const std::vector<Index>& intact) {
+        double all = 0, over = 0, even = 0;
+        std::vector<std::pair<double, double>> depths;
+        for (const Index p : intact) {
+            all += graph_.areas[p];
+            const Index behind = walls_.behind[p];
+            if (!(walls_.opposite[p] > 0.7 && walls_.depth[p] < options_.wall * graph_.size) || behind == no_index ||
+                labels_[behind] == broken)
+                continue;
+            over += graph_.areas[p];
+            depths.emplace_back(walls_.depth[p], graph_.areas[p]);
         }
-        const auto largest = static_cast<std::size_t>(std::max_element(area.begin(), area.end()) - area.begin());
-        labels_.assign(areas_.size(), 0);
-        shown_.assign(areas_.size(), 0.5);
-        constexpr double minimum = 0.003;  // of the area: less tells nothing
-        for (std::size_t p = 0; p < count; ++p) {
-            if (p == largest || area[p] < minimum * total_) continue;
-            const double rough = unevenness(faces[p], area[p]);
-            const bool broken = rough > options_.rough;
-            for (const Index f : faces[p]) {
-                labels_[f] = broken ? 2 : 0;
-                shown_[f] = options_.rough > 0
-                                ? std::clamp(0.5 + 0.5 * std::log2(rough / options_.rough) * (broken ? 1 : -1), 0.0, 1.0)
-                                : 1;
-            }
-        }
+        if (!graph_.closed || !(over > 0.5 * all)) return false;
+        result_.thickness = weighted_median(depths);
+        for (const auto& [depth, area] : depths)
+            if (depth > 0.5 * result_.thickness && depth < 2 * result_.thickness) even += area;
+        return even > 0.7 * over;
     }
 
-    /// Root mean square distance from the quadric over the mean plane, as a share of the square root of the area; 0 for what
-    /// does not lie over a plane.
-    [[nodiscard]] double unevenness(const std::vector<Index>& faces, double area) const {
-        Vector3d normal = Vector3d::Zero(), middle = Vector3d::Zero();
-        for (const Index f : faces) {
-            normal += areas_[f] * eigen(normals_[f]);
-            middle += areas_[f] / area * eigen(centroid(mesh_, Face(f)));
+    void tell_sides() {
+        std::vector<Index> intact;
+        for (std::size_t p = 0; p < labels_.size(); ++p)
+            if (labels_[p] != broken) intact.push_back(static_cast<Index>(p));
+        outward_.assign(graph_.count(), 1);
+        result_.shell = is_shell(intact);
+        if (!result_.shell) {
+            result_.thickness = 0;
+            return;
         }
-        if (normal.norm() < 0.6 * area) return 0;
-        normal.normalize();
-        const Vector3d u = normal.unitOrthogonal(), w = normal.cross(u);
-        using Row = Eigen::Matrix<double, 6, 1>;
-        Eigen::Matrix<double, 6, 6> matrix = Eigen::Matrix<double, 6, 6>::Zero();
-        Row right = Row::Zero();
-        double square = 0;
-        for (const Index f : faces) {
-            const Vector3d d = (eigen(centroid(mesh_, Face(f))) - middle) / std::sqrt(area);
-            const double x = u.dot(d), y = w.dot(d), z = normal.dot(d);
-            Row row;
-            row << 1, x, y, x * x, x * y, y * y;
-            matrix += areas_[f] / area * row * row.transpose();
-            right += areas_[f] / area * z * row;
-            square += areas_[f] / area * z * z;
+        outward_ = outwardness(mesh_, graph_, intact, result_.notes);
+        std::vector<std::vector<double>> costs(2, std::vector<double>(graph_.count(), 0));
+        for (const Index p : intact) {
+            costs[0][p] = graph_.areas[p] * (1 - outside(p));
+            costs[1][p] = graph_.areas[p] * outside(p);
         }
-        matrix.diagonal().array() += 1e-9;
-        return std::sqrt(std::max(0.0, square - right.dot(solve_ldlt<6>(matrix, right))));
+        std::vector<double> between = boundary();
+        for (std::size_t c = 0; c < between.size(); ++c)
+            if (labels_[graph_.contacts[c].a] == broken || labels_[graph_.contacts[c].b] == broken) between[c] = 0;
+        const std::vector<std::size_t> side = min_labels(graph_, costs, between);
+        for (const Index p : intact) labels_[p] = side[p];
+    }
+
+    /// How far a patch looks away from the inside of the vessel, 0 to 1.
+    [[nodiscard]] double outside(std::size_t p) const { return std::clamp((outward_[p] + 0.3) / 0.6, 0.0, 1.0); }
+
+    void answer() {
+        double found = 0, expected = 0;
+        for (std::size_t p = 0; p < labels_.size(); ++p) {
+            if (labels_[p] == broken) found += graph_.areas[p];
+            expected += graph_.areas[p] * shown_[p];
+        }
+        constexpr double little = 0.05;  // of the area
+        result_.answer = found > 0                         ? Facets::Answer::broken
+                         : expected < little * graph_.area ? Facets::Answer::whole
+                                                           : Facets::Answer::unclear;
+        if (result_.answer == Facets::Answer::unclear)
+            result_.notes.emplace_back("whether there is a fracture cannot be told: some of the surface may be one");
+        if (!graph_.closed) result_.notes.emplace_back("the mesh is open: walls show only where rays meet another side");
     }
 
     void finish() {
+        const auto label = [&](Face f) { return labels_[graph_.patch_of_face[f]]; };
         const FacePieces pieces = face_pieces(
             mesh_, [](Face) { return true; },
-            [&](Halfedge h) { return labels_[mesh_.face(h)] == labels_[mesh_.face(mesh_.opposite(h))]; });
+            [&](Halfedge h) { return label(mesh_.face(h)) == label(mesh_.face(mesh_.opposite(h))); });
         result_.segments.resize(pieces.count);
-        for (std::size_t f = 0; f < labels_.size(); ++f) {
+        for (const Face f : mesh_.faces()) {
+            const Index p = graph_.patch_of_face[f];
+            const double area = face_area(mesh_, f), sure = labels_[p] == broken ? shown_[p] : 1 - shown_[p];
+            const double side = labels_[p] == 0 ? outside(p) : labels_[p] == broken ? 1 : 1 - outside(p);
             FacetSegment& segment = result_.segments[pieces.of_face[f]];
-            segment.facet = static_cast<Facet>(labels_[f]);
+            segment.facet = static_cast<Facet>(labels_[p]);
             segment.faces.push_back(static_cast<Index>(f));
-            segment.area += areas_[f];
-            segment.confidence += areas_[f] * shown_[f];
+            segment.area += area;
+            segment.confidence += area * std::min(sure, side);
             result_.of_face.push_back(segment.facet);
-            result_.confidence += areas_[f] * shown_[f] / total_;
+            result_.probability.push_back(shown_[p]);
+            result_.confidence += area * std::min(sure, side) / graph_.area;
         }
         for (FacetSegment& segment : result_.segments) segment.confidence /= segment.area > 0 ? segment.area : 1;
         std::stable_sort(result_.segments.begin(), result_.segments.end(),
@@ -236,15 +153,13 @@ private:
     }
 
     const Mesh& mesh_;
+    const FacetGraph& graph_;
+    const Walls& walls_;
+    const std::vector<double>& convexity_;
     const FacetOptions& options_;
-    std::vector<double> areas_;
-    double total_ = 0, size_ = 0;
-    bool closed_ = false;
-    std::vector<Vector> normals_;
-    std::vector<double> turns_;
-    Walls walls_;
-    std::vector<std::size_t> labels_;  ///< of each face: a Facet
-    std::vector<double> shown_;        ///< how far each face shows its label by itself
+    std::vector<double> shown_;        ///< of each patch: probability that it is of a break
+    std::vector<std::size_t> labels_;  ///< of each patch: a Facet
+    std::vector<double> outward_;      ///< of each patch: see outwardness
     Facets result_;
 };
 
@@ -257,17 +172,26 @@ double Facets::area(Facet facet) const {
     return sum;
 }
 
+std::string to_string(Facets::Answer answer) { return word_for(answer, {"broken", "whole", "unclear"}); }
+
+Facets find_facets(const Mesh& mesh, const FacetEvidence& evidence, const std::vector<double>& log_odds,
+                   const FacetOptions& options) {
+    check_options(options, "facets");
+    if (log_odds.size() != evidence.graph.count() || evidence.graph.patch_of_face.size() != mesh.number_of_faces())
+        fail_usage("evidence and log odds are not those of the mesh", "take them from the same mesh");
+    return Finder(mesh, evidence, log_odds, options).run();
+}
+
 Facets find_facets(const Mesh& mesh, const FacetOptions& options) {
     check_options(options, "facets");
-    return Finder(mesh, options).run();
+    const FacetEvidence evidence = facet_evidence(mesh);
+    return find_facets(mesh, evidence, facet_model().log_odds(evidence), options);
 }
 
 void FacetOptions::describe(OptionList& visit) {
     visit("facet-edge", edge, "turn of the surface over an edge where a break may begin", Range{5, 120}, "degrees");
     visit("facet-wall", wall, "walls are thinner than this share of the square root of the area", Range{0.01, 1});
     visit("facet-coherence", coherence, "weight of neighbours against what a face shows by itself", Range{0, 100});
-    visit("facet-rough", rough, "solids: a break deviates from a smooth surface by more than this share of its size",
-          Range{0, 1});
 }
 
 }  // namespace ostraka

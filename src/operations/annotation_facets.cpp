@@ -15,9 +15,11 @@ struct AnnotationFacets final : Operation {
                 "NAME.ant.json beside NAME.ply they are what 'fit' and 'pair' go by");
         p.output_option("output", Kind::annotations, output, "write the annotations here and leave the file as it is")
             .updates(annotations);
+        p.output_option("probability", Kind::values, probability,
+                        "how likely each face is of a break by what it shows itself (.npy, or text; 'render --map' shows it)");
         p.options("unit", unit, "of a new file: unit of the mesh's coordinates, e.g. mm");
         options.describe(p.options);
-        p.report.values(boolean("shell"), number("thickness", "", "length"), number("confidence"));
+        p.report.values(text("answer"), boolean("shell"), number("thickness", "", "length"), number("confidence"));
         p.report.table("segments", text("facet", "facet"), integer("faces", "faces"), number("area", "area", "length^2"),
                        number("confidence", "confidence"));
     }
@@ -34,10 +36,12 @@ struct AnnotationFacets final : Operation {
         report.set_unit(set.unit);
         const Facets facets = in_file(mesh.file(), [&] { return find_facets(on, options); });
         report.notes(facets.notes);
+        if (probability) probability.write(facets.probability);
         report.empty_table("segments");
         for (const FacetSegment& segment : facets.segments)
             report.row("segments")("facet", to_string(segment.facet))("faces", segment.faces.size())("area", segment.area)(
                 "confidence", segment.confidence, number(segment.confidence, 2));
+        report("answer", to_string(facets.answer));
         report("shell", facets.shell);
         if (facets.shell) report("thickness", facets.thickness);
         report("confidence", facets.confidence);
@@ -48,13 +52,15 @@ struct AnnotationFacets final : Operation {
             update_facet_annotations(set, facets);
             return output.write(std::move(set), on, mesh.file());
         }
-        report.note("no fracture is found, so " + output.file() + " is not written");
+        report.note(std::string(facets.answer == Facets::Answer::whole ? "there is no fracture" : "no fracture is found") +
+                    ", so " + output.file() + " is not written");
         report.answer_no();
     }
 
     MeshInput mesh;
     AnnotationsInput annotations;
     AnnotationsOutput output;
+    ValuesOutput probability;
     std::string unit;
     FacetOptions options;
 };

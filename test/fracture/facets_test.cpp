@@ -10,6 +10,9 @@
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/io/mesh_file.h"
 
+#include <iterator>
+#include <sstream>
+
 namespace ostraka {
 namespace {
 
@@ -136,8 +139,17 @@ TEST(FacetsCommand, WritesThreeRegions) {
     const SyntheticSherd sherd = synthetic_sherd(1, 2, 0, 1);
     write_mesh(scratch / "sherd.ply", sherd.mesh);
     const auto run = test::run_command("annotation facets " + quoted(scratch / "sherd.ply") + " " +
-                                       quoted(scratch / "sherd.ant.json") + " --unit mm --json");
+                                       quoted(scratch / "sherd.ant.json") + " --unit mm --json --probability " +
+                                       quoted(scratch / "likely.txt"));
     ASSERT_EQ(run.code, 0) << run.err;
+    std::istringstream values(read_file(scratch / "likely.txt"));
+    const std::vector<double> likely{std::istream_iterator<double>(values), {}};
+    ASSERT_EQ(likely.size(), sherd.mesh.number_of_faces());
+    double broken = 0, others = 0;
+    for (std::size_t f = 0; f < likely.size(); ++f) (sherd.facets[f] == Facet::fracture ? broken : others) += likely[f];
+    const auto count = static_cast<double>(std::count(sherd.facets.begin(), sherd.facets.end(), Facet::fracture));
+    EXPECT_GT(broken / count, 0.7);
+    EXPECT_LT(others / (static_cast<double>(likely.size()) - count), 0.1);
     const Json report = parse_json(run.out, "report");
     EXPECT_TRUE(report["result"]["shell"].GetBool());
     const AnnotationSet set = read_annotations(scratch / "sherd.ant.json", sherd.mesh);

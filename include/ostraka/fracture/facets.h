@@ -1,7 +1,8 @@
-// Outer, inner and fracture surface of a fragment classified by its shape.
+// Outer, inner and fracture surface of a fragment told by its shape.
 #pragma once
 
 #include "ostraka/core/options.h"
+#include "ostraka/fracture/facet_evidence.h"
 #include "ostraka/fracture/fragment.h"
 
 #include <string>
@@ -13,7 +14,6 @@ struct FacetOptions {
     double edge = 40;        ///< degrees by which a surface turns over an edge that may be where a break begins
     double wall = 0.25;      ///< a shell is thinner than this share of the square root of its area
     double coherence = 0.3;  ///< how much neighbours count against what a face shows by itself
-    double rough = 0.01;     ///< a break in a solid deviates from a smooth surface by more than this share of its size
 
     void describe(OptionList& visit);
 };
@@ -27,23 +27,32 @@ struct FacetSegment {
 };
 
 struct Facets {
+    /// Whether there is a break: one is found; none is seen anywhere; none is found, but some of the surface may be one.
+    enum class Answer { broken, whole, unclear };
+
     std::vector<Facet> of_face;
+    std::vector<double> probability;     ///< of each face, that it is of a break, by what it shows itself
     std::vector<FacetSegment> segments;  ///< largest first
-    bool shell = false;                  ///< a wall with two sides
-    double thickness = 0;                ///< of the wall, where there is one
-    double confidence = 0;               ///< mean over the area
+    Answer answer = Answer::unclear;
+    bool shell = false;     ///< a wall with two sides
+    double thickness = 0;   ///< of the wall, where there is one
+    double confidence = 0;  ///< mean over the area
     std::vector<std::string> notes;
     [[nodiscard]] double area(Facet facet) const;
 };
 
-/// Shells: from each face rays go into the solid. Where they leave it soon, through a face that looks the other way, the face is
-/// of the outer or the inner side; the fracture is the rest: a narrow band between two sides that face away from each other. The
-/// outer side looks away from the axis of rotation (axis/axis.h), or, where there is none, from the point nearest to the lines
-/// along all normals. Labels minimise what faces show plus the length of their boundaries, which cost little along
-/// sharp convex edges (alpha expansion; Boykov, Veksler and Zabih 2001). Solids, and open meshes: patches are merged as long as
-/// the surface does not turn sharply outward, on average, over the boundary of two; of what remains, parts that lie over a plane
-/// but not smoothly (quadric) are fractures, never the largest one. A clean cut is not distinguished from a formed end. Throws
-/// Error (input) for a mesh without area.
+std::string to_string(Facets::Answer answer);
+
+/// Faces are seen together in at most about 24 000 patches. A model (data/facets.model.json) made from objects broken by this
+/// toolkit gives each the probability that it is of a break. Labels minimise what patches show plus the length of their
+/// boundaries, which cost little along sharp convex edges (alpha expansion; Boykov, Veksler and Zabih 2001). Where most of what
+/// is intact lies over a thin wall whose other side is intact too, it has an outer and an inner side: the outer one looks away
+/// from the axis of rotation (axis/axis.h), or, where there is none, from the point nearest to the lines along all normals.
+/// Throws Error (input) for a mesh without area.
 Facets find_facets(const Mesh& mesh, const FacetOptions& options = {});
+
+/// As above, with log odds of each patch from elsewhere.
+Facets find_facets(const Mesh& mesh, const FacetEvidence& evidence, const std::vector<double>& log_odds,
+                   const FacetOptions& options = {});
 
 }  // namespace ostraka

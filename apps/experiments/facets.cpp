@@ -1,0 +1,299 @@
+// Breaks told from intact surface: the model is made and judged on objects left out, and on scanned fragments.
+#include "coloured_mesh.h"
+#include "experiments.h"
+#include "facet_cases.h"
+#include "report.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/json_build.h"
+#include "ostraka/fracture/facets.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <iostream>
+#include <map>
+#include <sstream>
+
+namespace ostraka::experiments {
+
+namespace {
+
+/// A fragment with what it shows.
+struct Seen {
+    FacetCase given;
+    FacetEvidence evidence;
+    std::vector<double> broken;        ///< of each patch: share of its area
+    std::vector<std::size_t> sampled;  ///< patches that the model learns from, drawn by area
+    double seconds = 0;
+    std::size_t fold = 0;
+};
+
+bool is_known(const FacetCase& one, Face f) { return one.known.empty() || one.known[f]; }
+
+Seen seen(FacetCase given) {
+    Seen result;
+    const std::clock_t begin = std::clock();
+    result.evidence = facet_evidence(given.mesh);
+    result.seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+    const FacetGraph& graph = result.evidence.graph;
+    result.broken.assign(graph.count(), 0);
+    for (const Face f : given.mesh.faces())
+        if (given.broken[f]) result.broken[graph.patch_of_face[f]] += face_area(given.mesh, f);
+    for (std::size_t p = 0; p < graph.count(); ++p) result.broken[p] /= graph.areas[p] > 0 ? graph.areas[p] : 1;
+    std::vector<double> known(graph.count(), 0);
+    for (const Face f : given.mesh.faces())
+        if (is_known(given, f)) known[graph.patch_of_face[f]] += face_area(given.mesh, f);
+    constexpr std::size_t samples = 600;
+    double sum = 0;
+    std::size_t k = 0;
+    for (std::size_t p = 0; p < graph.count(); ++p)
+        for (sum += graph.areas[p]; (static_cast<double>(k) + 0.5) * graph.area < samples * sum && k < samples; ++k)
+            if (known[p] > 0.5 * graph.areas[p]) result.sampled.push_back(p);
+    result.given = std::move(given);
+    return result;
+}
+
+/// Trees from the fragments that are not in the fold; of all of them where `fold` is none.
+BoostedTrees learnt(const std::vector<Seen>& all, std::size_t fold, const BoostOptions& options) {
+    FeatureTable rows;
+    std::vector<bool> truth;
+    std::vector<double> weights;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        if (all[k].fold == fold) continue;
+        const FeatureTable& features = all[k].evidence.features;
+        for (const std::size_t p : all[k].sampled) {
+            rows.add(features.row(p));
+            truth.push_back(all[k].broken[p] > 0.5);
+            // Scanned objects are few, but they are what is asked about.
+            weights.push_back(all[k].given.scanned ? 3 : 1);
+        }
+    }
+    return boost(rows, truth, weights, options);
+}
+
+/// Log odds shift + slope x that fit the truth best (Platt 1999).
+std::pair<double, double> calibrated(const std::vector<double>& odds, const std::vector<bool>& truth) {
+    double shift = 0, slope = 1;
+    for (int step = 0; step < 50; ++step) {
+        double a = 1e-6, b = 0, c = 1e-6, g = 0, h = 0;
+        for (std::size_t k = 0; k < odds.size(); ++k) {
+            const double p = 1 / (1 + std::exp(-(shift + slope * odds[k]))), w = p * (1 - p), off = (truth[k] ? 1 : 0) - p;
+            a += w, b += w * odds[k], c += w * odds[k] * odds[k];
+            g += off, h += off * odds[k];
+        }
+        const double det = a * c - b * b;
+        shift += (c * g - b * h) / det;
+        slope += (a * h - b * g) / det;
+    }
+    return {shift, slope};
+}
+
+/// Areas by what they are and what they are called, and how probabilities fare.
+struct Score {
+    std::array<std::array<double, 2>, 2> area{};  ///< [truth][called]
+    std::array<std::array<double, 3>, 10> bins{};
+    double seconds = 0, faces = 0, alike = 0;  ///< alike: area that agrees by its own probability alone
+    std::size_t fragments = 0, unclear = 0, whole = 0, passed = 0;
+
+    void add(const Score& other) {
+        for (int i = 0; i < 2; ++i)
+            for (int j = 0; j < 2; ++j) area[i][j] += other.area[i][j];
+        for (std::size_t b = 0; b < bins.size(); ++b)
+            for (std::size_t k = 0; k < 3; ++k) bins[b][k] += other.bins[b][k];
+        seconds += other.seconds, faces += other.faces, alike += other.alike, fragments += other.fragments;
+        unclear += other.unclear, whole += other.whole, passed += other.passed;
+    }
+    [[nodiscard]] double all() const { return area[0][0] + area[0][1] + area[1][0] + area[1][1]; }
+    [[nodiscard]] double agreement() const { return (area[0][0] + area[1][1]) / all(); }
+    [[nodiscard]] double recall() const { return area[1][1] / std::max(1e-300, area[1][0] + area[1][1]); }
+    [[nodiscard]] double precision() const { return area[1][1] / std::max(1e-300, area[0][1] + area[1][1]); }
+    [[nodiscard]] double calibration_error() const {
+        double error = 0, all = 0;
+        for (const auto& bin : bins) error += std::abs(bin[1] - bin[2]), all += bin[0];
+        return error / all;
+    }
+};
+
+/// Of one fragment.
+Score score(const Seen& one, const std::vector<double>& log_odds) {
+    Score result;
+    const std::clock_t begin = std::clock();
+    const Facets found = find_facets(one.given.mesh, one.evidence, log_odds);
+    result.seconds = one.seconds + static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+    const Mesh& mesh = one.given.mesh;
+    double known = 0;  // fragments count alike, whatever their size and unit
+    for (const Face f : mesh.faces()) known += is_known(one.given, f) ? face_area(mesh, f) : 0;
+    for (const Face f : mesh.faces()) {
+        if (!is_known(one.given, f)) continue;
+        const double area = face_area(mesh, f) / known, p = found.probability[f];
+        result.alike += (p > 0.5) == one.given.broken[f] ? area : 0;
+        result.area[one.given.broken[f] ? 1 : 0][found.of_face[f] == Facet::fracture ? 1 : 0] += area;
+        auto& bin = result.bins[static_cast<std::size_t>(std::min(9.0, 10 * p))];
+        bin[0] += area, bin[1] += area * p, bin[2] += one.given.broken[f] ? area : 0;
+    }
+    result.faces = static_cast<double>(mesh.number_of_faces());
+    result.fragments = 1;
+    result.unclear = found.answer == Facets::Answer::unclear ? 1 : 0;
+    result.whole = found.answer == Facets::Answer::whole ? 1 : 0;
+    result.passed = result.agreement() >= 0.9 ? 1 : 0;
+    return result;
+}
+
+void print(const std::string& name, const Score& s) {
+    std::cout << format("| %s | %zu | %.1f | %.1f | %.1f | %.1f | %.1f | %zu | %zu, %zu | %.3f | %.2f |\n", name.c_str(),
+                        s.fragments, 100 * (s.area[1][0] + s.area[1][1]) / s.all(), 100 * s.agreement(), 100 * s.alike / s.all(),
+                        100 * s.recall(), 100 * s.precision(), s.passed, s.whole, s.unclear, s.calibration_error(),
+                        s.seconds / s.faces * 1e5)
+              << std::flush;
+}
+
+void print_head() {
+    std::cout << "\n| object | fragments | broken % | agreement % | alone % | recall % | precision % | agree by 90 % | called "
+                 "whole, unclear "
+                 "| calibration error | s for 100 000 faces |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
+}
+
+void write_model(const Path& file, const FacetModel& model, const std::string& recipe) {
+    Json document;
+    document.SetObject();
+    auto& allocator = document.GetAllocator();
+    add_members(document, allocator, "recipe", recipe, "features", facet_feature_names(), "shift",
+                std::round(1e4 * model.shift) / 1e4, "slope", std::round(1e4 * model.slope) / 1e4);
+    document.AddMember("trees", model.trees.to_json(allocator), allocator);
+    write_file(file, to_compact_text(document) + "\n");
+}
+
+/// As it is known, as it is likely, as it is found.
+void pictures(const Seen& one, const std::vector<double>& log_odds, const Path& folder) {
+    const Mesh& mesh = one.given.mesh;
+    const Facets found = find_facets(mesh, one.evidence, log_odds);
+    const auto write = [&](const std::string& what, auto&& value) {
+        std::vector<double> values;
+        for (const Vertex v : mesh.vertices()) {
+            double sum = 0, count = 1e-9;
+            for (const Face f : mesh.faces_around_target(mesh.halfedge(v)))
+                if (f != Mesh::null_face()) sum += value(f), ++count;
+            values.push_back(sum / count);
+        }
+        write_coloured(folder / (one.given.object + "-" + one.given.name + "-" + what + ".ply"), mesh, values, 1);
+    };
+    write("known", [&](Face f) { return !is_known(one.given, f) ? 0.5 : one.given.broken[f] ? 1.0 : 0.0; });
+    write("likely", [&](Face f) { return found.probability[f]; });
+    write("found", [&](Face f) { return found.of_face[f] == Facet::fracture ? 1.0 : 0.0; });
+}
+
+std::vector<std::string> own_sources(const FacetExperiment& options) {
+    std::vector<std::string> sources;
+    const auto add = [&](const std::string& one) { sources.push_back(one); };
+    const std::array<const char*, 10> names{"box",     "vase",   "cylinder", "hand",  "statuette",
+                                            "capsule", "teapot", "sphere",   "chair", "torus"};
+    for (int k = 1; k <= options.objects; ++k) {
+        const std::string seed = ":" + std::to_string(options.seed * 1000 + static_cast<std::uint64_t>(k));
+        const std::string name = names[static_cast<std::size_t>(k) % names.size()];
+        for (const char* source : {"pot", "stone", "thin"}) add(source + seed);
+        add("made:" + name + seed);
+        if (k % 3 == 0) add("pot" + seed + ":whole");
+        if (k % 3 == 1) add("stone" + seed + ":whole");
+        add("made:" + name + seed + ":whole");
+    }
+    return sources;
+}
+
+/// Less is a chip that shows nothing of its object.
+constexpr std::size_t least_faces = 100;
+
+std::vector<Seen> all_seen(const std::vector<std::string>& sources, std::size_t folds) {
+    std::vector<Seen> all;
+    for (std::size_t k = 0; k < sources.size(); ++k) {
+        try {
+            for (FacetCase& one : facet_cases(sources[k])) {
+                if (one.mesh.number_of_faces() < least_faces) continue;
+                all.push_back(seen(std::move(one)));
+                all.back().fold = k % folds;
+            }
+        } catch (const std::exception& error) {
+            // Also where the cut itself cannot be computed.
+            std::cerr << sources[k] << " is left out: " << error.what() << '\n';
+        }
+    }
+    return all;
+}
+
+void by_object(const std::vector<Seen>& all, const std::vector<Score>& scores, bool grouped) {
+    print_head();
+    std::map<std::string, Score> groups;
+    Score total;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        const std::string& object = all[k].given.object;
+        std::string group = grouped ? object.substr(0, object.find_last_of(':')) : object;
+        if (grouped && object.ends_with(":whole")) group = "not broken";
+        groups[group].add(scores[k]);
+        total.add(scores[k]);
+    }
+    for (const auto& [name, one] : groups) print(name, one);
+    print("all", total);
+    std::cout << "\n| probability | share of the area % | broken % |\n|---|---|---|\n";
+    for (const auto& [area, expected, broken] : total.bins)
+        std::cout << format("| %.2f | %.1f | %.1f |\n", expected / std::max(1e-300, area), 100 * area / total.all(),
+                            100 * broken / std::max(1e-300, area));
+}
+
+}  // namespace
+
+void facets(const FacetExperiment& options) {
+    FacetModel model;
+    if (options.model.empty()) {
+        model = facet_model();
+    } else {
+        constexpr std::size_t folds = 5;
+        const Stopwatch watch;
+        std::vector<std::string> sources = own_sources(options);
+        sources.insert(sources.end(), options.scanned.begin(), options.scanned.end());
+        const std::vector<Seen> all = all_seen(sources, folds);
+        std::cout << format("%zu fragments in %.0f s\n", all.size(), watch.seconds().wall) << std::flush;
+        // Calibrated and judged by trees that have not seen the object.
+        std::vector<std::vector<double>> odds(all.size());
+        std::vector<double> sampled;
+        std::vector<bool> truth;
+        for (std::size_t fold = 0; fold < folds; ++fold) {
+            const BoostedTrees trees = learnt(all, fold, options.boosting);
+            for (std::size_t k = 0; k < all.size(); ++k) {
+                if (all[k].fold != fold) continue;
+                odds[k] = FacetModel{trees, 0, 1}.log_odds(all[k].evidence);
+                for (const std::size_t p : all[k].sampled) {
+                    sampled.push_back(odds[k][p]);
+                    truth.push_back(all[k].broken[p] > 0.5);
+                }
+            }
+        }
+        std::tie(model.shift, model.slope) = calibrated(sampled, truth);
+        std::vector<Score> scores;
+        for (std::size_t k = 0; k < all.size(); ++k) {
+            for (double& one : odds[k]) one = model.shift + model.slope * one;
+            scores.push_back(score(all[k], odds[k]));
+        }
+        std::cout << format("left out, calibrated by %.3f + %.3f x; %.0f s\n", model.shift, model.slope, watch.seconds().wall);
+        by_object(all, scores, true);
+        model.trees = learnt(all, folds, options.boosting);
+        std::string recipe =
+            format("ostraka_experiments facets --objects %d --seed %llu --trees %d --depth %d", options.objects,
+                   static_cast<unsigned long long>(options.seed), options.boosting.trees, options.boosting.depth);
+        for (std::size_t k = 0; k < options.scanned.size(); ++k) recipe += (k == 0 ? " --scanned " : ",") + options.scanned[k];
+        write_model(options.model, model, recipe + " --model FILE");
+    }
+    if (options.judged.empty()) return;
+    std::vector<Seen> all;
+    std::vector<Score> scores;
+    for (const std::string& source : options.judged)
+        for (Seen& one : all_seen({source}, 1)) {
+            const std::vector<double> log_odds = model.log_odds(one.evidence);
+            scores.push_back(score(one, log_odds));
+            if (!options.pictures.empty()) pictures(one, log_odds, options.pictures);
+            if (options.each) print(one.given.object + " " + one.given.name, scores.back());
+            all.push_back(std::move(one));
+        }
+    by_object(all, scores, false);
+}
+
+}  // namespace ostraka::experiments

@@ -1,0 +1,123 @@
+#include "ostraka/fracture/facet_graph.h"
+
+#include "filtered_normals.h"
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+#include <unordered_map>
+
+namespace ostraka {
+
+namespace {
+
+/// Faces that lie in one cell of a grid and face about the same way, numbered by their first face.
+std::vector<Index> grouped_faces(const Mesh& mesh, const std::vector<Vector>& areas, double cell, std::size_t& count) {
+    struct Group {
+        Vector area;
+        Index number;
+    };
+    const CGAL::Bbox_3 box = bounding_box(mesh);
+    std::unordered_map<std::uint64_t, std::vector<Group>> cells;
+    std::vector<Index> groups(areas.size());
+    count = 0;
+    for (const Face f : mesh.faces()) {
+        const Point c = centroid(mesh, f);
+        const auto step = [&](double x, double low) { return static_cast<std::uint64_t>((x - low) / cell) & 0x1fffffU; };
+        const std::uint64_t key = step(c.x(), box.xmin()) << 42 | step(c.y(), box.ymin()) << 21 | step(c.z(), box.zmin());
+        auto& here = cells[key];
+        const Vector& a = areas[f];
+        constexpr double alike = 0.4;
+        const auto fits = [&](const Group& g) {
+            return g.area * a >= alike * std::sqrt(g.area.squared_length() * a.squared_length());
+        };
+        const auto found = std::find_if(here.begin(), here.end(), fits);
+        if (found == here.end()) {
+            groups[f] = static_cast<Index>(count++);
+            here.push_back({a, groups[f]});
+        } else {
+            groups[f] = found->number;
+            found->area = found->area + a;
+        }
+    }
+    return groups;
+}
+
+void join_contacts(const Mesh& mesh, FacetGraph& graph) {
+    std::vector<FacetGraph::Contact> all;
+    for (const Edge e : mesh.edges()) {
+        const Halfedge h = mesh.halfedge(e);
+        const Face f = mesh.face(h), g = mesh.face(mesh.opposite(h));
+        const Point &p = mesh.point(mesh.source(h)), &q = mesh.point(mesh.target(h));
+        const double length = std::sqrt(CGAL::squared_distance(p, q));
+        if (f == Mesh::null_face() || g == Mesh::null_face()) {
+            graph.border += length;
+            continue;
+        }
+        const auto [a, b] = std::minmax(graph.patch_of_face[f], graph.patch_of_face[g]);
+        if (a != b) all.push_back({a, b, length, 0, CGAL::midpoint(p, q)});
+    }
+    std::stable_sort(all.begin(), all.end(),
+                     [](const auto& x, const auto& y) { return std::tie(x.a, x.b) < std::tie(y.a, y.b); });
+    for (const auto& one : all) {
+        if (graph.contacts.empty() || graph.contacts.back().a != one.a || graph.contacts.back().b != one.b) {
+            graph.contacts.push_back(one);
+            continue;
+        }
+        auto& known = graph.contacts.back();
+        const double sum = known.length + one.length;
+        if (sum > 0) known.middle = known.middle + (one.length / sum) * (one.middle - known.middle);
+        known.length = sum;
+    }
+}
+
+}  // namespace
+
+FacetGraph facet_graph(const Mesh& mesh, std::size_t most) {
+    FacetGraph graph;
+    const std::size_t faces = mesh.number_of_faces();
+    std::vector<Vector> areas(faces);
+    parallel_for(faces, [&](std::size_t f) { areas[f] = area_vector(mesh, Face(static_cast<Index>(f))); });
+    for (const Vector& a : areas) graph.area += std::sqrt(a.squared_length());
+    if (!(graph.area > 0)) fail_input("fragment", "has no area whose facets could be told", "look at its faces");
+    graph.size = std::sqrt(graph.area);
+    graph.edge = mean_edge_length(mesh);
+    std::size_t count = faces;
+    if (faces <= most) {
+        graph.patch_of_face.resize(faces);
+        std::iota(graph.patch_of_face.begin(), graph.patch_of_face.end(), Index{0});
+    } else {
+        // A smooth surface crosses about 1.5 cells for each area of a cell's side.
+        graph.patch_of_face = grouped_faces(mesh, areas, std::sqrt(2 * graph.area / static_cast<double>(most)), count);
+    }
+    std::vector<Vector> sum(count, Vector(0, 0, 0)), place(count, Vector(0, 0, 0));
+    std::vector<Point> any(count);
+    graph.areas.assign(count, 0);
+    for (const Face f : mesh.faces()) {
+        const Index p = graph.patch_of_face[f];
+        const double a = std::sqrt(areas[f].squared_length());
+        any[p] = centroid(mesh, f);
+        sum[p] = sum[p] + areas[f];
+        place[p] = place[p] + a * (any[p] - CGAL::ORIGIN);
+        graph.areas[p] += a;
+    }
+    for (std::size_t p = 0; p < count; ++p)
+        graph.places.push_back(faces > most && graph.areas[p] > 0 ? CGAL::ORIGIN + place[p] / graph.areas[p] : any[p]);
+    join_contacts(mesh, graph);
+    graph.closed = graph.border < 0.05 * graph.size;  // a pinhole lets few rays out
+    std::vector<std::pair<Index, Index>> neighbours;
+    for (const auto& c : graph.contacts) neighbours.emplace_back(c.a, c.b);
+    const double spacing = 1.5 * graph.size / std::sqrt(static_cast<double>(count));
+    graph.normals = filtered_normals(sum, neighbours, filter_steps(0.02 * graph.size, spacing));
+    for (auto& c : graph.contacts) {
+        const Vector &m = graph.normals[c.a], &n = graph.normals[c.b];
+        const double angle = std::atan2(std::sqrt(CGAL::cross_product(m, n).squared_length()), m * n);
+        c.turn = (n - m) * (graph.places[c.b] - graph.places[c.a]) >= 0 ? angle : -angle;
+    }
+    return graph;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,269 @@
+#include "ostraka/stats/boosted_trees.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/json_build.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/stats/random.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <numeric>
+
+namespace ostraka {
+
+namespace {
+
+constexpr std::size_t bins = 64;
+
+/// Few digits, so that a model written down is the model that was made.
+float rounded(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.4g", value);
+    return std::strtof(text, nullptr);
+}
+
+/// Sums of first and second derivatives of the loss.
+struct Slope {
+    double first = 0, second = 0;
+    void add(const Slope& other) { first += other.first, second += other.second; }
+};
+
+class Booster {
+public:
+    Booster(const FeatureTable& table, const std::vector<bool>& truth, const std::vector<double>& weights,
+            const BoostOptions& options)
+        : table_(table), options_(options), rows_(table.rows()), truth_(truth), weights_(weights) {
+        if (weights_.empty()) weights_.assign(rows_, 1.0);
+        cut();
+    }
+
+    BoostedTrees run() {
+        double yes = 0, all = 0;
+        for (std::size_t r = 0; r < rows_; ++r) yes += truth_[r] ? weights_[r] : 0, all += weights_[r];
+        BoostedTrees model;
+        model.bias = static_cast<double>(rounded(std::log(yes / (all - yes))));
+        std::vector<double> odds(rows_, model.bias);
+        slopes_.resize(rows_);
+        Random random(options_.seed, 21);
+        for (int t = 0; t < options_.trees; ++t) {
+            for (std::size_t r = 0; r < rows_; ++r) {
+                const double p = 1 / (1 + std::exp(-odds[r]));
+                slopes_[r] = {weights_[r] * (p - (truth_[r] ? 1 : 0)), weights_[r] * std::max(1e-6, p * (1 - p))};
+            }
+            model.trees.push_back(grow(random));
+            for (std::size_t r = 0; r < rows_; ++r) odds[r] += answer(model.trees.back(), table_.row(r));
+        }
+        return model;
+    }
+
+    static double answer(const std::vector<BoostedTrees::Node>& tree, std::span<const float> features) {
+        const BoostedTrees::Node* node = tree.data();
+        while (node->feature >= 0)
+            node =
+                tree.data() + (features[static_cast<std::size_t>(node->feature)] <= node->threshold ? node->left : node->right);
+        return static_cast<double>(node->value);
+    }
+
+private:
+    /// Thresholds of each feature at quantiles, and the bin of each value.
+    void cut() {
+        thresholds_.resize(table_.columns);
+        binned_.resize(table_.columns);
+        parallel_for(
+            table_.columns,
+            [&](std::size_t c) {
+                std::vector<float> values(rows_);
+                for (std::size_t r = 0; r < rows_; ++r) values[r] = table_.row(r)[c];
+                std::vector<float> sorted = values;
+                std::sort(sorted.begin(), sorted.end());
+                auto& cuts = thresholds_[c];
+                for (std::size_t b = 1; b < bins; ++b) {
+                    const float at = rounded(static_cast<double>(sorted[b * (rows_ - 1) / bins]));
+                    if (cuts.empty() || at > cuts.back()) cuts.push_back(at);
+                }
+                binned_[c].resize(rows_);
+                for (std::size_t r = 0; r < rows_; ++r)
+                    binned_[c][r] =
+                        static_cast<std::uint8_t>(std::lower_bound(cuts.begin(), cuts.end(), values[r]) - cuts.begin());
+            },
+            1);
+    }
+
+    struct Split {
+        double gain = 0;
+        std::size_t column = 0, bin = 0;
+    };
+
+    std::vector<BoostedTrees::Node> grow(Random& random) {
+        std::vector<Index32> sample;
+        for (std::size_t r = 0; r < rows_; ++r)
+            if (random.uniform() < options_.row_share) sample.push_back(static_cast<Index32>(r));
+        std::vector<std::size_t> columns = random.permutation(table_.columns);
+        columns.resize(std::max<std::size_t>(
+            1, static_cast<std::size_t>(std::lround(options_.column_share * static_cast<double>(table_.columns)))));
+        std::sort(columns.begin(), columns.end());
+        std::vector<BoostedTrees::Node> tree(1);
+        descend(tree, 0, sample, columns, options_.depth);
+        return tree;
+    }
+
+    using Index32 = std::uint32_t;
+
+    void descend(std::vector<BoostedTrees::Node>& tree, std::size_t at, const std::vector<Index32>& sample,
+                 const std::vector<std::size_t>& columns, int depth) {
+        Slope all;
+        double weight = 0;
+        for (const Index32 r : sample) all.add(slopes_[r]), weight += weights_[r];
+        tree[at].value = rounded(-options_.rate * all.first / (all.second + options_.ridge));
+        if (depth == 0 || weight < 2 * options_.leaf_weight) return;
+        const auto worth = [&](const Slope& s) { return s.first * s.first / (s.second + options_.ridge); };
+        std::vector<Split> best(columns.size());
+        parallel_for(
+            columns.size(),
+            [&](std::size_t k) {
+                const std::size_t c = columns[k];
+                std::array<Slope, bins> sums{};
+                std::array<double, bins> weights{};
+                for (const Index32 r : sample) {
+                    const std::size_t bin = binned_[c][r];
+                    sums[bin].add(slopes_[r]);
+                    weights[bin] += weights_[r];
+                }
+                Slope left;
+                double below = 0;
+                for (std::size_t b = 0; b < thresholds_[c].size(); ++b) {
+                    left.add(sums[b]);
+                    below += weights[b];
+                    if (below < options_.leaf_weight || weight - below < options_.leaf_weight) continue;
+                    const Slope right{all.first - left.first, all.second - left.second};
+                    const double gain = worth(left) + worth(right) - worth(all);
+                    if (gain > best[k].gain) best[k] = {gain, c, b};
+                }
+            },
+            1);
+        Split chosen;
+        for (const Split& one : best)
+            if (one.gain > chosen.gain) chosen = one;
+        if (!(chosen.gain > 1e-6)) return;
+        std::vector<Index32> left, right;
+        for (const Index32 r : sample) (binned_[chosen.column][r] <= chosen.bin ? left : right).push_back(r);
+        const int first = static_cast<int>(tree.size());
+        tree[at] = {static_cast<int>(chosen.column), thresholds_[chosen.column][chosen.bin], first, first + 1, 0};
+        tree.resize(tree.size() + 2);
+        descend(tree, static_cast<std::size_t>(first), left, columns, depth - 1);
+        descend(tree, static_cast<std::size_t>(first) + 1, right, columns, depth - 1);
+    }
+
+    const FeatureTable& table_;
+    const BoostOptions& options_;
+    std::size_t rows_;
+    const std::vector<bool>& truth_;
+    std::vector<double> weights_;
+    std::vector<std::vector<float>> thresholds_;
+    std::vector<std::vector<std::uint8_t>> binned_;
+    std::vector<Slope> slopes_;
+};
+
+}  // namespace
+
+void FeatureTable::add(std::span<const float> row) {
+    if (columns == 0) columns = row.size();
+    if (row.size() != columns)
+        fail_usage("a row of " + std::to_string(row.size()) + " features among rows of " + std::to_string(columns),
+                   "give all of them");
+    values.insert(values.end(), row.begin(), row.end());
+}
+
+double BoostedTrees::log_odds(std::span<const float> features) const {
+    double sum = bias;
+    for (const auto& tree : trees) sum += Booster::answer(tree, features);
+    return sum;
+}
+
+JsonValue BoostedTrees::to_json(JsonAllocator& allocator) const {
+    // A tree is a list of nodes in preorder: feature and threshold, then both children; -1 and the value of a leaf.
+    const auto number = [](float value) {
+        char text[32];
+        std::snprintf(text, sizeof text, "%.4g", static_cast<double>(value));
+        return std::strtod(text, nullptr);
+    };
+    JsonValue list(rapidjson::kArrayType);
+    for (const auto& tree : trees) {
+        JsonValue nodes(rapidjson::kArrayType);
+        const auto add = [&](const auto& self, std::size_t at) -> void {
+            const Node& node = tree[at];
+            nodes.PushBack(node.feature, allocator);
+            nodes.PushBack(number(node.feature < 0 ? node.value : node.threshold), allocator);
+            if (node.feature < 0) return;
+            self(self, static_cast<std::size_t>(node.left));
+            self(self, static_cast<std::size_t>(node.right));
+        };
+        add(add, 0);
+        list.PushBack(nodes, allocator);
+    }
+    JsonValue object(rapidjson::kObjectType);
+    add_members(object, allocator, "bias", number(static_cast<float>(bias)));
+    object.AddMember("trees", list, allocator);
+    return object;
+}
+
+BoostedTrees BoostedTrees::from_json(const JsonValue& value, std::size_t columns) {
+    const auto wrong = [](const std::string& what) { fail_input("boosted trees", what, "make the model anew"); };
+    BoostedTrees model;
+    if (!value.IsObject() || !value.HasMember("bias") || !value["bias"].IsNumber() || !value.HasMember("trees") ||
+        !value["trees"].IsArray())
+        wrong("have no bias or no list of trees");
+    model.bias = static_cast<double>(static_cast<float>(value["bias"].GetDouble()));
+    for (const JsonValue& nodes : value["trees"].GetArray()) {
+        auto& tree = model.trees.emplace_back();
+        rapidjson::SizeType at = 0;
+        const auto read = [&](const auto& self, int depth) -> int {
+            if (!nodes.IsArray() || at + 2 > nodes.Size() || !nodes[at].IsInt() || !nodes[at + 1].IsNumber() || depth > 64)
+                wrong("have a tree that is cut off");
+            const int feature = nodes[at].GetInt();
+            const float number = static_cast<float>(nodes[at + 1].GetDouble());
+            at += 2;
+            const std::size_t place = tree.size();
+            tree.push_back({});
+            if (feature < 0) {
+                tree[place].value = number;
+                return static_cast<int>(place);
+            }
+            if (static_cast<std::size_t>(feature) >= columns) wrong("ask for feature " + std::to_string(feature));
+            const int left = self(self, depth + 1), right = self(self, depth + 1);
+            tree[place] = {feature, number, left, right, 0};
+            return static_cast<int>(place);
+        };
+        read(read, 0);
+        if (at != nodes.Size()) wrong("have a tree with loose ends");
+    }
+    return model;
+}
+
+BoostedTrees boost(const FeatureTable& table, const std::vector<bool>& truth, const std::vector<double>& weights,
+                   const BoostOptions& options) {
+    check_options(options, "boost");
+    if (truth.size() != table.rows() || (!weights.empty() && weights.size() != table.rows()))
+        fail_usage("rows, truth and weights are not equally many", "give one of each a sample");
+    const auto yes = std::count(truth.begin(), truth.end(), true);
+    if (yes == 0 || static_cast<std::size_t>(yes) == truth.size())
+        fail_input("samples", "are all of one kind", "give examples of both");
+    if (!std::all_of(table.values.begin(), table.values.end(), [](float x) { return std::isfinite(x); }))
+        fail_input("samples", "have features that are not finite", "look at where they come from");
+    return Booster(table, truth, weights, options).run();
+}
+
+void BoostOptions::describe(OptionList& visit) {
+    visit("trees", trees, "how many", Range{1, 10000});
+    visit("depth", depth, "decisions from root to leaf, at most", Range{1, 16});
+    visit("rate", rate, "share of each tree's answer that is taken", Range{1e-4, 1});
+    visit("leaf-weight", leaf_weight, "of the samples under a leaf, at least", Range{0, 1e9});
+    visit("ridge", ridge, "holds leaves to 0", Range{0, 1e9});
+    visit("row-share", row_share, "of the samples, for each tree", Range{0.01, 1});
+    visit("column-share", column_share, "of the features, for each tree", Range{0.01, 1});
+    visit("seed", seed, "of the choices of samples and features", Range{0, 9007199254740992.0});
+}
+
+}  // namespace ostraka
